@@ -1,0 +1,10 @@
+//! Slump: a laboratory for Contact Dynamics of cohesive grains.
+//!
+//! The source is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics
+//! Algorithm* (2020, hal-02570097), "the paper" throughout. Modules depend downward only:
+//! [`world`] ← [`sim`] and [`render`]; the physics knows no screen.
+
+pub mod error;
+pub mod render;
+pub mod sim;
+pub mod world;

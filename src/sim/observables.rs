@@ -1,0 +1,42 @@
+//! What every step reports of itself.
+
+use serde::{Deserialize, Serialize};
+
+/// Measured after each step. One row of the observables' CSV.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Observables {
+    /// Steps taken so far.
+    pub step: u64,
+    /// Simulated time, s.
+    pub time_secs: f64,
+    /// Δt of this step, s.
+    pub time_step_secs: f64,
+    /// Sweeps of the solver.
+    pub sweeps: u32,
+    /// Whether the stopping test was met within the sweep limit.
+    pub converged: bool,
+    /// The common residual (`solver::residual`), dimensionless.
+    pub residual: f64,
+    /// All contacts, with grains and with fixed shapes.
+    pub contacts: u32,
+    /// Contacts with N > 0.
+    pub compressive_contacts: u32,
+    /// Contacts with N < 0.
+    pub tensile_contacts: u32,
+    /// δ: mean of |gap|/d over touching grain pairs.
+    pub mean_overlap: f64,
+    /// Largest overlap of any contact, in units of d.
+    pub max_overlap: f64,
+    /// Kinetic energy, J.
+    pub kinetic_energy: f64,
+    /// Potential energy in the gravity field, J.
+    pub potential_energy: f64,
+    /// Work that the normal contact forces did in this step, J.
+    pub normal_work: f64,
+    /// Work that the tangential contact forces did in this step, J.
+    pub tangential_work: f64,
+    /// Work of the gravity field in this step, J.
+    pub gravity_work: f64,
+    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11).
+    pub slump: f64,
+}

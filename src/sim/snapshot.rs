@@ -1,0 +1,78 @@
+//! One moment of a run, as pictures and windows need it. Plain data: it outlives the simulation.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::Observables;
+use crate::world::{Boundary, Disc};
+
+/// One moment of a run.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// What the last step measured.
+    pub observables: Observables,
+    /// The moving discs.
+    pub grains: Vec<GrainView>,
+    /// The contacts of the last step.
+    pub contacts: Vec<ContactView>,
+    /// What never moves.
+    pub surroundings: Arc<Surroundings>,
+}
+
+/// The part of a picture that no step changes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surroundings {
+    /// Fixed discs.
+    pub fixed_discs: Vec<Disc>,
+    /// Other fixed shapes.
+    pub boundaries: Vec<Boundary>,
+    /// The centre of attraction, where the scene has one, m.
+    pub centre_of_attraction: Option<DVec2>,
+    /// The diameter d that lengths are measured in, m.
+    pub mean_diameter: f64,
+    /// The scene's g, m/s².
+    pub gravity_magnitude: f64,
+}
+
+/// One grain at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrainView {
+    /// Centre, m.
+    pub position: DVec2,
+    /// Radius, m.
+    pub radius: f64,
+    /// Angle turned, rad.
+    pub angle: f64,
+    /// Velocity of the centre, m/s.
+    pub velocity: DVec2,
+    /// Angular velocity, rad/s.
+    pub angular_velocity: f64,
+    /// Largest overlap over its contacts, m; 0 without one.
+    pub overlap: f64,
+    /// Σ|N| over its contacts, N.
+    pub force: f64,
+    /// Number of its contacts.
+    pub coordination: u32,
+    /// Grey that the scene gives it: 0 black … 255 white.
+    pub tone: u8,
+}
+
+/// One contact at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactView {
+    /// Index of grain i.
+    pub grain: u32,
+    /// Index of grain j, or none against a fixed shape.
+    pub other_grain: Option<u32>,
+    /// Centre of grain i, m.
+    pub from: DVec2,
+    /// Centre of the other disc, or the touched point of another fixed shape, m.
+    pub to: DVec2,
+    /// N, newton; negative pulls.
+    pub normal_force: f64,
+    /// T, newton.
+    pub tangential_force: f64,
+    /// Gap when the contact was found, m; negative is overlap.
+    pub gap: f64,
+}

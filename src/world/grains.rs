@@ -1,0 +1,121 @@
+//! The moving discs.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+/// One disc as a scene describes it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grain {
+    /// Centre, m.
+    pub position: DVec2,
+    /// Radius, m.
+    pub radius: f64,
+    /// Velocity of the centre, m/s.
+    #[serde(default)]
+    pub velocity: DVec2,
+    /// Angular velocity, rad/s, positive anticlockwise.
+    #[serde(default)]
+    pub angular_velocity: f64,
+    /// Whether the gravity field acts on this disc.
+    #[serde(default = "yes")]
+    pub feels_gravity: bool,
+    /// Grey of the disc in the pictures that follow the paper: 0 black … 255 white.
+    #[serde(default = "light_grey")]
+    pub tone: u8,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn light_grey() -> u8 {
+    Grain::DEFAULT_TONE
+}
+
+impl Grain {
+    /// The grey of a grain that its scene does not colour.
+    pub const DEFAULT_TONE: u8 = 205;
+
+    /// A disc at rest that feels gravity.
+    pub fn at_rest(position: DVec2, radius: f64) -> Self {
+        Self {
+            position,
+            radius,
+            velocity: DVec2::ZERO,
+            angular_velocity: 0.0,
+            feels_gravity: true,
+            tone: Self::DEFAULT_TONE,
+        }
+    }
+}
+
+/// The discs of a world, one entry a disc in every list.
+///
+/// The lists are apart because the passes that stream over all grains (prediction, integration,
+/// detection) each need few of them; the sweep, which needs a body's whole motion at random
+/// places, works on a packed copy (`solver::problem`).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Grains {
+    /// Centres, m.
+    pub positions: Vec<DVec2>,
+    /// Velocities of the centres, m/s.
+    pub velocities: Vec<DVec2>,
+    /// Angles turned since the start, rad.
+    pub angles: Vec<f64>,
+    /// Angular velocities, rad/s.
+    pub angular_velocities: Vec<f64>,
+    /// Radii, m.
+    pub radii: Vec<f64>,
+    /// Masses, kg: areal density × πr².
+    pub masses: Vec<f64>,
+    /// Whether gravity acts.
+    pub feels_gravity: Vec<bool>,
+    /// Greys for the paper's pictures.
+    pub tones: Vec<u8>,
+}
+
+impl Grains {
+    /// Lays out `grains` for the step. `areal_density` in kg/m².
+    pub fn new(grains: &[Grain], areal_density: f64) -> Self {
+        let mut lists = Self::default();
+        for grain in grains {
+            lists.positions.push(grain.position);
+            lists.velocities.push(grain.velocity);
+            lists.angles.push(0.0);
+            lists.angular_velocities.push(grain.angular_velocity);
+            lists.radii.push(grain.radius);
+            lists.masses.push(areal_density * std::f64::consts::PI * grain.radius * grain.radius);
+            lists.feels_gravity.push(grain.feels_gravity);
+            lists.tones.push(grain.tone);
+        }
+        lists
+    }
+
+    /// Number of discs.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there is no disc.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// Moment of inertia of a solid disc, ½mr², kg·m².
+    pub fn inertia(&self, index: usize) -> f64 {
+        0.5 * self.masses[index] * self.radii[index] * self.radii[index]
+    }
+
+    /// Grain `index` as a scene would describe it at this moment.
+    pub fn grain(&self, index: usize) -> Grain {
+        Grain {
+            position: self.positions[index],
+            radius: self.radii[index],
+            velocity: self.velocities[index],
+            angular_velocity: self.angular_velocities[index],
+            feels_gravity: self.feels_gravity[index],
+            tone: self.tones[index],
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Bodies, boundaries, gravity and parameters: plain data, in SI units and f64.
+
+mod boundary;
+mod grains;
+mod gravity;
+mod parameters;
+
+pub use boundary::{Boundary, Disc};
+pub use grains::{Grain, Grains};
+pub use gravity::Gravity;
+pub use parameters::{FrictionCone, Parameters, Physics};
+
+/// Everything that a step reads and moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    /// The moving discs.
+    pub grains: Grains,
+    /// Discs that never move, such as the rough base of the pile.
+    pub fixed_discs: Vec<Disc>,
+    /// Other shapes that never move.
+    pub boundaries: Vec<Boundary>,
+    /// The field that accelerates the grains.
+    pub gravity: Gravity,
+    /// The diameter d that lengths are measured in, m.
+    pub mean_diameter: f64,
+}

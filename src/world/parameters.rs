@@ -1,0 +1,106 @@
+//! What a scene can do, and the numbers that may change between any two steps.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+
+/// The physics that a scene needs. A step is compiled for just that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Physics {
+    /// 1 (all on the x axis) or 2.
+    pub axes: u8,
+    /// Whether contacts carry tangential impulses.
+    pub friction: bool,
+    /// Whether grains turn. Without friction nothing changes a disc's spin, so this asks for
+    /// friction.
+    pub rotation: bool,
+    /// Whether contacts can pull.
+    pub cohesion: bool,
+}
+
+impl Physics {
+    /// Two axes, friction, rotation and cohesion.
+    pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
+
+    /// Checks that the parts fit each other.
+    ///
+    /// # Errors
+    /// Names the field that does not fit.
+    pub fn validate(&self) -> Result<()> {
+        match (self.axes, self.friction, self.rotation) {
+            (1 | 2, false, true) => {
+                Err(Error::value("physics.rotation", true, "false where physics.friction is false"))
+            }
+            (1, true, _) => Err(Error::value(
+                "physics.friction",
+                true,
+                "false where physics.axes is 1: a line has no tangent",
+            )),
+            (1 | 2, ..) => Ok(()),
+            (axes, ..) => Err(Error::value("physics.axes", axes, "1 or 2")),
+        }
+    }
+}
+
+/// Which part of the normal force bounds friction (the paper leaves both readings open).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrictionCone {
+    /// |T| ≤ μ (N + C₀): the cone's apex is at −C₀.
+    #[default]
+    Shifted,
+    /// |T| ≤ μ max(N, 0).
+    Compressive,
+}
+
+/// Numbers that may change between any two steps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameters {
+    /// Bond number: C₀ = Bond · m_ij · g (paper eq. 10).
+    pub bond: f64,
+    /// Δt, s.
+    pub time_step_secs: f64,
+    /// ρ, 0 … 1.
+    pub restitution: f64,
+    /// μ.
+    pub friction: f64,
+    /// Which part of the normal force bounds friction.
+    #[serde(default)]
+    pub cone: FrictionCone,
+}
+
+impl Parameters {
+    /// Checks every number against its range.
+    ///
+    /// # Errors
+    /// Names the first field outside its range, its value and the range.
+    pub fn validate(&self) -> Result<()> {
+        let Self { bond, time_step_secs, restitution, friction, cone: _ } = *self;
+        // Written so that NaN fails each of them.
+        if !(bond >= 0.0 && bond.is_finite()) {
+            return Err(Error::value("bond", bond, "a finite number ≥ 0"));
+        }
+        if !(time_step_secs > 0.0 && time_step_secs.is_finite()) {
+            return Err(Error::value("dt", time_step_secs, "a finite number of seconds > 0"));
+        }
+        if !(0.0..=1.0).contains(&restitution) {
+            return Err(Error::value("rho", restitution, "between 0 and 1"));
+        }
+        if !(friction >= 0.0 && friction.is_finite()) {
+            return Err(Error::value("mu", friction, "a finite number ≥ 0"));
+        }
+        Ok(())
+    }
+
+    /// Bond·Δt/√(d/g), dimensionless (paper §3.3).
+    pub fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
+        self.bond * self.time_step_secs / (mean_diameter / gravity_magnitude).sqrt()
+    }
+
+    /// Bond·g·Δt, m/s: the opening speed that one step of cohesion cancels (paper eq. 9).
+    pub fn capture_speed(&self, gravity_magnitude: f64) -> f64 {
+        self.bond * gravity_magnitude * self.time_step_secs
+    }
+}
