@@ -4,7 +4,10 @@
 //! Algorithm* (2020, hal-02570097), "the paper" throughout. Modules depend downward only:
 //! [`world`] ← [`sim`] and [`render`]; the physics knows no screen.
 
+pub mod contact;
 pub mod error;
 pub mod render;
+pub mod scene;
 pub mod sim;
+pub mod solver;
 pub mod world;

@@ -1,7 +1,10 @@
 //! The step, what it measures, and what it shows.
 
 mod observables;
+mod simulation;
 mod snapshot;
+mod step;
 
 pub use observables::Observables;
+pub use simulation::Simulation;
 pub use snapshot::{ContactView, GrainView, Snapshot, Surroundings};

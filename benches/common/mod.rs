@@ -1,0 +1,61 @@
+//! Discs at rest in a box, for the benches.
+
+use glam::DVec2;
+use slump::scene::{Scene, pile_of};
+use slump::sim::Simulation;
+use slump::world::{Boundary, Grain, Parameters};
+
+/// d of the pile's scene, m.
+const DIAMETER: f64 = 5e-3;
+
+/// `count` discs, settled in a box as wide as the pile is high, without cohesion. Their contacts
+/// are those of a pile; how they fell matters to no bench, so they fall quickly.
+pub fn settled(count: usize) -> Simulation {
+    let columns = ((count as f64).sqrt() * 1.2).ceil() as usize;
+    let spacing = 1.21 * DIAMETER;
+    let mut random = 1u64;
+    let mut fraction = || {
+        // Any well-mixed sequence will do (Knuth's multiplier).
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let grains = (0..count)
+        .map(|index| {
+            let radius = 0.5 * DIAMETER * (0.8 + 0.4 * fraction());
+            let column = (index % columns) as f64 - 0.5 * (columns - 1) as f64;
+            let row = (index / columns) as f64 + 1.1;
+            let shift = (0.5 * spacing - radius) * (2.0 * fraction() - 1.0);
+            Grain::at_rest(spacing * DVec2::new(column, row) + DVec2::new(shift, 0.0), radius)
+        })
+        .collect();
+    let width_in_diameters = columns as f64 * 1.21;
+    let wall = |side: f64| Boundary::HalfSpace {
+        point: DVec2::new(side * 0.5 * width_in_diameters * DIAMETER, 0.0),
+        normal: DVec2::new(-side, 0.0),
+    };
+    let pile = pile_of(grains, width_in_diameters);
+    let mut scene = Scene {
+        boundaries: vec![wall(-1.0), wall(1.0)],
+        parameters: Parameters { bond: 0.0, time_step_secs: 5e-4, ..pile.parameters },
+        ..pile
+    };
+    scene.solver.max_sweeps = 30;
+    let mut simulation = scene.simulation().expect("a proper scene");
+    for step in 0..800 {
+        simulation.step().expect("a finite state");
+        if step % 10 == 0 {
+            simulation.scale_velocities(0.9);
+        }
+    }
+    simulation.bring_to_rest();
+    simulation
+}
+
+/// The same state with other parameters.
+pub fn with(simulation: &Simulation, change: impl FnOnce(&mut Parameters)) -> Simulation {
+    let mut simulation = simulation.clone();
+    let mut parameters = *simulation.parameters();
+    change(&mut parameters);
+    simulation.set_parameters(parameters).expect("proper parameters");
+    simulation
+}

@@ -1,0 +1,81 @@
+//! The contact laws, as projections of one contact's impulse.
+//!
+//! Signorini's law with cohesion (paper eq. 3 and 8, Fig. 2b) asks 0 ≤ N + C₀ ⟂ v̄_n ≥ 0, with the
+//! formal velocity v̄ = (v^n + ρ v^{n−1}) / (1 + ρ). Over one step N = P/Δt, and a positive factor
+//! does not change a complementarity. Divided by m_ij, with the reduced impulse λ = P/m_ij, the
+//! shifted reduced impulse σ = λ_n + C₀Δt/m_ij and u = v_n^n + ρ v_n^{n−1},
+//!
+//! > 0 ≤ σ ⟂ u ≥ 0   ⇔   σ = max(σ − u, 0).
+//!
+//! C₀Δt/m_ij = Bond·g·Δt is the capture speed, the same for every contact of a scene: in σ, cohesion
+//! is nothing but a constant pull that the contact pushes against, and the law without cohesion is
+//! that with a capture speed of 0. Coulomb's law in the shifted cone is |λ_t| ≤ μσ; on the compressive
+//! part alone it is |λ_t| ≤ μ max(σ − capture speed, 0).
+
+/// C₀ = Bond · m_ij · g, newton (paper eq. 10).
+pub fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: f64) -> f64 {
+    bond * effective_mass * gravity_magnitude
+}
+
+/// Projects σ (m/s) on σ ≥ 0.
+#[inline(always)]
+pub fn signorini(shifted_impulse: f64) -> f64 {
+    larger(shifted_impulse, 0.0)
+}
+
+/// The largest |λ_t| that a shifted normal impulse allows, m/s.
+#[inline(always)]
+pub fn friction_bound<const COMPRESSIVE_CONE: bool>(
+    friction: f64,
+    shifted_impulse: f64,
+    capture_speed: f64,
+) -> f64 {
+    let rubbing = if COMPRESSIVE_CONE {
+        larger(shifted_impulse - capture_speed, 0.0)
+    } else {
+        shifted_impulse
+    };
+    friction * rubbing
+}
+
+/// Projects a tangential impulse on its absolute value ≤ `bound`, any unit.
+#[inline(always)]
+pub fn coulomb(tangential_impulse: f64, bound: f64) -> f64 {
+    smaller(larger(tangential_impulse, -bound), bound)
+}
+
+/// The larger of two numbers as one machine instruction; `second` where `first` is NaN.
+#[inline(always)]
+fn larger(first: f64, second: f64) -> f64 {
+    if first > second { first } else { second }
+}
+
+/// The smaller of two numbers as one machine instruction; `second` where `first` is NaN.
+#[inline(always)]
+fn smaller(first: f64, second: f64) -> f64 {
+    if first < second { first } else { second }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contact_pulls_no_harder_than_its_cohesion() {
+        let capture_speed = 2.0;
+        let projected = |reduced_impulse: f64| {
+            signorini(reduced_impulse + capture_speed) - capture_speed
+        };
+        assert_eq!(projected(-3.0), -2.0);
+        assert_eq!(projected(-1.0), -1.0);
+        assert_eq!(projected(4.0), 4.0);
+    }
+
+    #[test]
+    fn the_two_cones_differ_where_the_contact_pulls() {
+        let (pulling, capture_speed) = (1.0, 2.0);
+        assert_eq!(friction_bound::<false>(0.5, pulling, capture_speed), 0.5);
+        assert_eq!(friction_bound::<true>(0.5, pulling, capture_speed), 0.0);
+        assert_eq!(coulomb(-3.0, 0.5), -0.5);
+    }
+}

@@ -1,0 +1,12 @@
+//! Which bodies touch, and what a contact may transmit.
+
+mod candidates;
+mod contact_list;
+mod features;
+mod grid;
+pub mod law;
+
+pub use candidates::{Candidates, Reach};
+pub use contact_list::{Contact, ContactList, Impulse};
+pub use features::Feature;
+pub use grid::Grid;

@@ -1,0 +1,149 @@
+//! Everything that a scene says.
+
+use serde::{Deserialize, Serialize};
+
+use super::Rain;
+use crate::error::{Error, Result};
+use crate::sim::Simulation;
+use crate::solver::SolverSettings;
+use crate::world::{Boundary, Disc, Grain, Grains, Gravity, Parameters, Physics, World};
+
+/// A scene, built-in or from a TOML file, which says the same things by the same names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Its name.
+    pub name: String,
+    /// The diameter d that lengths are measured in, m.
+    pub mean_diameter: f64,
+    /// σ of the discs, kg/m².
+    #[serde(default = "one")]
+    pub areal_density: f64,
+    /// Pairs touch below this gap, m: 0 but for rounding.
+    #[serde(default)]
+    pub gap_tolerance: f64,
+    /// Simulated time of a run, s.
+    pub duration_secs: f64,
+    /// The physics to compute.
+    pub physics: Physics,
+    /// The field that accelerates the grains.
+    pub gravity: Gravity,
+    /// Numbers that may change during a run.
+    pub parameters: Parameters,
+    /// How well each step is solved.
+    #[serde(default)]
+    pub solver: SolverSettings,
+    /// Where the grains come from, unless they are listed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<GrainSource>,
+    /// Fixed shapes.
+    #[serde(default)]
+    pub boundaries: Vec<Boundary>,
+    /// Fixed discs.
+    #[serde(default)]
+    pub fixed_discs: Vec<Disc>,
+    /// The moving discs.
+    #[serde(default)]
+    pub grains: Vec<Grain>,
+}
+
+/// Where the grains of a scene come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "from", rename_all = "kebab-case")]
+pub enum GrainSource {
+    /// A CSV of discs.
+    Csv {
+        /// Its path; in a scene file, relative to that file.
+        path: std::path::PathBuf,
+    },
+    /// Grains rained into a box over a rough base and left to come to rest.
+    Rain(Rain),
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Scene {
+    /// Checks what [`Simulation::new`] does not see.
+    ///
+    /// # Errors
+    /// Names the first field outside its range.
+    pub fn validate(&self) -> Result<()> {
+        let positive = |field: &str, value: f64, unit: &str| {
+            if value > 0.0 && value.is_finite() {
+                Ok(())
+            } else {
+                Err(Error::value(field, value, format!("a finite number > 0{unit}")))
+            }
+        };
+        positive("areal_density", self.areal_density, " kg/m²")?;
+        positive("duration", self.duration_secs, " s")?;
+        positive("mean_diameter", self.mean_diameter, " m")?;
+        if self.grains.is_empty() {
+            return Err(Error::value("grains", 0, "at least one disc"));
+        }
+        for (index, grain) in self.grains.iter().enumerate() {
+            positive(&format!("grains[{index}].radius"), grain.radius, " m")?;
+            let finite = grain.position.is_finite()
+                && grain.velocity.is_finite()
+                && grain.angular_velocity.is_finite();
+            if !finite {
+                let found = format!("{grain:?}");
+                return Err(Error::value(format!("grains[{index}]"), found, "finite throughout"));
+            }
+        }
+        for (index, disc) in self.fixed_discs.iter().enumerate() {
+            positive(&format!("fixed_discs[{index}].radius"), disc.radius, " m")?;
+            if !disc.position.is_finite() {
+                let field = format!("fixed_discs[{index}].position");
+                return Err(Error::value(field, disc.position, "finite"));
+            }
+        }
+        let magnitude = self.gravity.magnitude();
+        if !magnitude.is_finite() {
+            return Err(Error::value("gravity", magnitude, "finite"));
+        }
+        if self.physics.axes == 1 {
+            self.validate_line()?;
+        }
+        Ok(())
+    }
+
+    /// A scene on a line must lie on the line.
+    fn validate_line(&self) -> Result<()> {
+        let allowed = "on the x axis where physics.axes is 1";
+        let off_line = |grain: &Grain| grain.position.y != 0.0 || grain.velocity.y != 0.0;
+        if let Some(index) = self.grains.iter().position(off_line) {
+            let field = format!("grains[{index}]");
+            return Err(Error::value(field, self.grains[index].position, allowed));
+        }
+        if let Some(index) = self.fixed_discs.iter().position(|disc| disc.position.y != 0.0) {
+            let field = format!("fixed_discs[{index}]");
+            return Err(Error::value(field, self.fixed_discs[index].position, allowed));
+        }
+        let across = |boundary: &Boundary| !matches!(boundary, Boundary::HalfSpace { normal, .. } if normal.y == 0.0);
+        if let Some(index) = self.boundaries.iter().position(across) {
+            let field = format!("boundaries[{index}]");
+            let allowed = "a half-space across the x axis where physics.axes is 1";
+            return Err(Error::value(field, format!("{:?}", self.boundaries[index]), allowed));
+        }
+        Ok(())
+    }
+
+    /// Sets the scene up at t = 0.
+    ///
+    /// # Errors
+    /// Names the first field outside its range.
+    pub fn simulation(&self) -> Result<Simulation> {
+        self.validate()?;
+        let world = World {
+            grains: Grains::new(&self.grains, self.areal_density),
+            fixed_discs: self.fixed_discs.clone(),
+            boundaries: self.boundaries.clone(),
+            gravity: self.gravity,
+            mean_diameter: self.mean_diameter,
+        };
+        Simulation::new(world, self.physics, self.parameters, self.solver, self.gap_tolerance)
+    }
+}

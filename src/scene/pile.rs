@@ -1,0 +1,88 @@
+//! The paper's pile (§3): discs at rest between walls over a rough base; at t = 0 the walls go.
+
+use glam::DVec2;
+
+use super::{GrainSource, Rain, Scene, csv_states};
+use crate::error::Result;
+use crate::solver::SolverSettings;
+use crate::world::{Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
+
+/// d, m.
+pub(super) const DIAMETER: f64 = 5e-3;
+/// g, m/s².
+pub(super) const GRAVITY: f64 = 9.8;
+/// How far the rough base reaches beyond the box on either side, in diameters: further than any
+/// grain of the paper's pile gets in its second.
+pub const BASE_MARGIN_IN_DIAMETERS: f64 = 40.0;
+/// Height of the layers that are told apart by their grey, in diameters.
+const LAYER_IN_DIAMETERS: f64 = 2.0;
+/// The greys of the layers.
+const LAYER_TONES: [u8; 2] = [222, 168];
+
+/// The initial state that all runs of a series share.
+const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
+
+/// The paper's 138 grains, from the initial state that is shipped with the program.
+///
+/// # Errors
+/// None in a program as shipped; a changed asset is told of with its line.
+pub fn paper_pile() -> Result<Scene> {
+    let grains = csv_states::parse_discs(INITIAL_STATE, "assets/pile_138.csv".as_ref())?;
+    Ok(pile_of(grains, Rain::default().box_width_in_diameters))
+}
+
+/// A pile of the given grains, for a box that was `box_width_in_diameters` wide.
+pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
+    tone_in_layers(&mut grains, DIAMETER);
+    Scene {
+        name: "pile".into(),
+        mean_diameter: DIAMETER,
+        areal_density: 1.0,
+        gap_tolerance: 0.0,
+        duration_secs: 1.0,
+        physics: Physics::FULL,
+        gravity: Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) },
+        parameters: Parameters {
+            bond: 20.0,
+            time_step_secs: 1e-3,
+            restitution: 0.1,
+            friction: 0.5,
+            cone: FrictionCone::Shifted,
+        },
+        solver: SolverSettings::default(),
+        source: None,
+        boundaries: Vec::new(),
+        fixed_discs: rough_base(box_width_in_diameters, DIAMETER),
+        grains,
+    }
+}
+
+/// Fixed discs of diameter d, centres on y = 0 and spaced d, symmetric about x = 0, under a box of
+/// the given width and [`BASE_MARGIN_IN_DIAMETERS`] beyond it.
+pub fn rough_base(box_width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
+    let half = (0.5 * box_width_in_diameters + BASE_MARGIN_IN_DIAMETERS).ceil() as i64;
+    (-half..=half)
+        .map(|k| Disc { position: DVec2::new(k as f64 * diameter, 0.0), radius: 0.5 * diameter })
+        .collect()
+}
+
+/// Gives grains greys by the layer they start in, so that a picture shows what moved where.
+pub fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
+    for grain in grains {
+        let layer = (grain.position.y / (LAYER_IN_DIAMETERS * diameter)).floor() as i64;
+        grain.tone = LAYER_TONES[layer.rem_euclid(LAYER_TONES.len() as i64) as usize];
+    }
+}
+
+impl GrainSource {
+    /// The grains, read or made.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or a value is outside its range.
+    pub fn grains(&self) -> Result<Vec<Grain>> {
+        match self {
+            Self::Csv { path } => csv_states::read_discs(path),
+            Self::Rain(rain) => super::settle(rain, |_| true),
+        }
+    }
+}

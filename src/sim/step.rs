@@ -1,0 +1,161 @@
+//! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
+
+use super::{Observables, Simulation};
+use crate::solver::{Kinematics, Model, ModelVisitor, measure, solve, visit_leanest};
+
+/// Takes one step of Δt, compiled for the leanest model that the scene and its parameters allow.
+pub(super) fn take(simulation: &mut Simulation) {
+    let (physics, parameters) = (simulation.physics, simulation.parameters);
+    visit_leanest(physics, &parameters, Step(simulation));
+}
+
+/// Measures the initial state: energies, and the contacts that are there before any impulse.
+pub(super) fn measure_start(simulation: &mut Simulation) {
+    let (physics, parameters) = (simulation.physics, simulation.parameters);
+    visit_leanest(physics, &parameters, Start(simulation));
+}
+
+struct Step<'a>(&'a mut Simulation);
+
+impl ModelVisitor for Step<'_> {
+    type Output = ();
+
+    fn visit<M: Model>(self) {
+        let simulation = self.0;
+        let time_step_secs = simulation.parameters.time_step_secs;
+        let time_step_before = simulation.time_step_of_impulses_secs;
+        if time_step_secs != time_step_before {
+            simulation.contacts.scale_impulses(time_step_secs / time_step_before);
+            simulation.time_step_of_impulses_secs = time_step_secs;
+        }
+        detect::<M>(simulation);
+
+        let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
+        let problem = M::Kinematics::problem(problems);
+        let cohesion = physics.cohesion;
+        problem.prepare::<M>(world, contacts, parameters, cohesion, solver.warm_start);
+        let report = solve::<M>(problem, solver);
+        let measures = measure::<M>(problem);
+        problem.store_impulses(contacts);
+
+        let mut kinetic_energy = 0.0;
+        let mut gravity_work = 0.0;
+        for (index, body) in problem.bodies.iter().enumerate() {
+            M::Kinematics::store(body, world, index);
+            let mass = world.grains.masses[index];
+            kinetic_energy += M::Kinematics::kinetic_energy(body, mass);
+            let (before, free) = (&problem.before[index], &problem.free[index]);
+            gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
+        }
+        integrate::<M>(simulation);
+
+        let before = simulation.observables;
+        simulation.observables = Observables {
+            step: before.step + 1,
+            time_secs: before.time_secs + time_step_secs,
+            time_step_secs,
+            sweeps: report.sweeps,
+            converged: report.converged,
+            residual: measures.residual,
+            compressive_contacts: measures.compressive_contacts,
+            tensile_contacts: measures.tensile_contacts,
+            normal_work: measures.normal_work,
+            tangential_work: measures.tangential_work,
+            gravity_work,
+            kinetic_energy,
+            ..geometry::<M>(simulation)
+        };
+    }
+}
+
+struct Start<'a>(&'a mut Simulation);
+
+impl ModelVisitor for Start<'_> {
+    type Output = ();
+
+    fn visit<M: Model>(self) {
+        let simulation = self.0;
+        detect::<M>(simulation);
+        let bodies = 0..simulation.world.grains.len();
+        let energy = |index: usize| {
+            let body = M::Kinematics::body(&simulation.world, index);
+            M::Kinematics::kinetic_energy(&body, simulation.world.grains.masses[index])
+        };
+        simulation.observables = Observables {
+            time_step_secs: simulation.parameters.time_step_secs,
+            converged: true,
+            kinetic_energy: bodies.map(energy).sum(),
+            ..geometry::<M>(simulation)
+        };
+    }
+}
+
+fn detect<M: Model>(simulation: &mut Simulation) {
+    let Simulation { world, candidates, contacts, .. } = simulation;
+    if M::Kinematics::AXES == 1 {
+        candidates.update::<1>(world);
+        contacts.detect::<1>(world, candidates);
+    } else {
+        candidates.update::<2>(world);
+        contacts.detect::<2>(world, candidates);
+    }
+}
+
+/// x^n = x^{n−1} + Δt v^n (paper eq. 12), and the angles where grains turn.
+fn integrate<M: Model>(simulation: &mut Simulation) {
+    let time_step_secs = simulation.parameters.time_step_secs;
+    let grains = &mut simulation.world.grains;
+    for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
+        if M::Kinematics::AXES == 1 {
+            position.x += time_step_secs * velocity.x;
+        } else {
+            *position += time_step_secs * *velocity;
+        }
+    }
+    // Grains go on turning where friction is switched off for the moment.
+    if simulation.physics.rotation {
+        for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
+            *angle += time_step_secs * spin;
+        }
+    }
+}
+
+/// The observables that positions and contacts alone tell.
+fn geometry<M: Model>(simulation: &Simulation) -> Observables {
+    let world = &simulation.world;
+    let grains = &world.grains;
+    let contacts = simulation.contacts.contacts();
+    let mut overlap_of_pairs = 0.0;
+    let mut pairs = 0u32;
+    let mut smallest_gap = 0f64;
+    for contact in contacts {
+        smallest_gap = smallest_gap.min(contact.gap);
+        if (contact.other as usize) < grains.len() {
+            overlap_of_pairs += contact.gap.abs();
+            pairs += 1;
+        }
+    }
+    let mut heights = 0.0;
+    let mut potential_energy = 0.0;
+    for index in 0..grains.len() {
+        let position = grains.positions[index];
+        heights += position.y;
+        if grains.feels_gravity[index] {
+            potential_energy += grains.masses[index] * world.gravity.potential(position);
+        }
+    }
+    let dropped = simulation.initial_heights - heights;
+    Observables {
+        contacts: contacts.len() as u32,
+        mean_overlap: overlap_of_pairs / f64::from(pairs.max(1)) / world.mean_diameter,
+        max_overlap: -smallest_gap / world.mean_diameter,
+        potential_energy,
+        // On a line nothing can slump.
+        slump: if M::Kinematics::AXES == 1 || dropped == 0.0 {
+            0.0
+        } else {
+            dropped / simulation.initial_heights
+        },
+        ..Observables::default()
+    }
+}

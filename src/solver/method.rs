@@ -1,0 +1,54 @@
+//! The registry of methods.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Model, SolverSettings, StepProblem, nsgs};
+
+/// A method, by the name that command line, scene files and panels use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Non-linear Gauss–Seidel.
+    Nsgs,
+}
+
+/// What there is to know of a method.
+#[derive(Clone, Copy, Debug)]
+pub struct MethodInfo {
+    /// The method.
+    pub method: Method,
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// One line.
+    pub summary: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+}
+
+/// All methods.
+pub const METHODS: [MethodInfo; 1] = [MethodInfo {
+    method: Method::Nsgs,
+    name: "nsgs",
+    summary: "non-linear Gauss-Seidel: one contact after the other, exact for each",
+    source: "M. Jean, The non-smooth contact dynamics method (1999)",
+}];
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SolveReport {
+    /// Sweeps done.
+    pub sweeps: u32,
+    /// Whether the stopping test was met.
+    pub converged: bool,
+}
+
+/// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
+/// the rows' impulses.
+pub fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+) -> SolveReport {
+    match settings.method {
+        Method::Nsgs => nsgs::solve::<M>(problem, settings),
+    }
+}

@@ -1,0 +1,19 @@
+//! One step's contact problem, the methods that solve it, and the residual that judges them all.
+
+mod kinematics;
+mod measure;
+mod method;
+mod model;
+mod nsgs;
+mod problem;
+mod settings;
+
+pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
+pub use measure::{Measures, measure, residual};
+pub use method::{METHODS, Method, MethodInfo, SolveReport, solve};
+pub use model::{Model, ModelVisitor, StepModel, visit_leanest};
+pub use problem::{Problems, Row, StepProblem};
+pub use settings::{SolverSettings, StopTest};
+
+#[doc(hidden)]
+pub use nsgs::sweep;

@@ -1,0 +1,60 @@
+//! The models that a step is compiled for.
+
+use super::{Kinematics, Line, Plane, SpinningPlane};
+use crate::world::{FrictionCone, Parameters, Physics};
+
+/// What a step computes. Everything here is known when the step is compiled, so a leaner model
+/// has no branch for what it leaves out.
+///
+/// Cohesion is not among it: in shifted impulses (`contact::law`) it costs the sweep nothing.
+pub trait Model: Copy + 'static {
+    /// How bodies move.
+    type Kinematics: Kinematics;
+    /// Whether contacts carry tangential impulses.
+    const FRICTION: bool;
+    /// Whether only the compressive part of the normal force rubs.
+    const COMPRESSIVE_CONE: bool;
+}
+
+/// A model as a type: kinematics, then friction, compressive cone.
+#[derive(Clone, Copy, Debug)]
+pub struct StepModel<K, const FRICTION: bool, const COMPRESSIVE_CONE: bool>(
+    std::marker::PhantomData<K>,
+);
+
+impl<K: Kinematics, const FRICTION: bool, const COMPRESSIVE_CONE: bool> Model
+    for StepModel<K, FRICTION, COMPRESSIVE_CONE>
+{
+    type Kinematics = K;
+    const FRICTION: bool = FRICTION;
+    const COMPRESSIVE_CONE: bool = COMPRESSIVE_CONE;
+}
+
+/// Something to be done once the model is known.
+pub trait ModelVisitor {
+    /// What it gives.
+    type Output;
+    /// Does it.
+    fn visit<M: Model>(self) -> Self::Output;
+}
+
+/// Calls `visitor` with the leanest model that computes what the scene has (`physics`) and what is
+/// switched on at present: without friction where μ = 0, with one cone where Bond = 0. Each gives
+/// the same impulses as the fuller model would.
+pub fn visit_leanest<V: ModelVisitor>(
+    physics: Physics,
+    parameters: &Parameters,
+    visitor: V,
+) -> V::Output {
+    let friction = physics.friction && parameters.friction > 0.0;
+    let cohesion = physics.cohesion && parameters.bond > 0.0;
+    let compressive = cohesion && parameters.cone == FrictionCone::Compressive;
+    match (physics.axes, friction, physics.rotation, compressive) {
+        (1, ..) => visitor.visit::<StepModel<Line, false, false>>(),
+        (_, false, ..) => visitor.visit::<StepModel<Plane, false, false>>(),
+        (_, true, false, false) => visitor.visit::<StepModel<Plane, true, false>>(),
+        (_, true, false, true) => visitor.visit::<StepModel<Plane, true, true>>(),
+        (_, true, true, false) => visitor.visit::<StepModel<SpinningPlane, true, false>>(),
+        (_, true, true, true) => visitor.visit::<StepModel<SpinningPlane, true, true>>(),
+    }
+}

@@ -1,0 +1,233 @@
+//! The problem of one step: packed bodies and one row a contact, in the order of the sweep.
+
+use super::{Kinematics, Line, Model, Plane, SpinningPlane};
+use crate::contact::{Contact, ContactList, Impulse, law};
+use crate::world::{Parameters, World};
+
+/// One contact as the sweep sees it: exactly one cache line in the plane. Impulses are reduced ones,
+/// λ = P/m_ij (see `solver::kinematics` and `contact::law`).
+///
+/// Array of structures was measured against structure of arrays before it was chosen
+/// (`cargo bench --bench layout`).
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Row<K: Kinematics> {
+    /// Grain i.
+    pub i: u32,
+    /// Grain j; unused in a row against a fixed body.
+    pub j: u32,
+    /// n, from j to i.
+    pub normal: K::Normal,
+    /// g_i = m_ij/m_i; 1 against a fixed body.
+    pub share: f64,
+    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}.
+    pub restitution_velocity: f64,
+    /// σ = λ_n + capture speed, m/s.
+    pub shifted_impulse: f64,
+    /// λ_t, m/s.
+    pub tangential_impulse: f64,
+    /// m_ij, kg.
+    pub effective_mass: f64,
+}
+
+/// All contacts of one step. Memory is kept between steps.
+///
+/// The sweep's order is fixed: first the contacts with fixed bodies, in the order of detection
+/// (sorted by grain, then by fixed body); then those between grains, interleaved from
+/// [`StepProblem::STREAMS`] stretches of the order of detection (sorted by i, then j). Neighbours in
+/// the order of detection share a grain, so each update would wait for the one before it to finish;
+/// interleaved, updates in flight touch different grains. Up to [`StepProblem::STREAMS`] pairs the
+/// two orders are the same.
+#[derive(Clone, Debug)]
+pub struct StepProblem<K: Kinematics> {
+    /// Bodies as the sweep moves them.
+    pub bodies: Vec<K::Body>,
+    /// Bodies at the beginning of the step.
+    pub before: Vec<K::Body>,
+    /// Bodies at the end of the step if no contact acted.
+    pub free: Vec<K::Body>,
+    /// Rows against fixed bodies.
+    pub fixed_rows: Vec<Row<K>>,
+    /// Rows between grains.
+    pub pair_rows: Vec<Row<K>>,
+    /// The contact behind each row: fixed rows, then pair rows.
+    pub contact_of_row: Vec<u32>,
+    /// μ.
+    pub friction: f64,
+    /// C₀Δt/m_ij = Bond·g·Δt, m/s; 0 in a scene without cohesion.
+    pub capture_speed: f64,
+    /// Mean mass of the grains, kg.
+    pub mean_mass: f64,
+    pair_contacts: Vec<u32>,
+}
+
+impl<K: Kinematics> Default for StepProblem<K> {
+    fn default() -> Self {
+        Self {
+            bodies: Vec::new(),
+            before: Vec::new(),
+            free: Vec::new(),
+            fixed_rows: Vec::new(),
+            pair_rows: Vec::new(),
+            contact_of_row: Vec::new(),
+            friction: 0.0,
+            capture_speed: 0.0,
+            mean_mass: 0.0,
+            pair_contacts: Vec::new(),
+        }
+    }
+}
+
+impl<K: Kinematics> StepProblem<K> {
+    /// Stretches that the order of detection is cut into. With fewer, updates wait for each other;
+    /// with many more, a sweep over a large pile loses its locality in the cache.
+    pub const STREAMS: usize = 8;
+
+    /// Sets up the step: free velocities, and rows that carry the impulses of `contacts`
+    /// (`warm_start`) or none. `cohesion` tells whether the scene has any.
+    pub fn prepare<M: Model<Kinematics = K>>(
+        &mut self,
+        world: &World,
+        contacts: &ContactList,
+        parameters: &Parameters,
+        cohesion: bool,
+        warm_start: bool,
+    ) {
+        let grains = &world.grains;
+        let gravity_magnitude = world.gravity.magnitude();
+        self.friction = parameters.friction;
+        self.capture_speed =
+            if cohesion { parameters.capture_speed(gravity_magnitude) } else { 0.0 };
+        self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
+        self.before.clear();
+        self.free.clear();
+        for index in 0..grains.len() {
+            let body = K::body(world, index);
+            self.before.push(body);
+            self.free.push(if grains.feels_gravity[index] {
+                K::accelerated(&body, world, index, parameters.time_step_secs)
+            } else {
+                body
+            });
+        }
+        self.bodies.clone_from(&self.free);
+
+        self.fixed_rows.clear();
+        self.pair_rows.clear();
+        self.contact_of_row.clear();
+        self.pair_contacts.clear();
+        for (index, contact) in contacts.contacts().iter().enumerate() {
+            if (contact.other as usize) < grains.len() {
+                self.pair_contacts.push(index as u32);
+                continue;
+            }
+            let mass = grains.masses[contact.grain as usize];
+            let normal = K::normal(contact.normal);
+            let [velocity, _] = K::velocity(normal, &self.before[contact.grain as usize]);
+            let start = warm_start.then(|| contacts.impulses()[index]);
+            let row = self.row::<M>(contact, mass, 1.0, parameters.restitution * velocity, start);
+            self.fixed_rows.push(row);
+            self.contact_of_row.push(index as u32);
+        }
+        let stretch = self.pair_contacts.len().div_ceil(Self::STREAMS);
+        for offset in 0..stretch {
+            for at in (offset..self.pair_contacts.len()).step_by(stretch) {
+                let index = self.pair_contacts[at];
+                let contact = &contacts.contacts()[index as usize];
+                let (i, j) = (contact.grain as usize, contact.other as usize);
+                let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
+                let mass = grains.masses[i] * share;
+                let normal = K::normal(contact.normal);
+                let [velocity, _] =
+                    K::relative_velocity(normal, &self.before[i], &self.before[j]);
+                let start = warm_start.then(|| contacts.impulses()[index as usize]);
+                let row =
+                    self.row::<M>(contact, mass, share, parameters.restitution * velocity, start);
+                self.pair_rows.push(row);
+                self.contact_of_row.push(index);
+            }
+        }
+        self.apply_impulses();
+    }
+
+    /// One row, with the impulses of `start` (N·s) projected on what the contact law allows now.
+    fn row<M: Model<Kinematics = K>>(
+        &self,
+        contact: &Contact,
+        effective_mass: f64,
+        share: f64,
+        restitution_velocity: f64,
+        start: Option<Impulse>,
+    ) -> Row<K> {
+        let start = start.unwrap_or_default();
+        let normal_impulse = start.normal / effective_mass;
+        let shifted_impulse = law::signorini(normal_impulse + self.capture_speed);
+        let tangential_impulse = if M::FRICTION {
+            let bound = self.friction_bound::<M>(shifted_impulse);
+            law::coulomb(start.tangential / effective_mass, bound)
+        } else {
+            0.0
+        };
+        Row {
+            i: contact.grain,
+            j: contact.other,
+            normal: K::normal(contact.normal),
+            share,
+            restitution_velocity,
+            shifted_impulse,
+            tangential_impulse,
+            effective_mass,
+        }
+    }
+
+    /// Moves the bodies from their free velocities by the rows' impulses.
+    fn apply_impulses(&mut self) {
+        for row in &self.fixed_rows {
+            let impulse = self.reduced_impulse(row);
+            K::push_single(&mut self.bodies[row.i as usize], row.normal, impulse);
+        }
+        for row in &self.pair_rows {
+            let impulse = self.reduced_impulse(row);
+            let (mut i, mut j) = (self.bodies[row.i as usize], self.bodies[row.j as usize]);
+            K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+            self.bodies[row.i as usize] = i;
+            self.bodies[row.j as usize] = j;
+        }
+    }
+
+    /// (λ_n, λ_t) of a row, m/s.
+    #[inline(always)]
+    pub fn reduced_impulse(&self, row: &Row<K>) -> [f64; 2] {
+        [row.shifted_impulse - self.capture_speed, row.tangential_impulse]
+    }
+
+    /// The largest |λ_t| that a shifted normal impulse allows, m/s.
+    #[inline(always)]
+    pub fn friction_bound<M: Model>(&self, shifted_impulse: f64) -> f64 {
+        if M::COMPRESSIVE_CONE {
+            law::friction_bound::<true>(self.friction, shifted_impulse, self.capture_speed)
+        } else {
+            law::friction_bound::<false>(self.friction, shifted_impulse, 0.0)
+        }
+    }
+
+    /// Hands the rows' impulses back to the contacts, in N·s.
+    pub fn store_impulses(&self, contacts: &mut ContactList) {
+        let impulses = contacts.impulses_mut();
+        let rows = self.fixed_rows.iter().chain(&self.pair_rows);
+        for (row, &index) in rows.zip(&self.contact_of_row) {
+            let [normal, tangential] = self.reduced_impulse(row);
+            let mass = row.effective_mass;
+            impulses[index as usize] =
+                Impulse { normal: mass * normal, tangential: mass * tangential };
+        }
+    }
+}
+
+/// A problem for each kind of motion; those that a scene never uses hold no memory.
+#[derive(Clone, Debug, Default)]
+pub struct Problems {
+    pub(super) line: StepProblem<Line>,
+    pub(super) plane: StepProblem<Plane>,
+    pub(super) spinning_plane: StepProblem<SpinningPlane>,
+}

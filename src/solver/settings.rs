@@ -1,0 +1,65 @@
+//! How well a step is to be solved.
+
+use serde::{Deserialize, Serialize};
+
+use super::Method;
+use crate::error::{Error, Result};
+
+/// What the tolerance of a solver refers to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum StopTest {
+    /// ‖ΔP‖₂ of a sweep ≤ tolerance · ‖P‖₂, over normal and tangential impulses; dimensionless.
+    #[default]
+    RelativeChange,
+    /// Σ|ΔP| of a sweep ≤ tolerance · mean grain mass; m/s. Tested after every sweep.
+    ImpulsePerMass,
+    /// The common residual ≤ tolerance; dimensionless.
+    Residual,
+}
+
+/// Method, stopping test and limits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolverSettings {
+    /// The method.
+    pub method: Method,
+    /// What `tolerance` refers to.
+    #[serde(default)]
+    pub stop: StopTest,
+    /// In the unit of `stop`.
+    pub tolerance: f64,
+    /// A step that needs more sweeps is reported as not converged.
+    pub max_sweeps: u32,
+    /// Start from the impulses of the step before.
+    pub warm_start: bool,
+}
+
+impl SolverSettings {
+    /// Checks the numbers against their ranges.
+    ///
+    /// # Errors
+    /// Names the field, its value and its range.
+    pub fn validate(&self) -> Result<()> {
+        if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
+            return Err(Error::value("tolerance", self.tolerance, "a finite number > 0"));
+        }
+        if self.max_sweeps == 0 {
+            return Err(Error::value("max-sweeps", 0, "at least 1"));
+        }
+        Ok(())
+    }
+}
+
+impl Default for SolverSettings {
+    /// Tight enough for the verdicts of the paper's pile.
+    fn default() -> Self {
+        Self {
+            method: Method::Nsgs,
+            stop: StopTest::RelativeChange,
+            tolerance: 1e-6,
+            max_sweeps: 20_000,
+            warm_start: true,
+        }
+    }
+}
