@@ -77,16 +77,32 @@ fn main() {
                 println!("{dt:e} {:.3e}", (p[1].x - p[0].x - 0.3) / 0.3);
             }
         }
-   "row" => { 
-     let tol: f64=args[3].parse().unwrap(); let ms: u32=args[4].parse().unwrap(); 
-     for f in args[2].split(',') { let g=read_discs(f.as_ref()).unwrap(); 
-     for bond in [20.,50.,100.] { print!("{f} B {bond}: "); let t=Instant::now(); for dt in [1e-4,2e-4,5e-4,1e-3,2e-3,5e-3] {
-       let mut sc=pile_of(g.clone(),16.); sc.parameters.bond=bond; sc.parameters.time_step_secs=dt; sc.solver.tolerance=tol; sc.solver.max_sweeps=ms;
-       let mut sim=sc.simulation().unwrap(); 
-       let n=(1.0/dt as f64).round() as u64;
-       for _ in 0..n { sim.step().unwrap(); }
-       print!("{:.3} ", sim.observables().slump);
-     } println!("  {:.1}s", t.elapsed().as_secs_f64());}}}
-   _=>{}
+        "row" => {
+            let tol: f64 = args[3].parse().unwrap();
+            let ms: u32 = args[4].parse().unwrap();
+            for f in args[2].split(',') {
+                let g = read_discs(f.as_ref()).unwrap();
+                for bond in [20., 100., 50.] {
+                    print!("{f} B {bond}: ");
+                    let t = Instant::now();
+                    for dt in [1e-4, 1e-3, 2e-3, 5e-3] {
+                        let mut sc = pile_of(g.clone(), 16.);
+                        sc.parameters.bond = bond;
+                        sc.parameters.time_step_secs = dt;
+                        sc.solver.tolerance = tol;
+                        sc.solver.max_sweeps = ms;
+                        let mut sim = sc.simulation().unwrap();
+                        let mut bad = 0;
+                        let n = (1.0 / dt as f64).round() as u64;
+                        for _ in 0..n {
+                            sim.step().unwrap();
+                        }
+                        print!("{:.3} ", sim.observables().slump);
+                    }
+                    println!("  {:.1}s", t.elapsed().as_secs_f64());
+                }
+            }
+        }
+        _ => {}
     }
 }

@@ -16,7 +16,8 @@ pub fn settled(count: usize) -> Simulation {
     let mut random = 1u64;
     let mut fraction = || {
         // Any well-mixed sequence will do (Knuth's multiplier).
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        random =
+            random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (random >> 11) as f64 / (1u64 << 53) as f64
     };
     let grains = (0..count)

@@ -63,9 +63,8 @@ mod tests {
     #[test]
     fn a_contact_pulls_no_harder_than_its_cohesion() {
         let capture_speed = 2.0;
-        let projected = |reduced_impulse: f64| {
-            signorini(reduced_impulse + capture_speed) - capture_speed
-        };
+        let projected =
+            |reduced_impulse: f64| signorini(reduced_impulse + capture_speed) - capture_speed;
         assert_eq!(projected(-3.0), -2.0);
         assert_eq!(projected(-1.0), -1.0);
         assert_eq!(projected(4.0), 4.0);

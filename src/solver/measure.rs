@@ -54,8 +54,7 @@ pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
         measures.tensile_contacts += u32::from(normal < 0.0);
         measures.normal_work += half_mass * normal * (motion.now[0] + motion.before[0]);
         if M::FRICTION {
-            measures.tangential_work +=
-                half_mass * tangential * (motion.now[1] + motion.before[1]);
+            measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
         }
     });
     Measures { residual: sums.residual(), ..measures }

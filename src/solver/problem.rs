@@ -32,12 +32,11 @@ pub struct Row<K: Kinematics> {
 
 /// All contacts of one step. Memory is kept between steps.
 ///
-/// The sweep's order is fixed: first the contacts with fixed bodies, in the order of detection
-/// (sorted by grain, then by fixed body); then those between grains, interleaved from
-/// [`StepProblem::STREAMS`] stretches of the order of detection (sorted by i, then j). Neighbours in
-/// the order of detection share a grain, so each update would wait for the one before it to finish;
-/// interleaved, updates in flight touch different grains. Up to [`StepProblem::STREAMS`] pairs the
-/// two orders are the same.
+/// The sweep's order is fixed: first the contacts with fixed bodies, then those between grains, each
+/// kind interleaved from [`StepProblem::STREAMS`] stretches of the order of detection (sorted by
+/// grain i, then by j). Neighbours in the order of detection share a grain, so each update would
+/// wait for the one before it to finish; interleaved, updates in flight touch different grains. Up
+/// to [`StepProblem::STREAMS`] contacts of a kind the two orders are the same.
 #[derive(Clone, Debug)]
 pub struct StepProblem<K: Kinematics> {
     /// Bodies as the sweep moves them.
@@ -58,7 +57,7 @@ pub struct StepProblem<K: Kinematics> {
     pub capture_speed: f64,
     /// Mean mass of the grains, kg.
     pub mean_mass: f64,
-    pair_contacts: Vec<u32>,
+    in_detection_order: Vec<u32>,
 }
 
 impl<K: Kinematics> Default for StepProblem<K> {
@@ -73,7 +72,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             friction: 0.0,
             capture_speed: 0.0,
             mean_mass: 0.0,
-            pair_contacts: Vec::new(),
+            in_detection_order: Vec::new(),
         }
     }
 }
@@ -112,50 +111,57 @@ impl<K: Kinematics> StepProblem<K> {
         }
         self.bodies.clone_from(&self.free);
 
-        self.fixed_rows.clear();
-        self.pair_rows.clear();
+        let list = contacts.contacts();
+        let against_grain = |index: &u32| (list[*index as usize].other as usize) < grains.len();
         self.contact_of_row.clear();
-        self.pair_contacts.clear();
-        for (index, contact) in contacts.contacts().iter().enumerate() {
-            if (contact.other as usize) < grains.len() {
-                self.pair_contacts.push(index as u32);
-                continue;
-            }
-            let mass = grains.masses[contact.grain as usize];
-            let normal = K::normal(contact.normal);
-            let [velocity, _] = K::velocity(normal, &self.before[contact.grain as usize]);
-            let start = warm_start.then(|| contacts.impulses()[index]);
-            let row = self.row::<M>(contact, mass, 1.0, parameters.restitution * velocity, start);
+        let all = 0..list.len() as u32;
+        self.interleave(all.clone().filter(|index| !against_grain(index)));
+        let fixed_count = self.contact_of_row.len();
+        self.interleave(all.filter(against_grain));
+
+        let restitution = parameters.restitution;
+        let start = |index: u32| warm_start.then(|| contacts.impulses()[index as usize]);
+        self.fixed_rows.clear();
+        for at in 0..fixed_count {
+            let index = self.contact_of_row[at];
+            let contact = &list[index as usize];
+            let i = contact.grain as usize;
+            let [velocity, _] = K::velocity(K::normal(contact.normal), &self.before[i]);
+            let masses = (grains.masses[i], 1.0);
+            let row = self.row::<M>(contact, masses, restitution * velocity, start(index));
             self.fixed_rows.push(row);
-            self.contact_of_row.push(index as u32);
         }
-        let stretch = self.pair_contacts.len().div_ceil(Self::STREAMS);
-        for offset in 0..stretch {
-            for at in (offset..self.pair_contacts.len()).step_by(stretch) {
-                let index = self.pair_contacts[at];
-                let contact = &contacts.contacts()[index as usize];
-                let (i, j) = (contact.grain as usize, contact.other as usize);
-                let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
-                let mass = grains.masses[i] * share;
-                let normal = K::normal(contact.normal);
-                let [velocity, _] =
-                    K::relative_velocity(normal, &self.before[i], &self.before[j]);
-                let start = warm_start.then(|| contacts.impulses()[index as usize]);
-                let row =
-                    self.row::<M>(contact, mass, share, parameters.restitution * velocity, start);
-                self.pair_rows.push(row);
-                self.contact_of_row.push(index);
-            }
+        self.pair_rows.clear();
+        for at in fixed_count..self.contact_of_row.len() {
+            let index = self.contact_of_row[at];
+            let contact = &list[index as usize];
+            let (i, j) = (contact.grain as usize, contact.other as usize);
+            let (before_i, before_j) = (&self.before[i], &self.before[j]);
+            let [velocity, _] = K::relative_velocity(K::normal(contact.normal), before_i, before_j);
+            let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
+            let masses = (grains.masses[i] * share, share);
+            let row = self.row::<M>(contact, masses, restitution * velocity, start(index));
+            self.pair_rows.push(row);
         }
         self.apply_impulses();
+    }
+
+    /// Appends contacts, given in the order of detection, to the order of the sweep.
+    fn interleave(&mut self, contacts: impl Iterator<Item = u32>) {
+        self.in_detection_order.clear();
+        self.in_detection_order.extend(contacts);
+        let stretch = self.in_detection_order.len().div_ceil(Self::STREAMS);
+        for offset in 0..stretch {
+            let across_stretches = self.in_detection_order[offset..].iter().step_by(stretch);
+            self.contact_of_row.extend(across_stretches);
+        }
     }
 
     /// One row, with the impulses of `start` (N·s) projected on what the contact law allows now.
     fn row<M: Model<Kinematics = K>>(
         &self,
         contact: &Contact,
-        effective_mass: f64,
-        share: f64,
+        (effective_mass, share): (f64, f64),
         restitution_velocity: f64,
         start: Option<Impulse>,
     ) -> Row<K> {
