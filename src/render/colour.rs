@@ -8,7 +8,15 @@ use serde::{Deserialize, Serialize};
 /// Red, green, blue and opacity, each 0 … 1, not premultiplied.
 #[repr(C)]
 #[derive(
-    Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, bytemuck::Pod, bytemuck::Zeroable,
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Serialize,
+    Deserialize,
+    bytemuck::Pod,
+    bytemuck::Zeroable,
 )]
 pub struct Colour {
     /// Red.

@@ -65,8 +65,9 @@ fn lay(image: &mut RgbaImage, primitive: &impl Shade) {
 }
 
 fn blend(pixel: &mut [u8], colour: [f32; 4]) {
-    let through = 1.0 - colour[3];
-    for (under, over) in pixel.iter_mut().zip(colour) {
-        *under = (f32::from(*under) * through + over * 255.0 + 0.5) as u8;
+    let [red, green, blue, alpha] = colour.map(|channel| (channel * 255.0 + 0.5) as u32);
+    let through = 255 - alpha;
+    for (under, over) in pixel.iter_mut().zip([red, green, blue, alpha]) {
+        *under = (over + (u32::from(*under) * through + 127) / 255).min(255) as u8;
     }
 }

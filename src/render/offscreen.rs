@@ -48,7 +48,10 @@ impl Offscreen {
     }
 
     pub fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
-        if !self.target.as_ref().is_some_and(|target| (target.width, target.height) == (width, height))
+        if !self
+            .target
+            .as_ref()
+            .is_some_and(|target| (target.width, target.height) == (width, height))
         {
             self.target = None;
         }

@@ -38,7 +38,9 @@ impl Renderer {
             RendererChoice::Vulkan => open(Kind::Vulkan),
             RendererChoice::Gl => open(Kind::Gl),
             RendererChoice::Cpu => Ok(cpu),
-            RendererChoice::Auto => Ok(open(Kind::Vulkan).or_else(|_| open(Kind::Gl)).unwrap_or(cpu)),
+            RendererChoice::Auto => {
+                Ok(open(Kind::Vulkan).or_else(|_| open(Kind::Gl)).unwrap_or(cpu))
+            }
         }
     }
 
