@@ -32,6 +32,18 @@ pub enum RendererChoice {
     Cpu,
 }
 
+/// Keeps a layer of Mesa's Vulkan from writing to stderr where there is no desktop: it asks for a
+/// Wayland display, which complains if `XDG_RUNTIME_DIR` is not set. With a desktop nothing changes.
+///
+/// # Safety
+/// Changes the environment, so it must run before the program starts its second thread.
+pub unsafe fn quieten_drivers() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: the caller states that no other thread can be reading the environment.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
 /// An opened GPU.
 pub(super) struct Gpu {
     pub device: wgpu::Device,

@@ -9,19 +9,23 @@ use glam::DVec2;
 use super::{Camera, Colour, LinkInstance};
 use crate::world::Boundary;
 
-/// Half the width of a wall's line, pixels.
-const LINE_HALF_WIDTH_PX: f32 = 1.0;
-/// Half the width of a hatching stroke, pixels.
-const HATCH_HALF_WIDTH_PX: f32 = 0.5;
-/// Distance between hatching strokes along the wall, pixels.
-const HATCH_SPACING_PX: f64 = 9.0;
+// All in units of the font size of the picture's labels, so that prints of any size look alike.
+
+/// Half the width of a wall's line.
+const LINE_HALF_WIDTH_EM: f64 = 0.0625;
+/// Half the width of a hatching stroke.
+const HATCH_HALF_WIDTH_EM: f64 = 0.033;
+/// Distance between hatching strokes along the wall.
+const HATCH_SPACING_EM: f64 = 0.6;
 /// How deep hatching reaches into a solid, and as far along it: strokes lean by 45°.
-const HATCH_DEPTH_PX: f64 = 7.0;
+const HATCH_DEPTH_EM: f64 = 0.45;
 
 /// Turns fixed shapes into links for one picture.
-pub(super) struct Walls<'a> {
+struct Walls<'a> {
     camera: &'a Camera,
     colour: Colour,
+    /// Font size of the picture's labels, pixels.
+    em: f64,
     /// Half the size of the picture and a border that hides the round caps, pixels.
     reach: DVec2,
     links: Vec<LinkInstance>,
@@ -33,10 +37,12 @@ pub(super) fn boundary_links(
     camera: &Camera,
     width: u32,
     height: u32,
+    text_px: f32,
     colour: Colour,
 ) -> Vec<LinkInstance> {
-    let reach = DVec2::new(f64::from(width), f64::from(height)) / 2.0 + 2.0 * HATCH_DEPTH_PX;
-    let mut walls = Walls { camera, colour, reach, links: Vec::new() };
+    let em = f64::from(text_px);
+    let reach = DVec2::new(f64::from(width), f64::from(height)) / 2.0 + em;
+    let mut walls = Walls { camera, colour, em, reach, links: Vec::new() };
     for boundary in boundaries {
         walls.draw(boundary);
     }
@@ -76,7 +82,7 @@ impl Walls<'_> {
     fn wall(&mut self, from: DVec2, to: DVec2) {
         let (from, to) = (self.camera.offset_px(from), self.camera.offset_px(to));
         if let Some([start, end]) = clip(from, to, self.reach) {
-            self.link(start, end, LINE_HALF_WIDTH_PX);
+            self.link(start, end, LINE_HALF_WIDTH_EM);
         }
     }
 
@@ -84,34 +90,39 @@ impl Walls<'_> {
     /// of spacings from `anchor`.
     fn solid_edge(&mut self, anchor: DVec2, from: DVec2, to: DVec2) {
         let Some([start, end]) = clip(from, to, self.reach) else { return };
-        self.link(start, end, LINE_HALF_WIDTH_PX);
+        self.link(start, end, LINE_HALF_WIDTH_EM);
         let along = (to - from).normalize_or_zero();
         if along == DVec2::ZERO {
             return;
         }
-        let stroke = (-along.perp() - along) * HATCH_DEPTH_PX;
-        let number = |point: DVec2| (point - anchor).dot(along) / HATCH_SPACING_PX;
+        let stroke = (-along.perp() - along) * (HATCH_DEPTH_EM * self.em);
+        let spacing = HATCH_SPACING_EM * self.em;
+        let number = |point: DVec2| (point - anchor).dot(along) / spacing;
         // Strokes lean backwards: one at the very start would stick out of a polygon's corner.
-        let first = (number(start) + HATCH_DEPTH_PX / HATCH_SPACING_PX).ceil() as i64;
+        let first = (number(start) + HATCH_DEPTH_EM / HATCH_SPACING_EM).ceil() as i64;
         for index in first..=number(end).floor() as i64 {
-            let foot = anchor + along * (index as f64 * HATCH_SPACING_PX);
-            self.link(foot, foot + stroke, HATCH_HALF_WIDTH_PX);
+            let foot = anchor + along * (index as f64 * spacing);
+            self.link(foot, foot + stroke, HATCH_HALF_WIDTH_EM);
         }
     }
 
-    fn link(&mut self, start: DVec2, end: DVec2, half_width: f32) {
+    fn link(&mut self, start: DVec2, end: DVec2, half_width_em: f64) {
         self.links.push(LinkInstance {
             start: start.as_vec2().into(),
             end: end.as_vec2().into(),
-            half_width,
+            half_width: (half_width_em * self.em) as f32,
             colour: self.colour,
         });
     }
 }
 
-/// The part of a segment inside the box from −`reach` to `reach`, if any.
+/// The part of a segment inside the box from −`reach` to `reach`, if any. None if an end is not
+/// finite.
 pub(super) fn clip(from: DVec2, to: DVec2, reach: DVec2) -> Option<[DVec2; 2]> {
     let span = to - from;
+    if !span.is_finite() {
+        return None;
+    }
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for (start, length, limit) in [(from.x, span.x, reach.x), (from.y, span.y, reach.y)] {
         if length == 0.0 {
@@ -148,7 +159,7 @@ mod tests {
     fn the_ground_is_hatched_below_its_surface() {
         let ground = Boundary::HalfSpace { point: DVec2::new(1e6, 0.0), normal: DVec2::Y };
         let camera = Camera { centre: DVec2::new(0.0, 0.1), metres_per_pixel: 0.01 };
-        let links = boundary_links(&[ground], &camera, 200, 100, Colour::BLACK);
+        let links = boundary_links(&[ground], &camera, 200, 100, 15.0, Colour::BLACK);
         let (surface, hatching) = links.split_first().unwrap();
         assert!(surface.start[1] == -10.0 && surface.end[1] == -10.0);
         assert!(surface.start[0] <= -100.0 && surface.end[0] >= 100.0);
@@ -161,8 +172,14 @@ mod tests {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         let points = corners.map(DVec2::from).to_vec();
         let camera = Camera { centre: DVec2::splat(0.5), metres_per_pixel: 0.01 };
-        let links =
-            boundary_links(&[Boundary::ConvexPolygon { points }], &camera, 200, 200, Colour::BLACK);
+        let links = boundary_links(
+            &[Boundary::ConvexPolygon { points }],
+            &camera,
+            200,
+            200,
+            15.0,
+            Colour::BLACK,
+        );
         assert!(links.len() > 20);
         for link in links {
             for point in [link.start, link.end] {

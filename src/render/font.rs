@@ -5,7 +5,7 @@
 
 use std::sync::LazyLock;
 
-use ab_glyph::{Font, FontRef, PxScale, ScaleFont};
+use ab_glyph::{Font, FontRef, Glyph, OutlinedGlyph, PxScale, PxScaleFont, ScaleFont, point};
 
 use super::Colour;
 use super::text::Align;
@@ -59,7 +59,7 @@ impl TextStyle {
         Self { lines: Align::Centre, ..self }
     }
 
-    pub(super) fn font(&self) -> ab_glyph::PxScaleFont<&FontRef<'static>> {
+    fn font(&self) -> PxScaleFont<&FontRef<'static>> {
         let font: &FontRef = match self.weight {
             Weight::Regular => &REGULAR,
             Weight::Bold => &BOLD,
@@ -69,16 +69,42 @@ impl TextStyle {
         font.as_scaled(PxScale::from(self.size_px * per_em))
     }
 
+    /// Places the letters of one line, from x = 0 on the baseline y = 0, y down; gives them and
+    /// the width. `_{…}` sets letters below the baseline, `^{…}` above it.
+    pub(super) fn set(&self, line: &str) -> (Vec<Glyph>, f32) {
+        let mut glyphs = Vec::new();
+        let mut pen = 0.0;
+        for (text, level) in runs(line) {
+            let style = Self { size_px: self.size_px * level.size(), ..*self };
+            let font = style.font();
+            let mut before = None;
+            for letter in text.chars() {
+                let mut glyph = font.scaled_glyph(letter);
+                let id = glyph.id;
+                pen += before.map_or(0.0, |before| font.kern(before, id));
+                glyph.position = point(pen, level.drop() * self.size_px);
+                glyphs.push(glyph);
+                pen += font.h_advance(id);
+                before = Some(id);
+            }
+        }
+        (glyphs, pen)
+    }
+
+    /// The shape of a letter that [`Self::set`] placed, moved; none for a space.
+    pub(super) fn shape(&self, mut glyph: Glyph, x: f32, y: f32) -> Option<OutlinedGlyph> {
+        glyph.position += point(x, y);
+        self.font().outline_glyph(glyph)
+    }
+
     /// Width of one line, pixels.
     pub fn width(&self, line: &str) -> f32 {
-        let font = self.font();
-        let mut width = 0.0;
-        let mut before = None;
-        for glyph in line.chars().map(|letter| font.glyph_id(letter)) {
-            width += before.map_or(0.0, |before| font.kern(before, glyph)) + font.h_advance(glyph);
-            before = Some(glyph);
-        }
-        width
+        self.set(line).1
+    }
+
+    /// From the top of a line to its baseline, pixels.
+    pub(super) fn ascent(&self) -> f32 {
+        self.font().ascent()
     }
 
     /// Distance from line to line, pixels.
@@ -91,6 +117,45 @@ impl TextStyle {
         // Glyph 0 is the box that stands for missing letters.
         self.font().glyph_id(letter).0 != 0
     }
+}
+
+/// How letters stand on the line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Level {
+    Line,
+    Below,
+    Above,
+}
+
+impl Level {
+    /// Size of the letters relative to those on the line.
+    fn size(self) -> f32 {
+        if self == Self::Line { 1.0 } else { 0.7 }
+    }
+
+    /// How far they stand below the baseline, in units of the line's font size.
+    fn drop(self) -> f32 {
+        match self {
+            Self::Line => 0.0,
+            Self::Below => 0.2,
+            Self::Above => -0.36,
+        }
+    }
+}
+
+/// Cuts a line into runs of one level. A brace that never closes is text.
+fn runs(line: &str) -> Vec<(&str, Level)> {
+    let mut found = Vec::new();
+    let mut rest = line;
+    while let Some(start) = rest.find("_{").into_iter().chain(rest.find("^{")).min() {
+        let Some(length) = rest[start + 2..].find('}') else { break };
+        let level = if rest[start..].starts_with('_') { Level::Below } else { Level::Above };
+        found.push((&rest[..start], Level::Line));
+        found.push((&rest[start + 2..start + 2 + length], level));
+        rest = &rest[start + 3 + length..];
+    }
+    found.push((rest, Level::Line));
+    found
 }
 
 #[cfg(test)]
@@ -119,5 +184,22 @@ mod tests {
         // An em dash of this font is exactly 0.9 em wide, as its condensed cut makes it.
         let width = TextStyle::new(100.0, Colour::BLACK).width("—");
         assert!((width - 90.0).abs() < 1.0, "{width}");
+    }
+
+    #[test]
+    fn braces_raise_and_lower() {
+        assert_eq!(
+            runs("Δy_{G} = 10^{−3} s"),
+            [
+                ("Δy", Level::Line),
+                ("G", Level::Below),
+                (" = 10", Level::Line),
+                ("−3", Level::Above),
+                (" s", Level::Line)
+            ]
+        );
+        assert_eq!(runs("a_b^c {d} _{e"), [("a_b^c {d} _{e", Level::Line)]);
+        let style = TextStyle::new(20.0, Colour::BLACK);
+        assert!(style.width("y_{G}") < style.width("yG"));
     }
 }

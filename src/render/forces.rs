@@ -6,7 +6,7 @@ use crate::sim::Snapshot;
 use glam::DVec2;
 
 /// Width of the widest link, in units of d.
-const FULL_WIDTH: f64 = 0.45;
+const FULL_WIDTH: f64 = 0.4;
 /// Forces below this part of the reference are left out: their links would be invisible.
 const LEAST_PART: f64 = 0.004;
 /// The share of contacts whose links are narrower than the full width, where no reference is given.

@@ -28,9 +28,17 @@ pub fn scene_picture(
     let surroundings = &snapshot.surroundings;
     let view = View { style, palette: &palette, camera, width, height };
     let mut picture = Picture::new(palette.ground);
+    let text_px = style.text_px(width, height);
 
     let boundaries = &surroundings.boundaries;
-    picture.push_links(boundary_links(boundaries, camera, width, height, palette.boundary));
+    picture.push_links(boundary_links(
+        boundaries,
+        camera,
+        width,
+        height,
+        text_px,
+        palette.boundary,
+    ));
     let fixed = surroundings.fixed_discs.iter();
     picture.push_discs(
         fixed
@@ -46,7 +54,6 @@ pub fn scene_picture(
     if style.show_forces {
         picture.push_links(force_links(snapshot, style, &palette, camera, width, height));
     }
-    let text_px = style.text_px(width, height);
     if let Some(centre) = surroundings.centre_of_attraction {
         // The ring keeps the dot visible on a grain of its own colour.
         picture.push_discs(vec![DiscInstance {
@@ -80,7 +87,7 @@ impl View<'_> {
     fn grain(&self, grain: &GrainView, colour: Colour) -> Option<DiscInstance> {
         let mut disc = self.disc(grain.position, grain.radius, grain.angle, colour)?;
         if self.style.angles {
-            disc.mark_half_width = (0.05 * disc.radius).clamp(0.3, 2.0);
+            disc.mark_half_width = (0.04 * disc.radius).clamp(0.3, 1.25);
         }
         Some(disc)
     }
@@ -97,7 +104,7 @@ impl View<'_> {
         let radius = self.camera.pixels(radius);
         let reach = DVec2::new(f64::from(self.width), f64::from(self.height)) / 2.0;
         // Written so that a position that is not a number is left out.
-        let shows = (offset.abs() - reach).max_element() < f64::from(radius) + 1.0;
+        let shows = offset.abs().cmplt(reach + f64::from(radius) + 1.0).all();
         let fade = |colour: Colour| {
             let faded = if self.style.show_forces { FADING } else { 0.0 };
             colour.mix(self.palette.ground, faded)

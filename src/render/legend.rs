@@ -122,7 +122,7 @@ impl Legend {
             let middle = y + self.em(0.75);
             self.sample(strip, middle, half_width.min(0.55 * self.text_px), colour);
             let label = TextBlock::new(name, &self.text());
-            label.draw(strip, self.em(2.6), middle, Align::Start, Align::Centre);
+            label.draw(strip, self.em(2.9), middle, Align::Start, Align::Centre);
         }
         y - self.em(1.2)
     }

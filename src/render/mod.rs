@@ -16,6 +16,7 @@ mod colour_scale;
 mod cpu;
 mod disc;
 mod figure;
+mod figure_layout;
 mod font;
 mod forces;
 mod layers;
@@ -29,10 +30,12 @@ mod primitive;
 mod renderer;
 mod scale_bar;
 mod scene_image;
+#[cfg(test)]
+mod scene_tests;
 mod style;
 mod text;
 
-pub use backend::RendererChoice;
+pub use backend::{RendererChoice, quieten_drivers};
 pub use camera::{Camera, bounds};
 pub use colour::Colour;
 pub use colour_scale::{ColourScale, automatic_range, contact_colour, map_colour};

@@ -48,11 +48,7 @@ impl Offscreen {
     }
 
     pub fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
-        if !self
-            .target
-            .as_ref()
-            .is_some_and(|target| (target.width, target.height) == (width, height))
-        {
+        if self.target.as_ref().is_some_and(|old| (old.width, old.height) != (width, height)) {
             self.target = None;
         }
         let gpu = &self.gpu;

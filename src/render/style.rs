@@ -119,7 +119,8 @@ impl Theme {
             Self::Dark => Palette {
                 ground: Colour::hex(0x14171c),
                 ink: Colour::grey(230),
-                outline: Colour::hex(0x0a0c0f),
+                // Lighter than the low end of the colour map, which is as dark as the ground.
+                outline: Colour::grey(150),
                 fixed: Colour::grey(95),
                 boundary: Colour::grey(170),
                 push: Colour::hex(0x56b4e9),

@@ -3,7 +3,6 @@
 //! A [`TextBlock`] is laid out once, as a mask of pixel coverage, and can then be measured, turned
 //! and drawn anywhere.
 
-use ab_glyph::{Font, ScaleFont, point};
 use image::RgbaImage;
 
 use super::Colour;
@@ -45,7 +44,7 @@ pub struct TextBlock {
 }
 
 impl TextBlock {
-    /// Lays text out; `\n` ends a line.
+    /// Lays text out; `\n` ends a line, `_{…}` lowers letters and `^{…}` raises them.
     pub fn new(text: &str, style: &TextStyle) -> Self {
         let lines: Vec<&str> = text.split('\n').collect();
         let widest = lines.iter().map(|line| style.width(line)).fold(0.0, f32::max);
@@ -57,7 +56,7 @@ impl TextBlock {
         for (index, line) in lines.iter().enumerate() {
             let free = (widest - style.width(line)) as u32;
             let left = 1.0 + style.lines.share(free) as f32;
-            let baseline = style.line_height() * index as f32 + style.font().ascent();
+            let baseline = style.line_height() * index as f32 + style.ascent();
             block.set_line(line, style, left, baseline);
         }
         block
@@ -93,26 +92,14 @@ impl TextBlock {
     }
 
     fn set_line(&mut self, line: &str, style: &TextStyle, left: f32, baseline: f32) {
-        let font = style.font();
-        let mut pen = left;
-        let mut before = None;
-        for letter in line.chars() {
-            let mut glyph = font.scaled_glyph(letter);
-            let id = glyph.id;
-            pen += before.map_or(0.0, |before| font.kern(before, id));
-            glyph.position = point(pen, baseline.round());
-            if let Some(shape) = font.outline_glyph(glyph) {
+        for glyph in style.set(line).0 {
+            if let Some(shape) = style.shape(glyph, left, baseline.round()) {
                 let corner = shape.px_bounds().min;
-                shape.draw(|x, y, coverage| {
-                    self.cover(
-                        corner.x as i64 + i64::from(x),
-                        corner.y as i64 + i64::from(y),
-                        coverage,
-                    );
+                let (x, y) = (corner.x as i64, corner.y as i64);
+                shape.draw(|right, down, coverage| {
+                    self.cover(x + i64::from(right), y + i64::from(down), coverage);
                 });
             }
-            pen += font.h_advance(id);
-            before = Some(id);
         }
     }
 
