@@ -1,0 +1,143 @@
+//! Finding a GPU: Vulkan, OpenGL, or neither.
+//!
+//! Each kind is asked for by itself, so that a missing driver can be named. Software drivers (Mesa's
+//! llvmpipe) count as GPUs: they draw the same pictures.
+
+use std::sync::{Arc, Mutex};
+
+use crate::error::{Error, Result};
+
+/// Which renderer to use.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    serde::Serialize,
+    serde::Deserialize,
+    clap::ValueEnum,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum RendererChoice {
+    /// Vulkan if there is a driver, else OpenGL, else the processor.
+    #[default]
+    Auto,
+    /// Vulkan.
+    Vulkan,
+    /// OpenGL, without a window through EGL.
+    Gl,
+    /// The processor alone.
+    Cpu,
+}
+
+/// Keeps a layer of Mesa's Vulkan from writing to stderr where there is no desktop: it asks for a
+/// Wayland display, which complains if `XDG_RUNTIME_DIR` is not set. With a desktop nothing changes.
+///
+/// # Safety
+/// Changes the environment, so it must run before the program starts its second thread.
+pub unsafe fn quieten_drivers() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: the caller states that no other thread can be reading the environment.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
+/// An opened GPU.
+pub(super) struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    /// Kind of driver and name of the device.
+    pub name: String,
+    /// Message of the first failure that no call reported directly.
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+/// The kinds of GPU that can be asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Vulkan,
+    Gl,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Vulkan => "vulkan",
+            Self::Gl => "gl",
+        }
+    }
+
+    fn backends(self) -> wgpu::Backends {
+        match self {
+            Self::Vulkan => wgpu::Backends::VULKAN,
+            Self::Gl => wgpu::Backends::GL,
+        }
+    }
+
+    /// What is missing and what brings it, as one sentence.
+    fn missing(self) -> Error {
+        let (driver, packages) = match self {
+            Self::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
+            Self::Gl => ("OpenGL (EGL)", "libegl1 and libgl1-mesa-dri"),
+        };
+        Error::Renderer(format!(
+            "no {driver} driver was found: install the Debian packages {packages}, or use \
+             --renderer cpu, which needs no driver"
+        ))
+    }
+}
+
+impl Gpu {
+    /// Opens the strongest device of one kind.
+    pub fn open(kind: Kind) -> Result<Self> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: kind.backends(),
+            // Debug builds would otherwise load validation layers and let them write to stderr.
+            flags: wgpu::InstanceFlags::empty(),
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..wgpu::RequestAdapterOptions::default()
+        };
+        let adapter =
+            pollster::block_on(instance.request_adapter(&options)).map_err(|_| kind.missing())?;
+        let available = adapter.limits();
+        let limits = wgpu::Limits {
+            max_buffer_size: available.max_buffer_size,
+            ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(available)
+        };
+        let name = format!("{}: {}", kind.name(), adapter.get_info().name);
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("slump"),
+            required_limits: limits,
+            ..wgpu::DeviceDescriptor::default()
+        });
+        let (device, queue) = pollster::block_on(request)
+            .map_err(|error| Error::Renderer(format!("{name} does not open: {error}")))?;
+
+        let failure = Arc::new(Mutex::new(None));
+        let seen = Arc::clone(&failure);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if let Ok(mut first) = seen.lock() {
+                first.get_or_insert_with(|| error.to_string());
+            }
+        }));
+        Ok(Self { device, queue, name, failure })
+    }
+
+    /// Fails if anything went wrong on the device since the last call.
+    pub fn check(&self) -> Result<()> {
+        let message = self.failure.lock().ok().and_then(|mut first| first.take());
+        match message {
+            Some(message) => {
+                // Messages of wgpu run over several lines; an error is one sentence.
+                let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
+                Err(Error::Renderer(format!("{} failed: {message}", self.name)))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Fixed shapes as thin dark lines; solids carry short hatching on their inside.
+//!
+//! Lines are clipped to the picture in f64, so that a wall that goes on for ever, or starts a
+//! million diameters away, still becomes f32 pixels without loss. Hatching keeps its place in the
+//! world, not in the picture: it moves with the camera.
+
+use glam::DVec2;
+
+use super::{Camera, Colour, LinkInstance};
+use crate::world::Boundary;
+
+// All in units of the font size of the picture's labels, so that prints of any size look alike.
+
+/// Half the width of a wall's line.
+const LINE_HALF_WIDTH_EM: f64 = 0.0625;
+/// Half the width of a hatching stroke.
+const HATCH_HALF_WIDTH_EM: f64 = 0.033;
+/// Distance between hatching strokes along the wall.
+const HATCH_SPACING_EM: f64 = 0.6;
+/// How deep hatching reaches into a solid, and as far along it: strokes lean by 45°.
+const HATCH_DEPTH_EM: f64 = 0.45;
+
+/// Turns fixed shapes into links for one picture.
+struct Walls<'a> {
+    camera: &'a Camera,
+    colour: Colour,
+    /// Font size of the picture's labels, pixels.
+    em: f64,
+    /// Half the size of the picture and a border that hides the round caps, pixels.
+    reach: DVec2,
+    links: Vec<LinkInstance>,
+}
+
+/// The links of all `boundaries` that show in a picture of `width` × `height` pixels.
+pub(super) fn boundary_links(
+    boundaries: &[Boundary],
+    camera: &Camera,
+    width: u32,
+    height: u32,
+    text_px: f32,
+    colour: Colour,
+) -> Vec<LinkInstance> {
+    let em = f64::from(text_px);
+    let reach = DVec2::new(f64::from(width), f64::from(height)) / 2.0 + em;
+    let mut walls = Walls { camera, colour, em, reach, links: Vec::new() };
+    for boundary in boundaries {
+        walls.draw(boundary);
+    }
+    walls.links
+}
+
+impl Walls<'_> {
+    fn draw(&mut self, boundary: &Boundary) {
+        match boundary {
+            Boundary::HalfSpace { point, normal } => {
+                let along = -normal.normalize_or_zero().perp();
+                // Long enough to cross the picture from any point of the line nearest to it.
+                let anchor = self.camera.offset_px(*point);
+                let nearest = along * -anchor.dot(along);
+                let across = along * (2.0 * self.reach.length());
+                self.solid_edge(anchor, anchor + nearest - across, anchor + nearest + across);
+            }
+            Boundary::Segment { from, to } => self.wall(*from, *to),
+            Boundary::Polyline { points } => {
+                for ends in points.windows(2) {
+                    self.wall(ends[0], ends[1]);
+                }
+            }
+            Boundary::ConvexPolygon { points } => {
+                for (index, corner) in points.iter().enumerate() {
+                    let next = points[(index + 1) % points.len()];
+                    let (from, to) = (self.camera.offset_px(*corner), self.camera.offset_px(next));
+                    // Anticlockwise corners have the solid on their left, a half-space's surface
+                    // has it on its right.
+                    self.solid_edge(to, to, from);
+                }
+            }
+        }
+    }
+
+    /// A wall between two points, m, that is open on both sides.
+    fn wall(&mut self, from: DVec2, to: DVec2) {
+        let (from, to) = (self.camera.offset_px(from), self.camera.offset_px(to));
+        if let Some([start, end]) = clip(from, to, self.reach) {
+            self.link(start, end, LINE_HALF_WIDTH_EM);
+        }
+    }
+
+    /// A surface from `from` to `to`, pixels, with the solid on its right, hatched at whole numbers
+    /// of spacings from `anchor`.
+    fn solid_edge(&mut self, anchor: DVec2, from: DVec2, to: DVec2) {
+        let Some([start, end]) = clip(from, to, self.reach) else { return };
+        self.link(start, end, LINE_HALF_WIDTH_EM);
+        let along = (to - from).normalize_or_zero();
+        if along == DVec2::ZERO {
+            return;
+        }
+        let stroke = (-along.perp() - along) * (HATCH_DEPTH_EM * self.em);
+        let spacing = HATCH_SPACING_EM * self.em;
+        let number = |point: DVec2| (point - anchor).dot(along) / spacing;
+        // Strokes lean backwards: one at the very start would stick out of a polygon's corner.
+        let first = (number(start) + HATCH_DEPTH_EM / HATCH_SPACING_EM).ceil() as i64;
+        for index in first..=number(end).floor() as i64 {
+            let foot = anchor + along * (index as f64 * spacing);
+            self.link(foot, foot + stroke, HATCH_HALF_WIDTH_EM);
+        }
+    }
+
+    fn link(&mut self, start: DVec2, end: DVec2, half_width_em: f64) {
+        self.links.push(LinkInstance {
+            start: start.as_vec2().into(),
+            end: end.as_vec2().into(),
+            half_width: (half_width_em * self.em) as f32,
+            colour: self.colour,
+        });
+    }
+}
+
+/// The part of a segment inside the box from −`reach` to `reach`, if any. None if an end is not
+/// finite.
+pub(super) fn clip(from: DVec2, to: DVec2, reach: DVec2) -> Option<[DVec2; 2]> {
+    let span = to - from;
+    if !span.is_finite() {
+        return None;
+    }
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for (start, length, limit) in [(from.x, span.x, reach.x), (from.y, span.y, reach.y)] {
+        if length == 0.0 {
+            if start.abs() > limit {
+                return None;
+            }
+            continue;
+        }
+        let crossings = [(-limit - start) / length, (limit - start) / length];
+        enter = enter.max(crossings[0].min(crossings[1]));
+        leave = leave.min(crossings[0].max(crossings[1]));
+    }
+    (enter <= leave).then(|| [from + span * enter, from + span * leave])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REACH: DVec2 = DVec2::new(10.0, 5.0);
+
+    #[test]
+    fn clipping_keeps_what_is_inside() {
+        let inside = [DVec2::new(-1.0, 2.0), DVec2::new(3.0, -4.0)];
+        assert_eq!(clip(inside[0], inside[1], REACH), Some(inside));
+        let [start, end] = clip(DVec2::new(-1e9, 1.0), DVec2::new(1e9, 1.0), REACH).unwrap();
+        assert!(start.distance(DVec2::new(-10.0, 1.0)) < 1e-6);
+        assert!(end.distance(DVec2::new(10.0, 1.0)) < 1e-6);
+        assert_eq!(clip(DVec2::new(-20.0, 6.0), DVec2::new(20.0, 6.0), REACH), None);
+        assert_eq!(clip(DVec2::new(11.0, -20.0), DVec2::new(30.0, 20.0), REACH), None);
+    }
+
+    #[test]
+    fn the_ground_is_hatched_below_its_surface() {
+        let ground = Boundary::HalfSpace { point: DVec2::new(1e6, 0.0), normal: DVec2::Y };
+        let camera = Camera { centre: DVec2::new(0.0, 0.1), metres_per_pixel: 0.01 };
+        let links = boundary_links(&[ground], &camera, 200, 100, 15.0, Colour::BLACK);
+        let (surface, hatching) = links.split_first().unwrap();
+        assert!(surface.start[1] == -10.0 && surface.end[1] == -10.0);
+        assert!(surface.start[0] <= -100.0 && surface.end[0] >= 100.0);
+        assert!(hatching.len() > 20);
+        assert!(hatching.iter().all(|stroke| stroke.start[1] == -10.0 && stroke.end[1] < -10.0));
+    }
+
+    #[test]
+    fn a_polygon_is_hatched_inside() {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let points = corners.map(DVec2::from).to_vec();
+        let camera = Camera { centre: DVec2::splat(0.5), metres_per_pixel: 0.01 };
+        let links = boundary_links(
+            &[Boundary::ConvexPolygon { points }],
+            &camera,
+            200,
+            200,
+            15.0,
+            Colour::BLACK,
+        );
+        assert!(links.len() > 20);
+        for link in links {
+            for point in [link.start, link.end] {
+                assert!(point.iter().all(|along| along.abs() <= 50.0 + 1e-3), "{point:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Colours in gamma space: the numbers that a PNG file stores, divided by 255.
+//!
+//! All blending happens on these numbers, on every renderer, so that pictures look the same
+//! everywhere and a half-covered edge pixel is the plain mean of its two sides.
+
+use serde::{Deserialize, Serialize};
+
+/// Red, green, blue and opacity, each 0 … 1, not premultiplied.
+#[repr(C)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Serialize,
+    Deserialize,
+    bytemuck::Pod,
+    bytemuck::Zeroable,
+)]
+pub struct Colour {
+    /// Red.
+    pub red: f32,
+    /// Green.
+    pub green: f32,
+    /// Blue.
+    pub blue: f32,
+    /// Opacity.
+    pub alpha: f32,
+}
+
+impl Colour {
+    /// White.
+    pub const WHITE: Self = Self::grey(255);
+    /// Black.
+    pub const BLACK: Self = Self::grey(0);
+
+    /// The opaque colour that is written `#rrggbb` on the web.
+    pub const fn hex(rrggbb: u32) -> Self {
+        Self {
+            red: ((rrggbb >> 16) & 0xff) as f32 / 255.0,
+            green: ((rrggbb >> 8) & 0xff) as f32 / 255.0,
+            blue: (rrggbb & 0xff) as f32 / 255.0,
+            alpha: 1.0,
+        }
+    }
+
+    /// An opaque grey: 0 black … 255 white.
+    pub const fn grey(tone: u8) -> Self {
+        let level = tone as f32 / 255.0;
+        Self { red: level, green: level, blue: level, alpha: 1.0 }
+    }
+
+    /// The same colour with another opacity.
+    pub const fn with_alpha(self, alpha: f32) -> Self {
+        Self { alpha, ..self }
+    }
+
+    /// This colour at `part` 0, `other` at 1.
+    pub fn mix(self, other: Self, part: f32) -> Self {
+        let between = |a: f32, b: f32| a + (b - a) * part;
+        Self {
+            red: between(self.red, other.red),
+            green: between(self.green, other.green),
+            blue: between(self.blue, other.blue),
+            alpha: between(self.alpha, other.alpha),
+        }
+    }
+
+    /// Red, green and blue times opacity, and opacity.
+    pub(super) fn premultiplied(self) -> [f32; 4] {
+        let Self { red, green, blue, alpha } = self;
+        [red * alpha, green * alpha, blue * alpha, alpha]
+    }
+
+    /// The pixel that stores this colour.
+    pub fn to_rgba8(self) -> image::Rgba<u8> {
+        // Casts from float to integer saturate, so a channel outside 0 … 1 ends at 0 or 255.
+        let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
+        image::Rgba([byte(self.red), byte(self.green), byte(self.blue), byte(self.alpha)])
+    }
+}
+
+/// Lays a colour over an opaque pixel, `coverage` 0 … 1 times its opacity.
+pub(super) fn blend_pixel(pixel: &mut image::Rgba<u8>, colour: Colour, coverage: f32) {
+    let alpha = colour.alpha * coverage;
+    for (under, over) in pixel.0.iter_mut().zip([colour.red, colour.green, colour.blue]) {
+        *under = (f32::from(*under) * (1.0 - alpha) + over * 255.0 * alpha + 0.5) as u8;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hex_digits_become_bytes() {
+        assert_eq!(Colour::hex(0xd55e00).to_rgba8().0, [0xd5, 0x5e, 0, 255]);
+        assert_eq!(Colour::grey(205).to_rgba8().0, [205, 205, 205, 255]);
+    }
+
+    #[test]
+    fn half_coverage_is_the_mean_in_gamma_space() {
+        let mut pixel = Colour::WHITE.to_rgba8();
+        blend_pixel(&mut pixel, Colour::BLACK, 0.5);
+        assert_eq!(pixel.0, [128, 128, 128, 255]);
+    }
+}

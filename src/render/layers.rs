@@ -1,0 +1,123 @@
+//! From a snapshot to a picture: walls, fixed discs, grains, forces, marks, each one batch.
+
+use glam::DVec2;
+
+use super::boundaries::boundary_links;
+use super::colour_scale::ColourScale;
+use super::font::TextStyle;
+use super::forces::force_links;
+use super::scale_bar::ScaleBar;
+use super::{Camera, Colour, DiscInstance, Palette, Picture, Style};
+use crate::sim::{GrainView, Snapshot};
+
+/// How far grains fade towards the ground beneath force chains.
+const FADING: f32 = 0.62;
+/// Radius of the centre of attraction, as a part of the label's font size.
+const CENTRE_RADIUS_EM: f32 = 0.28;
+
+/// The picture of a snapshot, without words: see [`super::draw_scene`] for those. `width` and
+/// `height` are those of the scene alone, without the legend's strip.
+pub fn scene_picture(
+    snapshot: &Snapshot,
+    style: &Style,
+    camera: &Camera,
+    width: u32,
+    height: u32,
+) -> Picture {
+    let palette = style.theme.palette();
+    let surroundings = &snapshot.surroundings;
+    let view = View { style, palette: &palette, camera, width, height };
+    let mut picture = Picture::new(palette.ground);
+    let text_px = style.text_px(width, height);
+
+    let boundaries = &surroundings.boundaries;
+    picture.push_links(boundary_links(
+        boundaries,
+        camera,
+        width,
+        height,
+        text_px,
+        palette.boundary,
+    ));
+    let fixed = surroundings.fixed_discs.iter();
+    picture.push_discs(
+        fixed
+            .filter_map(|disc| view.disc(disc.position, disc.radius, 0.0, palette.fixed))
+            .collect(),
+    );
+    let scale = ColourScale::new(style, snapshot);
+    let mean_diameter = surroundings.mean_diameter;
+    let grains = snapshot.grains.iter();
+    picture.push_discs(
+        grains.filter_map(|grain| view.grain(grain, scale.colour(grain, mean_diameter))).collect(),
+    );
+    if style.show_forces {
+        picture.push_links(force_links(snapshot, style, &palette, camera, width, height));
+    }
+    if let Some(centre) = surroundings.centre_of_attraction {
+        // The ring keeps the dot visible on a grain of its own colour.
+        picture.push_discs(vec![DiscInstance {
+            outline_width: 1.0,
+            outline: palette.ground,
+            ..DiscInstance::plain(
+                camera.project(centre),
+                CENTRE_RADIUS_EM * text_px + 1.0,
+                palette.ink,
+            )
+        }]);
+    }
+    if style.scale_bar {
+        let bar = ScaleBar::new(style, camera, width, height);
+        let label_width = TextStyle::new(text_px, palette.ink).width(&bar.label);
+        picture.push_links(bar.links(&palette, label_width));
+    }
+    picture
+}
+
+/// What all discs of a picture share.
+struct View<'a> {
+    style: &'a Style,
+    palette: &'a Palette,
+    camera: &'a Camera,
+    width: u32,
+    height: u32,
+}
+
+impl View<'_> {
+    fn grain(&self, grain: &GrainView, colour: Colour) -> Option<DiscInstance> {
+        let mut disc = self.disc(grain.position, grain.radius, grain.angle, colour)?;
+        if self.style.angles {
+            disc.mark_half_width = (0.04 * disc.radius).clamp(0.3, 1.25);
+        }
+        Some(disc)
+    }
+
+    /// A disc of the world, or none if it lies outside the picture.
+    fn disc(
+        &self,
+        position: DVec2,
+        radius: f64,
+        angle: f64,
+        colour: Colour,
+    ) -> Option<DiscInstance> {
+        let offset = self.camera.offset_px(position);
+        let radius = self.camera.pixels(radius);
+        let reach = DVec2::new(f64::from(self.width), f64::from(self.height)) / 2.0;
+        // Written so that a position that is not a number is left out.
+        let shows = offset.abs().cmplt(reach + f64::from(radius) + 1.0).all();
+        let fade = |colour: Colour| {
+            let faded = if self.style.show_forces { FADING } else { 0.0 };
+            colour.mix(self.palette.ground, faded)
+        };
+        let outline_width = if self.style.outlines { (0.1 * radius).clamp(0.25, 1.5) } else { 0.0 };
+        shows.then(|| DiscInstance {
+            centre: offset.as_vec2().into(),
+            radius,
+            outline_width,
+            mark_half_width: 0.0,
+            direction: [angle.cos() as f32, angle.sin() as f32],
+            fill: fade(colour),
+            outline: fade(self.palette.outline),
+        })
+    }
+}

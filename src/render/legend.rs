@@ -1,0 +1,183 @@
+//! The strip at the right of a picture: what its colours and links mean.
+//!
+//! It is drawn on the processor whatever draws the scene, so that it is the same on every renderer.
+
+use image::RgbaImage;
+
+use super::colour_scale::{ColourScale, MOST_CONTACTS, contact_colour, map_colour};
+use super::font::TextStyle;
+use super::numbers::{decimal, round_below, si_prefix, ticks};
+use super::text::{Align, TextBlock};
+use super::{Colour, ColourBy, LinkInstance, Palette, Picture, cpu};
+
+/// What a legend tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Legend {
+    /// The colours of the grains.
+    pub scale: ColourScale,
+    /// The |N| (N) at full width and half that width (px), where forces are drawn.
+    pub forces: Option<(f64, f32)>,
+    /// Ground and ink.
+    pub palette: Palette,
+    /// Font size, pixels.
+    pub text_px: f32,
+}
+
+impl Legend {
+    /// Draws the strip.
+    pub fn draw(&self, width: u32, height: u32) -> RgbaImage {
+        let mut strip = RgbaImage::from_pixel(width, height, self.palette.ground.to_rgba8());
+        let mut bottom = i64::from(height) - self.em(1.0);
+        if let Some((reference, half_width)) = self.forces {
+            bottom = self.draw_force_key(&mut strip, bottom, reference, half_width);
+        }
+        let top = self.em(1.0);
+        match self.scale.colour_by {
+            ColourBy::PaperGreys => {}
+            ColourBy::Coordination => self.draw_swatches(&mut strip, top, bottom),
+            _ => self.draw_bar(&mut strip, top, bottom),
+        }
+        strip
+    }
+
+    fn em(&self, sizes: f32) -> i64 {
+        (sizes * self.text_px).round() as i64
+    }
+
+    fn text(&self) -> TextStyle {
+        TextStyle::new(self.text_px, self.palette.ink)
+    }
+
+    /// A continuous bar with ticks at its right and its title, turned, beyond them.
+    fn draw_bar(&self, strip: &mut RgbaImage, top: i64, bottom: i64) {
+        let (left, right) = (self.em(0.4), self.em(1.5));
+        let rows = bottom - top;
+        if rows < self.em(3.0) {
+            return;
+        }
+        for row in 0..rows {
+            let part = 1.0 - (row as f64 + 0.5) / rows as f64;
+            fill(strip, left, right, top + row, top + row + 1, map_colour(part));
+        }
+        let ScaleRange { low, high, title, factor } = self.range();
+        let most = (rows / self.em(2.0)).clamp(2, 6) as usize;
+        let (values, step) = ticks(low * factor, high * factor, most);
+        let span = (high - low) * factor;
+        let mut widest = 0;
+        for value in values {
+            let part = if span > 0.0 { (value - low * factor) / span } else { 0.0 };
+            // The middle of the end ticks stays on the bar.
+            let y = bottom - 1 - (part * (rows - 1) as f64).round() as i64;
+            fill(strip, right, right + self.em(0.3), y, y + 1, self.palette.ink);
+            let label = TextBlock::new(&decimal(value, step), &self.text());
+            widest = widest.max(i64::from(label.width()));
+            label.draw(strip, right + self.em(0.4), y, Align::Start, Align::Centre);
+        }
+        let title = self.upright(&title, rows).turned();
+        let x = right + self.em(0.5) + widest;
+        title.draw(strip, x, (top + bottom) / 2, Align::Start, Align::Centre);
+    }
+
+    /// One square for each number of contacts, the largest on top.
+    fn draw_swatches(&self, strip: &mut RgbaImage, top: i64, bottom: i64) {
+        let count = i64::from(MOST_CONTACTS) + 1;
+        let pitch = self.em(1.8).min((bottom - top) / count);
+        if pitch < 3 {
+            return;
+        }
+        let (left, right) = (self.em(0.4), self.em(1.5));
+        let start = (top + bottom - count * pitch) / 2;
+        let mut widest = 0;
+        for contacts in 0..=MOST_CONTACTS {
+            let y = start + i64::from(MOST_CONTACTS - contacts) * pitch;
+            fill(strip, left, right, y, y + pitch, contact_colour(contacts));
+            let least = if contacts == MOST_CONTACTS { "≥ " } else { "" };
+            let label = TextBlock::new(&format!("{least}{contacts}"), &self.text());
+            widest = widest.max(i64::from(label.width()));
+            label.draw(strip, right + self.em(0.4), y + pitch / 2, Align::Start, Align::Centre);
+        }
+        let title = self.upright(&self.range().title, count * pitch).turned();
+        let x = right + self.em(0.5) + widest;
+        title.draw(strip, x, start + count * pitch / 2, Align::Start, Align::Centre);
+    }
+
+    /// The two colours of forces and the force at full width. Returns where it begins.
+    fn draw_force_key(
+        &self,
+        strip: &mut RgbaImage,
+        bottom: i64,
+        reference: f64,
+        half_width: f32,
+    ) -> i64 {
+        let largest = i64::from(strip.width()) - self.em(0.8);
+        let (prefix, factor) = si_prefix(reference);
+        let value = reference / factor;
+        let step = round_below(value.abs().max(1e-9)) / 10.0;
+        let widest = format!("full width:\n{} {prefix}N", decimal(value, step));
+        let note = TextBlock::wrapped(&widest, &self.text(), largest as f32);
+        let mut y = bottom - i64::from(note.height());
+        note.draw(strip, self.em(0.4), y, Align::Start, Align::Start);
+        for (name, colour) in [("pull", self.palette.pull), ("push", self.palette.push)] {
+            y -= self.em(1.5);
+            let middle = y + self.em(0.75);
+            self.sample(strip, middle, half_width.min(0.55 * self.text_px), colour);
+            let label = TextBlock::new(name, &self.text());
+            label.draw(strip, self.em(2.9), middle, Align::Start, Align::Centre);
+        }
+        y - self.em(1.2)
+    }
+
+    /// A short link at the left of the strip.
+    fn sample(&self, strip: &mut RgbaImage, y: i64, half_width: f32, colour: Colour) {
+        let [width, height] = [self.em(2.4), self.em(1.4)].map(|side| side.max(1) as u32);
+        let mut picture = Picture::new(self.palette.ground);
+        let end = (width as f32 / 2.0 - half_width - 1.0).max(0.0);
+        picture.push_links(vec![LinkInstance {
+            start: [-end, 0.0],
+            end: [end, 0.0],
+            half_width,
+            colour,
+        }]);
+        let sample = cpu::draw(&picture, width, height);
+        image::imageops::replace(strip, &sample, self.em(0.2), y - i64::from(height / 2));
+    }
+
+    /// The title on one line, smaller if it would be longer than the bar.
+    fn upright(&self, title: &str, length: i64) -> TextBlock {
+        let style = self.text();
+        let shrink = (length as f32 / style.width(title).max(1.0)).min(1.0);
+        TextBlock::new(title, &TextStyle { size_px: style.size_px * shrink, ..style })
+    }
+
+    fn range(&self) -> ScaleRange {
+        let (title, factor) = self.scale.label();
+        ScaleRange { low: self.scale.low, high: self.scale.high, title, factor }
+    }
+}
+
+/// A scale as the legend writes it.
+struct ScaleRange {
+    low: f64,
+    high: f64,
+    title: String,
+    /// What values are multiplied by before they are written.
+    factor: f64,
+}
+
+/// Fills a rectangle, as far as it lies in the image.
+pub(super) fn fill(
+    image: &mut RgbaImage,
+    left: i64,
+    right: i64,
+    top: i64,
+    bottom: i64,
+    colour: Colour,
+) {
+    let (width, height) = image.dimensions();
+    let clamp = |at: i64, limit: u32| at.clamp(0, i64::from(limit)) as u32;
+    for y in clamp(top, height)..clamp(bottom, height) {
+        for x in clamp(left, width)..clamp(right, width) {
+            image.put_pixel(x, y, colour.to_rgba8());
+        }
+    }
+}

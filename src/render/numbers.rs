@@ -1,0 +1,149 @@
+//! Round numbers, and numbers as people write them.
+
+/// The longest of 1, 2 and 5 times a power of ten that is at most `limit`, which must be positive.
+pub fn round_below(limit: f64) -> f64 {
+    let power = 10f64.powi(limit.log10().floor() as i32);
+    // The tolerance keeps 0.2 from losing to its own logarithm's rounding.
+    [10.0, 5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|factor| factor * power)
+        .find(|length| *length <= limit * (1.0 + 1e-9))
+        .unwrap_or(power)
+}
+
+/// A number a little above `value`, which must be positive, at which a scale can end.
+pub fn round_above(value: f64) -> f64 {
+    let power = 10f64.powi(value.log10().floor() as i32);
+    [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
+        .into_iter()
+        .map(|factor| factor * power)
+        .find(|end| *end >= value * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
+}
+
+/// Round numbers from `low` to `high`, at most `most` of them, and their distance.
+pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
+    let span = high - low;
+    if !(span > 0.0 && span.is_finite()) {
+        return (vec![low], 1.0);
+    }
+    let least_step = span / most.saturating_sub(1).max(1) as f64;
+    let power = 10f64.powi(least_step.log10().floor() as i32);
+    let step = [1.0, 2.0, 5.0]
+        .into_iter()
+        .map(|factor| factor * power)
+        .find(|step| *step >= least_step * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power);
+    let first = (low / step - 1e-9).ceil() as i64;
+    let last = (high / step + 1e-9).floor() as i64;
+    ((first..=last).map(|index| index as f64 * step).collect(), step)
+}
+
+/// A number with as many decimals as tell multiples of `step` apart, and a true minus sign.
+pub fn decimal(value: f64, step: f64) -> String {
+    let decimals = (-(step.abs().log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        // A negative number that rounds to zero is zero.
+        Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),
+        Some(digits) => format!("−{digits}"),
+        None => text,
+    }
+}
+
+/// The prefix with which numbers up to `largest` of a unit are written, and the factor it stands
+/// for. No prefix between 0.1 and 10 000.
+pub fn si_prefix(largest: f64) -> (&'static str, f64) {
+    let largest = largest.abs();
+    if largest == 0.0 || !largest.is_finite() || (0.1..1e4).contains(&largest) {
+        return ("", 1.0);
+    }
+    [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9)]
+        .into_iter()
+        .find(|(_, factor)| largest >= *factor * (1.0 - 1e-9))
+        .unwrap_or(("p", 1e-12))
+}
+
+/// A round length, m, as people write it: "5 mm", "20 cm", "1 km".
+pub fn length(metres: f64) -> String {
+    let (unit, factor) =
+        [("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)]
+            .into_iter()
+            .find(|(_, factor)| metres >= *factor * (1.0 - 1e-9))
+            .unwrap_or(("pm", 1e-12));
+    let value = metres / factor;
+    format!("{} {unit}", decimal(value, round_below(value.max(1e-9)).min(1.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scale_bars_are_round() {
+        for (limit, expected) in [
+            (1.0, 1.0),
+            (0.9, 0.5),
+            (0.2, 0.2),
+            (0.0499, 0.02),
+            (7.0, 5.0),
+            (12.0, 10.0),
+            (1e-6, 1e-6),
+        ] {
+            let found = round_below(limit);
+            assert!((found / expected - 1.0).abs() < 1e-12, "{limit}: {found}");
+        }
+    }
+
+    #[test]
+    fn lengths_read_well() {
+        for (metres, text) in [
+            (0.01, "1 cm"),
+            (0.005, "5 mm"),
+            (0.2, "20 cm"),
+            (2.0, "2 m"),
+            (5e-4, "500 µm"),
+            (1000.0, "1 km"),
+            (5e5, "500 km"),
+        ] {
+            assert_eq!(length(metres), text);
+        }
+    }
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        assert_eq!(ticks(0.0, 1.0, 6).0, [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
+        assert_eq!(ticks(-3.0, 4.0, 5).0, [-2.0, 0.0, 2.0, 4.0]);
+        assert_eq!(ticks(2.0, 2.0, 5).0, [2.0]);
+        for (low, high) in [(0.0, 0.037), (1.3, 1.9), (-5e-7, 1e-6), (0.0, 8e5)] {
+            let (found, _) = ticks(low, high, 6);
+            assert!((2..=6).contains(&found.len()), "{low} … {high}: {found:?}");
+            assert!(found.iter().all(|tick| (low - 1e-9..=high * 1.000001).contains(tick)));
+        }
+    }
+
+    #[test]
+    fn decimals_follow_the_step() {
+        assert_eq!(decimal(0.6000000000000001, 0.2), "0.6");
+        assert_eq!(decimal(-2.0, 1.0), "−2");
+        assert_eq!(decimal(-1e-18, 0.1), "0.0");
+        assert_eq!(decimal(1500.0, 500.0), "1500");
+        assert_eq!(decimal(0.025, 0.005), "0.025");
+    }
+
+    #[test]
+    fn ends_of_scales_are_a_little_above() {
+        for (value, end) in [(0.93, 1.0), (1.0, 1.0), (1.2, 1.5), (0.021, 0.03), (9.1, 10.0)] {
+            assert!((round_above(value) / end - 1.0).abs() < 1e-12, "{value}");
+        }
+    }
+
+    #[test]
+    fn prefixes_keep_numbers_short() {
+        assert_eq!(si_prefix(0.5), ("", 1.0));
+        assert_eq!(si_prefix(0.02), ("m", 1e-3));
+        assert_eq!(si_prefix(3e-7), ("n", 1e-9));
+        assert_eq!(si_prefix(2e4), ("k", 1e3));
+        assert_eq!(si_prefix(0.0), ("", 1.0));
+    }
+}

@@ -1,0 +1,172 @@
+//! Pictures without a window: a texture to draw into and a buffer to read it back.
+//!
+//! Rows of the readback buffer are padded to the 256 bytes that texture copies ask for. Texture and
+//! buffer live on while the size stays the same, as it does in a sequence of frames.
+
+use image::RgbaImage;
+
+use super::backend::Gpu;
+use super::painter::Painter;
+use super::primitive::Frame;
+use super::{Colour, Picture};
+use crate::error::{Error, Result};
+
+/// Stores the numbers that are blended; an sRGB format would convert them.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// A GPU that draws pictures into memory.
+pub(super) struct Offscreen {
+    gpu: Gpu,
+    painter: Painter,
+    target: Option<Target>,
+}
+
+/// What depends on the size of the picture.
+struct Target {
+    width: u32,
+    height: u32,
+    padded_row_bytes: u32,
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    readback: wgpu::Buffer,
+}
+
+impl Offscreen {
+    pub fn new(gpu: Gpu) -> Result<Self> {
+        let painter = Painter::new(&gpu.device, FORMAT);
+        gpu.check()?;
+        Ok(Self { gpu, painter, target: None })
+    }
+
+    pub fn name(&self) -> &str {
+        &self.gpu.name
+    }
+
+    /// Largest width and height, pixels.
+    pub fn largest_side(&self) -> u32 {
+        self.gpu.device.limits().max_texture_dimension_2d
+    }
+
+    pub fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
+        if self.target.as_ref().is_some_and(|old| (old.width, old.height) != (width, height)) {
+            self.target = None;
+        }
+        let gpu = &self.gpu;
+        let target = match &mut self.target {
+            Some(target) => target,
+            empty => {
+                let target = Target::new(gpu, width, height)?;
+                empty.insert(target)
+            }
+        };
+        let frame = Frame::new(0.0, 0.0, width as f32, height as f32);
+        self.painter.prepare(&gpu.device, &gpu.queue, picture, frame);
+
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("picture"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &target.view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(clear_colour(picture.background)),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            self.painter.draw(&mut pass);
+        }
+        target.record_copy(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        let image = target.read(gpu);
+        // A failure on the device explains more than the readback that it spoiled.
+        gpu.check().and(image)
+    }
+}
+
+/// The ground as a clear colour, at the exact value of its byte so that no driver rounds it apart.
+fn clear_colour(colour: Colour) -> wgpu::Color {
+    let [r, g, b, _] = colour.to_rgba8().0.map(|byte| f64::from(byte) / 255.0);
+    wgpu::Color { r, g, b, a: 1.0 }
+}
+
+impl Target {
+    fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self> {
+        let padded_row_bytes = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let bytes = u64::from(padded_row_bytes) * u64::from(height);
+        let largest = gpu.device.limits().max_buffer_size;
+        if bytes > largest {
+            return Err(Error::value(
+                "size",
+                format!("{width}x{height}"),
+                format!("at most {largest} bytes as a picture on {}", gpu.name),
+            ));
+        }
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("readback"),
+            size: bytes,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        gpu.check()?;
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self { width, height, padded_row_bytes, texture, view, readback })
+    }
+
+    fn record_copy(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.copy_texture_to_buffer(
+            self.texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &self.readback,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(self.padded_row_bytes),
+                    rows_per_image: None,
+                },
+            },
+            self.texture.size(),
+        );
+    }
+
+    fn read(&self, gpu: &Gpu) -> Result<RgbaImage> {
+        let failed = |what: &dyn std::fmt::Display| {
+            Error::Renderer(format!("{} gave no picture back: {what}", gpu.name))
+        };
+        let (sender, receiver) = std::sync::mpsc::channel();
+        self.readback.map_async(wgpu::MapMode::Read, .., move |outcome| {
+            // The receiver outlives the poll below, so only a lost device can leave none.
+            let _ = sender.send(outcome);
+        });
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(&error))?;
+        match receiver.try_recv() {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => return Err(failed(&error)),
+            Err(error) => return Err(failed(&error)),
+        }
+        let row_bytes = 4 * self.width as usize;
+        let mut image = RgbaImage::new(self.width, self.height);
+        {
+            let mapped = self.readback.get_mapped_range(..).map_err(|error| failed(&error))?;
+            let padded_rows = mapped.chunks_exact(self.padded_row_bytes as usize);
+            for (row, padded) in image.as_mut().chunks_exact_mut(row_bytes).zip(padded_rows) {
+                row.copy_from_slice(&padded[..row_bytes]);
+            }
+        }
+        self.readback.unmap();
+        Ok(image)
+    }
+}

@@ -1,0 +1,195 @@
+//! How a scene is to be drawn: what colours mean, and what is shown beside the grains.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::camera::Margins;
+use super::{Camera, Colour};
+
+/// Height kept free below the scene for the scale bar, in font sizes.
+const SCALE_BAR_EM: f64 = 1.6;
+
+/// What the colour of a grain stands for.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColourBy {
+    /// The grey that the scene gives each grain, as in the paper.
+    #[default]
+    #[serde(rename = "grey")]
+    #[value(name = "grey")]
+    PaperGreys,
+    /// Speed of the centre, m/s.
+    Speed,
+    /// Largest overlap over the grain's contacts, in units of d.
+    Overlap,
+    /// Σ|N| over the grain's contacts, N.
+    Force,
+    /// Number of the grain's contacts.
+    Coordination,
+}
+
+/// Ground and ink.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Theme {
+    /// Dark ink on white, for print.
+    #[default]
+    Light,
+    /// Light ink on a dark ground, for screens.
+    Dark,
+}
+
+/// How a scene is to be drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Style {
+    /// What the colours of the grains stand for.
+    pub colour_by: ColourBy,
+    /// Values at the two ends of the colours, in the units that [`ColourBy`] states; taken from
+    /// the snapshot if absent. Frames of one animation should share one range.
+    pub range: Option<(f64, f64)>,
+    /// Whether contact forces are drawn as links, with paler grains beneath.
+    pub show_forces: bool,
+    /// The |N| that is drawn at full width, N; the 95th percentile of the snapshot if absent.
+    pub force_reference: Option<f64>,
+    /// Whether grains have an outline.
+    pub outlines: bool,
+    /// Whether a mark on each grain shows its angle.
+    pub angles: bool,
+    /// Whether a scale bar is drawn.
+    pub scale_bar: bool,
+    /// Whether a legend is drawn where colours or links need one.
+    pub legend: bool,
+    /// Ground and ink.
+    pub theme: Theme,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            colour_by: ColourBy::PaperGreys,
+            range: None,
+            show_forces: false,
+            force_reference: None,
+            outlines: true,
+            angles: false,
+            scale_bar: true,
+            legend: true,
+            theme: Theme::Light,
+        }
+    }
+}
+
+/// The colours of a theme.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Palette {
+    /// What everything lies on.
+    pub ground: Colour,
+    /// Words and bars.
+    pub ink: Colour,
+    /// Outlines of grains.
+    pub outline: Colour,
+    /// Fixed discs.
+    pub fixed: Colour,
+    /// Walls and their hatching.
+    pub boundary: Colour,
+    /// Forces that push. With `pull`, a pair that colour-blind people tell apart (Okabe & Ito).
+    pub push: Colour,
+    /// Forces that pull.
+    pub pull: Colour,
+}
+
+impl Theme {
+    /// The theme's colours.
+    pub const fn palette(self) -> Palette {
+        match self {
+            Self::Light => Palette {
+                ground: Colour::WHITE,
+                ink: Colour::grey(26),
+                outline: Colour::grey(51),
+                fixed: Colour::grey(120),
+                boundary: Colour::grey(51),
+                push: Colour::hex(0x0072b2),
+                pull: Colour::hex(0xd55e00),
+            },
+            Self::Dark => Palette {
+                ground: Colour::hex(0x14171c),
+                ink: Colour::grey(230),
+                // Lighter than the low end of the colour map, which is as dark as the ground.
+                outline: Colour::grey(150),
+                fixed: Colour::grey(95),
+                boundary: Colour::grey(170),
+                push: Colour::hex(0x56b4e9),
+                pull: Colour::hex(0xe8772e),
+            },
+        }
+    }
+}
+
+impl Style {
+    /// Font size of labels on a picture of this size, pixels.
+    pub fn text_px(&self, width: u32, height: u32) -> f32 {
+        // 16 px at 800 × 500; larger pictures are read from further away, but not in proportion.
+        let side = f64::from(width).min(1.6 * f64::from(height));
+        (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
+    }
+
+    /// Whether the colours or links of this style need a legend, and one is wanted.
+    pub fn has_legend(&self) -> bool {
+        self.legend && (self.colour_by != ColourBy::PaperGreys || self.show_forces)
+    }
+
+    /// Width of the strip at the right that the legend takes, pixels.
+    pub fn legend_width(&self, width: u32, height: u32) -> u32 {
+        let strip = (7.0 * self.text_px(width, height)).ceil() as u32;
+        // A picture too narrow for both shows the scene.
+        if self.has_legend() && width > 2 * strip { strip } else { 0 }
+    }
+
+    /// The camera that shows the box from `min` to `max` (m) as large as possible on a picture of
+    /// this size, and leaves room for legend and scale bar so that they cover nothing.
+    pub fn camera(&self, min: DVec2, max: DVec2, width: u32, height: u32) -> Camera {
+        let text = f64::from(self.text_px(width, height));
+        let margin = text.min(0.05 * f64::from(width.min(height)));
+        let bar = if self.scale_bar { SCALE_BAR_EM * text } else { 0.0 };
+        let margins = Margins { left: margin, right: margin, top: margin, bottom: margin + bar };
+        Camera::framing_within(min, max, width - self.legend_width(width, height), height, margins)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::ValueEnum;
+
+    use super::*;
+
+    #[test]
+    fn names_on_the_command_line_and_in_files_are_the_same() {
+        for (value, name) in [
+            (ColourBy::PaperGreys, "grey"),
+            (ColourBy::Speed, "speed"),
+            (ColourBy::Overlap, "overlap"),
+            (ColourBy::Force, "force"),
+            (ColourBy::Coordination, "coordination"),
+        ] {
+            assert_eq!(ColourBy::from_str(name, false), Ok(value));
+            assert_eq!(serde_json::to_value(value).unwrap(), name);
+        }
+    }
+
+    #[test]
+    fn a_box_keeps_clear_of_legend_and_scale_bar() {
+        let style = Style { colour_by: ColourBy::Speed, ..Style::default() };
+        let (min, max) = (DVec2::ZERO, DVec2::new(2.0, 1.0));
+        let camera = style.camera(min, max, 800, 500);
+        let scene_width = 800 - style.legend_width(800, 500);
+        let [right, _] = camera.project(max);
+        let [_, bottom] = camera.project(min);
+        assert!(right <= scene_width as f32 / 2.0 - 10.0);
+        assert!(bottom >= -250.0 + 2.0 * 16.0);
+    }
+}

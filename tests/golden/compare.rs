@@ -1,0 +1,64 @@
+//! How far two pictures differ, and a picture of where.
+
+use image::{Rgba, RgbaImage};
+
+/// How far a picture may be from its golden.
+#[derive(Clone, Copy)]
+pub struct Tolerance {
+    /// Largest difference in any channel, of 255.
+    pub channel: u8,
+    /// Largest part of pixels that differ at all.
+    pub pixels: f64,
+}
+
+/// How far a picture is from its golden.
+pub struct Difference {
+    channel: u8,
+    pixels: f64,
+    sizes: [(u32, u32); 2],
+}
+
+impl Difference {
+    pub fn between(actual: &RgbaImage, golden: &RgbaImage) -> Self {
+        let mut channel = 0;
+        let mut differing = 0;
+        for (a, b) in actual.pixels().zip(golden.pixels()) {
+            let largest = a.0.iter().zip(b.0).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0);
+            channel = channel.max(largest);
+            differing += u64::from(largest > 0);
+        }
+        let all = u64::from(golden.width()) * u64::from(golden.height());
+        let sizes = [actual.dimensions(), golden.dimensions()];
+        Self { channel, pixels: differing as f64 / all.max(1) as f64, sizes }
+    }
+
+    pub fn within(&self, tolerance: Tolerance) -> bool {
+        let Self { channel, pixels, sizes: [actual, golden] } = *self;
+        actual == golden && channel <= tolerance.channel && pixels <= tolerance.pixels
+    }
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [actual, golden] = self.sizes;
+        if actual != golden {
+            return write!(f, "size {actual:?} instead of {golden:?}");
+        }
+        write!(f, "largest difference {}/255, {:.2} % of pixels", self.channel, 100.0 * self.pixels)
+    }
+}
+
+/// Differences, made twenty times larger, on black.
+pub fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
+    let width = actual.width().max(golden.width());
+    let height = actual.height().max(golden.height());
+    RgbaImage::from_fn(width, height, |x, y| {
+        match (actual.get_pixel_checked(x, y), golden.get_pixel_checked(x, y)) {
+            (Some(a), Some(b)) => {
+                let channel = |k: usize| a.0[k].abs_diff(b.0[k]).saturating_mul(20);
+                Rgba([channel(0), channel(1), channel(2), 255])
+            }
+            _ => Rgba([255, 0, 255, 255]),
+        }
+    })
+}
