@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::Scene;
+use super::{Scene, View};
 use crate::solver::SolverSettings;
 use crate::world::{Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
 
@@ -32,6 +32,10 @@ pub fn collision() -> Scene {
             cone: FrictionCone::Shifted,
         },
         solver: SolverSettings::default(),
+        view: Some(View {
+            min: DIAMETER * DVec2::new(-0.7, -0.7),
+            max: DIAMETER * DVec2::new(2.7, 0.7),
+        }),
         source: None,
         boundaries: Vec::new(),
         fixed_discs: vec![Disc { position: DVec2::ZERO, radius }],

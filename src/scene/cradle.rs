@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::Scene;
+use super::{Scene, View};
 use crate::solver::{Method, SolverSettings, StopTest};
 use crate::world::{FrictionCone, Grain, Gravity, Parameters, Physics};
 
@@ -52,6 +52,10 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             max_sweeps: 20_000,
             warm_start: false,
         },
+        view: Some(View {
+            min: DIAMETER * DVec2::new(-9.0, -1.2),
+            max: DIAMETER * DVec2::new(5.0, 1.2),
+        }),
         source: None,
         boundaries: Vec::new(),
         fixed_discs: Vec::new(),

@@ -1,5 +1,6 @@
 //! Everything that a scene says.
 
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::Rain;
@@ -33,6 +34,9 @@ pub struct Scene {
     /// How well each step is solved.
     #[serde(default)]
     pub solver: SolverSettings,
+    /// What its pictures show; chosen from the grains' start where it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub view: Option<View>,
     /// Where the grains come from, unless they are listed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<GrainSource>,
@@ -45,6 +49,16 @@ pub struct Scene {
     /// The moving discs.
     #[serde(default)]
     pub grains: Vec<Grain>,
+}
+
+/// A rectangle of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct View {
+    /// Lower left corner, m.
+    pub min: DVec2,
+    /// Upper right corner, m.
+    pub max: DVec2,
 }
 
 /// Where the grains of a scene come from.
@@ -104,6 +118,12 @@ impl Scene {
         if !magnitude.is_finite() {
             return Err(Error::value("gravity", magnitude, "finite"));
         }
+        if let Some(View { min, max }) = self.view
+            && !(min.cmplt(max).all() && (max - min).is_finite())
+        {
+            let allowed = "finite, with min below and left of max";
+            return Err(Error::value("view", format!("{min} to {max}"), allowed));
+        }
         if self.physics.axes == 1 {
             self.validate_line()?;
         }
@@ -129,6 +149,22 @@ impl Scene {
             return Err(Error::value(field, format!("{:?}", self.boundaries[index]), allowed));
         }
         Ok(())
+    }
+
+    /// What pictures of this scene show: its own view, or the grains' start with room to spread by
+    /// the grains' height on either side.
+    pub fn view(&self) -> View {
+        if let Some(view) = self.view {
+            return view;
+        }
+        let mut min = DVec2::INFINITY;
+        let mut max = DVec2::NEG_INFINITY;
+        for grain in &self.grains {
+            min = min.min(grain.position - grain.radius);
+            max = max.max(grain.position + grain.radius);
+        }
+        let room = if self.physics.axes == 1 { 0.0 } else { max.y - min.y };
+        View { min: min - DVec2::new(room, 0.0), max: max + DVec2::new(room, 0.0) }
     }
 
     /// Sets the scene up at t = 0.

@@ -2,6 +2,7 @@
 //! listed in [`SCENES`]; the same data can be read from a TOML file.
 
 mod collision;
+mod config;
 mod cradle;
 mod csv_states;
 mod description;
@@ -11,10 +12,11 @@ mod rain;
 mod registry;
 
 pub use collision::collision;
+pub use config::Config;
 pub use cradle::{cradle, cradle_from};
 pub use csv_states::{parse_discs, read_discs, write_discs};
-pub use description::{GrainSource, Scene};
+pub use description::{GrainSource, Scene, View};
 pub use file::{read_scene, scene_to_toml};
-pub use pile::{BASE_MARGIN_IN_DIAMETERS, paper_pile, pile_of, rough_base, tone_in_layers};
+pub use pile::{paper_pile, pile_of, rough_base, tone_in_layers};
 pub use rain::{Rain, Settling, settle};
 pub use registry::{SCENES, SceneInfo, built_in, scene_names};

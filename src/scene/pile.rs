@@ -11,9 +11,9 @@ use crate::world::{Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
 pub(super) const DIAMETER: f64 = 5e-3;
 /// g, m/s².
 pub(super) const GRAVITY: f64 = 9.8;
-/// How far the rough base reaches beyond the box on either side, in diameters: further than any
-/// grain of the paper's pile gets in its second.
-pub const BASE_MARGIN_IN_DIAMETERS: f64 = 40.0;
+/// How far the rough base reaches beyond the box on either side, in heights of the pile: further
+/// than any grain of a collapsing pile gets in the paper's second.
+const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
 /// Height of the layers that are told apart by their grey, in diameters.
 const LAYER_IN_DIAMETERS: f64 = 2.0;
 /// The greys of the layers.
@@ -33,6 +33,8 @@ pub fn paper_pile() -> Result<Scene> {
 
 /// A pile of the given grains, for a box that was `box_width_in_diameters` wide.
 pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
+    let height = grains.iter().map(|grain| grain.position.y).fold(0.0, f64::max) / DIAMETER;
+    let base_width = box_width_in_diameters + 2.0 * BASE_MARGIN_IN_HEIGHTS * height;
     tone_in_layers(&mut grains, DIAMETER);
     Scene {
         name: "pile".into(),
@@ -50,17 +52,18 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
             cone: FrictionCone::Shifted,
         },
         solver: SolverSettings::default(),
+        view: None,
         source: None,
         boundaries: Vec::new(),
-        fixed_discs: rough_base(box_width_in_diameters, DIAMETER),
+        fixed_discs: rough_base(base_width, DIAMETER),
         grains,
     }
 }
 
-/// Fixed discs of diameter d, centres on y = 0 and spaced d, symmetric about x = 0, under a box of
-/// the given width and [`BASE_MARGIN_IN_DIAMETERS`] beyond it.
-pub fn rough_base(box_width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
-    let half = (0.5 * box_width_in_diameters + BASE_MARGIN_IN_DIAMETERS).ceil() as i64;
+/// Fixed discs of diameter d, centres on y = 0 and spaced d, symmetric about x = 0, at least
+/// `width_in_diameters` wide.
+pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
+    let half = (0.5 * width_in_diameters).ceil() as i64;
     (-half..=half)
         .map(|k| Disc { position: DVec2::new(k as f64 * diameter, 0.0), radius: 0.5 * diameter })
         .collect()

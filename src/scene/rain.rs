@@ -32,7 +32,7 @@ pub struct Rain {
 impl Default for Rain {
     /// The paper's 138 grains.
     fn default() -> Self {
-        Self { grains: 138, box_width_in_diameters: 16.0, seed: 1 }
+        Self { grains: 138, box_width_in_diameters: 16.0, seed: 5 }
     }
 }
 

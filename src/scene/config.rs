@@ -1,0 +1,160 @@
+//! What a user asks of a run: a scene and changes to it. The same structure is the command line's
+//! options, and what is written beside results.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Rain, Scene, Settling, built_in, pile_of, read_discs, read_scene, settle};
+use crate::error::{Error, Result};
+use crate::solver::{Method, StopTest};
+use crate::world::FrictionCone;
+
+/// A scene and changes to it. What is left out stays as the scene says.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, clap::Args)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Config {
+    /// Built-in scene (pile, cradle, collision) or a scene file (NAME.toml)
+    #[arg(long, value_name = "NAME|FILE", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scene: Option<String>,
+    /// Start the pile from a CSV of discs (header x,y,radius, optionally vx,vy,omega; metres)
+    #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial: Option<PathBuf>,
+    /// Rain a new pile of this many grains
+    #[arg(long, value_name = "N", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grains: Option<usize>,
+    /// Width of the box that a new pile is rained into, in mean diameters
+    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub box_width: Option<f64>,
+    /// Seed of a new pile
+    #[arg(long, value_name = "N", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// Bond number: cohesion force over effective weight, at least 0
+    #[arg(long, value_name = "BOND", help_heading = "Physics", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bond: Option<f64>,
+    /// Time step, seconds
+    #[arg(long, value_name = "SECONDS", help_heading = "Physics", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dt: Option<f64>,
+    /// Restitution, 0 to 1
+    #[arg(long, value_name = "RHO", help_heading = "Physics", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rho: Option<f64>,
+    /// Friction, at least 0
+    #[arg(long, value_name = "MU", help_heading = "Physics", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu: Option<f64>,
+    /// Which part of the normal force bounds friction
+    #[arg(long, value_name = "CONE", help_heading = "Physics")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cone: Option<FrictionCone>,
+    /// Simulated time, seconds
+    #[arg(long, value_name = "SECONDS", help_heading = "Physics", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration: Option<f64>,
+    /// Method that solves each step
+    #[arg(long, value_name = "NAME", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solver: Option<Method>,
+    /// What the tolerance refers to
+    #[arg(long, value_name = "TEST", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stop: Option<StopTest>,
+    /// How well each step is solved, in the unit of the stopping test
+    #[arg(long, value_name = "X", help_heading = "Solver", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// A step that needs more sweeps is reported as not converged
+    #[arg(long, value_name = "N", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_sweeps: Option<u32>,
+    /// Whether each step starts from the impulses of the one before
+    #[arg(long, value_name = "BOOL", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warm_start: Option<bool>,
+}
+
+impl Config {
+    /// The name of the scene that is used where none is given.
+    pub const DEFAULT_SCENE: &str = "pile";
+
+    /// Whether nothing is asked for.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The scene with the changes made, checked. A new pile is settled here, which takes a while:
+    /// `progress` is told, and can end it by returning false.
+    ///
+    /// # Errors
+    /// Names the first field that is unknown or outside its range, or the file that cannot be read.
+    pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
+        let name = self.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
+        let mut scene = if self.makes_new_pile() {
+            self.check_is_pile(name, "grains, box-width and seed")?;
+            // Values are checked before the long work starts.
+            let mut checked = built_in(name)?;
+            self.change(&mut checked)?;
+            let rain = self.rain();
+            pile_of(settle(&rain, progress)?, rain.box_width_in_diameters)
+        } else if let Some(path) = &self.initial {
+            self.check_is_pile(name, "initial")?;
+            pile_of(read_discs(path)?, Rain::default().box_width_in_diameters)
+        } else if name.ends_with(".toml") {
+            read_scene(name.as_ref())?
+        } else {
+            built_in(name)?
+        };
+        self.change(&mut scene)?;
+        Ok(scene)
+    }
+
+    /// The rain that `grains`, `box_width` and `seed` ask for.
+    pub fn rain(&self) -> Rain {
+        let default = Rain::default();
+        Rain {
+            grains: self.grains.unwrap_or(default.grains),
+            box_width_in_diameters: self.box_width.unwrap_or(default.box_width_in_diameters),
+            seed: self.seed.unwrap_or(default.seed),
+        }
+    }
+
+    fn makes_new_pile(&self) -> bool {
+        self.grains.is_some() || self.box_width.is_some() || self.seed.is_some()
+    }
+
+    fn check_is_pile(&self, name: &str, fields: &str) -> Result<()> {
+        if name == Self::DEFAULT_SCENE {
+            return Ok(());
+        }
+        Err(Error::value("scene", name, format!("pile where {fields} are given")))
+    }
+
+    fn change(&self, scene: &mut Scene) -> Result<()> {
+        fn set<T: Copy>(place: &mut T, value: Option<T>) {
+            if let Some(value) = value {
+                *place = value;
+            }
+        }
+        set(&mut scene.parameters.bond, self.bond);
+        set(&mut scene.parameters.time_step_secs, self.dt);
+        set(&mut scene.parameters.restitution, self.rho);
+        set(&mut scene.parameters.friction, self.mu);
+        set(&mut scene.parameters.cone, self.cone);
+        set(&mut scene.duration_secs, self.duration);
+        set(&mut scene.solver.method, self.solver);
+        set(&mut scene.solver.stop, self.stop);
+        set(&mut scene.solver.tolerance, self.tolerance);
+        set(&mut scene.solver.max_sweeps, self.max_sweeps);
+        set(&mut scene.solver.warm_start, self.warm_start);
+        scene.parameters.validate()?;
+        scene.solver.validate()?;
+        scene.validate()
+    }
+}
