@@ -89,30 +89,47 @@ impl Config {
         *self == Self::default()
     }
 
-    /// The scene with the changes made, checked. A new pile is settled here, which takes a while:
-    /// `progress` is told, and can end it by returning false.
+    /// The scene with the changes made, checked, but for the grains of a new pile: those of the
+    /// built-in one stand in for them. Quick, so that a wrong value is told of before long work.
     ///
     /// # Errors
     /// Names the first field that is unknown or outside its range, or the file that cannot be read.
-    pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
+    pub fn without_settling(&self) -> Result<Scene> {
         let name = self.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
-        let mut scene = if self.makes_new_pile() {
-            self.check_is_pile(name, "grains, box-width and seed")?;
-            // Values are checked before the long work starts.
-            let mut checked = built_in(name)?;
-            self.change(&mut checked)?;
-            let rain = self.rain();
-            pile_of(settle(&rain, progress)?, rain.box_width_in_diameters)
-        } else if let Some(path) = &self.initial {
-            self.check_is_pile(name, "initial")?;
+        let pile_alone = |fields: &str| match name {
+            Self::DEFAULT_SCENE => Ok(()),
+            _ => Err(Error::value("scene", name, format!("pile where {fields} are given"))),
+        };
+        let mut scene = if let Some(path) = &self.initial {
+            pile_alone("initial grains")?;
             pile_of(read_discs(path)?, Rain::default().box_width_in_diameters)
         } else if name.ends_with(".toml") {
             read_scene(name.as_ref())?
         } else {
             built_in(name)?
         };
+        if self.makes_new_pile() {
+            pile_alone("grains, box-width or seed")?;
+            self.rain().validate()?;
+        }
         self.change(&mut scene)?;
         Ok(scene)
+    }
+
+    /// The scene with the changes made, checked. A new pile is settled here, which takes a while:
+    /// `progress` is told, and can end it by returning false.
+    ///
+    /// # Errors
+    /// As [`Config::without_settling`], and where the grains do not come to rest.
+    pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
+        let scene = self.without_settling()?;
+        if !self.makes_new_pile() {
+            return Ok(scene);
+        }
+        let rain = self.rain();
+        let mut pile = pile_of(settle(&rain, progress)?, rain.box_width_in_diameters);
+        self.change(&mut pile)?;
+        Ok(pile)
     }
 
     /// The rain that `grains`, `box_width` and `seed` ask for.
@@ -127,13 +144,6 @@ impl Config {
 
     fn makes_new_pile(&self) -> bool {
         self.grains.is_some() || self.box_width.is_some() || self.seed.is_some()
-    }
-
-    fn check_is_pile(&self, name: &str, fields: &str) -> Result<()> {
-        if name == Self::DEFAULT_SCENE {
-            return Ok(());
-        }
-        Err(Error::value("scene", name, format!("pile where {fields} are given")))
     }
 
     fn change(&self, scene: &mut Scene) -> Result<()> {

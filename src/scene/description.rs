@@ -163,8 +163,16 @@ impl Scene {
             min = min.min(grain.position - grain.radius);
             max = max.max(grain.position + grain.radius);
         }
-        let room = if self.physics.axes == 1 { 0.0 } else { max.y - min.y };
-        View { min: min - DVec2::new(room, 0.0), max: max + DVec2::new(room, 0.0) }
+        let room = DVec2::new(if self.physics.axes == 1 { 0.0 } else { max.y - min.y }, 0.0);
+        (min, max) = (min - room, max + room);
+        // Of what never moves, the part beside the grains.
+        for disc in &self.fixed_discs {
+            if (min.x..max.x).contains(&disc.position.x) {
+                min.y = min.y.min(disc.position.y - disc.radius);
+                max.y = max.y.max(disc.position.y + disc.radius);
+            }
+        }
+        View { min, max }
     }
 
     /// Sets the scene up at t = 0.
