@@ -13,6 +13,8 @@ pub struct Observables {
     pub time_step_secs: f64,
     /// Sweeps of the solver.
     pub sweeps: u32,
+    /// Matrices that the solver factorised.
+    pub factorisations: u32,
     /// Whether the stopping test was met within the sweep limit.
     pub converged: bool,
     /// The common residual (`solver::residual`), dimensionless.

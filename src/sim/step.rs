@@ -55,6 +55,7 @@ impl ModelVisitor for Step<'_> {
             time_secs: before.time_secs + time_step_secs,
             time_step_secs,
             sweeps: report.sweeps,
+            factorisations: report.factorisations,
             converged: report.converged,
             residual: measures.residual,
             compressive_contacts: measures.compressive_contacts,

@@ -30,6 +30,11 @@ pub trait Kinematics: Copy + Send + Sync + 'static {
     /// m_n / m_t, the same for every contact of solid discs.
     const TANGENTIAL_COMPLIANCE: f64;
 
+    /// Degrees of freedom of a body.
+    const DEGREES: usize;
+    /// Inertia of each degree of freedom over the body's mass: with s = rω, ½Iω² = ½(m/2)s².
+    const INERTIA_OVER_MASS: [f64; 3];
+
     /// Packs grain `index` of a world.
     fn body(world: &World, index: usize) -> Self::Body;
     /// Writes a body's velocity back to grain `index`.
@@ -59,6 +64,11 @@ pub trait Kinematics: Copy + Send + Sync + 'static {
     fn push_single(i: &mut Self::Body, normal: Self::Normal, reduced_impulse: [f64; 2]);
     /// Kinetic energy, J, of a body of `mass` (kg).
     fn kinetic_energy(body: &Self::Body, mass: f64) -> f64;
+    /// A body's velocity, an entry a degree of freedom; the rest is 0.
+    fn coordinates(body: &Self::Body) -> [f64; 3];
+    /// How the coordinates of i, then of j, enter (v_n, v_t): v_n = Σ \[body\]\[0\]·coordinates,
+    /// v_t = Σ \[body\]\[1\]·coordinates.
+    fn gradients(normal: Self::Normal) -> [[[f64; 3]; 2]; 2];
     /// The stored problem of this kind of motion.
     fn problem(problems: &mut Problems) -> &mut StepProblem<Self>;
     /// Work of the gravity impulse M(`free` − `before`) in a step that ends as `after`, J: the
@@ -106,6 +116,16 @@ impl Kinematics for Line {
     const AXES: usize = 1;
     const ROTATION: bool = false;
     const TANGENTIAL_COMPLIANCE: f64 = 1.0;
+    const DEGREES: usize = 1;
+    const INERTIA_OVER_MASS: [f64; 3] = [1.0, 0.0, 0.0];
+
+    fn coordinates(body: &LineBody) -> [f64; 3] {
+        [body.velocity, 0.0, 0.0]
+    }
+
+    fn gradients(normal: f64) -> [[[f64; 3]; 2]; 2] {
+        [[[normal, 0.0, 0.0], [0.0; 3]], [[-normal, 0.0, 0.0], [0.0; 3]]]
+    }
 
     fn body(world: &World, index: usize) -> LineBody {
         LineBody { velocity: world.grains.velocities[index].x }
@@ -176,6 +196,19 @@ macro_rules! plane_kinematics {
             const AXES: usize = 2;
             const ROTATION: bool = $rotation;
             const TANGENTIAL_COMPLIANCE: f64 = if $rotation { 3.0 } else { 1.0 };
+            const DEGREES: usize = if $rotation { 3 } else { 2 };
+            const INERTIA_OVER_MASS: [f64; 3] = [1.0, 1.0, 0.5];
+
+            fn coordinates(body: &PlaneBody) -> [f64; 3] {
+                [body.velocity[0], body.velocity[1], body.spin]
+            }
+
+            #[inline(always)]
+            fn gradients([nx, ny]: [f64; 2]) -> [[[f64; 3]; 2]; 2] {
+                let normal = [nx, ny, 0.0];
+                let tangent = [-ny, nx, -1.0];
+                [[normal, tangent], [[-nx, -ny, 0.0], [ny, -nx, -1.0]]]
+            }
 
             fn body(world: &World, index: usize) -> PlaneBody {
                 let grains = &world.grains;
