@@ -157,10 +157,10 @@ impl Press<'_> {
         let view = common_view(outcomes, "fig7");
         let mut panels = Vec::new();
         let mut moments = Vec::new();
-        for row in 0..FIG7_TIMES_SECS.len() {
+        for (row, time_secs) in FIG7_TIMES_SECS.iter().enumerate() {
             for outcome in of_figure(outcomes, "fig7") {
                 let style = Style { scale_bar: panels.is_empty(), ..Style::default() };
-                let name = format!("{}_t{}", outcome.run.name, FIG7_TIMES_SECS[row]);
+                let name = format!("{}_t{time_secs}", outcome.run.name);
                 moments.push(moment(outcome, row));
                 panels.push(self.panel(outcome, row, &name, view, CRADLE_PANEL_WIDTH, &style)?);
             }
