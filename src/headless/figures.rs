@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::Progress;
 use super::frames::{ObservablesTable, tell_of_unconverged_steps};
-use super::manifest::{Manifest, PictureEntry, RunEntry};
+use super::manifest::{Manifest, Moment, PictureEntry, RunEntry};
 use super::output::{check_writable, write_png};
 use crate::error::Result;
 use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
@@ -113,7 +113,7 @@ impl Press<'_> {
              Greys mark layers two diameters high. At t = 0 the walls go.",
             outcome.run.scene.grains.len()
         );
-        self.write("fig3.png", &figure.draw()?, outcome, 0)
+        self.write("fig3.png", &figure.draw()?, vec![moment(outcome, 0)])
     }
 
     fn fig4(&mut self, outcomes: &[Outcome]) -> Result<()> {
@@ -122,6 +122,7 @@ impl Press<'_> {
         view.min.y = -0.5 * outcomes[0].run.scene.mean_diameter;
         let mut panels = Vec::new();
         let mut titles = Vec::new();
+        let mut moments = Vec::new();
         for bond in FIG4_BONDS {
             for time_step_secs in FIG4_TIME_STEPS_SECS {
                 let is_this = |outcome: &&Outcome| {
@@ -134,6 +135,7 @@ impl Press<'_> {
                 let name = outcome.run.name.clone();
                 let slump = outcome.snapshots[0].observables.slump;
                 titles.push(format!("Δy_{{G}} = {slump:.3}"));
+                moments.push(moment(outcome, 0));
                 panels.push(self.panel(outcome, 0, &name, view, PILE_PANEL_WIDTH, &style)?);
             }
         }
@@ -148,21 +150,21 @@ impl Press<'_> {
             "The pile at t = {} s, from one initial state; Δy_{{G}} is the slump.",
             outcome.run.scene.duration_secs
         );
-        let image = figure.draw()?;
-        self.write("fig4.png", &image, outcome, 0)
+        self.write("fig4.png", &figure.draw()?, moments)
     }
 
     fn fig7(&mut self, outcomes: &[Outcome]) -> Result<()> {
         let view = common_view(outcomes, "fig7");
         let mut panels = Vec::new();
-        for row in 0..FIG7_TIMES_SECS.len() {
+        let mut moments = Vec::new();
+        for (row, time_secs) in FIG7_TIMES_SECS.iter().enumerate() {
             for outcome in of_figure(outcomes, "fig7") {
                 let style = Style { scale_bar: panels.is_empty(), ..Style::default() };
-                let name = format!("{}_t{}", outcome.run.name, FIG7_TIMES_SECS[row]);
+                let name = format!("{}_t{time_secs}", outcome.run.name);
+                moments.push(moment(outcome, row));
                 panels.push(self.panel(outcome, row, &name, view, CRADLE_PANEL_WIDTH, &style)?);
             }
         }
-        let Some(outcome) = of_figure(outcomes, "fig7").next() else { return Ok(()) };
         let mut figure = Figure::new(FIG7_TIMES_SECS.len(), FIG7_TIME_STEPS_SECS.len(), panels);
         figure.row_labels = FIG7_TIMES_SECS.map(|time| format!("t = {time} s")).to_vec();
         figure.column_labels =
@@ -171,8 +173,7 @@ impl Press<'_> {
             "Three discs drawn towards the dot: k (dark grey) falls on the bonded pair \
                           of i (white) and j (light grey; does not feel the attraction)."
                 .into();
-        let image = figure.draw()?;
-        self.write("fig7.png", &image, outcome, FIG7_TIMES_SECS.len() - 1)
+        self.write("fig7.png", &figure.draw()?, moments)
     }
 
     /// Draws one panel `width` pixels wide and as high as its view asks, and writes it by itself.
@@ -190,25 +191,20 @@ impl Press<'_> {
         let camera: Camera = Style::default().camera(min, max, width, height);
         let snapshot = &outcome.snapshots[number];
         let image = draw_scene(self.renderer, snapshot, style, &camera, width, height)?;
-        self.write(&format!("{name}.png"), &image, outcome, number)?;
+        self.write(&format!("{name}.png"), &image, vec![moment(outcome, number)])?;
         Ok(image)
     }
 
-    fn write(
-        &mut self,
-        file: &str,
-        image: &RgbaImage,
-        outcome: &Outcome,
-        number: usize,
-    ) -> Result<()> {
+    fn write(&mut self, file: &str, image: &RgbaImage, shows: Vec<Moment>) -> Result<()> {
         write_png(&self.folder.join(file), image)?;
-        self.manifest.pictures.push(PictureEntry {
-            file: file.to_owned(),
-            run: outcome.run.name.clone(),
-            observables: outcome.snapshots[number].observables,
-        });
+        self.manifest.pictures.push(PictureEntry { file: file.to_owned(), shows });
         Ok(())
     }
+}
+
+fn moment(outcome: &Outcome, number: usize) -> Moment {
+    let observables = outcome.snapshots[number].observables;
+    Moment { run: outcome.run.name.clone(), observables }
 }
 
 fn of_figure<'a>(outcomes: &'a [Outcome], figure: &'a str) -> impl Iterator<Item = &'a Outcome> {

@@ -5,7 +5,7 @@ use std::path::Path;
 use image::RgbaImage;
 
 use super::gif::Animation;
-use super::manifest::{Manifest, PictureEntry, RunEntry};
+use super::manifest::{Manifest, Moment, PictureEntry, RunEntry};
 use super::output::{check_writable, finish_file, start_file, write_png};
 use super::{HeadlessOptions, Progress};
 use crate::error::{Error, Result};
@@ -154,8 +154,8 @@ impl Studio<'_> {
         if let Some(folder) = &self.options.frames {
             let file = format!("frame_{number:05}.png");
             write_png(&folder.join(&file), &image)?;
-            let observables = snapshot.observables;
-            self.manifest.pictures.push(PictureEntry { file, run: RUN.to_owned(), observables });
+            let moment = Moment { run: RUN.to_owned(), observables: snapshot.observables };
+            self.manifest.pictures.push(PictureEntry { file, shows: vec![moment] });
         }
         match &mut self.animation {
             Some(animation) => animation.add(image),

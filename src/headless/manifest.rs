@@ -43,7 +43,14 @@ pub(super) struct RunEntry {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct PictureEntry {
     pub file: String,
-    /// Name of the run that it shows.
+    /// A moment a panel.
+    pub shows: Vec<Moment>,
+}
+
+/// One moment of a run.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Moment {
+    /// Name of the run.
     pub run: String,
     pub observables: Observables,
 }

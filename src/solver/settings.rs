@@ -52,7 +52,7 @@ impl SolverSettings {
 }
 
 impl Default for SolverSettings {
-    /// For watching a pile: a tenth of the sweeps that the paper's figures are solved with. A step
+    /// For watching a pile: ten times looser than the figures of the paper are solved. A step
     /// that needs more than the limit has, as a rule, no solution to converge to: restitution asks
     /// wedged contacts for what their neighbours forbid.
     fn default() -> Self {
