@@ -54,6 +54,10 @@ pub struct Config {
     #[arg(long, value_name = "CONE", help_heading = "Physics")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cone: Option<FrictionCone>,
+    /// Contacts slower than this many g·dt do not bounce; 0 in the paper's scheme, 2 lets nearly every step be solved
+    #[arg(long, value_name = "X", help_heading = "Physics", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution_threshold: Option<f64>,
     /// Simulated time, seconds
     #[arg(long, value_name = "SECONDS", help_heading = "Physics", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -157,6 +161,7 @@ impl Config {
         set(&mut scene.parameters.restitution, self.rho);
         set(&mut scene.parameters.friction, self.mu);
         set(&mut scene.parameters.cone, self.cone);
+        set(&mut scene.parameters.restitution_threshold, self.restitution_threshold);
         set(&mut scene.duration_secs, self.duration);
         set(&mut scene.solver.method, self.solver);
         set(&mut scene.solver.stop, self.stop);

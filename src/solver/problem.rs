@@ -21,7 +21,7 @@ pub struct Row<K: Kinematics> {
     pub normal: K::Normal,
     /// g_i = m_ij/m_i; 1 against a fixed body.
     pub share: f64,
-    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}.
+    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold.
     pub restitution_velocity: f64,
     /// σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
@@ -124,7 +124,7 @@ impl<K: Kinematics> StepProblem<K> {
         let fixed_count = self.contact_of_row.len();
         self.interleave(all.filter(against_grain));
 
-        let restitution = parameters.restitution;
+        let rebound = |velocity| parameters.restitution_velocity(velocity, gravity_magnitude);
         let start = |index: u32| warm_start.then(|| contacts.impulses()[index as usize]);
         self.fixed_rows.clear();
         for at in 0..fixed_count {
@@ -133,7 +133,7 @@ impl<K: Kinematics> StepProblem<K> {
             let i = contact.grain as usize;
             let [velocity, _] = K::velocity(K::normal(contact.normal), &self.before[i]);
             let masses = (grains.masses[i], 1.0);
-            let row = self.row::<M>(contact, masses, restitution * velocity, start(index));
+            let row = self.row::<M>(contact, masses, rebound(velocity), start(index));
             self.fixed_rows.push(row);
         }
         self.pair_rows.clear();
@@ -145,7 +145,7 @@ impl<K: Kinematics> StepProblem<K> {
             let [velocity, _] = K::relative_velocity(K::normal(contact.normal), before_i, before_j);
             let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
             let masses = (grains.masses[i] * share, share);
-            let row = self.row::<M>(contact, masses, restitution * velocity, start(index));
+            let row = self.row::<M>(contact, masses, rebound(velocity), start(index));
             self.pair_rows.push(row);
         }
         self.form_velocities();

@@ -20,14 +20,16 @@
 //! The method is that of an augmented Lagrangian treated by generalised Newton steps (P. Alart,
 //! A. Curnier 1991), with ε adapted as in a trust region.
 
+mod assembly;
 mod block_lu;
 mod ordering;
 
+use self::assembly::{Guess, assemble};
 use self::block_lu::BlockMatrix;
 use self::ordering::Elimination;
 use super::measure::residual;
 use super::nsgs::{sweep, tested_sweep};
-use super::{Kinematics, Model, Row, SolveReport, SolverSettings, StepProblem};
+use super::{Kinematics, Model, SolveReport, SolverSettings, StepProblem};
 use crate::contact::law;
 
 /// Compliance of the first step.
@@ -41,8 +43,9 @@ const AFTER_SUCCESS: f64 = 0.1;
 /// Factor of the compliance after a step that is refused.
 const AFTER_FAILURE: f64 = 30.0;
 /// A step is accepted if its residual is below [`ENOUGH`] times the largest of this many before:
-/// the residual may rise for a few steps on the way down.
-const MEMORY: usize = 10;
+/// the residual may rise for a few steps on the way down. With 1, steps are refused that lead on;
+/// with 10, many are taken that lead nowhere.
+const MEMORY: usize = 4;
 /// See [`MEMORY`].
 const ENOUGH: f64 = 0.9;
 /// Sweeps before the first factorisation: many steps of a pile at rest need no more.
@@ -51,9 +54,9 @@ const SWEEPS_FIRST: u32 = 4;
 const SWEEPS_BETWEEN: u32 = 20;
 /// See [`SWEEPS_BETWEEN`].
 const MOST_SWEEPS_BETWEEN: u32 = 200;
-/// Factorisations without halving the best residual after which a step is taken to have no better
-/// solution.
-const PATIENCE: u32 = 40;
+/// Factorisations without halving the best residual after which the solve is given up. With 40, one
+/// step in three of a moving pile is given up that has a solution to 1e-8; with 100, one in thirty.
+const PATIENCE: u32 = 100;
 
 /// A workspace for each number of degrees of freedom; those that are not used hold no memory.
 #[derive(Clone, Debug, Default)]
@@ -72,6 +75,8 @@ pub struct Workspace<const D: usize> {
     guesses: Vec<Guess>,
     /// (σ, λ_t) of the rows to go back to.
     saved: Vec<[f64; 2]>,
+    /// (σ, λ_t) of the smallest residual so far.
+    best: Vec<[f64; 2]>,
     /// What `elimination` was made for.
     bodies: usize,
     pairs: Vec<(u32, u32)>,
@@ -95,15 +100,6 @@ pub(super) fn solve<M: Model>(
     report
 }
 
-/// What the present state lets one guess of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Guess {
-    Open,
-    Stick,
-    /// The tangential impulse is at its bound, with this sign.
-    Slip(f64),
-}
-
 /// One solve.
 struct Newton<'a, M: Model, const D: usize> {
     problem: &'a mut StepProblem<M::Kinematics>,
@@ -124,12 +120,16 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         let mut history = [0.0; MEMORY];
         let mut accepted = 0;
         history[0] = residual::<M>(self.problem);
-        self.save();
+        save(self.problem, &mut self.workspace.saved);
+        self.workspace.best.clone_from(&self.workspace.saved);
         let mut best = history[0];
-        let mut since_best = 0;
+        // The best residual is told apart from the last one that was half of the one before, so
+        // that creeping down does not count as progress.
+        let mut milestone = best;
+        let mut since_milestone = 0;
         let mut compliance = FIRST_COMPLIANCE;
         let mut sweeps_between = SWEEPS_BETWEEN;
-        while report.sweeps + 2 <= self.settings.max_sweeps && since_best < PATIENCE {
+        while report.sweeps + 2 <= self.settings.max_sweeps && since_milestone < PATIENCE {
             self.newton_step(compliance);
             report.factorisations += 1;
             sweep::<M, false>(self.problem);
@@ -138,15 +138,15 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                 return SolveReport { converged: true, ..report };
             }
             let mut now = residual::<M>(self.problem);
+            since_milestone += 1;
             let bound = ENOUGH * history.iter().copied().fold(0.0, f64::max);
             // Not a number is not below anything.
             if now < bound {
                 compliance = (compliance * AFTER_SUCCESS).max(SMALLEST_COMPLIANCE);
             } else {
-                self.restore();
+                restore(self.problem, &self.workspace.saved);
                 compliance *= AFTER_FAILURE;
                 if compliance <= LARGEST_COMPLIANCE {
-                    since_best += 1;
                     continue;
                 }
                 for _ in 0..sweeps_between.min(self.settings.max_sweeps - report.sweeps) {
@@ -159,16 +159,19 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                 compliance = FIRST_COMPLIANCE;
                 now = residual::<M>(self.problem);
             }
-            self.save();
+            save(self.problem, &mut self.workspace.saved);
             accepted += 1;
             history[accepted % MEMORY] = now;
-            if now < 0.5 * best {
+            if now < best {
                 best = now;
-                since_best = 0;
-            } else {
-                since_best += 1;
+                self.workspace.best.clone_from(&self.workspace.saved);
+            }
+            if best < 0.5 * milestone {
+                milestone = best;
+                since_milestone = 0;
             }
         }
+        restore(self.problem, &self.workspace.best);
         report
     }
 
@@ -186,78 +189,14 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         workspace.elimination.analyse(bodies, workspace.pairs.iter().copied());
     }
 
-    fn save(&mut self) {
-        let rows = self.problem.fixed_rows.iter().chain(&self.problem.pair_rows);
-        self.workspace.saved.clear();
-        self.workspace.saved.extend(rows.map(|row| [row.shifted_impulse, row.tangential_impulse]));
-    }
-
-    fn restore(&mut self) {
-        let rows = self.problem.fixed_rows.iter_mut().chain(&mut self.problem.pair_rows);
-        for (row, &[shifted, tangential]) in rows.zip(&self.workspace.saved) {
-            row.shifted_impulse = shifted;
-            row.tangential_impulse = tangential;
-        }
-        self.problem.form_velocities();
-    }
-
     /// Guesses, solves for velocities, and takes the impulses that go with them.
     fn newton_step(&mut self, compliance: f64) {
-        self.assemble(compliance);
+        assemble::<M, D>(self.problem, self.workspace, compliance);
         let Workspace { elimination, matrix, vector, .. } = &mut *self.workspace;
         matrix.factorise(elimination);
         matrix.solve(elimination, vector);
         self.take_impulses(compliance);
         self.problem.form_velocities();
-    }
-
-    fn assemble(&mut self, compliance: f64) {
-        let Workspace { elimination, matrix, vector, guesses, .. } = &mut *self.workspace;
-        let problem = &*self.problem;
-        matrix.clear(elimination);
-        vector.clear();
-        vector.resize(problem.bodies.len(), [0.0; D]);
-        for (body, &mass) in problem.masses.iter().enumerate() {
-            let place = elimination.place_of[body];
-            let free = M::Kinematics::coordinates(&problem.free[body]);
-            let block = matrix.diagonal_mut(place);
-            for axis in 0..D {
-                let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
-                block[axis][axis] = inertia;
-                vector[place as usize][axis] = inertia * free[axis];
-            }
-        }
-        guesses.clear();
-        for row in &problem.fixed_rows {
-            let velocity = M::Kinematics::velocity(row.normal, &problem.bodies[row.i as usize]);
-            let guess = guess::<M>(problem, row, velocity);
-            guesses.push(guess);
-            let gradients = M::Kinematics::gradients(row.normal);
-            let terms = Terms::<D>::new::<M>(problem, row, guess, compliance, &gradients[0]);
-            let place = elimination.place_of[row.i as usize];
-            terms.add(matrix.diagonal_mut(place), &terms);
-            terms.add_load(&mut vector[place as usize]);
-        }
-        for row in &problem.pair_rows {
-            let (body_i, body_j) =
-                (&problem.bodies[row.i as usize], &problem.bodies[row.j as usize]);
-            let velocity = M::Kinematics::relative_velocity(row.normal, body_i, body_j);
-            let guess = guess::<M>(problem, row, velocity);
-            guesses.push(guess);
-            let gradients = M::Kinematics::gradients(row.normal);
-            let on_i = Terms::<D>::new::<M>(problem, row, guess, compliance, &gradients[0]);
-            let on_j = Terms::<D>::new::<M>(problem, row, guess, compliance, &gradients[1]);
-            let i = elimination.place_of[row.i as usize];
-            let j = elimination.place_of[row.j as usize];
-            on_i.add_load(&mut vector[i as usize]);
-            on_j.add_load(&mut vector[j as usize]);
-            if guess != Guess::Open {
-                on_i.add(matrix.diagonal_mut(i), &on_i);
-                on_j.add(matrix.diagonal_mut(j), &on_j);
-                on_i.add(matrix.block_mut(elimination, i, j), &on_j);
-                on_j.add(matrix.block_mut(elimination, j, i), &on_i);
-            }
-        }
     }
 
     /// The regularised law at the new velocities, projected on what the law allows.
@@ -304,98 +243,19 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
     }
 }
 
-/// What a contact would do next, by its law.
-fn guess<M: Model>(
-    problem: &StepProblem<M::Kinematics>,
-    row: &Row<M::Kinematics>,
-    [normal_velocity, tangential_velocity]: [f64; 2],
-) -> Guess {
-    let shifted = row.shifted_impulse - normal_velocity - row.restitution_velocity;
-    if shifted <= 0.0 {
-        return Guess::Open;
-    }
-    if !M::FRICTION {
-        return Guess::Slip(0.0);
-    }
-    let bound = problem.friction_bound::<M>(shifted);
-    let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
-    let tangential = row.tangential_impulse - compliance * tangential_velocity;
-    if tangential.abs() <= bound { Guess::Stick } else { Guess::Slip(tangential.signum()) }
+/// Keeps the rows' impulses.
+fn save<K: Kinematics>(problem: &StepProblem<K>, impulses: &mut Vec<[f64; 2]>) {
+    let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
+    impulses.clear();
+    impulses.extend(rows.map(|row| [row.shifted_impulse, row.tangential_impulse]));
 }
 
-/// A contact's part in the equations of one of its bodies.
-struct Terms<const D: usize> {
-    /// How the body's velocity enters v_n and v_t.
-    normal: [f64; D],
-    tangent: [f64; D],
-    /// Where the law's answer to v_n acts: n, or n ± μt in slip.
-    answer: [f64; D],
-    /// Stiffnesses against v_n and v_t, kg.
-    normal_stiffness: f64,
-    tangential_stiffness: f64,
-    /// The impulse at V = 0, kg·m/s.
-    load: [f64; D],
-}
-
-impl<const D: usize> Terms<D> {
-    #[inline(always)]
-    fn new<M: Model>(
-        problem: &StepProblem<M::Kinematics>,
-        row: &Row<M::Kinematics>,
-        guess: Guess,
-        compliance: f64,
-        gradients: &[[f64; 3]; 2],
-    ) -> Self {
-        let part = |vector: &[f64; 3]| std::array::from_fn::<f64, D, _>(|axis| vector[axis]);
-        let (normal, tangent) = (part(&gradients[0]), part(&gradients[1]));
-        let mass = row.effective_mass;
-        let capture_speed = problem.capture_speed;
-        let stiffness = mass / compliance;
-        // σ' at V = 0.
-        let at_rest = row.shifted_impulse - row.restitution_velocity / compliance;
-        let (slope, normal_stiffness, tangential_stiffness, tangential_load) = match guess {
-            Guess::Open => (0.0, 0.0, 0.0, 0.0),
-            Guess::Stick => {
-                let softness = M::Kinematics::TANGENTIAL_COMPLIANCE;
-                (0.0, stiffness, stiffness / softness, mass * row.tangential_impulse)
-            }
-            Guess::Slip(sign) => {
-                let slope = sign * problem.friction;
-                let rubbing = if M::COMPRESSIVE_CONE { at_rest - capture_speed } else { at_rest };
-                (slope, stiffness, 0.0, mass * slope * rubbing)
-            }
-        };
-        let shifted_load = if guess == Guess::Open { 0.0 } else { at_rest };
-        let normal_load = mass * (shifted_load - capture_speed);
-        Self {
-            normal,
-            tangent,
-            answer: std::array::from_fn(|axis| normal[axis] + slope * tangent[axis]),
-            normal_stiffness,
-            tangential_stiffness,
-            load: std::array::from_fn(|axis| {
-                normal_load * normal[axis] + tangential_load * tangent[axis]
-            }),
-        }
+/// Goes back to kept impulses, and to the velocities that they make.
+fn restore<K: Kinematics>(problem: &mut StepProblem<K>, impulses: &[[f64; 2]]) {
+    let rows = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
+    for (row, &[shifted, tangential]) in rows.zip(impulses) {
+        row.shifted_impulse = shifted;
+        row.tangential_impulse = tangential;
     }
-
-    /// Adds the answer of this body's equations to the velocity of `other` to their block.
-    #[inline(always)]
-    fn add(&self, block: &mut [[f64; D]; D], other: &Self) {
-        for row in 0..D {
-            let normal = self.normal_stiffness * self.answer[row];
-            let tangential = self.tangential_stiffness * self.tangent[row];
-            for column in 0..D {
-                block[row][column] +=
-                    normal * other.normal[column] + tangential * other.tangent[column];
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn add_load(&self, vector: &mut [f64; D]) {
-        for axis in 0..D {
-            vector[axis] += self.load[axis];
-        }
-    }
+    problem.form_velocities();
 }
