@@ -63,7 +63,7 @@ pub struct View {
 
 /// Where the grains of a scene come from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "from", rename_all = "kebab-case")]
+#[serde(tag = "from", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum GrainSource {
     /// A CSV of discs.
     Csv {
@@ -115,8 +115,13 @@ impl Scene {
             }
         }
         let magnitude = self.gravity.magnitude();
-        if !magnitude.is_finite() {
-            return Err(Error::value("gravity", magnitude, "finite"));
+        if !(magnitude >= 0.0 && magnitude.is_finite()) {
+            return Err(Error::value("gravity", magnitude, "a finite norm ≥ 0 m/s²"));
+        }
+        if let Gravity::Attraction { centre, .. } = self.gravity
+            && !centre.is_finite()
+        {
+            return Err(Error::value("gravity.centre", centre, "finite"));
         }
         if let Some(View { min, max }) = self.view
             && !(min.cmplt(max).all() && (max - min).is_finite())
