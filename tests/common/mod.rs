@@ -3,6 +3,8 @@
 
 #![allow(dead_code, reason = "every test binary uses its own part of this")]
 
+pub mod natural_map;
+
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
