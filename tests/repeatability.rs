@@ -142,12 +142,11 @@ fn renumbered_grains_move_alike_where_the_solution_is_unique() {
     }
 }
 
-#[test]
-fn a_change_of_the_time_step_leaves_the_forces() {
-    // A hanging chain: dozens of sweeps from a cold start, one from the right impulses.
+/// A chain of 12 that hangs: dozens of sweeps from a cold start, one from the right impulses.
+fn chain() -> Scene {
     let radius = 0.05;
     let place = |k: usize| -DVec2::Y * (k as f64 * (2.0 * radius - 1e-9));
-    let scene = Scene {
+    Scene {
         fixed_discs: vec![fixed(DVec2::ZERO, radius)],
         solver: to_residual(1e-11),
         ..scene(
@@ -156,14 +155,38 @@ fn a_change_of_the_time_step_leaves_the_forces() {
             parameters(50.0, 1e-3, 0.1, 0.5),
             (1..=12).map(|k| Grain::at_rest(place(k), radius)).collect(),
         )
-    };
+    }
+}
+
+/// Sweeps of the next step to a residual of 1e-8.
+fn sweeps_of_next_step(simulation: &mut Simulation, warm_start: bool) -> u32 {
+    let settings = SolverSettings { warm_start, ..to_residual(1e-8) };
+    simulation.set_solver(settings).expect("proper settings");
+    simulation.step().expect("a finite state");
+    simulation.observables().sweeps
+}
+
+#[test]
+fn a_contact_that_goes_leaves_the_others_their_impulses() {
+    // A disc in front of the chain in the order of contacts falls off the fixed disc.
+    let mut scene = chain();
+    let place = DVec2::new(0.1 - 1e-9, 0.0);
+    let velocity = DVec2::new(3.0, 0.0);
+    scene.grains.insert(0, Grain { velocity, ..Grain::at_rest(place, 0.05) });
     let mut simulation = start(&scene);
+    take_steps(&mut simulation, 1);
+    assert_eq!(simulation.observables().contacts, 13);
+    let next = sweeps_of_next_step(&mut simulation.clone(), false);
+    assert!(next > 20, "a cold start is dear: {next} sweeps");
+    assert_eq!(sweeps_of_next_step(&mut simulation, true), 1);
+    assert_eq!(simulation.observables().contacts, 12, "one has gone");
+}
+
+#[test]
+fn a_change_of_the_time_step_leaves_the_forces() {
+    let mut simulation = start(&chain());
     take_steps(&mut simulation, 10);
-    simulation.set_solver(to_residual(1e-8)).expect("proper settings");
-    let mut cold = simulation.clone();
-    cold.set_solver(SolverSettings { warm_start: false, ..to_residual(1e-8) }).expect("proper");
-    cold.step().expect("a finite state");
-    assert!(cold.observables().sweeps > 20, "a cold start is dear");
+    assert!(sweeps_of_next_step(&mut simulation.clone(), false) > 20, "a cold start is dear");
     let forces = |simulation: &Simulation| -> Vec<f64> {
         simulation.snapshot().contacts.iter().map(|contact| contact.normal_force).collect()
     };
@@ -175,8 +198,7 @@ fn a_change_of_the_time_step_leaves_the_forces() {
         for (now, then) in forces(&simulation).iter().zip(&before) {
             assert_close(*now, *then, 1e-7, "a force between two steps");
         }
-        simulation.step().expect("a finite state");
-        assert!(simulation.observables().sweeps == 1, "{} sweeps", simulation.observables().sweeps);
+        assert_eq!(sweeps_of_next_step(&mut simulation, true), 1, "Δt {dt}");
         for (now, then) in forces(&simulation).iter().zip(&before) {
             assert_close(*now, *then, 1e-7, "a force");
         }

@@ -18,7 +18,7 @@ use glam::DVec2;
 use slump::scene::Scene;
 use slump::sim::Simulation;
 use slump::solver::SolverSettings;
-use slump::world::{Grain, Parameters, Physics};
+use slump::world::{Boundary, Grain, Parameters, Physics};
 
 /// What a contact between i and another body, with normal `direction`, starts from.
 struct Case {
@@ -193,5 +193,22 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
                 assert_eq!(opening.observables().contacts, 0, "Δt {dt}: opens for good");
             }
         }
+    }
+}
+
+#[test]
+fn a_corner_of_a_polyline_holds_no_more_than_one_contact() {
+    for (bond, holds) in [(1.0 + 1e-6, true), (1.0 - 1e-6, false)] {
+        let mut scene = pulled(bond, 1e-3, Physics::FULL, false);
+        // The disc hangs under the corner in the middle, where two segments meet.
+        let points = vec![DVec2::new(-1.0, 0.5), DVec2::ZERO, DVec2::new(1.0, 0.3)];
+        scene.fixed_discs.clear();
+        scene.boundaries = vec![Boundary::Polyline { points }];
+        scene.grains[0].position = DVec2::new(0.0, OVERLAP - RADIUS);
+        let mut simulation = start(&scene);
+        simulation.step().expect("a finite state");
+        assert_eq!(simulation.observables().contacts, 1, "the corner is told once");
+        take_steps(&mut simulation, 50);
+        assert_eq!(simulation.observables().contacts == 1, holds, "Bond {bond}");
     }
 }

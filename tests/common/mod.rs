@@ -46,7 +46,7 @@ pub fn to_residual(tolerance: f64) -> SolverSettings {
         method: Method::Nsgs,
         stop: StopTest::Residual,
         tolerance,
-        max_sweeps: 200_000,
+        max_sweeps: 20_000,
         warm_start: true,
     }
 }
