@@ -6,7 +6,7 @@ use common::{G, fixed, moving, parameters, random, scene, start};
 use glam::DVec2;
 use rand::RngExt;
 use rand_pcg::Pcg64;
-use slump::contact::{Candidates, ContactList, Reach};
+use slump::contact::{Candidates, ContactList, Impulse, Reach};
 use slump::scene::Scene;
 use slump::world::{Boundary, Disc, Grain, Grains, Gravity, Physics, World};
 
@@ -39,6 +39,17 @@ fn every_pair(world: &World, gap_tolerance: f64) -> Vec<(u32, u32)> {
 
 fn found(contacts: &ContactList) -> Vec<(u32, u32)> {
     contacts.contacts().iter().map(|contact| (contact.grain, contact.other)).collect()
+}
+
+/// Contacts that were there before still have the impulses that they were given, others none; gives
+/// each its own.
+fn check_impulses(contacts: &mut ContactList, before: &[(u32, u32)]) {
+    for (pair, impulse) in found(contacts).into_iter().zip(contacts.impulses_mut()) {
+        let own = Impulse { normal: 1.0 + f64::from(pair.0), tangential: f64::from(pair.1) };
+        let lived_on = before.binary_search(&pair).is_ok();
+        assert_eq!(*impulse, if lived_on { own } else { Impulse::default() }, "{pair:?}");
+        *impulse = own;
+    }
 }
 
 /// Radii, m, from one of three distributions with ratios of 1, 2 and 20.
@@ -102,6 +113,7 @@ fn no_contact_is_missed_or_invented_while_discs_move() {
                     contacts.detect::<2>(&world, &candidates);
                     let expected = every_pair(&world, gap_tolerance);
                     assert_eq!(found(&contacts), expected, "kind {kind}, {origin}, step {step}");
+                    check_impulses(&mut contacts, &before);
                     builds += u32::from(built);
                     changes += u32::from(!built && before != expected);
                 }
