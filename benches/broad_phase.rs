@@ -1,5 +1,5 @@
-//! Candidate pairs: the hashed cell grid that the program uses, against parry's bounding volume
-//! hierarchy walked against itself: built anew every time, or kept and refitted to the moved grains, with
+//! Candidate pairs: the program's own search (which takes the grid or the tree by the discs' size
+//! ratio), the hashed cell grid alone, and parry's bounding volume hierarchy walked against itself: built anew every time, or kept and refitted to the moved grains, with
 //! or without its own upkeep. All give the same sorted list, which is checked first; the time is that
 //! of bringing the structure up to date and of listing the pairs, on one thread.
 
@@ -13,7 +13,7 @@ use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
-use slump::contact::{Candidates, Reach};
+use slump::contact::{Candidates, Grid, Reach};
 use slump::world::{Grain, Grains, Gravity, World};
 
 /// Radii of `count` discs, largest first.
@@ -126,7 +126,7 @@ fn main() {
             let mut next = || states.next().expect("they go round");
 
             let reach = Reach { skin, gap_tolerance: 0.0 };
-            let mut grid = Candidates::new(&world, reach).expect("no boundaries");
+            let mut candidates = Candidates::new(&world, reach).expect("no boundaries");
             let build = |world: &World| {
                 Bvh::from_iter(BvhBuildStrategy::Binned, boxes(world, skin).enumerate())
             };
@@ -139,8 +139,8 @@ fn main() {
             let (mut workspace, mut pairs) = (BvhWorkspace::default(), Vec::new());
             let (mut tree, mut kept) = (build(&world), build(&world));
             for state in [&moved, &world] {
-                assert!(grid.update::<2>(state), "built anew");
-                let list = |i: u32| grid.of(i as usize).iter().map(move |&j| (i, j));
+                assert!(candidates.update::<2>(state), "built anew");
+                let list = |i: u32| candidates.of(i as usize).iter().map(move |&j| (i, j));
                 let expected: Vec<(u32, u32)> = (0..count as u32).flat_map(list).collect();
                 walk(&build(state), &mut workspace, state, skin, &mut pairs);
                 assert_eq!(pairs, expected);
@@ -154,8 +154,21 @@ fn main() {
                 1e3 * least_secs(&mut criterion, &format!("{kind}/{count}/{method}"), routine)
             };
             next();
+            let of_ours = time("as the program does it", &mut || {
+                assert!(black_box(&mut candidates).update::<2>(next()), "built anew");
+            });
+            let mut grid = Grid::default();
+            let width = 2.0 * world.grains.radii.iter().copied().fold(0.0, f64::max) + skin;
             let of_grid = time("grid", &mut || {
-                assert!(black_box(&mut grid).update::<2>(next()), "built anew");
+                let world = next();
+                grid.rebuild::<2>(&world.grains.positions, width);
+                pairs.clear();
+                grid.pairs::<2>(|i, j| {
+                    if near(world, i, j, skin) {
+                        pairs.push((i.min(j), i.max(j)));
+                    }
+                });
+                pairs.sort_unstable();
             });
             let of_new = time("parry, built anew", &mut || {
                 let world = next();
@@ -173,7 +186,7 @@ fn main() {
                 walk(black_box(&tree), &mut workspace, world, skin, &mut pairs);
             });
             summary.push(format!(
-                "{kind}, {count} discs, {pair_count} pairs: grid {of_grid:.2} ms; parry built anew \
+                "{kind}, {count} discs, {pair_count} pairs: the program {of_ours:.2} ms; grid {of_grid:.2}; parry built anew \
                  {of_new:.2}, refitted and optimised {of_kept:.2}, refitted {of_refit:.2}; \
                  grid / parry {:.2}, {:.2}, {:.2}",
                 of_grid / of_new,
