@@ -168,8 +168,6 @@ impl Config {
         set(&mut scene.solver.tolerance, self.tolerance);
         set(&mut scene.solver.max_sweeps, self.max_sweeps);
         set(&mut scene.solver.warm_start, self.warm_start);
-        scene.parameters.validate()?;
-        scene.solver.validate()?;
         scene.validate()
     }
 }

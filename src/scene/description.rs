@@ -79,7 +79,7 @@ fn one() -> f64 {
 }
 
 impl Scene {
-    /// Checks what [`Simulation::new`] does not see.
+    /// Checks all that the scene says, but for the shapes of its boundaries.
     ///
     /// # Errors
     /// Names the first field outside its range.
@@ -91,6 +91,9 @@ impl Scene {
                 Err(Error::value(field, value, format!("a finite number > 0{unit}")))
             }
         };
+        self.physics.validate()?;
+        self.parameters.validate()?;
+        self.solver.validate()?;
         positive("areal_density", self.areal_density, " kg/m²")?;
         positive("duration", self.duration_secs, " s")?;
         positive("mean_diameter", self.mean_diameter, " m")?;

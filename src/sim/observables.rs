@@ -39,6 +39,6 @@ pub struct Observables {
     pub tangential_work: f64,
     /// Work of the gravity field in this step, J.
     pub gravity_work: f64,
-    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11).
+    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11); 0 where Σ y_i(0) is 0.
     pub slump: f64,
 }
