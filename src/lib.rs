@@ -4,6 +4,7 @@
 //! Algorithm* (2020, hal-02570097), "the paper" throughout. Modules depend downward only:
 //! [`world`] ← [`sim`] and [`render`]; the physics knows no screen.
 
+pub mod app;
 pub mod contact;
 pub mod error;
 pub mod render;

@@ -1,1 +1,22 @@
-fn main() {}
+use std::process::ExitCode;
+
+use clap::Parser;
+
+#[derive(Parser)]
+struct Cli {
+    #[command(flatten)]
+    config: slump::scene::Config,
+    #[command(flatten)]
+    window: slump::app::WindowOptions,
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match slump::app::run(&cli.config, &cli.window) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("slump: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
