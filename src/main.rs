@@ -11,6 +11,8 @@ struct Cli {
 }
 
 fn main() -> ExitCode {
+    // SAFETY: no other thread runs yet.
+    unsafe { slump::render::quieten_drivers() };
     let cli = Cli::parse();
     match slump::app::run(&cli.config, &cli.window) {
         Ok(()) => ExitCode::SUCCESS,

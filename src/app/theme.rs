@@ -64,7 +64,9 @@ pub fn install(context: &egui::Context) {
         style.spacing.button_padding = egui::vec2(7.0, 3.0);
         style.spacing.interact_size.y = 21.0;
         style.spacing.slider_rail_height = 5.0;
-        style.spacing.indent = 4.0;
+        style.spacing.indent = 16.0;
+        style.spacing.icon_width = 13.0;
+        style.spacing.icon_width_inner = 8.0;
         style.interaction.tooltip_delay = 0.35;
         for widget in [
             &mut style.visuals.widgets.inactive,

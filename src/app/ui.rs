@@ -23,6 +23,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     drop::take_files(&context, state);
     keys::act(&context, state);
 
+    // What no panel covers for a frame, while panels move.
+    ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
     let tight = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(8, 4));
     Panel::bottom("status").frame(tight).resizable(false).show(ui, |ui| status::show(ui, state));
     let mut sidebar = state.preferences.sidebar;

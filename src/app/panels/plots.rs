@@ -1,7 +1,7 @@
 //! Panel: what the run measures, against simulated time.
 
 use egui::{Color32, RichText, Ui};
-use egui_plot::{HoverPosition, Line, Plot, PlotPoints, VLine};
+use egui_plot::{AxisHints, HoverPosition, Line, Plot, PlotPoints, VLine};
 use serde::{Deserialize, Serialize};
 
 use crate::app::export::Export;
@@ -16,8 +16,6 @@ use crate::sim::live::{Command, Curve};
 const LEAST_WIDTH: f32 = 150.0;
 /// Intervals of time for which a long curve shows its least and its largest value.
 const BUCKETS: usize = 300;
-/// A residual of zero is drawn here.
-const LEAST_RESIDUAL: f64 = 1e-16;
 
 /// What can be plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -48,7 +46,7 @@ impl Quantity {
 
     fn title(self, prefix: &str) -> String {
         match self {
-            Self::Slump => "slump Δy_G".to_owned(),
+            Self::Slump => "slump Δy".to_owned(),
             Self::Overlap => "mean overlap δ (% of d)".to_owned(),
             Self::Residual => "residual".to_owned(),
             Self::Energy => format!("kinetic energy ({prefix}J)"),
@@ -59,7 +57,7 @@ impl Quantity {
         match self {
             Self::Slump => row.slump,
             Self::Overlap => 100.0 * row.mean_overlap,
-            Self::Residual => row.residual.max(LEAST_RESIDUAL).log10(),
+            Self::Residual => row.residual.log10(),
             Self::Energy => row.kinetic_energy,
         }
     }
@@ -74,6 +72,8 @@ pub struct PlotData {
     pub quantities: Vec<Quantity>,
     /// The moment that is shown, s.
     pub now_secs: f64,
+    /// Plots reach at least to here, s.
+    pub until_secs: f64,
 }
 
 /// Shows the panel.
@@ -97,6 +97,8 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
             .collect(),
         quantities: state.preferences.quantities.clone(),
         now_secs: state.frame.time_secs(),
+        // An empty plot is as wide as a short run; a long one is seen as a whole.
+        until_secs: 0.2 * state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs),
     }
 }
 
@@ -140,6 +142,8 @@ fn header(ui: &mut Ui, state: &mut AppState) {
 
 /// Draws the plots into the space that is left. Returns the time that was clicked, s.
 pub fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
+    // Plots that left room would shrink their panel, frame by frame.
+    ui.set_min_size(ui.available_size());
     let count = data.quantities.len();
     if count == 0 || data.worlds.is_empty() {
         ui.weak("Choose what to plot.");
@@ -174,7 +178,7 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
         }
         _ => ("", 1.0),
     };
-    ui.label(RichText::new(quantity.title(prefix)).small());
+    ui.label(RichText::new(format!("{} against t (s)", quantity.title(prefix))).small());
     let log = quantity == Quantity::Residual;
     let group = egui::Id::unique("time");
     let response = Plot::new(("plot", quantity.name()))
@@ -186,21 +190,33 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
         .allow_zoom([true, false])
         .show_grid([true, true])
         .include_x(0.0)
-        .y_axis_min_width(34.0)
-        .x_axis_formatter(|mark, _| format!("{} s", decimal(mark.value, mark.step_size)))
-        .y_axis_formatter(move |mark, _| {
-            if log {
-                // Only whole powers of ten are round.
-                if mark.value.fract() == 0.0 { format!("1e{}", mark.value) } else { String::new() }
-            } else {
-                decimal(mark.value, mark.step_size)
-            }
-        })
+        .include_x(data.until_secs)
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label_spacing(28.0..=44.0)
+                .formatter(|mark, _| decimal(mark.value, mark.step_size)),
+        ])
+        .custom_y_axes(vec![
+            AxisHints::new_y().label_spacing(14.0..=20.0).min_thickness(34.0).formatter(
+                move |mark, _| {
+                    if log {
+                        // Only whole powers of ten are round.
+                        if mark.value.fract() == 0.0 {
+                            format!("1e{}", mark.value)
+                        } else {
+                            String::new()
+                        }
+                    } else {
+                        decimal(mark.value, mark.step_size)
+                    }
+                },
+            ),
+        ])
         .label_formatter(move |position| hover_text(position, log))
         .show(ui, |plot| {
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
             for (name, colour, curve) in &data.worlds {
-                let points = points(curve, |row| quantity.value(row) / factor);
+                let points = points(curve, quantity, factor);
                 plot.line(Line::new(name.clone(), points).color(*colour).width(1.6));
             }
             plot.pointer_coordinate()
@@ -218,8 +234,12 @@ fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
 }
 
 /// The curve, or, of a long one, the least and the largest value of every interval.
-fn points(curve: &Curve, value: impl Fn(&Observables) -> f64) -> PlotPoints<'static> {
-    let finite = |row: &&Observables| row.time_secs.is_finite();
+fn points(curve: &Curve, quantity: Quantity, factor: f64) -> PlotPoints<'static> {
+    // A state that no step has led to has no residual.
+    let finite = |row: &&Observables| {
+        row.time_secs.is_finite() && (quantity != Quantity::Residual || row.residual > 0.0)
+    };
+    let value = |row: &Observables| quantity.value(row) / factor;
     if curve.len() <= 2 * BUCKETS {
         return curve.rows().filter(finite).map(|row| [row.time_secs, value(row)]).collect();
     }

@@ -47,6 +47,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
         refuse: &|value| refusal(SolverSettings { tolerance: value, ..before }),
     };
     solver.tolerance = tolerance.show(ui, before.tolerance).value.unwrap_or(solver.tolerance);
+    tolerance_buttons(ui, &mut solver);
     let sweeps = Number {
         label: "Sweep limit",
         unit: "",
@@ -65,6 +66,32 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
         state.set_solver(index, solver);
     }
     readings(ui, state);
+}
+
+/// Care and speed, one click away.
+fn tolerance_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
+    if solver.stop != StopTest::RelativeChange {
+        return;
+    }
+    ui.horizontal(|ui| {
+        for (tolerance, max_sweeps, name, hint) in [
+            (1e-3, 2000, "1e-3 fast", "For a look: piles slump that hold when solved well."),
+            (1e-5, 2000, "1e-5 live", "What the window starts with: at most 2,000 sweeps."),
+            (
+                1e-6,
+                20_000,
+                "1e-6 figures",
+                "What figures are computed with: at most 20,000 sweeps.",
+            ),
+        ] {
+            let text = RichText::new(name).size(11.5);
+            let button = egui::Button::selectable(solver.tolerance == tolerance, text);
+            if ui.add(button).on_hover_text(hint).clicked() {
+                solver.tolerance = tolerance;
+                solver.max_sweeps = max_sweeps;
+            }
+        }
+    });
 }
 
 /// A list of all methods.

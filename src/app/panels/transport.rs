@@ -11,7 +11,7 @@ pub fn release_button(ui: &mut Ui, state: &mut AppState) {
     let frame = &state.frame;
     let failed = frame.worlds.iter().any(|world| world.failure.is_some());
     let (text, hint) = if frame.playing {
-        ("⏸  Pause", "Stop time (space)")
+        ("❚❚  Pause", "Stop time (space)")
     } else if frame.held() {
         ("▶  Release the walls", "At t = 0 the walls go, and the pile holds or slumps (space)")
     } else if frame.at_start() {
@@ -41,19 +41,19 @@ pub fn timeline(ui: &mut Ui, state: &mut AppState) {
     ui.add_enabled_ui(ready, |ui| {
         ui.horizontal(|ui| {
             let button = |ui: &mut Ui, icon: &str, hint: &str| {
-                let button = Button::new(RichText::new(icon).size(14.0));
+                let button = Button::new(RichText::new(icon).size(12.0));
                 let response = ui.add(button.min_size(egui::vec2(28.0, 22.0)));
                 let name = hint.split(':').next().unwrap_or(hint).to_owned();
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
                 response.on_hover_text(hint).clicked()
             };
-            if button(ui, "⏮", "Reset: back to the start, with the present settings (R)") {
+            if button(ui, "|◀", "Reset: back to the start, with the present settings (R)") {
                 state.reset();
             }
             if button(ui, "◀", "Step back: one step back in the recording (←)") {
                 state.step_back();
             }
-            let icon = if state.frame.playing { "⏸" } else { "▶" };
+            let icon = if state.frame.playing { "❚❚" } else { "▶" };
             let play = if state.frame.playing {
                 "Pause: stop time (space)"
             } else {
@@ -62,7 +62,7 @@ pub fn timeline(ui: &mut Ui, state: &mut AppState) {
             if button(ui, icon, play) {
                 state.toggle_play();
             }
-            if button(ui, "⏭", "Step: take one step and pause (→)") {
+            if button(ui, "▶|", "Step: take one step and pause (→)") {
                 state.step();
             }
             scrub(ui, state);
