@@ -74,22 +74,30 @@ fn panels(ui: &mut Ui, state: &mut AppState) {
     } else {
         "Physics".to_owned()
     };
-    section(ui, "physics", &title, true, |ui| physics::show(ui, state));
+    section(ui, state, "physics", &title, true, physics::show);
     if state.pinned.is_some() {
-        section(ui, "grain", "Grain", true, |ui| grain::show(ui, state));
+        section(ui, state, "grain", "Grain", true, grain::show);
     }
-    section(ui, "run", "Run", true, |ui| run::show(ui, state));
-    section(ui, "see", "See", false, |ui| see::show(ui, state));
-    section(ui, "compare", "Compare", false, |ui| compare::show(ui, state));
-    section(ui, "solver", "Solver", false, |ui| solver::show(ui, state));
+    section(ui, state, "run", "Run", true, run::show);
+    section(ui, state, "see", "See", false, see::show);
+    section(ui, state, "compare", "Compare", false, compare::show);
+    section(ui, state, "solver", "Solver", false, solver::show);
 }
 
-fn section(ui: &mut Ui, id: &str, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
+fn section(
+    ui: &mut Ui,
+    state: &mut AppState,
+    id: &str,
+    title: &str,
+    open: bool,
+    contents: fn(&mut Ui, &mut AppState),
+) {
     ui.separator();
-    CollapsingHeader::new(RichText::new(title).heading())
+    let shown = CollapsingHeader::new(RichText::new(title).heading())
         .id_salt(id)
         .default_open(open)
-        .show_unindented(ui, contents);
+        .show_unindented(ui, |ui| contents(ui, state));
+    state.note_control(id, shown.header_response.rect);
 }
 
 /// What the middle says while there is nothing to see yet.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::boundaries::clip;
 use super::numbers::round_above;
-use super::{Camera, Colour, LinkInstance};
+use super::{Camera, Colour, LinkInstance, Style};
 use crate::sim::Snapshot;
 
 /// Length of the arrow at the reference speed, in units of d.
@@ -15,9 +15,12 @@ const LEAST_PART: f64 = 0.03;
 const HALF_WIDTH: f64 = 0.05;
 const BARB: f64 = 0.35;
 
-/// The speed that is drawn at full length, m/s: a round number above the fastest grain's; 0 where
-/// nothing moves.
-pub fn speed_reference(snapshot: &Snapshot) -> f64 {
+/// The speed that is drawn at full length, m/s: the style's own, or a round number above the fastest
+/// grain's; 0 where nothing moves.
+pub fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
+    if let Some(reference) = style.speed_reference {
+        return reference;
+    }
     let speeds = snapshot.grains.iter().map(|grain| grain.velocity.length());
     let fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
     // Below this a pile is at rest; arrows would show rounding.
@@ -33,13 +36,14 @@ pub(super) fn full_length(snapshot: &Snapshot) -> f64 {
 /// The arrows of all grains that show.
 pub(super) fn velocity_links(
     snapshot: &Snapshot,
+    style: &Style,
     colour: Colour,
     camera: &Camera,
     width: u32,
     height: u32,
 ) -> Vec<LinkInstance> {
-    let reference = speed_reference(snapshot);
-    if reference == 0.0 {
+    let reference = speed_reference(style, snapshot);
+    if !(reference > 0.0) {
         return Vec::new();
     }
     let diameter = snapshot.surroundings.mean_diameter;

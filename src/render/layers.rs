@@ -56,7 +56,7 @@ pub fn scene_picture(
         picture.push_links(force_links(snapshot, style, &palette, camera, width, height));
     }
     if style.show_velocities {
-        picture.push_links(velocity_links(snapshot, palette.ink, camera, width, height));
+        picture.push_links(velocity_links(snapshot, style, palette.ink, camera, width, height));
     }
     if let Some(centre) = surroundings.centre_of_attraction {
         // The ring keeps the dot visible on a grain of its own colour.

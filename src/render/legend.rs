@@ -35,7 +35,7 @@ impl Legend {
         let mean_diameter = snapshot.surroundings.mean_diameter;
         let forces =
             || (force_reference(style, snapshot), full_half_width_px(mean_diameter, camera));
-        let arrow = || (speed_reference(snapshot), camera.pixels(full_length(snapshot)));
+        let arrow = || (speed_reference(style, snapshot), camera.pixels(full_length(snapshot)));
         Self {
             scale: ColourScale::new(style, snapshot),
             forces: style.show_forces.then(forces),

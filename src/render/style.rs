@@ -58,6 +58,9 @@ pub struct Style {
     pub force_reference: Option<f64>,
     /// Whether arrows show the velocities of the grains.
     pub show_velocities: bool,
+    /// The speed that is drawn at full length, m/s; a round number above the fastest grain's if
+    /// absent.
+    pub speed_reference: Option<f64>,
     /// Whether grains have an outline.
     pub outlines: bool,
     /// Whether a mark on each grain shows its angle.
@@ -78,6 +81,7 @@ impl Default for Style {
             show_forces: false,
             force_reference: None,
             show_velocities: false,
+            speed_reference: None,
             outlines: true,
             angles: false,
             scale_bar: true,

@@ -1,14 +1,14 @@
 //! Panel: what the run measures, against simulated time.
 
 use egui::{Color32, RichText, Ui};
-use egui_plot::{AxisHints, HoverPosition, Line, Plot, PlotPoints, VLine};
+use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotPoints, VLine};
 use serde::{Deserialize, Serialize};
 
 use crate::app::export::Export;
 use crate::app::plot_picture::PlotPicture;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::render::numbers::{decimal, si_prefix};
+use crate::render::numbers::{decimal, si_prefix, ticks};
 use crate::sim::Observables;
 use crate::sim::live::{Command, Curve};
 
@@ -189,29 +189,13 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
         .allow_scroll(false)
         .allow_zoom([true, false])
         .show_grid([true, true])
+        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
         .include_x(0.0)
         .include_x(data.until_secs)
-        .custom_x_axes(vec![
-            AxisHints::new_x()
-                .label_spacing(28.0..=44.0)
-                .formatter(|mark, _| decimal(mark.value, mark.step_size)),
-        ])
-        .custom_y_axes(vec![
-            AxisHints::new_y().label_spacing(14.0..=20.0).min_thickness(34.0).formatter(
-                move |mark, _| {
-                    if log {
-                        // Only whole powers of ten are round.
-                        if mark.value.fract() == 0.0 {
-                            format!("1e{}", mark.value)
-                        } else {
-                            String::new()
-                        }
-                    } else {
-                        decimal(mark.value, mark.step_size)
-                    }
-                },
-            ),
-        ])
+        .x_grid_spacer(|grid| round_marks(grid, 5, 0.0))
+        .y_grid_spacer(move |grid| round_marks(grid, 4, if log { 1.0 } else { 0.0 }))
+        .custom_x_axes(vec![axis(AxisHints::new_x(), false)])
+        .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log)])
         .label_formatter(move |position| hover_text(position, log))
         .show(ui, |plot| {
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
@@ -222,6 +206,23 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
             plot.pointer_coordinate()
         });
     response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
+}
+
+/// Marks at round numbers, at most `most` of them and at least `least_step` apart.
+fn round_marks(grid: GridInput, most: usize, least_step: f64) -> Vec<GridMark> {
+    let (low, high) = grid.bounds;
+    let (values, step) = ticks(low, high, most);
+    let step_size = step.max(least_step);
+    let on_grid = |value: &f64| step == step_size || (value / step_size).fract() == 0.0;
+    let marks = values.into_iter().filter(on_grid);
+    marks.map(|value| GridMark { value, step_size }).collect()
+}
+
+/// Labels of the marks: numbers, or the powers of ten that numbers stand for.
+fn axis(hints: AxisHints<'static>, log: bool) -> AxisHints<'static> {
+    hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
+        if log { format!("1e{}", mark.value) } else { decimal(mark.value, mark.step_size) }
+    })
 }
 
 fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {

@@ -9,6 +9,7 @@ use crate::app::state::{AppState, GrainRef};
 use crate::app::theme;
 use crate::render::{
     Camera, ColourBy, Legend, ScaleBar, Style, automatic_range, force_reference, scene_picture,
+    speed_reference,
 };
 use crate::sim::live::{Command, WorldFrame};
 use crate::sim::{GrainView, Pull};
@@ -63,6 +64,8 @@ fn shared_style(state: &AppState, dark: bool) -> Style {
         }
         let references = worlds().map(|snapshot| force_reference(&style, snapshot));
         style.force_reference = Some(references.fold(0.0, f64::max));
+        let speeds = worlds().map(|snapshot| speed_reference(&style, snapshot));
+        style.speed_reference = Some(speeds.fold(0.0, f64::max));
     }
     style
 }

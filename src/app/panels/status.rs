@@ -4,10 +4,10 @@ use egui::{Align, Label, Layout, RichText, Ui};
 
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::sim::live::WorldFrame;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, state: &mut AppState) {
-    let dark = ui.visuals().dark_mode;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 12.0;
         if let Some(world) = state.world() {
@@ -20,29 +20,31 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
                     .on_hover_text("Steps of all worlds together");
                 ui.label(mono(format!("{:.2}× real time", state.frame.real_time_factor)));
             }
-            let (mark, colour, hint) =
-                if !state.frame.worlds.iter().all(|w| w.snapshot.observables.converged) {
-                    (
-                        "▲ not converged",
-                        theme::warning(dark),
-                        "The last step hit the sweep limit: see Solver",
-                    )
-                } else if world.unconverged_steps > 0 {
-                    (
-                        "● converged",
-                        theme::warning(dark),
-                        "The last step converged, but earlier ones did not: see Solver",
-                    )
-                } else {
-                    ("● converged", theme::good(dark), "Every step met the tolerance")
-                };
-            ui.label(RichText::new(mark).color(colour)).on_hover_text(hint);
+            convergence(ui, state, world);
             if state.frame.seeking {
                 ui.label(RichText::new("computing that moment").weak());
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| messages(ui, state));
     });
+}
+
+/// Whether steps met the tolerance: the last one, and those before.
+fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
+    let dark = ui.visuals().dark_mode;
+    let all = state.frame.worlds.iter().all(|world| world.snapshot.observables.converged);
+    let (mark, colour) = if all {
+        ("● converged", theme::good(dark))
+    } else {
+        ("▲ not converged", theme::warning(dark))
+    };
+    ui.label(RichText::new(mark).color(colour)).on_hover_text(
+        "Whether the last step met the tolerance within the sweep limit: see Solver",
+    );
+    if world.unconverged_steps > 0 {
+        let text = format!("{} steps did not converge", world.unconverged_steps);
+        ui.label(RichText::new(text).weak()).on_hover_text("Up to the moment that is shown");
+    }
 }
 
 fn messages(ui: &mut Ui, state: &mut AppState) {
