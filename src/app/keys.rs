@@ -1,6 +1,6 @@
 //! Keys that act wherever the mouse is, unless a control takes them.
 
-use egui::{Context, Key, Modifiers};
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::panels::scene;
 use super::state::AppState;
@@ -15,6 +15,8 @@ pub fn act(context: &Context, state: &mut AppState) {
     if context.egui_wants_keyboard_input() {
         return;
     }
+    let restart = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::G);
+    state.restart_graphics |= context.input_mut(|input| input.consume_shortcut(&restart));
     let pressed = |key: Key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     if pressed(Key::Space) {
         state.toggle_play();

@@ -58,7 +58,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let restart = ui.button("Restart graphics");
-                if restart.on_hover_text("Open the graphics device anew; the run goes on.").clicked() {
+                if restart.on_hover_text("Open the graphics device anew; the run goes on (Ctrl Shift G).").clicked() {
                     state.restart_graphics = true;
                 }
             });

@@ -47,7 +47,7 @@ impl Quantity {
     fn title(self, prefix: &str) -> String {
         match self {
             Self::Slump => "slump Δy".to_owned(),
-            Self::Overlap => "mean overlap δ (% of d)".to_owned(),
+            Self::Overlap => "mean overlap δ/d (%)".to_owned(),
             Self::Residual => "residual".to_owned(),
             Self::Energy => format!("kinetic energy ({prefix}J)"),
         }
@@ -178,7 +178,7 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
         }
         _ => ("", 1.0),
     };
-    ui.label(RichText::new(format!("{} against t (s)", quantity.title(prefix))).small());
+    ui.label(RichText::new(quantity.title(prefix)).small());
     let log = quantity == Quantity::Residual;
     let group = egui::Id::unique("time");
     let response = Plot::new(("plot", quantity.name()))
@@ -192,10 +192,10 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
         .include_x(0.0)
         .include_x(data.until_secs)
-        .x_grid_spacer(|grid| round_marks(grid, 5, 0.0))
+        .x_grid_spacer(|grid| round_marks(grid, 4, 0.0))
         .y_grid_spacer(move |grid| round_marks(grid, 4, if log { 1.0 } else { 0.0 }))
-        .custom_x_axes(vec![axis(AxisHints::new_x(), false)])
-        .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log)])
+        .custom_x_axes(vec![axis(AxisHints::new_x(), false, " s")])
+        .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log, "")])
         .label_formatter(move |position| hover_text(position, log))
         .show(ui, |plot| {
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
@@ -219,9 +219,12 @@ fn round_marks(grid: GridInput, most: usize, least_step: f64) -> Vec<GridMark> {
 }
 
 /// Labels of the marks: numbers, or the powers of ten that numbers stand for.
-fn axis(hints: AxisHints<'static>, log: bool) -> AxisHints<'static> {
+fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
     hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
-        if log { format!("1e{}", mark.value) } else { decimal(mark.value, mark.step_size) }
+        if log {
+            return format!("1e{}", mark.value);
+        }
+        format!("{}{unit}", decimal(mark.value, mark.step_size))
     })
 }
 

@@ -32,11 +32,12 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
 fn scene_box(ui: &mut Ui, state: &mut AppState) {
     let current = state.frame.start.as_ref().map_or("", |start| start.name.as_str()).to_owned();
     ui.horizontal(|ui| {
-        ui.label("Scene")
+        let label = ui
+            .label("Scene")
             .on_hover_text("Drop a TOML scene or a CSV of discs on the window to open it.");
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             let list = ComboBox::from_id_salt("scene").width(150.0).selected_text(&current);
-            list.show_ui(ui, |ui| {
+            let shown = list.show_ui(ui, |ui| {
                 for info in &SCENES {
                     let entry = ui.selectable_label(info.name == current, info.name);
                     if entry.on_hover_text(info.summary).clicked() {
@@ -45,6 +46,7 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
                     }
                 }
             });
+            shown.response.labelled_by(label.id);
         });
     });
     let info = SCENES.iter().find(|info| info.name == current);
@@ -58,26 +60,47 @@ fn new_pile(ui: &mut Ui, state: &mut AppState) {
     let id = egui::Id::unique("new pile");
     let mut draft = ui.data(|data| data.get_temp(id)).unwrap_or(Draft { grains, seed });
     ui.horizontal(|ui| {
-        ui.label("Grains");
+        let label = ui.label("Grains");
         ui.add(egui::DragValue::new(&mut draft.grains).range(1..=MOST_GRAINS).speed(2.0))
+            .labelled_by(label.id)
             .on_hover_text("Number of grains of a new pile.");
-        ui.label("Seed");
+        let label = ui.label("Seed");
         ui.add(egui::DragValue::new(&mut draft.seed).speed(0.1))
+            .labelled_by(label.id)
             .on_hover_text("Another seed is another pile of the same kind.");
         let fresh = ui.button("New pile").on_hover_text(
             "Rain a pile and let it settle: seconds for hundreds of grains, minutes for thousands.",
         );
         if fresh.clicked() {
-            state.load(Config {
-                scene: Some(Config::DEFAULT_SCENE.to_owned()),
-                grains: Some(draft.grains),
-                seed: Some(draft.seed),
-                initial: None,
-                ..state.config.clone()
-            });
+            let config = pile_like_this(state, draft.clone());
+            state.load(config);
         }
     });
     ui.data_mut(|data| data.insert_temp(id, draft));
+}
+
+/// A new pile with the numbers that the controls show.
+fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
+    let wanted = state.wanted.get(state.selected);
+    let parameters = wanted.map(|wanted| wanted.parameters);
+    let solver = wanted.map(|wanted| wanted.solver);
+    Config {
+        scene: Some(Config::DEFAULT_SCENE.to_owned()),
+        grains: Some(grains),
+        seed: Some(seed),
+        initial: None,
+        bond: parameters.map(|parameters| parameters.bond),
+        dt: parameters.map(|parameters| parameters.time_step_secs),
+        rho: parameters.map(|parameters| parameters.restitution),
+        mu: parameters.map(|parameters| parameters.friction),
+        cone: parameters.map(|parameters| parameters.cone),
+        solver: solver.map(|solver| solver.method),
+        stop: solver.map(|solver| solver.stop),
+        tolerance: solver.map(|solver| solver.tolerance),
+        max_sweeps: solver.map(|solver| solver.max_sweeps),
+        warm_start: solver.map(|solver| solver.warm_start),
+        ..state.config.clone()
+    }
 }
 
 fn loading(ui: &mut Ui, state: &mut AppState) {
@@ -86,7 +109,10 @@ fn loading(ui: &mut Ui, state: &mut AppState) {
         if ui.button("Cancel").clicked() {
             state.live.send(Command::CancelLoading);
         }
-        ui.add(egui::ProgressBar::new(progress.part).desired_height(14.0));
+        let bar = ui.add(egui::ProgressBar::new(progress.part).desired_height(14.0));
+        bar.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, "Loading")
+        });
     });
     ui.label(RichText::new(progress.text).small().weak());
 }

@@ -207,7 +207,7 @@ impl Place<'_> {
             let font = FontId::proportional(13.0);
             painter.text(at + egui::vec2(14.0, 0.0), Align2::LEFT_CENTER, title, font, ink);
             let slump = format!("Δy {:.3}", self.frame.snapshot.observables.slump);
-            let at = self.cell.right_top() + egui::vec2(-8.0, 0.5 * TITLE_HEIGHT);
+            let at = self.cell.right_bottom() - egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
             painter.text(at, Align2::RIGHT_CENTER, slump, FontId::monospace(12.0), ink);
             let selected = self.index == state.selected;
             let stroke = if selected {

@@ -19,14 +19,18 @@ const COLOURS: [(ColourBy, &str); 5] = [
 pub fn show(ui: &mut Ui, state: &mut AppState) {
     let style = &mut state.preferences.style;
     ui.horizontal(|ui| {
-        ui.label("Colour by");
+        let label = ui.label("Colour by");
         let name =
             COLOURS.iter().find(|(by, _)| *by == style.colour_by).map_or("", |(_, name)| name);
-        ComboBox::from_id_salt("colour by").width(130.0).selected_text(name).show_ui(ui, |ui| {
-            for (by, name) in COLOURS {
-                ui.selectable_value(&mut style.colour_by, by, name);
-            }
-        });
+        let shown = ComboBox::from_id_salt("colour by").width(130.0).selected_text(name).show_ui(
+            ui,
+            |ui| {
+                for (by, name) in COLOURS {
+                    ui.selectable_value(&mut style.colour_by, by, name);
+                }
+            },
+        );
+        shown.response.labelled_by(label.id);
     });
     egui::Grid::new("see").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         ui.checkbox(&mut style.show_forces, "Force chains")
@@ -55,13 +59,14 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
 
 fn pictures(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
-        ui.label("Picture").on_hover_text("Size of saved pictures, pixels.");
+        let label = ui.label("Picture").on_hover_text("Size of saved pictures, pixels.");
         for side in 0..2 {
             if side == 1 {
                 ui.label("×");
             }
             let size = &mut state.preferences.picture_size[side];
-            ui.add(egui::DragValue::new(size).range(16..=16_384).speed(8.0));
+            let value = egui::DragValue::new(size).range(16..=16_384).speed(8.0);
+            ui.add(value).labelled_by(label.id);
         }
         ui.label(RichText::new("px").weak());
         let save = ui.button("Save PNG").on_hover_text("The scene as it is seen here (S).");
@@ -70,10 +75,10 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
         }
     });
     ui.horizontal(|ui| {
-        ui.label("Folder").on_hover_text("Where saved files go.");
+        let label = ui.label("Folder").on_hover_text("Where saved files go.");
         let mut folder = state.preferences.folder.display().to_string();
         let edit = egui::TextEdit::singleline(&mut folder).desired_width(f32::INFINITY);
-        if ui.add(edit).changed() {
+        if ui.add(edit).labelled_by(label.id).changed() {
             state.preferences.folder = folder.into();
         }
     });

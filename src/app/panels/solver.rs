@@ -26,15 +26,14 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
         ui.label("Method").on_hover_text("How the impulses of a step are found.");
         method_box(ui, "method", &mut solver);
         ui.end_row();
-        ui.label("Stops on").on_hover_text("What the tolerance refers to.");
-        ComboBox::from_id_salt("stop").width(150.0).selected_text(stop_name(solver.stop)).show_ui(
-            ui,
-            |ui| {
-                for (test, name, hint) in STOP_TESTS {
-                    ui.selectable_value(&mut solver.stop, test, name).on_hover_text(hint);
-                }
-            },
-        );
+        let label = ui.label("Stops on").on_hover_text("What the tolerance refers to.");
+        let list = ComboBox::from_id_salt("stop").width(150.0);
+        let shown = list.selected_text(stop_name(solver.stop)).show_ui(ui, |ui| {
+            for (test, name, hint) in STOP_TESTS {
+                ui.selectable_value(&mut solver.stop, test, name).on_hover_text(hint);
+            }
+        });
+        shown.response.labelled_by(label.id);
         ui.end_row();
     });
     let tolerance = Number {
@@ -102,15 +101,15 @@ pub fn method_box(
 ) {
     let name =
         |method| METHODS.iter().find(|info| info.method == method).map_or("", |info| info.name);
-    ComboBox::from_id_salt(egui::Id::unique(salt))
-        .width(100.0)
-        .selected_text(name(solver.method))
-        .show_ui(ui, |ui| {
-            for info in &METHODS {
-                ui.selectable_value(&mut solver.method, info.method, info.name)
-                    .on_hover_text(format!("{} ({})", info.summary, info.source));
-            }
-        });
+    let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(100.0);
+    let shown = list.selected_text(name(solver.method)).show_ui(ui, |ui| {
+        for info in &METHODS {
+            ui.selectable_value(&mut solver.method, info.method, info.name)
+                .on_hover_text(format!("{} ({})", info.summary, info.source));
+        }
+    });
+    let about = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Method");
+    shown.response.widget_info(about);
 }
 
 fn stop_name(stop: StopTest) -> &'static str {

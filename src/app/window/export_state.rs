@@ -30,6 +30,8 @@ struct State<'a> {
     parameters: Option<Parameters>,
     worlds: usize,
     steps_per_sec: f64,
+    /// How often a graphics device was opened.
+    devices: u32,
     /// Frames that the solver's thread has published.
     frames: u64,
     window: [u32; 2],
@@ -42,7 +44,7 @@ impl StateFile {
         Self { path, written: None }
     }
 
-    pub fn write(&mut self, state: &AppState, window: &Window) {
+    pub fn write(&mut self, state: &AppState, window: &Window, devices: u32) {
         if self.written.is_some_and(|at| at.elapsed() < INTERVAL && state.frame.playing) {
             return;
         }
@@ -60,6 +62,7 @@ impl StateFile {
             parameters: world.map(|world| world.settings.parameters),
             worlds: state.frame.worlds.len(),
             steps_per_sec: state.frame.steps_per_sec,
+            devices,
             frames: state.frame.number,
             window: [size.width, size.height],
             controls: state

@@ -64,6 +64,7 @@ pub fn run(config: &Config, options: &WindowOptions) -> Result<()> {
         open: None,
         failure: None,
         losses: 0,
+        devices: 0,
         next_repaint: None,
         state_file: options.export_state.clone().map(StateFile::new),
     };
@@ -103,6 +104,7 @@ struct App {
     open: Option<Open>,
     failure: Option<Error>,
     losses: u32,
+    devices: u32,
     next_repaint: Option<Instant>,
     state_file: Option<StateFile>,
 }
@@ -165,6 +167,7 @@ impl App {
                 let input = self.input(&window, &surface);
                 window.request_redraw();
                 self.open = Some(Open { window, input, surface });
+                self.devices += 1;
                 self.state.warn("The graphics device was lost and opened anew; the run went on.");
             }
             Err(error) => self.fail(events, error),
@@ -185,7 +188,7 @@ impl App {
         let delay = viewport.map_or(Duration::MAX, |viewport| viewport.repaint_delay);
         let drawn = surface.draw(&self.context, output);
         if let Some(file) = &mut self.state_file {
-            file.write(&self.state, window);
+            file.write(&self.state, window, self.devices);
         }
         if std::mem::take(&mut self.state.restart_graphics) {
             surface.destroy_device();
@@ -215,7 +218,10 @@ impl ApplicationHandler<Message> for App {
             return;
         }
         match self.open(events) {
-            Ok(open) => self.open = Some(open),
+            Ok(open) => {
+                self.devices += 1;
+                self.open = Some(open);
+            }
             Err(error) => self.fail(events, error),
         }
     }
