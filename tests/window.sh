@@ -116,7 +116,19 @@ sleep 2
 used=$(($(ticks) - before))
 [ "$used" -lt "$(($(getconf CLK_TCK) / 10))" ] || fail "an idle window used $used ticks in 2 s"
 
-# Closed as by a window manager, it keeps its layout.
-xdotool search --name Slump windowclose || true
+# Closed, it keeps its layout: without the plots, the scene is higher.
+height() { value "s['controls']['scene'][3]"; }
+with_plots=$(height)
+xdotool mousemove $(at "Plots" 0.5) click 1
+wait_for "the plots to go" "s['controls']['scene'][3] > $with_plots + 100"
+sleep 0.5
+without_plots=$(height)
+xdotool key ctrl+q
 for _ in $(seq 50); do kill -0 "$window" 2>/dev/null || break; sleep 0.1; done
+! kill -0 "$window" 2>/dev/null || fail "the window does not close"
+rm -f "$state"
+"$program" --export-state "$state" > "$work/log" 2>&1 &
+window=$!
+wait_for "the pile" "s['scene'] == 'pile'"
+wait_for "the layout of the last time" "abs(s['controls']['scene'][3] - $without_plots) < 2"
 echo "window.sh: Δt dragged to $dragged s reached the solver; screenshots in $shots"

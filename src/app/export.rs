@@ -6,8 +6,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::error::{Error, Result};
 use crate::render::{Camera, Renderer, RendererChoice, Style, draw_scene};
-use crate::sim::Snapshot;
 use crate::sim::live::Curve;
+use crate::sim::{Observables, Snapshot};
 
 use super::plot_picture::{PlotPicture, PlotPrinter};
 
@@ -134,13 +134,25 @@ fn write(
 /// All rows of all curves, each with the number of its world in front.
 fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     let refuse = |error: csv::Error| Error::file(path, error);
-    let mut writer = csv::Writer::from_path(path).map_err(refuse)?;
+    let mut plain = csv::WriterBuilder::new();
+    plain.has_headers(false);
+    let mut writer = plain.from_path(path).map_err(refuse)?;
+    let names = column_names().map_err(refuse)?;
+    writer.write_record(std::iter::once("world").chain(names.iter())).map_err(refuse)?;
     for (world, curve) in curves.iter().enumerate() {
         for row in curve.rows() {
             writer.serialize((world + 1, row)).map_err(refuse)?;
         }
     }
     writer.flush().map_err(|error| Error::file(path, error))
+}
+
+/// What a table of observables calls its columns.
+fn column_names() -> std::result::Result<csv::StringRecord, csv::Error> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.serialize(Observables::default())?;
+    let bytes = table.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
+    csv::Reader::from_reader(bytes.as_slice()).headers().cloned()
 }
 
 /// `stem.ending` in `folder`, numbered where there is such a file already.
@@ -157,7 +169,6 @@ fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::Observables;
 
     #[test]
     fn curves_are_written_with_a_header_and_their_worlds() {

@@ -17,6 +17,10 @@ pub fn act(context: &Context, state: &mut AppState) {
     }
     let restart = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::G);
     state.restart_graphics |= context.input_mut(|input| input.consume_shortcut(&restart));
+    let quit = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
+    if context.input_mut(|input| input.consume_shortcut(&quit)) {
+        context.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
     let pressed = |key: Key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     if pressed(Key::Space) {
         state.toggle_play();

@@ -4,7 +4,7 @@ use egui::{Align2, RichText, Ui};
 
 use crate::app::state::AppState;
 
-const KEYS: [(&str, &str); 8] = [
+const KEYS: [(&str, &str); 9] = [
     ("space", "release, pause, play on"),
     ("→  ←", "one step on, one step back"),
     ("R", "reset to the start, with the present settings"),
@@ -13,6 +13,7 @@ const KEYS: [(&str, &str); 8] = [
     ("H", "this help"),
     ("Tab", "next control"),
     ("Ctrl +  −", "larger and smaller window contents"),
+    ("Ctrl Q", "close the window"),
 ];
 
 const MOUSE: [(&str, &str); 6] = [

@@ -183,7 +183,8 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
     let group = egui::Id::unique("time");
     let response = Plot::new(("plot", quantity.name()))
         .height((ui.available_height() - 2.0).max(40.0))
-        .width(ui.available_width())
+        // Half of the last label lies right of the plot.
+        .width(ui.available_width() - 10.0)
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
         .allow_scroll(false)

@@ -42,7 +42,8 @@ fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
         "Whether the last step met the tolerance within the sweep limit: see Solver",
     );
     if world.unconverged_steps > 0 {
-        let text = format!("{} steps did not converge", world.unconverged_steps);
+        let steps = if world.unconverged_steps == 1 { "step" } else { "steps" };
+        let text = format!("{} {steps} did not converge", world.unconverged_steps);
         ui.label(RichText::new(text).weak()).on_hover_text("Up to the moment that is shown");
     }
 }
@@ -53,7 +54,8 @@ fn messages(ui: &mut Ui, state: &mut AppState) {
         state.help = !state.help;
     }
     let mut plots = state.preferences.plots;
-    ui.toggle_value(&mut plots, "Plots").on_hover_text("Show or hide the plots");
+    let toggle = ui.toggle_value(&mut plots, "Plots").on_hover_text("Show or hide the plots");
+    state.note_control("Plots", toggle.rect);
     state.preferences.plots = plots;
     let mut sidebar = state.preferences.sidebar;
     ui.toggle_value(&mut sidebar, "Panels").on_hover_text("Show or hide the panels");

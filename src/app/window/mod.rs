@@ -46,6 +46,7 @@ pub fn run(config: &Config, options: &WindowOptions) -> Result<()> {
         storage::forget();
     }
     let stored = storage::load();
+    let config = start_config(config, &stored)?;
     let events =
         EventLoop::<Message>::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();
@@ -55,7 +56,6 @@ pub fn run(config: &Config, options: &WindowOptions) -> Result<()> {
         wake: Box::new(move || drop(wake.send_event(Message::Repaint))),
         ..LiveOptions::default()
     })?;
-    let config = if config.is_empty() { stored.preferences.scene.clone() } else { config.clone() };
     let state = AppState::new(live, config, stored.preferences.clone());
     let mut app = App {
         context: context(&proxy, stored.layout),
@@ -72,8 +72,27 @@ pub fn run(config: &Config, options: &WindowOptions) -> Result<()> {
     app.failure.map_or(Ok(()), Err)
 }
 
+/// What is opened first: what the command line asks for, or the last scene, or the default one where
+/// that is gone.
+fn start_config(asked: &Config, stored: &Stored) -> Result<Config> {
+    // A pile is made on the solver's thread; everything else of a scene is checked before a window
+    // opens.
+    let check = |config: &Config| {
+        let made = Config { grains: None, box_width: None, seed: None, ..config.clone() };
+        made.scene(|_| true)
+    };
+    if !asked.is_empty() {
+        check(asked)?;
+        return Ok(asked.clone());
+    }
+    let last = &stored.preferences.scene;
+    Ok(if check(last).is_ok() { last.clone() } else { Config::default() })
+}
+
 fn no_display(error: &dyn std::fmt::Display) -> Error {
-    let reason = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    let message = error.to_string();
+    // winit puts the places in its own source in front.
+    let reason = message.rsplit(": ").next().unwrap_or(&message).trim_end_matches('.');
     Error::Renderer(format!(
         "no window can be opened ({reason}): start Slump on a desktop, or install the Debian \
          packages libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libx11-xcb1 for X11, or \
@@ -186,6 +205,13 @@ impl App {
         input.handle_platform_output(window, std::mem::take(&mut output.platform_output));
         let viewport = output.viewport_output.get(&egui::ViewportId::ROOT);
         let delay = viewport.map_or(Duration::MAX, |viewport| viewport.repaint_delay);
+        let closes = viewport.is_some_and(|viewport| {
+            viewport.commands.iter().any(|command| *command == egui::ViewportCommand::Close)
+        });
+        if closes {
+            events.exit();
+            return;
+        }
         let drawn = surface.draw(&self.context, output);
         if let Some(file) = &mut self.state_file {
             file.write(&self.state, window, self.devices);
@@ -237,7 +263,7 @@ impl ApplicationHandler<Message> for App {
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _window: WindowId, event: WindowEvent) {
-        if let WindowEvent::CloseRequested = event {
+        if let WindowEvent::CloseRequested | WindowEvent::Destroyed = event {
             events.exit();
             return;
         }
