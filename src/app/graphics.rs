@@ -17,7 +17,12 @@ pub struct Screen {
 impl Screen {
     /// A screen for targets of this format.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, format: wgpu::TextureFormat) -> Self {
-        let mut renderer = Renderer::new(device, format, RendererOptions::default());
+        // Nothing here has gradients that would show steps.
+        let mut renderer = Renderer::new(
+            device,
+            format,
+            RendererOptions { dithering: false, ..RendererOptions::default() },
+        );
         renderer.callback_resources.insert(TargetFormat(format));
         Self { device: device.clone(), queue: queue.clone(), renderer }
     }

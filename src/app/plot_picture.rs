@@ -3,6 +3,7 @@
 use image::RgbaImage;
 
 use super::canvas::Canvas;
+use super::fill::fill;
 use super::panels::plots::{PlotData, draw};
 use super::theme;
 use crate::error::Result;
@@ -46,7 +47,8 @@ impl PlotPrinter {
         context.set_theme(if picture.dark { egui::Theme::Dark } else { egui::Theme::Light });
         let contents = |ui: &mut egui::Ui| {
             let ground = ui.visuals().extreme_bg_color;
-            let frame = egui::Frame::new().fill(ground).inner_margin(12.0);
+            fill(ui, ui.max_rect(), ground);
+            let frame = egui::Frame::new().inner_margin(12.0);
             egui::CentralPanel::default_margins().frame(frame).show(ui, |ui| {
                 legend(ui, &picture.data);
                 draw(ui, &picture.data);

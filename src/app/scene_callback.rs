@@ -12,6 +12,12 @@ use crate::render::{Frame, Painter, Picture};
 #[derive(Clone, Copy, Debug)]
 pub struct TargetFormat(pub wgpu::TextureFormat);
 
+/// The format of the target. Tests draw into the one that egui recommends, and say nothing of it.
+pub(super) fn target_format(resources: &CallbackResources) -> wgpu::TextureFormat {
+    let told = resources.get::<TargetFormat>();
+    told.map_or(wgpu::TextureFormat::Rgba8Unorm, |TargetFormat(format)| *format)
+}
+
 /// One painter a place in the window: their instance buffers hold what the pass is yet to draw.
 struct Painters(HashMap<usize, Painter>);
 
@@ -36,9 +42,7 @@ impl CallbackTrait for SceneCallback {
         _encoder: &mut wgpu::CommandEncoder,
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        // Tests draw into the format that egui recommends, and say nothing of it.
-        let default = TargetFormat(wgpu::TextureFormat::Rgba8Unorm);
-        let TargetFormat(format) = *resources.get::<TargetFormat>().unwrap_or(&default);
+        let format = target_format(resources);
         let painters = resources.entry::<Painters>().or_insert_with(|| Painters(HashMap::new()));
         let painter = painters.0.entry(self.place).or_insert_with(|| Painter::new(device, format));
         let info = PaintCallbackInfo {

@@ -2,6 +2,7 @@
 
 use egui::{CentralPanel, CollapsingHeader, Frame, Margin, Panel, RichText, ScrollArea, Ui};
 
+use super::fill::fill;
 use super::panels::{
     compare, grain, help, physics, plots, run, scene, see, solver, status, transport,
 };
@@ -23,18 +24,12 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     drop::take_files(&context, state);
     keys::act(&context, state);
 
-    // What no panel covers for a frame, while panels move.
-    ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
-    let tight = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(8, 4));
+    fill(ui, ui.max_rect(), ui.visuals().panel_fill);
+    let tight = Frame::new().inner_margin(Margin::symmetric(8, 4));
     Panel::bottom("status").frame(tight).resizable(false).show(ui, |ui| status::show(ui, state));
     let mut sidebar = state.preferences.sidebar;
     Panel::left("sidebar")
-        .frame(Frame::side_top_panel(ui.style()).inner_margin(Margin {
-            left: 10,
-            right: 4,
-            top: 8,
-            bottom: 4,
-        }))
+        .frame(Frame::new().inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 4 }))
         .default_size(SIDEBAR)
         .size_range(SIDEBAR - 26.0..=460.0)
         .show_collapsible(ui, &mut sidebar, |ui| {

@@ -4,6 +4,7 @@ use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Response, Sense, 
 use glam::DVec2;
 
 use crate::app::export::Export;
+use crate::app::fill::fill;
 use crate::app::scene_callback::scene_callback;
 use crate::app::state::{AppState, GrainRef};
 use crate::app::theme;
@@ -26,7 +27,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     let dark = ui.visuals().dark_mode;
     let style = shared_style(state, dark);
     let palette = style.theme.palette();
-    ui.painter().rect_filled(area, 0.0, theme::color32(palette.ground));
+    fill(ui, area, theme::color32(palette.ground));
     if state.frame.worlds.is_empty() || area.width() < 20.0 || area.height() < 20.0 {
         return;
     }

@@ -26,6 +26,11 @@ use surface::{Drawn, Surface};
 /// Size of a new window, points.
 const SIZE: [f64; 2] = [1280.0, 800.0];
 const LEAST_SIZE: [f64; 2] = [720.0, 480.0];
+/// Least time between two frames that only the run asks for. A software rasteriser takes processor
+/// time that the solver needs; the eye follows a pile at 30 frames a second.
+pub const FRAME_INTERVAL: Duration = Duration::from_millis(16);
+/// The same, where the processor draws.
+pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(33);
 /// A device that is lost this many times in a row does not come back.
 const MOST_LOSSES: u32 = 3;
 
@@ -66,6 +71,7 @@ pub fn run(config: &Config, options: &WindowOptions) -> Result<()> {
         losses: 0,
         devices: 0,
         next_repaint: None,
+        drawn: Instant::now(),
         state_file: options.export_state.clone().map(StateFile::new),
     };
     events.run_app(&mut app).map_err(|error| no_display(&error))?;
@@ -125,6 +131,7 @@ struct App {
     losses: u32,
     devices: u32,
     next_repaint: Option<Instant>,
+    drawn: Instant,
     state_file: Option<StateFile>,
 }
 
@@ -222,6 +229,7 @@ impl App {
             return;
         }
         self.next_repaint = None;
+        self.drawn = Instant::now();
         match drawn {
             Drawn::Shown => {
                 self.losses = 0;
@@ -255,9 +263,10 @@ impl ApplicationHandler<Message> for App {
     fn user_event(&mut self, _events: &ActiveEventLoop, message: Message) {
         match message {
             Message::Repaint => {
-                if let Some(open) = &self.open {
-                    open.window.request_redraw();
-                }
+                let software = self.open.as_ref().is_some_and(|open| open.surface.is_software());
+                let interval = if software { SOFTWARE_FRAME_INTERVAL } else { FRAME_INTERVAL };
+                let at = self.drawn + interval;
+                self.next_repaint = Some(self.next_repaint.map_or(at, |planned| planned.min(at)));
             }
         }
     }

@@ -34,6 +34,7 @@ pub(super) struct Surface {
     window: Arc<Window>,
     configuration: wgpu::SurfaceConfiguration,
     screen: Screen,
+    software: bool,
     lost: Arc<AtomicBool>,
     /// Textures that the device is still to be told of: of frames that were not drawn.
     textures: egui::TexturesDelta,
@@ -96,6 +97,7 @@ impl Surface {
             .unwrap_or(configuration.format);
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&device, &configuration);
+        let software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         let screen = Screen::new(&device, &queue, configuration.format);
         Ok(Self {
             surface,
@@ -103,9 +105,15 @@ impl Surface {
             window: Arc::clone(window),
             configuration,
             screen,
+            software,
             lost,
             textures: egui::TexturesDelta::default(),
         })
+    }
+
+    /// Whether the processor draws.
+    pub fn is_software(&self) -> bool {
+        self.software
     }
 
     /// Largest side of a texture, pixels.

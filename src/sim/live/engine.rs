@@ -15,8 +15,9 @@ use super::{
 };
 use crate::sim::{Snapshot, Surroundings};
 
-/// A frame that nobody fetched is renewed no sooner than this: making one costs time.
-const UNFETCHED_INTERVAL: Duration = Duration::from_millis(200);
+/// A frame that nobody fetched yet is renewed after so many frame intervals: making one costs time,
+/// and an old one shows late what happens.
+const UNFETCHED_INTERVALS: u32 = 3;
 /// Least time between two frames that tell of the progress of a loading.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
 
@@ -142,8 +143,8 @@ impl Engine {
 
     fn wait_for_frame(&self) -> Duration {
         let fetched = self.output.consumed();
-        let least = if fetched { self.options.frame_interval } else { UNFETCHED_INTERVAL };
-        least.saturating_sub(self.published.elapsed())
+        let intervals = if fetched { 1 } else { UNFETCHED_INTERVALS };
+        (intervals * self.options.frame_interval).saturating_sub(self.published.elapsed())
     }
 
     fn handle(&mut self, number: u64, command: Command) {
