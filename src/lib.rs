@@ -5,6 +5,7 @@
 //! [`contact`] ← [`solver`] ← [`sim`] ← [`scene`] ← [`study`]; [`render`] sees `world` and the
 //! snapshots of `sim`; [`headless`] sees all. The physics knows no screen.
 
+pub mod app;
 pub mod contact;
 pub mod error;
 pub mod headless;

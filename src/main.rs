@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use slump::error::{Error, Result};
+use slump::app::WindowOptions;
+use slump::error::Result;
 use slump::headless::{HeadlessOptions, Progress, check_writable, write_file};
 use slump::scene::{Config, Rain, SCENES, Settling, scene_to_toml, settle, write_discs};
 use slump::solver::METHODS;
@@ -17,6 +18,8 @@ struct Cli {
     config: Config,
     #[command(flatten)]
     headless: HeadlessOptions,
+    #[command(flatten)]
+    window: WindowOptions,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -81,7 +84,7 @@ fn run(cli: Cli) -> Result<()> {
             Ok(())
         }
         None if cli.headless.headless => slump::headless::run(&cli.config, &cli.headless),
-        None => Err(Error::value("--headless", "missing", "given: this build has no window")),
+        None => slump::app::run(&cli.config, &cli.window),
     }
 }
 

@@ -45,7 +45,7 @@ pub unsafe fn quieten_drivers() {
 }
 
 /// An opened GPU.
-pub(super) struct Gpu {
+pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     /// Kind of driver and name of the device.
@@ -90,8 +90,19 @@ impl Kind {
 }
 
 impl Gpu {
+    /// Opens the GPU that was asked for; the processor is none.
+    pub fn of(choice: RendererChoice) -> Result<Self> {
+        match choice {
+            RendererChoice::Vulkan => Self::open(Kind::Vulkan),
+            RendererChoice::Gl => Self::open(Kind::Gl),
+            RendererChoice::Auto | RendererChoice::Cpu => {
+                Self::open(Kind::Vulkan).or_else(|_| Self::open(Kind::Gl))
+            }
+        }
+    }
+
     /// Opens the strongest device of one kind.
-    pub fn open(kind: Kind) -> Result<Self> {
+    pub(super) fn open(kind: Kind) -> Result<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: kind.backends(),
             // Debug builds would otherwise load validation layers and let them write to stderr.

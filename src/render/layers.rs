@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::arrows::velocity_links;
 use super::boundaries::boundary_links;
 use super::colour_scale::ColourScale;
 use super::font::TextStyle;
@@ -53,6 +54,9 @@ pub fn scene_picture(
     );
     if style.show_forces {
         picture.push_links(force_links(snapshot, style, &palette, camera, width, height));
+    }
+    if style.show_velocities {
+        picture.push_links(velocity_links(snapshot, style, palette.ink, camera, width, height));
     }
     if let Some(centre) = surroundings.centre_of_attraction {
         // The ring keeps the dot visible on a grain of its own colour.

@@ -4,11 +4,14 @@
 
 use image::RgbaImage;
 
+use super::arrows::{full_length, speed_reference};
 use super::colour_scale::{ColourScale, MOST_CONTACTS, contact_colour, map_colour};
 use super::font::TextStyle;
+use super::forces::{force_reference, full_half_width_px};
 use super::numbers::{decimal, round_below, si_prefix, ticks};
 use super::text::{Align, TextBlock};
-use super::{Colour, ColourBy, LinkInstance, Palette, Picture, cpu};
+use super::{Camera, Colour, ColourBy, LinkInstance, Palette, Picture, Style, cpu};
+use crate::sim::Snapshot;
 
 /// What a legend tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +20,8 @@ pub struct Legend {
     pub scale: ColourScale,
     /// The |N| (N) at full width and half that width (px), where forces are drawn.
     pub forces: Option<(f64, f32)>,
+    /// The speed (m/s) of an arrow, and its length (px), where velocities are drawn.
+    pub velocities: Option<(f64, f32)>,
     /// Ground and ink.
     pub palette: Palette,
     /// Font size, pixels.
@@ -24,12 +29,31 @@ pub struct Legend {
 }
 
 impl Legend {
+    /// What a snapshot drawn in a style needs to be told. `text_px` is the font size of the whole
+    /// picture.
+    pub fn of(snapshot: &Snapshot, style: &Style, camera: &Camera, text_px: f32) -> Self {
+        let mean_diameter = snapshot.surroundings.mean_diameter;
+        let forces =
+            || (force_reference(style, snapshot), full_half_width_px(mean_diameter, camera));
+        let arrow = || (speed_reference(style, snapshot), camera.pixels(full_length(snapshot)));
+        Self {
+            scale: ColourScale::new(style, snapshot),
+            forces: style.show_forces.then(forces),
+            velocities: style.show_velocities.then(arrow),
+            palette: style.theme.palette(),
+            text_px,
+        }
+    }
+
     /// Draws the strip.
     pub fn draw(&self, width: u32, height: u32) -> RgbaImage {
         let mut strip = RgbaImage::from_pixel(width, height, self.palette.ground.to_rgba8());
         let mut bottom = i64::from(height) - self.em(1.0);
         if let Some((reference, half_width)) = self.forces {
             bottom = self.draw_force_key(&mut strip, bottom, reference, half_width);
+        }
+        if let Some((speed, length)) = self.velocities {
+            bottom = self.draw_arrow_key(&mut strip, bottom, speed, length);
         }
         let top = self.em(1.0);
         match self.scale.colour_by {
@@ -125,6 +149,42 @@ impl Legend {
             label.draw(strip, self.em(2.9), middle, Align::Start, Align::Centre);
         }
         y - self.em(1.2)
+    }
+
+    /// An arrow and the speed it stands for. Returns where it begins.
+    fn draw_arrow_key(&self, strip: &mut RgbaImage, bottom: i64, speed: f64, length: f32) -> i64 {
+        let largest = (strip.width() as f32 - 2.0 * self.text_px).max(1.0);
+        // Half as long an arrow stands for half the speed, until it fits.
+        let halvings = (length / largest).log2().ceil().max(0.0);
+        let (speed, length) = (speed / f64::from(halvings.exp2()), length / halvings.exp2());
+        let (prefix, factor) = si_prefix(speed);
+        let step = round_below((speed / factor).abs().max(1e-9)) / 10.0;
+        let note = format!("{} {prefix}m/s", decimal(speed / factor, step));
+        let note =
+            TextBlock::wrapped(&note, &self.text(), strip.width() as f32 - 0.8 * self.text_px);
+        let mut y = bottom - i64::from(note.height());
+        note.draw(strip, self.em(0.4), y, Align::Start, Align::Start);
+        if speed > 0.0 {
+            y -= self.em(1.2);
+            let [width, height] = [strip.width(), self.em(1.2).max(1) as u32];
+            let mut picture = Picture::new(self.palette.ground);
+            let left = self.em(0.6) as f32 - width as f32 / 2.0;
+            let tip = left + length;
+            let barb = 0.35 * self.text_px;
+            let link = |from, to| LinkInstance {
+                start: from,
+                end: to,
+                half_width: (0.05 * self.text_px).max(0.6),
+                colour: self.palette.ink,
+            };
+            picture.push_links(vec![
+                link([left, 0.0], [tip, 0.0]),
+                link([tip, 0.0], [tip - barb, 0.6 * barb]),
+                link([tip, 0.0], [tip - barb, -0.6 * barb]),
+            ]);
+            image::imageops::replace(strip, &cpu::draw(&picture, width, height), 0, y);
+        }
+        y - self.em(0.8)
     }
 
     /// A short link at the left of the strip.

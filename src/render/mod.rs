@@ -8,6 +8,7 @@
 
 #[cfg(test)]
 mod agreement_tests;
+mod arrows;
 mod backend;
 mod boundaries;
 mod camera;
@@ -23,7 +24,7 @@ mod layers;
 mod legend;
 mod link;
 pub mod numbers;
-mod offscreen;
+pub(crate) mod offscreen;
 mod painter;
 mod picture;
 mod primitive;
@@ -35,6 +36,8 @@ mod scene_tests;
 mod style;
 mod text;
 
+pub use arrows::speed_reference;
+pub(crate) use backend::Gpu;
 pub use backend::{RendererChoice, quieten_drivers};
 pub use camera::{Camera, bounds};
 pub use colour::Colour;

@@ -12,7 +12,7 @@ use super::{Colour, Picture};
 use crate::error::{Error, Result};
 
 /// Stores the numbers that are blended; an sRGB format would convert them.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// A GPU that draws pictures into memory.
 pub(super) struct Offscreen {
@@ -22,12 +22,12 @@ pub(super) struct Offscreen {
 }
 
 /// What depends on the size of the picture.
-struct Target {
-    width: u32,
-    height: u32,
+pub(crate) struct Target {
+    pub width: u32,
+    pub height: u32,
     padded_row_bytes: u32,
     texture: wgpu::Texture,
-    view: wgpu::TextureView,
+    pub view: wgpu::TextureView,
     readback: wgpu::Buffer,
 }
 
@@ -94,7 +94,7 @@ fn clear_colour(colour: Colour) -> wgpu::Color {
 }
 
 impl Target {
-    fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self> {
+    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self> {
         let padded_row_bytes = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(padded_row_bytes) * u64::from(height);
         let largest = gpu.device.limits().max_buffer_size;
@@ -127,7 +127,7 @@ impl Target {
         Ok(Self { width, height, padded_row_bytes, texture, view, readback })
     }
 
-    fn record_copy(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub fn record_copy(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.copy_texture_to_buffer(
             self.texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
@@ -142,7 +142,7 @@ impl Target {
         );
     }
 
-    fn read(&self, gpu: &Gpu) -> Result<RgbaImage> {
+    pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage> {
         let failed = |what: &dyn std::fmt::Display| {
             Error::Renderer(format!("{} gave no picture back: {what}", gpu.name))
         };

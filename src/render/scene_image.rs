@@ -3,9 +3,7 @@
 use image::RgbaImage;
 use image::imageops;
 
-use super::colour_scale::ColourScale;
 use super::font::TextStyle;
-use super::forces::{force_reference, full_half_width_px};
 use super::layers::scene_picture;
 use super::legend::Legend;
 use super::scale_bar::ScaleBar;
@@ -43,16 +41,7 @@ pub fn draw_scene(
     if strip_width == 0 {
         return Ok(image);
     }
-    let mean_diameter = snapshot.surroundings.mean_diameter;
-    let forces = style
-        .show_forces
-        .then(|| (force_reference(style, snapshot), full_half_width_px(mean_diameter, camera)));
-    let legend = Legend {
-        scale: ColourScale::new(style, snapshot),
-        forces,
-        palette,
-        text_px: style.text_px(width, height),
-    };
+    let legend = Legend::of(snapshot, style, camera, style.text_px(width, height));
     let mut whole = RgbaImage::new(width, height);
     imageops::replace(&mut whole, &image, 0, 0);
     imageops::replace(&mut whole, &legend.draw(strip_width, height), i64::from(scene_width), 0);

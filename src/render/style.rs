@@ -56,6 +56,11 @@ pub struct Style {
     pub show_forces: bool,
     /// The |N| that is drawn at full width, N; the 95th percentile of the snapshot if absent.
     pub force_reference: Option<f64>,
+    /// Whether arrows show the velocities of the grains.
+    pub show_velocities: bool,
+    /// The speed that is drawn at full length, m/s; a round number above the fastest grain's if
+    /// absent.
+    pub speed_reference: Option<f64>,
     /// Whether grains have an outline.
     pub outlines: bool,
     /// Whether a mark on each grain shows its angle.
@@ -75,6 +80,8 @@ impl Default for Style {
             range: None,
             show_forces: false,
             force_reference: None,
+            show_velocities: false,
+            speed_reference: None,
             outlines: true,
             angles: false,
             scale_bar: true,
@@ -138,9 +145,11 @@ impl Style {
         (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
     }
 
-    /// Whether the colours or links of this style need a legend, and one is wanted.
+    /// Whether the colours, links or arrows of this style need a legend, and one is wanted.
     pub fn has_legend(&self) -> bool {
-        self.legend && (self.colour_by != ColourBy::PaperGreys || self.show_forces)
+        let needed =
+            self.colour_by != ColourBy::PaperGreys || self.show_forces || self.show_velocities;
+        self.legend && needed
     }
 
     /// Width of the strip at the right that the legend takes, pixels.

@@ -1,12 +1,15 @@
 //! The step, what it measures, and what it shows.
 
+pub mod live;
 mod observables;
+mod pull;
 mod simulation;
 mod snapshot;
 mod step;
 mod tally;
 
 pub use observables::Observables;
+pub use pull::Pull;
 pub use simulation::Simulation;
 pub use snapshot::{ContactView, GrainView, Snapshot, Surroundings};
 pub use tally::Tally;

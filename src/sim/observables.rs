@@ -37,7 +37,7 @@ pub struct Observables {
     pub normal_work: f64,
     /// Work that the tangential contact forces did in this step, J.
     pub tangential_work: f64,
-    /// Work of the gravity field in this step, J.
+    /// Work of the gravity field, and of a spring that pulls a grain, in this step, J.
     pub gravity_work: f64,
     /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11); 0 where Σ y_i(0) is 0.
     pub slump: f64,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::snapshot::{ContactView, GrainView, Snapshot, Surroundings};
-use super::{Observables, step};
+use super::{Observables, Pull, step};
 use crate::contact::{Candidates, ContactList, Feature, Reach};
 use crate::error::{Error, Result};
 use crate::solver::{Problems, SolverSettings};
@@ -32,6 +32,8 @@ pub struct Simulation {
     pub(super) initial_heights: f64,
     /// Δt of the impulses in `contacts`, s.
     pub(super) time_step_of_impulses_secs: f64,
+    /// A spring on one grain, from the next step on.
+    pub(super) pull: Option<Pull>,
     surroundings: Arc<Surroundings>,
 }
 
@@ -82,6 +84,7 @@ impl Simulation {
             problems: Problems::default(),
             observables: Observables::default(),
             time_step_of_impulses_secs: parameters.time_step_secs,
+            pull: None,
             surroundings,
         };
         step::measure_start(&mut simulation);

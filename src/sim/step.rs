@@ -1,6 +1,6 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
-use super::{Observables, Simulation};
+use super::{Observables, Simulation, pull};
 use crate::solver::{Kinematics, Model, ModelVisitor, measure, solve, visit_leanest};
 
 /// Takes one step of Δt, compiled for the leanest model that the scene and its parameters allow.
@@ -30,10 +30,15 @@ impl ModelVisitor for Step<'_> {
         }
         detect::<M>(simulation);
 
+        let push = simulation.push_of_pull(M::Kinematics::AXES);
+
         let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
         let problem = M::Kinematics::problem(problems);
         let cohesion = physics.cohesion;
         problem.prepare::<M>(world, contacts, parameters, cohesion, solver.warm_start);
+        if let Some(push) = push {
+            pull::apply(problem, push);
+        }
         let report = solve::<M>(problem, solver);
         let measures = measure::<M>(problem);
         problem.store_impulses(contacts);

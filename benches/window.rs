@@ -1,0 +1,186 @@
+//! What the window costs: frames a second while the solver runs flat out, steps a second with the
+//! window open against without, and how soon a slider shows. Everything but the display itself: the
+//! real panels, drawn into memory by the driver that a window would use.
+//!
+//! ```text
+//! cargo bench --bench window
+//! ```
+
+#[allow(dead_code, reason = "other benches use the rest of it")]
+mod common;
+
+use std::time::{Duration, Instant};
+
+use slump::app::{AppState, Canvas, Preferences, SOFTWARE_FRAME_INTERVAL, theme, ui};
+use slump::scene::Config;
+use slump::sim::Simulation;
+use slump::sim::live::{Command, Live, LiveOptions, Pace, Start};
+
+/// Pixels of the window.
+const SIZE: [u32; 2] = [1280, 800];
+/// How long frames are counted.
+const COUNTED: Duration = Duration::from_secs(4);
+/// Steps of the pile that are timed: its collapse.
+const STEPS: u64 = 1500;
+/// Repeats, of which the fastest counts.
+const REPEATS: usize = 3;
+/// Changes of the time step whose latency is measured.
+const CHANGES: usize = 40;
+
+/// A window without a display.
+struct Window {
+    state: AppState,
+    canvas: Canvas,
+    context: egui::Context,
+}
+
+impl Window {
+    fn open(simulation: Simulation) -> Self {
+        let live = Live::spawn(LiveOptions::default()).expect("a thread");
+        let preferences = Preferences { full_speed: true, ..Preferences::default() };
+        let mut state = AppState::new(live, Config::default(), preferences);
+        state.live.send(load(simulation));
+        state.live.send(Command::SetPace(Pace::Max));
+        let context = egui::Context::default();
+        theme::install(&context);
+        let canvas = Canvas::new().expect("a graphics driver");
+        let mut window = Self { state, canvas, context };
+        window.wait();
+        window
+    }
+
+    fn draw(&mut self) {
+        let Self { state, canvas, context } = self;
+        canvas.draw(context, SIZE, 1.0, false, |root| ui(root, state)).expect("a picture");
+    }
+
+    /// Draws until every command has been carried out.
+    fn wait(&mut self) {
+        loop {
+            self.draw();
+            let frame = &self.state.frame;
+            if frame.acknowledged == self.state.live.sent() && frame.loading.is_none() {
+                return;
+            }
+        }
+    }
+
+    fn steps(&self) -> u64 {
+        self.state.world().map_or(0, |world| world.snapshot.observables.step)
+    }
+}
+
+fn load(simulation: Simulation) -> Command {
+    Command::Load(Box::new(move |_| {
+        let view = [glam::DVec2::new(-0.1, 0.0), glam::DVec2::new(0.1, 0.06)];
+        let (name, held_by) = ("bench".to_owned(), Vec::new());
+        Ok(Start { name, simulation, duration_secs: f64::INFINITY, held_by, view })
+    }))
+}
+
+fn pile() -> Simulation {
+    let config = Config { tolerance: Some(1e-5), max_sweeps: Some(2000), ..Config::default() };
+    config.scene(|_| true).and_then(|scene| scene.simulation()).expect("the paper's pile")
+}
+
+fn main() {
+    // Criterion's way of asking for the tests of a bench.
+    if std::env::args().any(|argument| argument == "--test") {
+        return;
+    }
+    frames();
+    steps();
+    latency();
+}
+
+fn frames() {
+    for count in [138, 10_000] {
+        let simulation = if count == 138 { pile() } else { common::settled(count) };
+        let mut window = Window::open(simulation);
+        window.state.live.send(Command::Play);
+        window.wait();
+        let (start, first) = (Instant::now(), window.steps());
+        let mut drawn = 0;
+        while start.elapsed() < COUNTED {
+            window.draw();
+            drawn += 1;
+        }
+        let secs = start.elapsed().as_secs_f64();
+        let steps = (window.steps() - first) as f64 / secs;
+        let name = window.canvas.name();
+        println!("{count} discs: {:.0} frames/s, {steps:.1} steps/s ({name})", drawn as f64 / secs);
+    }
+}
+
+fn steps() {
+    let best = |run: &dyn Fn() -> f64| (0..REPEATS).map(|_| run()).fold(f64::INFINITY, f64::min);
+    let alone = best(&|| {
+        let mut simulation = pile();
+        let start = Instant::now();
+        for _ in 0..STEPS {
+            simulation.step().expect("a finite state");
+        }
+        start.elapsed().as_secs_f64()
+    });
+    let recorded = best(&|| {
+        let mut live = Live::spawn(LiveOptions::default()).expect("a thread");
+        live.send(load(pile()));
+        live.send(Command::SetPace(Pace::Max));
+        let start = Instant::now();
+        live.send(Command::Play);
+        while live
+            .latest()
+            .worlds
+            .first()
+            .is_none_or(|world| world.snapshot.observables.step < STEPS)
+        {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        start.elapsed().as_secs_f64()
+    });
+    let shown = best(&|| {
+        let mut window = Window::open(pile());
+        let start = Instant::now();
+        let mut drawn = start;
+        window.state.live.send(Command::Play);
+        while window.steps() < STEPS {
+            // As the loop of a window does: a frame when there is something new, not too often.
+            if window.state.live.has_news() && drawn.elapsed() >= SOFTWARE_FRAME_INTERVAL {
+                drawn = Instant::now();
+                window.draw();
+            } else {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        }
+        start.elapsed().as_secs_f64()
+    });
+    for (name, secs) in [("no thread", alone), ("thread, recorded", recorded), ("window", shown)] {
+        let rate = STEPS as f64 / secs;
+        println!("{name}: {rate:.0} steps/s, {:+.1} %", 100.0 * (alone / secs - 1.0));
+    }
+}
+
+fn latency() {
+    let mut live = Live::spawn(LiveOptions::default()).expect("a thread");
+    live.send(load(pile()));
+    live.send(Command::SetPace(Pace::Max));
+    live.send(Command::Play);
+    let mut parameters = *pile().parameters();
+    let mut millis: Vec<f64> = (0..CHANGES)
+        .map(|change| {
+            std::thread::sleep(Duration::from_millis(37));
+            parameters.time_step_secs = 1e-3 * (1.0 + 1e-3 * change as f64);
+            let start = Instant::now();
+            live.send(Command::SetParameters(0, parameters));
+            while live.latest().worlds.first().is_none_or(|world| {
+                world.snapshot.observables.time_step_secs != parameters.time_step_secs
+            }) {
+                std::thread::sleep(Duration::from_micros(100));
+            }
+            1e3 * start.elapsed().as_secs_f64()
+        })
+        .collect();
+    millis.sort_by(f64::total_cmp);
+    let (median, worst) = (millis[CHANGES / 2], millis[CHANGES - 1]);
+    println!("slider to snapshot: median {median:.1} ms, worst {worst:.1} ms");
+}

@@ -1,0 +1,110 @@
+//! Which part of the scene the window shows: the whole of it, until the user pans or zooms.
+
+use glam::DVec2;
+
+use crate::render::{Camera, Style};
+
+/// Narrowest and widest view, in units of the framed one.
+const ZOOM_LIMITS: [f64; 2] = [1e-3, 30.0];
+
+/// The view of all worlds of a window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneCamera {
+    framed: bool,
+    centre: DVec2,
+    metres_per_point: f64,
+    framed_metres_per_point: f64,
+}
+
+impl Default for SceneCamera {
+    fn default() -> Self {
+        Self {
+            framed: true,
+            centre: DVec2::ZERO,
+            metres_per_point: 1.0,
+            framed_metres_per_point: 1.0,
+        }
+    }
+}
+
+impl SceneCamera {
+    /// Shows the whole scene again.
+    pub fn frame_scene(&mut self) {
+        self.framed = true;
+    }
+
+    /// The camera of a picture of `size` pixels, `pixels_per_point` of them in a point. `view` is
+    /// what the whole scene takes, m.
+    pub fn camera(
+        &mut self,
+        view: [DVec2; 2],
+        style: &Style,
+        size: [u32; 2],
+        pixels_per_point: f64,
+    ) -> Camera {
+        let whole = style.camera(view[0], view[1], size[0], size[1]);
+        self.framed_metres_per_point = whole.metres_per_pixel * pixels_per_point;
+        if self.framed {
+            self.centre = whole.centre;
+            self.metres_per_point = self.framed_metres_per_point;
+            return whole;
+        }
+        let metres_per_pixel = self.metres_per_point / pixels_per_point;
+        Camera { centre: self.centre, metres_per_pixel }
+    }
+
+    /// The camera that shows at least as much of the scene on a picture of another size as the
+    /// window does on `window_points`.
+    pub fn for_picture(
+        &self,
+        view: [DVec2; 2],
+        style: &Style,
+        size: [u32; 2],
+        window_points: DVec2,
+    ) -> Camera {
+        if self.framed {
+            return style.camera(view[0], view[1], size[0], size[1]);
+        }
+        let [width, height] = size;
+        let scene =
+            DVec2::new(f64::from(width - style.legend_width(width, height)), f64::from(height));
+        let metres_per_pixel = self.metres_per_point * (window_points / scene).max_element();
+        Camera { centre: self.centre, metres_per_pixel }
+    }
+
+    /// Moves the scene with the mouse; y down, points.
+    pub fn pan(&mut self, moved: egui::Vec2) {
+        self.framed = false;
+        let moved = DVec2::new(f64::from(moved.x), -f64::from(moved.y));
+        self.centre -= moved * self.metres_per_point;
+    }
+
+    /// Zooms by `factor`, so that what lies `from_middle` (points, y down) stays in its place.
+    pub fn zoom(&mut self, factor: f64, from_middle: egui::Vec2) {
+        let [nearest, farthest] = ZOOM_LIMITS.map(|limit| limit * self.framed_metres_per_point);
+        let scale = (self.metres_per_point / factor).clamp(nearest, farthest);
+        let offset = DVec2::new(f64::from(from_middle.x), -f64::from(from_middle.y));
+        self.centre += offset * (self.metres_per_point - scale);
+        self.metres_per_point = scale;
+        self.framed = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_under_the_cursor_stays_there() {
+        let mut scene = SceneCamera::default();
+        let style = Style::default();
+        let view = [DVec2::ZERO, DVec2::new(4.0, 2.0)];
+        let before = scene.camera(view, &style, [800, 600], 2.0);
+        let cursor = egui::vec2(70.0, -40.0);
+        let point = |camera: Camera| camera.unproject(DVec2::new(140.0, 80.0));
+        scene.zoom(3.0, cursor);
+        let after = scene.camera(view, &style, [800, 600], 2.0);
+        assert!(point(before).distance(point(after)) < 1e-12);
+        assert!((before.metres_per_pixel / after.metres_per_pixel - 3.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,197 @@
+//! Writing files on a thread of its own, so that the window never waits for one.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use crate::error::{Error, Result};
+use crate::render::{Camera, Renderer, RendererChoice, Style, draw_scene};
+use crate::sim::live::Curve;
+use crate::sim::{Observables, Snapshot};
+
+use super::plot_picture::{PlotPicture, PlotPrinter};
+
+/// A file to be written.
+pub enum Export {
+    /// A picture of a scene.
+    Scene {
+        /// The moment.
+        snapshot: Arc<Snapshot>,
+        /// How it is drawn.
+        style: Style,
+        /// What it shows.
+        camera: Camera,
+        /// Pixels.
+        size: [u32; 2],
+    },
+    /// The observables of all worlds as a table.
+    Curves(Vec<Curve>),
+    /// A picture of the plots.
+    Plots(Box<PlotPicture>),
+}
+
+impl Export {
+    fn ending(&self) -> &'static str {
+        match self {
+            Self::Curves(_) => "csv",
+            Self::Scene { .. } | Self::Plots(_) => "png",
+        }
+    }
+}
+
+/// Hands exports to their thread, which starts with the first one.
+#[derive(Default)]
+pub struct Exporter {
+    thread: Option<(Sender<Job>, Receiver<Result<PathBuf>>)>,
+    pending: usize,
+}
+
+struct Job {
+    export: Export,
+    folder: PathBuf,
+    stem: String,
+    context: egui::Context,
+}
+
+impl Exporter {
+    /// Writes a file into `folder`; its name begins with `stem` and is that of no other file.
+    pub fn submit(&mut self, context: &egui::Context, export: Export, folder: &Path, stem: &str) {
+        let (jobs, _) = self.thread.get_or_insert_with(|| {
+            let (jobs, inbox) = channel::<Job>();
+            let (outbox, outcomes) = channel();
+            std::thread::spawn(move || work(&inbox, &outbox));
+            (jobs, outcomes)
+        });
+        let job = Job {
+            export,
+            folder: folder.to_owned(),
+            stem: stem.to_owned(),
+            context: context.clone(),
+        };
+        if jobs.send(job).is_ok() {
+            self.pending += 1;
+        }
+    }
+
+    /// Whether a file is being written.
+    pub fn is_busy(&self) -> bool {
+        self.pending > 0
+    }
+
+    /// What became of the last file, and whether it failed; once.
+    pub fn take_outcome(&mut self) -> Option<(String, bool)> {
+        let (_, outcomes) = self.thread.as_ref()?;
+        let outcome = outcomes.try_recv().ok()?;
+        self.pending = self.pending.saturating_sub(1);
+        Some(match outcome {
+            Ok(path) => (format!("Saved {}", path.display()), false),
+            Err(error) => (error.to_string(), true),
+        })
+    }
+}
+
+fn work(inbox: &Receiver<Job>, outbox: &Sender<Result<PathBuf>>) {
+    let mut renderer = None;
+    let mut printer = None;
+    while let Ok(job) = inbox.recv() {
+        let outcome = write(&job, &mut renderer, &mut printer);
+        if outbox.send(outcome).is_err() {
+            return;
+        }
+        job.context.request_repaint();
+    }
+}
+
+fn write(
+    job: &Job,
+    renderer: &mut Option<Renderer>,
+    printer: &mut Option<PlotPrinter>,
+) -> Result<PathBuf> {
+    std::fs::create_dir_all(&job.folder).map_err(|error| Error::file(&job.folder, error))?;
+    let path = free_path(&job.folder, &job.stem, job.export.ending());
+    match &job.export {
+        Export::Scene { snapshot, style, camera, size: [width, height] } => {
+            let renderer = match renderer {
+                Some(renderer) => renderer,
+                none => none.insert(Renderer::new(RendererChoice::Auto)?),
+            };
+            let image = draw_scene(renderer, snapshot, style, camera, *width, *height)?;
+            image.save(&path).map_err(|error| Error::file(&path, error))?;
+        }
+        Export::Curves(curves) => write_curves(&path, curves)?,
+        Export::Plots(picture) => {
+            let printer = match printer {
+                Some(printer) => printer,
+                none => none.insert(PlotPrinter::new()?),
+            };
+            let image = printer.print(picture)?;
+            image.save(&path).map_err(|error| Error::file(&path, error))?;
+        }
+    }
+    Ok(path)
+}
+
+/// All rows of all curves, each with the number of its world in front.
+fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
+    let refuse = |error: csv::Error| Error::file(path, error);
+    let mut plain = csv::WriterBuilder::new();
+    plain.has_headers(false);
+    let mut writer = plain.from_path(path).map_err(refuse)?;
+    let names = column_names().map_err(refuse)?;
+    writer.write_record(std::iter::once("world").chain(names.iter())).map_err(refuse)?;
+    for (world, curve) in curves.iter().enumerate() {
+        for row in curve.rows() {
+            writer.serialize((world + 1, row)).map_err(refuse)?;
+        }
+    }
+    writer.flush().map_err(|error| Error::file(path, error))
+}
+
+/// What a table of observables calls its columns.
+fn column_names() -> std::result::Result<csv::StringRecord, csv::Error> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.serialize(Observables::default())?;
+    let bytes = table.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
+    csv::Reader::from_reader(bytes.as_slice()).headers().cloned()
+}
+
+/// `stem.ending` in `folder`, numbered where there is such a file already.
+fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
+    let numbered = |number: u32| folder.join(format!("{stem}-{number}.{ending}"));
+    let plain = folder.join(format!("{stem}.{ending}"));
+    if !plain.exists() {
+        return plain;
+    }
+    // Ends: no folder holds that many files.
+    (2..).map(numbered).find(|path| !path.exists()).unwrap_or(plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_are_written_with_a_header_and_their_worlds() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("curves.csv");
+        let mut curve = Curve::default();
+        curve.push(Observables { slump: 0.25, ..Observables::default() });
+        write_curves(&path, &[curve.clone(), curve]).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut lines = text.lines();
+        let header = lines.next().unwrap();
+        assert!(header.starts_with("world,step,time_secs"), "{header}");
+        assert!(
+            lines.next().unwrap().starts_with("1,0,") && lines.next().unwrap().starts_with("2,0,")
+        );
+    }
+
+    #[test]
+    fn files_do_not_replace_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.png", "a-2.png"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        assert_eq!(free_path(folder.path(), "a", "png"), folder.path().join("a-3.png"));
+    }
+}

@@ -1,0 +1,46 @@
+//! Keys that act wherever the mouse is, unless a control takes them.
+
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+use super::panels::scene;
+use super::state::AppState;
+
+/// Acts on the keys of this frame.
+pub fn act(context: &Context, state: &mut AppState) {
+    let escape = context.input(|input| input.key_pressed(Key::Escape));
+    if escape {
+        state.help = false;
+    }
+    // A focused field or slider has a use of its own for letters and arrows.
+    if context.egui_wants_keyboard_input() {
+        return;
+    }
+    let restart = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::G);
+    state.restart_graphics |= context.input_mut(|input| input.consume_shortcut(&restart));
+    let quit = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
+    if context.input_mut(|input| input.consume_shortcut(&quit)) {
+        context.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+    let pressed = |key: Key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    if pressed(Key::Space) {
+        state.toggle_play();
+    }
+    if pressed(Key::ArrowRight) {
+        state.step();
+    }
+    if pressed(Key::ArrowLeft) {
+        state.step_back();
+    }
+    if pressed(Key::R) {
+        state.reset();
+    }
+    if pressed(Key::F) {
+        state.camera.frame_scene();
+    }
+    if pressed(Key::S) {
+        scene::save_picture(context, state);
+    }
+    if pressed(Key::H) {
+        state.help = !state.help;
+    }
+}

@@ -1,0 +1,78 @@
+//! From what a user asks for to a start that the solver's thread makes.
+
+use glam::DVec2;
+
+use crate::scene::{Config, Scene};
+use crate::sim::live::{Loader, Progress, Start};
+use crate::world::Boundary;
+
+/// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
+const ORDERS_OF_SETTLING: f64 = 3.5;
+/// Tolerance and sweep limit of a pile of which neither is asked: some thousand steps a second, and
+/// the verdicts of the paper (at 1e-4, piles slump that hold when their steps are solved well).
+/// Figures take more care and far more time.
+const LIVE_TOLERANCE: f64 = 1e-5;
+const LIVE_SWEEPS: u32 = 2000;
+/// Height of the walls that are drawn around a pile, in its own heights.
+const WALL_HEIGHTS: f64 = 1.1;
+
+/// Makes the start of `config` on the thread that calls it.
+pub fn loader(config: Config) -> Loader {
+    Box::new(move |tell| {
+        let mut part = 0f64;
+        let mut scene = config.scene(|settling| {
+            // Rain falls for a quarter of the limit at most; then the slowing down tells how far it
+            // has come.
+            let rained = 4.0 * settling.time_secs / settling.limit_secs;
+            let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
+            part = part.max(0.5 * rained.min(1.0) + 0.5 * slowed.clamp(0.0, 1.0) * rained.min(1.0));
+            let text = format!(
+                "Settling a new pile: t = {:.2} s, fastest grain {:.0} × rest",
+                settling.time_secs, settling.speed_over_rest
+            );
+            tell(Progress { part: part as f32, text })
+        })?;
+        keep_pace(&config, &mut scene);
+        start(&scene)
+    })
+}
+
+/// Loosens the solver of the built-in pile, unless something is asked of it.
+fn keep_pace(config: &Config, scene: &mut Scene) {
+    let asked = config.solver.is_some()
+        || config.stop.is_some()
+        || config.tolerance.is_some()
+        || config.max_sweeps.is_some();
+    let built_in = scene.name == Config::DEFAULT_SCENE && scene.solver == Default::default();
+    if built_in && !asked {
+        scene.solver.tolerance = LIVE_TOLERANCE;
+        scene.solver.max_sweeps = LIVE_SWEEPS;
+    }
+}
+
+fn start(scene: &Scene) -> crate::error::Result<Start> {
+    let view = scene.view();
+    Ok(Start {
+        name: scene.name.clone(),
+        simulation: scene.simulation()?,
+        duration_secs: scene.duration_secs,
+        held_by: walls(scene),
+        view: [view.min, view.max],
+    })
+}
+
+/// The walls of a pile that has not been released: a pile is at rest and needs none, but without
+/// them nobody would see what is about to happen.
+fn walls(scene: &Scene) -> Vec<Boundary> {
+    if scene.name != Config::DEFAULT_SCENE || !scene.boundaries.is_empty() {
+        return Vec::new();
+    }
+    let reach = |side: f64| {
+        let ends = scene.grains.iter().map(|grain| side * grain.position.x + grain.radius);
+        side * ends.fold(0.0, f64::max)
+    };
+    let tops = scene.grains.iter().map(|grain| grain.position.y + grain.radius);
+    let height = WALL_HEIGHTS * tops.fold(0.0, f64::max);
+    let wall = |x: f64| Boundary::Segment { from: DVec2::new(x, 0.0), to: DVec2::new(x, height) };
+    vec![wall(reach(-1.0)), wall(reach(1.0))]
+}

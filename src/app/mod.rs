@@ -1,0 +1,37 @@
+//! The window: panels, the scene, plots, and the thread that computes them.
+//!
+//! [`ui`] is a function of [`AppState`] alone and knows neither window nor GPU; the private module
+//! `window` runs it on a screen. The simulation itself runs on the thread of
+//! [`crate::sim::live`].
+
+mod camera;
+mod canvas;
+mod drop;
+mod export;
+mod fill;
+mod graphics;
+mod keys;
+mod loader;
+mod number;
+mod options;
+pub mod panels;
+mod plot_picture;
+mod preferences;
+mod scene_callback;
+mod scene_legend;
+mod state;
+mod storage;
+pub mod theme;
+mod ui;
+mod window;
+
+pub use camera::SceneCamera;
+pub use canvas::Canvas;
+pub use export::{Export, Exporter};
+pub use loader::loader;
+pub use options::WindowOptions;
+pub use plot_picture::{PlotPicture, PlotPrinter};
+pub use preferences::Preferences;
+pub use state::{AppState, GrainRef, Notice};
+pub use ui::ui;
+pub use window::{FRAME_INTERVAL, SOFTWARE_FRAME_INTERVAL, run};

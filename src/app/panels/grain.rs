@@ -1,0 +1,88 @@
+//! Panel: the pinned grain and its contacts.
+
+use egui::ScrollArea;
+use egui::{RichText, Ui};
+
+use crate::app::state::AppState;
+use crate::render::numbers::si_prefix;
+use crate::sim::live::WorldFrame;
+
+/// Shows the panel; nothing without a pinned grain.
+pub fn show(ui: &mut Ui, state: &mut AppState) {
+    let Some(pinned) = state.pinned else { return };
+    let Some(world) = state.frame.worlds.get(pinned.world) else { return };
+    describe(ui, world, pinned.grain);
+    ui.add_space(4.0);
+    contacts(ui, world, pinned.grain);
+    if ui.button("Unpin").clicked() {
+        state.pinned = None;
+    }
+}
+
+/// The state of a grain, as a small table.
+pub fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
+    let grain = &world.snapshot.grains[index];
+    let diameter = world.snapshot.surroundings.mean_diameter;
+    ui.label(RichText::new(format!("Grain {index}")).strong());
+    egui::Grid::new(("grain", index)).num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
+        let mut row = |name: &str, value: String| {
+            ui.label(RichText::new(name).weak());
+            ui.label(RichText::new(value).monospace());
+            ui.end_row();
+        };
+        let at = grain.position / diameter;
+        row("position", format!("{:.3}, {:.3} d", at.x, at.y));
+        row("radius", format!("{:.3} d", grain.radius / diameter));
+        row(
+            "velocity",
+            format!("{}, {}", si(grain.velocity.x, "m/s"), si(grain.velocity.y, "m/s")),
+        );
+        row("spin", format!("{:.3} rad/s", grain.angular_velocity));
+        row("overlap", format!("{:.3} % of d", 100.0 * grain.overlap / diameter));
+        row("force Σ|N|", si(grain.force, "N"));
+        row("contacts", grain.coordination.to_string());
+    });
+}
+
+fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {
+    let diameter = world.snapshot.surroundings.mean_diameter;
+    let number = index as u32;
+    let touching = world
+        .snapshot
+        .contacts
+        .iter()
+        .filter(|contact| contact.grain == number || contact.other_grain == Some(number));
+    ScrollArea::vertical().max_height(170.0).id_salt("contacts").show(ui, |ui| {
+        egui::Grid::new("contacts").num_columns(4).striped(true).spacing([10.0, 2.0]).show(
+            ui,
+            |ui| {
+                for name in ["with", "N", "T", "gap/d"] {
+                    ui.label(RichText::new(name).weak());
+                }
+                ui.end_row();
+                for contact in touching {
+                    let other = if contact.grain == number {
+                        contact.other_grain.map_or("fixed".to_owned(), |other| other.to_string())
+                    } else {
+                        contact.grain.to_string()
+                    };
+                    for value in [
+                        other,
+                        si(contact.normal_force, "N"),
+                        si(contact.tangential_force, "N"),
+                        format!("{:.1e}", contact.gap / diameter),
+                    ] {
+                        ui.label(RichText::new(value).monospace());
+                    }
+                    ui.end_row();
+                }
+            },
+        );
+    });
+}
+
+/// A number with three digits and a prefixed unit.
+fn si(value: f64, unit: &str) -> String {
+    let (prefix, factor) = si_prefix(value);
+    format!("{:.3} {prefix}{unit}", value / factor)
+}

@@ -1,0 +1,67 @@
+//! The help overlay.
+
+use egui::{Align2, RichText, Ui};
+
+use crate::app::state::AppState;
+
+const KEYS: [(&str, &str); 9] = [
+    ("space", "release, pause, play on"),
+    ("→  ←", "one step on, one step back"),
+    ("R", "reset to the start, with the present settings"),
+    ("F", "frame the whole scene"),
+    ("S", "save a picture of the scene"),
+    ("H", "this help"),
+    ("Tab", "next control"),
+    ("Ctrl +  −", "larger and smaller window contents"),
+    ("Ctrl Q", "close the window"),
+];
+
+const MOUSE: [(&str, &str); 6] = [
+    ("drag the ground", "move the scene"),
+    ("wheel", "zoom to the cursor"),
+    ("double click", "frame the whole scene"),
+    ("point at a grain", "its state"),
+    ("click a grain", "pin it: its contacts are listed"),
+    ("drag a grain", "pull it with a spring"),
+];
+
+/// Shows the overlay where it is wanted.
+pub fn show(ui: &mut Ui, state: &mut AppState) {
+    if !state.help {
+        return;
+    }
+    egui::Window::new("Help")
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .collapsible(false)
+        .resizable(false)
+        .open(&mut state.help)
+        .show(ui.ctx(), |ui| {
+            ui.set_max_width(440.0);
+            ui.label(
+                "A pile of cohesive grains, computed by Contact Dynamics. The time step Δt is no mere \
+                 matter of accuracy: cohesion cancels an opening speed of Bond·g·Δt in every step, \
+                 so that a larger Δt makes a stronger pile. Set Δt, release the walls, reset, and \
+                 try another.",
+            );
+            ui.add_space(8.0);
+            for (title, rows) in [("Keys", &KEYS[..]), ("Mouse", &MOUSE[..])] {
+                ui.heading(title);
+                egui::Grid::new(title).num_columns(2).spacing([18.0, 3.0]).show(ui, |ui| {
+                    for (what, does) in rows {
+                        ui.label(RichText::new(*what).strong());
+                        ui.label(*does);
+                        ui.end_row();
+                    }
+                });
+                ui.add_space(6.0);
+            }
+            ui.label("Double-click a slider to reset it. Type any value into its field. Drop a scene (TOML) or discs (CSV) on the window to open them.");
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                let restart = ui.button("Restart graphics");
+                if restart.on_hover_text("Open the graphics device anew; the run goes on (Ctrl Shift G).").clicked() {
+                    state.restart_graphics = true;
+                }
+            });
+        });
+}

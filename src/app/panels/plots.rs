@@ -1,0 +1,266 @@
+//! Panel: what the run measures, against simulated time.
+
+use egui::{Color32, RichText, Ui};
+use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotPoints, VLine};
+use serde::{Deserialize, Serialize};
+
+use crate::app::export::Export;
+use crate::app::plot_picture::PlotPicture;
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::render::numbers::{decimal, si_prefix, ticks};
+use crate::sim::Observables;
+use crate::sim::live::{Command, Curve};
+
+/// Least width of a plot, points: below it fewer are shown in a row.
+const LEAST_WIDTH: f32 = 150.0;
+/// Intervals of time for which a long curve shows its least and its largest value.
+const BUCKETS: usize = 300;
+
+/// What can be plotted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Quantity {
+    /// Δy_G.
+    Slump,
+    /// δ.
+    Overlap,
+    /// The common residual, on a logarithmic axis.
+    Residual,
+    /// Kinetic energy.
+    Energy,
+}
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Slump, Self::Overlap, Self::Residual, Self::Energy];
+
+    /// Its name on buttons.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Slump => "slump",
+            Self::Overlap => "overlap",
+            Self::Residual => "residual",
+            Self::Energy => "energy",
+        }
+    }
+
+    fn title(self, prefix: &str) -> String {
+        match self {
+            Self::Slump => "slump Δy".to_owned(),
+            Self::Overlap => "mean overlap δ/d (%)".to_owned(),
+            Self::Residual => "residual".to_owned(),
+            Self::Energy => format!("kinetic energy ({prefix}J)"),
+        }
+    }
+
+    fn value(self, row: &Observables) -> f64 {
+        match self {
+            Self::Slump => row.slump,
+            Self::Overlap => 100.0 * row.mean_overlap,
+            Self::Residual => row.residual.log10(),
+            Self::Energy => row.kinetic_energy,
+        }
+    }
+}
+
+/// Everything that plots are drawn from.
+#[derive(Clone, Debug)]
+pub struct PlotData {
+    /// Name, colour and rows of each world.
+    pub worlds: Vec<(String, Color32, Curve)>,
+    /// The plots.
+    pub quantities: Vec<Quantity>,
+    /// The moment that is shown, s.
+    pub now_secs: f64,
+    /// Plots reach at least to here, s.
+    pub until_secs: f64,
+}
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, state: &mut AppState) {
+    header(ui, state);
+    let data = data(ui, state);
+    if let Some(time_secs) = draw(ui, &data) {
+        state.live.send(Command::Seek(time_secs.clamp(0.0, state.frame.recorded_secs())));
+    }
+}
+
+fn data(ui: &Ui, state: &AppState) -> PlotData {
+    let dark = ui.visuals().dark_mode;
+    let worlds = state.frame.worlds.iter().enumerate();
+    PlotData {
+        worlds: worlds
+            .map(|(index, world)| {
+                let name = super::compare::title(state, index);
+                (name, theme::world_colour(index, dark), world.curve.clone())
+            })
+            .collect(),
+        quantities: state.preferences.quantities.clone(),
+        now_secs: state.frame.time_secs(),
+        // An empty plot is as wide as a short run; a long one is seen as a whole.
+        until_secs: 0.2 * state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs),
+    }
+}
+
+fn header(ui: &mut Ui, state: &mut AppState) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Plots").heading());
+        for quantity in Quantity::ALL {
+            let chosen = &mut state.preferences.quantities;
+            let mut shown = chosen.contains(&quantity);
+            if ui.toggle_value(&mut shown, quantity.name()).changed() {
+                if shown {
+                    chosen.push(quantity);
+                    chosen.sort_by_key(|quantity| *quantity as u8);
+                } else {
+                    chosen.retain(|other| *other != quantity);
+                }
+            }
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let stem = format!("{}-curves", super::scene::file_stem(state));
+            let folder = state.preferences.folder.clone();
+            if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
+                let data = data(ui, state);
+                let size = state.preferences.picture_size;
+                let picture = PlotPicture { data, size, dark: ui.visuals().dark_mode };
+                let export = Export::Plots(Box::new(picture));
+                state.exporter.submit(ui.ctx(), export, &folder, &stem);
+            }
+            if ui.button("CSV").on_hover_text("Save all observables of all worlds.").clicked() {
+                let curves = state.frame.worlds.iter().map(|world| world.curve.clone()).collect();
+                state.exporter.submit(ui.ctx(), Export::Curves(curves), &folder, &stem);
+            }
+            if state.frame.worlds.iter().any(|world| world.curve.stride() > 1) {
+                let stride = state.frame.worlds.iter().map(|world| world.curve.stride()).max();
+                let text = format!("every {}th step", stride.unwrap_or(1));
+                ui.label(RichText::new(text).small().weak());
+            }
+        });
+    });
+}
+
+/// Draws the plots into the space that is left. Returns the time that was clicked, s.
+pub fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
+    // Plots that left room would shrink their panel, frame by frame.
+    ui.set_min_size(ui.available_size());
+    let count = data.quantities.len();
+    if count == 0 || data.worlds.is_empty() {
+        ui.weak("Choose what to plot.");
+        return None;
+    }
+    let spacing = ui.spacing().item_spacing;
+    let fitting = ((ui.available_width() + spacing.x) / (LEAST_WIDTH + spacing.x)).floor();
+    let columns = count.min((fitting as usize).max(1));
+    let rows = count.div_ceil(columns);
+    let size = egui::vec2(
+        (ui.available_width() - spacing.x * (columns - 1) as f32) / columns as f32,
+        (ui.available_height() - spacing.y * (rows - 1) as f32) / rows as f32,
+    );
+    let mut clicked = None;
+    for row in data.quantities.chunks(columns) {
+        ui.horizontal(|ui| {
+            for quantity in row {
+                ui.allocate_ui(size, |ui| {
+                    ui.vertical(|ui| clicked = clicked.or(plot(ui, data, *quantity)));
+                });
+            }
+        });
+    }
+    clicked
+}
+
+fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
+    let (prefix, factor) = match quantity {
+        Quantity::Energy => {
+            let rows = data.worlds.iter().flat_map(|(.., curve)| curve.rows());
+            si_prefix(rows.map(|row| row.kinetic_energy).fold(0.0, f64::max))
+        }
+        _ => ("", 1.0),
+    };
+    ui.label(RichText::new(quantity.title(prefix)).small());
+    let log = quantity == Quantity::Residual;
+    let group = egui::Id::unique("time");
+    let response = Plot::new(("plot", quantity.name()))
+        .height((ui.available_height() - 2.0).max(40.0))
+        // Half of the last label lies right of the plot.
+        .width(ui.available_width() - 10.0)
+        .link_axis(group, [true, false])
+        .link_cursor(group, [true, false])
+        .allow_scroll(false)
+        .allow_zoom([true, false])
+        .show_grid([true, true])
+        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
+        .include_x(0.0)
+        .include_x(data.until_secs)
+        .x_grid_spacer(|grid| round_marks(grid, 4, 0.0))
+        .y_grid_spacer(move |grid| round_marks(grid, 4, if log { 1.0 } else { 0.0 }))
+        .custom_x_axes(vec![axis(AxisHints::new_x(), false, " s")])
+        .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log, "")])
+        .label_formatter(move |position| hover_text(position, log))
+        .show(ui, |plot| {
+            plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
+            for (name, colour, curve) in &data.worlds {
+                let points = points(curve, quantity, factor);
+                plot.line(Line::new(name.clone(), points).color(*colour).width(1.6));
+            }
+            plot.pointer_coordinate()
+        });
+    response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
+}
+
+/// Marks at round numbers, at most `most` of them and at least `least_step` apart.
+fn round_marks(grid: GridInput, most: usize, least_step: f64) -> Vec<GridMark> {
+    let (low, high) = grid.bounds;
+    let (values, step) = ticks(low, high, most);
+    let step_size = step.max(least_step);
+    let on_grid = |value: &f64| step == step_size || (value / step_size).fract() == 0.0;
+    let marks = values.into_iter().filter(on_grid);
+    marks.map(|value| GridMark { value, step_size }).collect()
+}
+
+/// Labels of the marks: numbers, or the powers of ten that numbers stand for.
+fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
+    hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
+        if log {
+            return format!("1e{}", mark.value);
+        }
+        format!("{}{unit}", decimal(mark.value, mark.step_size))
+    })
+}
+
+fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
+    let (name, at) = match position {
+        HoverPosition::NearDataPoint { plot_name, position, .. } => (*plot_name, position),
+        HoverPosition::Elsewhere { .. } => return None,
+    };
+    let value = if log { format!("{:.1e}", 10f64.powf(at.y)) } else { format!("{:.4}", at.y) };
+    Some(format!("{name}\n{:.4} s\n{value}", at.x))
+}
+
+/// The curve, or, of a long one, the least and the largest value of every interval.
+fn points(curve: &Curve, quantity: Quantity, factor: f64) -> PlotPoints<'static> {
+    // A state that no step has led to has no residual.
+    let finite = |row: &&Observables| {
+        row.time_secs.is_finite() && (quantity != Quantity::Residual || row.residual > 0.0)
+    };
+    let value = |row: &Observables| quantity.value(row) / factor;
+    if curve.len() <= 2 * BUCKETS {
+        return curve.rows().filter(finite).map(|row| [row.time_secs, value(row)]).collect();
+    }
+    let per_bucket = curve.len().div_ceil(BUCKETS);
+    let mut points = Vec::with_capacity(2 * BUCKETS + 2);
+    let mut rows = curve.rows().filter(finite).map(|row| [row.time_secs, value(row)]);
+    loop {
+        let bucket: Vec<[f64; 2]> = rows.by_ref().take(per_bucket).collect();
+        let extremes = [f64::lt as fn(&f64, &f64) -> bool, f64::gt].map(|beats| {
+            bucket
+                .iter()
+                .copied()
+                .reduce(|best, next| if beats(&next[1], &best[1]) { next } else { best })
+        });
+        let [Some(low), Some(high)] = extremes else { break };
+        points.extend(if low[0] <= high[0] { [low, high] } else { [high, low] });
+    }
+    points.into()
+}

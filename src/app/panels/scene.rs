@@ -1,0 +1,280 @@
+//! The middle of the window: the worlds, and what the mouse does to them.
+
+use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui};
+use glam::DVec2;
+
+use crate::app::export::Export;
+use crate::app::fill::fill;
+use crate::app::scene_callback::scene_callback;
+use crate::app::state::{AppState, GrainRef};
+use crate::app::theme;
+use crate::render::{
+    Camera, ColourBy, Legend, ScaleBar, Style, automatic_range, force_reference, scene_picture,
+    speed_reference,
+};
+use crate::sim::live::{Command, WorldFrame};
+use crate::sim::{GrainView, Pull};
+
+/// Height of a compared world's title, points.
+const TITLE_HEIGHT: f32 = 22.0;
+/// Space between compared worlds, points.
+const GAP: f32 = 6.0;
+
+/// Shows all worlds in the space that is left.
+pub fn show(ui: &mut Ui, state: &mut AppState) {
+    let area = ui.available_rect_before_wrap();
+    let response = ui.allocate_rect(area, Sense::hover());
+    let dark = ui.visuals().dark_mode;
+    let style = shared_style(state, dark);
+    let palette = style.theme.palette();
+    fill(ui, area, theme::color32(palette.ground));
+    if state.frame.worlds.is_empty() || area.width() < 20.0 || area.height() < 20.0 {
+        return;
+    }
+    let pixels_per_point = ui.ctx().pixels_per_point();
+    let pixels = |rect: Rect| -> [u32; 2] {
+        let size = rect.size() * pixels_per_point;
+        [size.x.round().max(1.0) as u32, size.y.round().max(1.0) as u32]
+    };
+    let [width, height] = pixels(area);
+    let strip = style.legend_width(width, height) as f32 / pixels_per_point;
+    let (scenes, legend_area) = area.split_left_right_at_x(area.right() - strip);
+    let bare = Style { legend: false, ..style.clone() };
+    for (index, cell) in cells(scenes, state.frame.worlds.len()).into_iter().enumerate() {
+        world(ui, state, index, cell, &bare, pixels(cell));
+    }
+    if strip > 0.0 {
+        let world = &state.frame.worlds[state.selected];
+        let camera =
+            state.camera.camera(view(state), &bare, pixels(scenes), f64::from(pixels_per_point));
+        let legend = Legend::of(&world.snapshot, &style, &camera, style.text_px(width, height));
+        state.legend.paint(ui, legend_area, legend, pixels(legend_area));
+    }
+    drop(response);
+}
+
+/// The style of the preferences in the window's theme, with one range for all worlds.
+fn shared_style(state: &AppState, dark: bool) -> Style {
+    let theme = if dark { crate::render::Theme::Dark } else { crate::render::Theme::Light };
+    let mut style = Style { theme, ..state.preferences.style.clone() };
+    if state.compares() {
+        let worlds = || state.frame.worlds.iter().map(|world| &world.snapshot);
+        if !matches!(style.colour_by, ColourBy::PaperGreys | ColourBy::Coordination) {
+            let ends = worlds().map(|snapshot| automatic_range(style.colour_by, snapshot).1);
+            style.range = Some((0.0, ends.fold(0.0, f64::max)));
+        }
+        let references = worlds().map(|snapshot| force_reference(&style, snapshot));
+        style.force_reference = Some(references.fold(0.0, f64::max));
+        let speeds = worlds().map(|snapshot| speed_reference(&style, snapshot));
+        style.speed_reference = Some(speeds.fold(0.0, f64::max));
+    }
+    style
+}
+
+/// The rectangles of `count` worlds: rows of up to three.
+fn cells(area: Rect, count: usize) -> Vec<Rect> {
+    if count <= 1 {
+        return vec![area];
+    }
+    let columns = if count == 4 { 2 } else { count.min(3) };
+    let rows = count.div_ceil(columns);
+    let across = (area.width() - GAP * (columns - 1) as f32) / columns as f32;
+    let down = (area.height() - GAP * (rows - 1) as f32) / rows as f32;
+    let cell = |index: usize| {
+        let (column, row) = ((index % columns) as f32, (index / columns) as f32);
+        let corner = area.min + egui::vec2(column * (across + GAP), row * (down + GAP));
+        Rect::from_min_size(corner, egui::vec2(across, down))
+    };
+    (0..count).map(cell).collect()
+}
+
+fn view(state: &AppState) -> [DVec2; 2] {
+    state.frame.start.as_ref().map_or([DVec2::ZERO, DVec2::ONE], |start| start.view)
+}
+
+/// One world: its picture, its words, and the mouse.
+fn world(
+    ui: &mut Ui,
+    state: &mut AppState,
+    index: usize,
+    cell: Rect,
+    style: &Style,
+    size: [u32; 2],
+) {
+    let pixels_per_point = f64::from(ui.ctx().pixels_per_point());
+    let camera = state.camera.camera(view(state), style, size, pixels_per_point);
+    let response = ui.interact(cell, ui.scope_id().with(("world", index)), Sense::click_and_drag());
+    let frame = state.frame.worlds[index].clone();
+    let place = Place { index, cell, camera, pixels_per_point, frame: &frame };
+    place.mouse(ui, state, &response);
+
+    // The mouse may have moved the camera.
+    let camera = state.camera.camera(view(state), style, size, pixels_per_point);
+    let place = Place { camera, ..place };
+    let picture = scene_picture(&frame.snapshot, style, &camera, size[0], size[1]);
+    ui.painter().with_clip_rect(cell).add(scene_callback(index, cell, picture));
+    place.words(ui, state, style, size);
+    place.marks(ui, state, &response);
+    if index == state.selected {
+        state.note_control("scene", cell);
+    }
+}
+
+/// Where a world is in the window.
+struct Place<'a> {
+    index: usize,
+    cell: Rect,
+    camera: Camera,
+    pixels_per_point: f64,
+    frame: &'a WorldFrame,
+}
+
+impl Place<'_> {
+    fn to_world(&self, at: Pos2) -> DVec2 {
+        let offset = (at - self.cell.center()) * self.pixels_per_point as f32;
+        self.camera.unproject(DVec2::new(f64::from(offset.x), -f64::from(offset.y)))
+    }
+
+    fn to_screen(&self, position: DVec2) -> Pos2 {
+        let [x, y] = self.camera.project(position);
+        self.cell.center() + egui::vec2(x, -y) / self.pixels_per_point as f32
+    }
+
+    fn grain_at(&self, at: Pos2) -> Option<GrainRef> {
+        let point = self.to_world(at);
+        let inside = |grain: &GrainView| grain.position.distance(point) <= grain.radius;
+        let grain = self.frame.snapshot.grains.iter().rposition(inside)?;
+        Some(GrainRef { world: self.index, grain })
+    }
+
+    fn mouse(&self, ui: &Ui, state: &mut AppState, response: &Response) {
+        let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
+        if response.drag_started_by(PointerButton::Primary) {
+            let pressed = ui.input(|input| input.pointer.press_origin());
+            state.grabbed = pressed.and_then(|at| self.grain_at(at));
+        }
+        let held = state.grabbed.filter(|grabbed| grabbed.world == self.index);
+        if let (Some(held), Some(at)) = (held, pointer) {
+            if response.dragged() {
+                let pull = Pull { grain: held.grain as u32, target: self.to_world(at) };
+                if state.wanted.get(self.index).is_some_and(|wanted| wanted.pull != Some(pull)) {
+                    state.wanted[self.index].pull = Some(pull);
+                    state.live.send(Command::SetPull(self.index, Some(pull)));
+                }
+            }
+        } else if response.dragged() {
+            state.camera.pan(response.drag_delta());
+        }
+        if held.is_some() && !response.dragged() {
+            state.grabbed = None;
+            state.live.send(Command::SetPull(self.index, None));
+        }
+        if response.double_clicked() {
+            state.camera.frame_scene();
+        } else if response.clicked() {
+            state.selected = self.index;
+            let clicked = pointer.and_then(|at| self.grain_at(at));
+            state.pinned = clicked.filter(|grain| state.pinned != Some(*grain));
+        }
+        if let Some(at) = pointer.filter(|_| response.contains_pointer()) {
+            let (scroll, pinch) =
+                ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let factor = f64::from(pinch) * (f64::from(scroll) / 200.0).exp();
+            if factor != 1.0 {
+                state.camera.zoom(factor, at - self.cell.center());
+            }
+        }
+    }
+
+    /// Title and label of the scale bar.
+    fn words(&self, ui: &Ui, state: &AppState, style: &Style, size: [u32; 2]) {
+        let painter = ui.painter().with_clip_rect(self.cell);
+        let palette = style.theme.palette();
+        let dark = ui.visuals().dark_mode;
+        if style.scale_bar {
+            let bar = ScaleBar::new(style, &self.camera, size[0], size[1]);
+            let scale = self.pixels_per_point as f32;
+            let offset = egui::vec2(bar.end[0] + 0.5 * bar.text_px, -bar.end[1]) / scale;
+            let font = FontId::proportional(bar.text_px / scale);
+            let at = self.cell.center() + offset;
+            painter.text(at, Align2::LEFT_CENTER, bar.label, font, theme::color32(palette.ink));
+        }
+        if state.compares() {
+            let colour = theme::world_colour(self.index, dark);
+            let at = self.cell.min + egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
+            painter.circle_filled(at + egui::vec2(4.0, 0.0), 4.5, colour);
+            let title = super::compare::title(state, self.index);
+            let ink = theme::color32(palette.ink);
+            let font = FontId::proportional(13.0);
+            painter.text(at + egui::vec2(14.0, 0.0), Align2::LEFT_CENTER, title, font, ink);
+            let slump = format!("Δy {:.3}", self.frame.snapshot.observables.slump);
+            let at = self.cell.right_bottom() - egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
+            painter.text(at, Align2::RIGHT_CENTER, slump, FontId::monospace(12.0), ink);
+            let selected = self.index == state.selected;
+            let stroke = if selected {
+                Stroke::new(2.0, colour)
+            } else {
+                Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color)
+            };
+            painter.rect_stroke(self.cell, 0.0, stroke, egui::StrokeKind::Inside);
+        }
+    }
+
+    /// Rings around the grains that are hovered, pinned and grabbed.
+    fn marks(&self, ui: &Ui, state: &AppState, response: &Response) {
+        let painter = ui.painter().with_clip_rect(self.cell);
+        let accent = theme::accent(ui.visuals().dark_mode);
+        let ring = |grain: &GrainView, width: f32, colour: Color32| {
+            let radius = self.camera.pixels(grain.radius) / self.pixels_per_point as f32;
+            painter.circle_stroke(
+                self.to_screen(grain.position),
+                radius,
+                Stroke::new(width, colour),
+            );
+        };
+        let grains = &self.frame.snapshot.grains;
+        if let Some(pinned) = state.pinned.filter(|pinned| pinned.world == self.index) {
+            ring(&grains[pinned.grain], 3.0, accent);
+        }
+        if let Some(grabbed) = state.grabbed.filter(|grabbed| grabbed.world == self.index) {
+            let grain = &grains[grabbed.grain];
+            ring(grain, 2.0, accent);
+            if let Some(at) = response.interact_pointer_pos() {
+                let stroke = Stroke::new(2.0, accent);
+                painter.line_segment([self.to_screen(grain.position), at], stroke);
+                painter.circle_filled(at, 4.0, accent);
+            }
+            return;
+        }
+        let hovered = response.hover_pos().and_then(|at| self.grain_at(at));
+        if let Some(hovered) = hovered {
+            ring(&grains[hovered.grain], 1.5, accent);
+            response
+                .clone()
+                .on_hover_ui_at_pointer(|ui| super::grain::describe(ui, self.frame, hovered.grain));
+        }
+    }
+}
+
+/// Saves the selected world as it is seen, in the size of the preferences.
+pub fn save_picture(context: &egui::Context, state: &mut AppState) {
+    let dark = context.theme() == egui::Theme::Dark;
+    let style = shared_style(state, dark);
+    let Some(world) = state.world() else { return };
+    let size = state.preferences.picture_size;
+    let window = state.controls.get("scene").map_or(DVec2::splat(500.0), |rect| {
+        DVec2::new(f64::from(rect.width()), f64::from(rect.height()))
+    });
+    let camera = state.camera.for_picture(view(state), &style, size, window);
+    let stem = file_stem(state);
+    let export = Export::Scene { snapshot: world.snapshot.clone(), style, camera, size };
+    let folder = state.preferences.folder.clone();
+    state.exporter.submit(context, export, &folder, &stem);
+}
+
+/// How the names of saved files begin.
+pub fn file_stem(state: &AppState) -> String {
+    let name = state.frame.start.as_ref().map_or("scene", |start| start.name.as_str());
+    let name: String = name.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
+    format!("slump-{name}-{:.4}s", state.frame.time_secs())
+}

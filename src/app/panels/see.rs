@@ -1,0 +1,91 @@
+//! Panel: how the scene is drawn, and pictures of it.
+
+use egui::{ComboBox, RichText, ThemePreference, Ui};
+
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::render::ColourBy;
+
+/// What grains can be coloured by, as the panel calls it.
+const COLOURS: [(ColourBy, &str); 5] = [
+    (ColourBy::PaperGreys, "paper greys"),
+    (ColourBy::Speed, "speed"),
+    (ColourBy::Overlap, "overlap"),
+    (ColourBy::Force, "force Σ|N|"),
+    (ColourBy::Coordination, "contacts"),
+];
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, state: &mut AppState) {
+    let style = &mut state.preferences.style;
+    ui.horizontal(|ui| {
+        let label = ui.label("Colour by");
+        let name =
+            COLOURS.iter().find(|(by, _)| *by == style.colour_by).map_or("", |(_, name)| name);
+        let shown = ComboBox::from_id_salt("colour by").width(130.0).selected_text(name).show_ui(
+            ui,
+            |ui| {
+                for (by, name) in COLOURS {
+                    ui.selectable_value(&mut style.colour_by, by, name);
+                }
+            },
+        );
+        shown.response.labelled_by(label.id);
+    });
+    egui::Grid::new("see").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
+        ui.checkbox(&mut style.show_forces, "Force chains")
+            .on_hover_text("A link a contact, as wide as |N|; blue pushes, orange pulls.");
+        ui.checkbox(&mut style.show_velocities, "Velocities").on_hover_text("An arrow a grain.");
+        ui.end_row();
+        ui.checkbox(&mut style.outlines, "Outlines").on_hover_text("A dark rim around each grain.");
+        ui.checkbox(&mut style.angles, "Angles").on_hover_text("A mark that turns with its grain.");
+        ui.end_row();
+        ui.checkbox(&mut style.scale_bar, "Scale bar").on_hover_text("A bar of round length.");
+        ui.checkbox(&mut style.legend, "Legend").on_hover_text("What colours and links mean.");
+        ui.end_row();
+    });
+    ui.horizontal(|ui| {
+        for (preference, name) in [
+            (ThemePreference::Light, "Light"),
+            (ThemePreference::Dark, "Dark"),
+            (ThemePreference::System, "System"),
+        ] {
+            ui.selectable_value(&mut state.preferences.theme, preference, name);
+        }
+    });
+    ui.separator();
+    pictures(ui, state);
+}
+
+fn pictures(ui: &mut Ui, state: &mut AppState) {
+    ui.horizontal(|ui| {
+        let label = ui.label("Picture").on_hover_text("Size of saved pictures, pixels.");
+        for side in 0..2 {
+            if side == 1 {
+                ui.label("×");
+            }
+            let size = &mut state.preferences.picture_size[side];
+            let value = egui::DragValue::new(size).range(16..=16_384).speed(8.0);
+            ui.add(value).labelled_by(label.id);
+        }
+        ui.label(RichText::new("px").weak());
+        let save = ui.button("Save PNG").on_hover_text("The scene as it is seen here (S).");
+        if save.clicked() {
+            super::scene::save_picture(ui.ctx(), state);
+        }
+    });
+    ui.horizontal(|ui| {
+        let label = ui.label("Folder").on_hover_text("Where saved files go.");
+        let mut folder = state.preferences.folder.display().to_string();
+        let edit = egui::TextEdit::singleline(&mut folder).desired_width(f32::INFINITY);
+        if ui.add(edit).labelled_by(label.id).changed() {
+            state.preferences.folder = folder.into();
+        }
+    });
+    if state.exporter.is_busy() {
+        ui.horizontal(|ui| {
+            ui.spinner();
+            ui.label(RichText::new("saving").color(theme::accent(ui.visuals().dark_mode)));
+        });
+    }
+}

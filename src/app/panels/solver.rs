@@ -1,0 +1,160 @@
+//! Panel: how each step is solved, and how well that went.
+
+use egui::{ComboBox, RichText, Ui};
+
+use crate::app::number::Number;
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::solver::{METHODS, SolverSettings, StopTest};
+
+/// The stopping tests, as the panel calls them.
+const STOP_TESTS: [(StopTest, &str, &str); 3] = [
+    (StopTest::RelativeChange, "relative change", "‖ΔP‖ of a sweep over ‖P‖"),
+    (StopTest::ImpulsePerMass, "Σ|ΔP|/m", "sum of |ΔP| of a sweep over the mean mass, m/s"),
+    (StopTest::Residual, "residual", "the residual that judges all methods"),
+];
+
+/// Shows the panel.
+pub fn show(ui: &mut Ui, state: &mut AppState) {
+    let index = state.selected;
+    let (Some(wanted), Some(start)) = (state.wanted.get(index), state.frame.start.clone()) else {
+        return;
+    };
+    let before = wanted.solver;
+    let mut solver = before;
+    egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
+        ui.label("Method").on_hover_text("How the impulses of a step are found.");
+        method_box(ui, "method", &mut solver);
+        ui.end_row();
+        let label = ui.label("Stops on").on_hover_text("What the tolerance refers to.");
+        let list = ComboBox::from_id_salt("stop").width(150.0);
+        let shown = list.selected_text(stop_name(solver.stop)).show_ui(ui, |ui| {
+            for (test, name, hint) in STOP_TESTS {
+                ui.selectable_value(&mut solver.stop, test, name).on_hover_text(hint);
+            }
+        });
+        shown.response.labelled_by(label.id);
+        ui.end_row();
+    });
+    let tolerance = Number {
+        label: "Tolerance",
+        unit: if solver.stop == StopTest::ImpulsePerMass { "m/s" } else { "" },
+        hint: "How well each step is solved; the answer depends on it.",
+        range: [1e-12, 1e-1],
+        logarithmic: true,
+        default: start.solver.tolerance,
+        refuse: &|value| refusal(SolverSettings { tolerance: value, ..before }),
+    };
+    solver.tolerance = tolerance.show(ui, before.tolerance).value.unwrap_or(solver.tolerance);
+    tolerance_buttons(ui, &mut solver);
+    let sweeps = Number {
+        label: "Sweep limit",
+        unit: "",
+        hint: "A step that needs more sweeps is reported as not converged.",
+        range: [1.0, 100_000.0],
+        logarithmic: true,
+        default: f64::from(start.solver.max_sweeps),
+        refuse: &refuse_sweeps,
+    };
+    if let Some(value) = sweeps.show(ui, f64::from(before.max_sweeps)).value {
+        solver.max_sweeps = value.round().clamp(1.0, f64::from(u32::MAX)) as u32;
+    }
+    ui.checkbox(&mut solver.warm_start, "Warm start")
+        .on_hover_text("Each step starts from the impulses of the one before.");
+    if solver != before {
+        state.set_solver(index, solver);
+    }
+    readings(ui, state);
+}
+
+/// Care and speed, one click away.
+fn tolerance_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
+    if solver.stop != StopTest::RelativeChange {
+        return;
+    }
+    ui.horizontal(|ui| {
+        for (tolerance, max_sweeps, name, hint) in [
+            (1e-3, 2000, "1e-3 fast", "For a look: piles slump that hold when solved well."),
+            (1e-5, 2000, "1e-5 live", "What the window starts with: at most 2,000 sweeps."),
+            (
+                1e-6,
+                20_000,
+                "1e-6 figures",
+                "What figures are computed with: at most 20,000 sweeps.",
+            ),
+        ] {
+            let text = RichText::new(name).size(11.5);
+            let button = egui::Button::selectable(solver.tolerance == tolerance, text);
+            if ui.add(button).on_hover_text(hint).clicked() {
+                solver.tolerance = tolerance;
+                solver.max_sweeps = max_sweeps;
+            }
+        }
+    });
+}
+
+/// A list of all methods.
+pub fn method_box(
+    ui: &mut Ui,
+    salt: impl std::hash::Hash + std::fmt::Debug,
+    solver: &mut SolverSettings,
+) {
+    let name =
+        |method| METHODS.iter().find(|info| info.method == method).map_or("", |info| info.name);
+    let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(100.0);
+    let shown = list.selected_text(name(solver.method)).show_ui(ui, |ui| {
+        for info in &METHODS {
+            ui.selectable_value(&mut solver.method, info.method, info.name)
+                .on_hover_text(format!("{} ({})", info.summary, info.source));
+        }
+    });
+    let about = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Method");
+    shown.response.widget_info(about);
+}
+
+fn stop_name(stop: StopTest) -> &'static str {
+    STOP_TESTS.iter().find(|(test, ..)| *test == stop).map_or("", |(_, name, _)| name)
+}
+
+fn refusal(solver: SolverSettings) -> Option<String> {
+    solver.validate().err().map(|error| error.to_string())
+}
+
+fn refuse_sweeps(value: f64) -> Option<String> {
+    let whole = value.fract() == 0.0 && (1.0..=f64::from(u32::MAX)).contains(&value);
+    (!whole).then(|| format!("max-sweeps is {value}, but must be a whole number ≥ 1"))
+}
+
+/// What the last step needed.
+fn readings(ui: &mut Ui, state: &AppState) {
+    let Some(world) = state.world() else { return };
+    let last = &world.snapshot.observables;
+    let dark = ui.visuals().dark_mode;
+    egui::Grid::new("readings").num_columns(4).spacing([10.0, 3.0]).show(ui, |ui| {
+        let reading = |ui: &mut Ui, name: &str, value: String, hint: &str| {
+            ui.label(RichText::new(name).weak()).on_hover_text(hint);
+            ui.label(RichText::new(value).monospace());
+        };
+        reading(ui, "sweeps", last.sweeps.to_string(), "Sweeps of the last step.");
+        reading(
+            ui,
+            "residual",
+            format!("{:.1e}", last.residual),
+            "Common residual of the last step.",
+        );
+        ui.end_row();
+        reading(ui, "contacts", last.contacts.to_string(), "Contacts of the last step.");
+        reading(ui, "ms/step", format!("{:.2}", world.step_ms), "Mean time of a step, lately.");
+        ui.end_row();
+    });
+    let (mark, colour) = if last.converged {
+        ("● converged".to_owned(), theme::good(dark))
+    } else {
+        (format!("▲ not converged within {} sweeps", last.sweeps), theme::warning(dark))
+    };
+    ui.label(RichText::new(mark).color(colour));
+    if world.unconverged_steps > 0 {
+        let text = format!("{} of {} steps did not converge", world.unconverged_steps, last.step);
+        ui.label(RichText::new(text).small().color(theme::warning(dark)));
+    }
+}

@@ -1,0 +1,79 @@
+//! The status bar: where the run is, how fast, how well.
+
+use egui::{Align, Label, Layout, RichText, Ui};
+
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::sim::live::WorldFrame;
+
+/// Shows the bar.
+pub fn show(ui: &mut Ui, state: &mut AppState) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 12.0;
+        if let Some(world) = state.world() {
+            let last = &world.snapshot.observables;
+            let mono = |text: String| RichText::new(text).monospace();
+            ui.label(mono(format!("t = {:.4} s", last.time_secs))).on_hover_text("Simulated time");
+            ui.label(mono(format!("step {}", last.step)));
+            if state.frame.playing {
+                ui.label(mono(format!("{:.0} steps/s", state.frame.steps_per_sec)))
+                    .on_hover_text("Steps of all worlds together");
+                ui.label(mono(format!("{:.2}× real time", state.frame.real_time_factor)));
+            }
+            convergence(ui, state, world);
+            if state.frame.seeking {
+                ui.label(RichText::new("computing that moment").weak());
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| messages(ui, state));
+    });
+}
+
+/// Whether steps met the tolerance: the last one, and those before.
+fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
+    let dark = ui.visuals().dark_mode;
+    let all = state.frame.worlds.iter().all(|world| world.snapshot.observables.converged);
+    let (mark, colour) = if all {
+        ("● converged", theme::good(dark))
+    } else {
+        ("▲ not converged", theme::warning(dark))
+    };
+    ui.label(RichText::new(mark).color(colour)).on_hover_text(
+        "Whether the last step met the tolerance within the sweep limit: see Solver",
+    );
+    if world.unconverged_steps > 0 {
+        let steps = if world.unconverged_steps == 1 { "step" } else { "steps" };
+        let text = format!("{} {steps} did not converge", world.unconverged_steps);
+        ui.label(RichText::new(text).weak()).on_hover_text("Up to the moment that is shown");
+    }
+}
+
+fn messages(ui: &mut Ui, state: &mut AppState) {
+    let help = ui.selectable_label(state.help, "Help (H)");
+    if help.clicked() {
+        state.help = !state.help;
+    }
+    let mut plots = state.preferences.plots;
+    let toggle = ui.toggle_value(&mut plots, "Plots").on_hover_text("Show or hide the plots");
+    state.note_control("Plots", toggle.rect);
+    state.preferences.plots = plots;
+    let mut sidebar = state.preferences.sidebar;
+    ui.toggle_value(&mut sidebar, "Panels").on_hover_text("Show or hide the panels");
+    state.preferences.sidebar = sidebar;
+
+    let dark = ui.visuals().dark_mode;
+    let failure = state.frame.worlds.iter().find_map(|world| world.failure.clone());
+    if let Some(failure) = failure {
+        let text = format!("{failure}. Drag the timeline back, or reset.");
+        let label = Label::new(RichText::new(&text).color(theme::warning(dark))).truncate();
+        ui.add(label).on_hover_text(text);
+        return;
+    }
+    if let Some((notice, left)) = state.notice() {
+        let colour = if notice.failure { theme::warning(dark) } else { theme::good(dark) };
+        let label = Label::new(RichText::new(&notice.text).color(colour)).truncate();
+        let text = notice.text.clone();
+        ui.add(label).on_hover_text(text);
+        ui.ctx().request_repaint_after_secs(left);
+    }
+}

@@ -1,0 +1,216 @@
+//! Everything that the user interface reads and changes. Knows neither window nor GPU.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use egui::Rect;
+
+use super::camera::SceneCamera;
+use super::export::Exporter;
+use super::loader::loader;
+use super::preferences::Preferences;
+use super::scene_legend::LegendCache;
+use crate::scene::Config;
+use crate::sim::live::{Command, Frame, Live, Settings, WorldFrame};
+use crate::solver::SolverSettings;
+use crate::world::Parameters;
+
+/// How long a notice stays, s.
+const NOTICE_SECS: f32 = 8.0;
+
+/// A grain of one of the worlds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GrainRef {
+    /// Index of the world.
+    pub world: usize,
+    /// Index of the grain.
+    pub grain: usize,
+}
+
+/// A sentence for the status bar.
+#[derive(Clone, Debug)]
+pub struct Notice {
+    /// The sentence.
+    pub text: String,
+    /// Whether it tells of a failure.
+    pub failure: bool,
+    since: Instant,
+}
+
+/// The state of the user interface.
+pub struct AppState {
+    /// The solver's thread.
+    pub live: Live,
+    /// Its newest frame.
+    pub frame: Frame,
+    /// What the controls show, one entry a world: ahead of the frame by what is on its way.
+    pub wanted: Vec<Settings>,
+    /// The world that the controls are about.
+    pub selected: usize,
+    /// What was loaded last.
+    pub config: Config,
+    /// What outlives the window.
+    pub preferences: Preferences,
+    /// Which part of the scene shows.
+    pub camera: SceneCamera,
+    /// The grain whose contacts are listed.
+    pub pinned: Option<GrainRef>,
+    /// The grain at the end of the mouse's spring.
+    pub grabbed: Option<GrainRef>,
+    /// Whether the help overlay shows.
+    pub help: bool,
+    /// Writes files without keeping the window waiting.
+    pub exporter: Exporter,
+    /// Where controls lie, points: for tests that drive the window from outside.
+    pub controls: BTreeMap<String, Rect>,
+    /// Set where the window is to open its graphics device anew.
+    pub restart_graphics: bool,
+    pub(super) legend: LegendCache,
+    notice: Option<Notice>,
+    seen_start: u64,
+    seen_refusal: Option<std::sync::Arc<str>>,
+}
+
+impl AppState {
+    /// The state at the start of the program; loading `config` begins.
+    pub fn new(live: Live, config: Config, preferences: Preferences) -> Self {
+        let mut state = Self {
+            live,
+            frame: Frame::default(),
+            wanted: Vec::new(),
+            selected: 0,
+            config: Config::default(),
+            preferences,
+            camera: SceneCamera::default(),
+            pinned: None,
+            grabbed: None,
+            help: false,
+            exporter: Exporter::default(),
+            controls: BTreeMap::new(),
+            restart_graphics: false,
+            legend: LegendCache::default(),
+            notice: None,
+            seen_start: 0,
+            seen_refusal: None,
+        };
+        state.live.send(Command::SetPace(state.preferences.pace()));
+        state.load(config);
+        state
+    }
+
+    /// Opens a scene.
+    pub fn load(&mut self, config: Config) {
+        self.config = config.clone();
+        self.live.send(Command::Load(loader(config)));
+    }
+
+    /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
+    pub fn refresh(&mut self) {
+        self.frame = self.live.latest().clone();
+        let start = self.frame.start.as_ref().map_or(0, |start| start.number);
+        if start != self.seen_start {
+            self.seen_start = start;
+            self.camera.frame_scene();
+            self.pinned = None;
+            self.preferences.scene = self.config.clone();
+        }
+        if self.frame.refusal != self.seen_refusal {
+            self.seen_refusal.clone_from(&self.frame.refusal);
+            if let Some(refusal) = self.seen_refusal.clone() {
+                self.warn(refusal.to_string());
+            }
+        }
+        let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
+        if in_step || self.wanted.len() != self.frame.worlds.len() {
+            self.wanted = self.frame.worlds.iter().map(|world| world.settings).collect();
+        }
+        let worlds = self.frame.worlds.len();
+        self.selected = self.selected.min(worlds.saturating_sub(1));
+        self.pinned = self.pinned.filter(|pinned| self.exists(*pinned));
+        self.grabbed = self.grabbed.filter(|grabbed| self.exists(*grabbed));
+        if let Some((text, failure)) = self.exporter.take_outcome() {
+            self.notice = Some(Notice { text, failure, since: Instant::now() });
+        }
+    }
+
+    fn exists(&self, grain: GrainRef) -> bool {
+        let world = self.frame.worlds.get(grain.world);
+        world.is_some_and(|world| grain.grain < world.snapshot.grains.len())
+    }
+
+    /// The world that the controls are about, once there is one.
+    pub fn world(&self) -> Option<&WorldFrame> {
+        self.frame.worlds.get(self.selected)
+    }
+
+    /// Whether worlds are compared.
+    pub fn compares(&self) -> bool {
+        self.frame.worlds.len() > 1
+    }
+
+    /// Changes the parameters of a world.
+    pub fn set_parameters(&mut self, world: usize, parameters: Parameters) {
+        if let Some(wanted) = self.wanted.get_mut(world) {
+            wanted.parameters = parameters;
+            self.live.send(Command::SetParameters(world, parameters));
+        }
+    }
+
+    /// Changes the solver of a world.
+    pub fn set_solver(&mut self, world: usize, solver: SolverSettings) {
+        if let Some(wanted) = self.wanted.get_mut(world) {
+            wanted.solver = solver;
+            self.live.send(Command::SetSolver(world, solver));
+        }
+    }
+
+    /// Releases, plays or pauses.
+    pub fn toggle_play(&mut self) {
+        let command = if self.frame.playing { Command::Pause } else { Command::Play };
+        self.live.send(command);
+    }
+
+    /// Takes one step and pauses.
+    pub fn step(&mut self) {
+        self.live.send(Command::Step);
+    }
+
+    /// Goes one step back in the recording.
+    pub fn step_back(&mut self) {
+        let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
+        let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
+        self.live.send(Command::Seek(time_secs.max(0.0)));
+    }
+
+    /// Back to the start, with the present settings.
+    pub fn reset(&mut self) {
+        self.live.send(Command::Reset);
+    }
+
+    /// Says something in the status bar for a while.
+    pub fn warn(&mut self, text: impl Into<String>) {
+        self.notice = Some(Notice { text: text.into(), failure: true, since: Instant::now() });
+    }
+
+    /// What the status bar has to say, and for how long yet, s.
+    pub fn notice(&self) -> Option<(&Notice, f32)> {
+        let notice = self.notice.as_ref()?;
+        let left = NOTICE_SECS - notice.since.elapsed().as_secs_f32();
+        (left > 0.0).then_some((notice, left))
+    }
+
+    /// Forgets what lives in an egui context: it is about to be replaced.
+    pub fn forget_textures(&mut self) {
+        self.legend.forget();
+    }
+
+    /// Notes where a control lies.
+    pub fn note_control(&mut self, name: &str, rect: Rect) {
+        match self.controls.get_mut(name) {
+            Some(place) => *place = rect,
+            None => {
+                self.controls.insert(name.to_owned(), rect);
+            }
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! The file that keeps the window's state between starts.
+//!
+//! A file that cannot be read, be it of another version, counts as none: nobody should have to
+//! repair it. What cannot be written is not kept, and nothing else is lost.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::preferences::Preferences;
+
+/// What is kept.
+#[derive(Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Stored {
+    /// The user's choices.
+    pub preferences: Preferences,
+    /// Which panels are open, and how large.
+    pub layout: egui::Memory,
+}
+
+/// Where the file lies: in the user's configuration folder.
+fn path() -> Option<PathBuf> {
+    let folder =
+        std::env::var_os("XDG_CONFIG_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
+    let home = || std::env::home_dir().map(|home| home.join(".config"));
+    Some(folder.or_else(home)?.join("slump").join("window.ron"))
+}
+
+/// Reads what was kept.
+pub fn load() -> Stored {
+    let text = path().and_then(|path| std::fs::read_to_string(path).ok());
+    text.and_then(|text| ron::from_str(&text).ok()).unwrap_or_default()
+}
+
+/// Forgets what was kept.
+pub fn forget() {
+    if let Some(path) = path() {
+        let _ = std::fs::remove_file(path);
+    }
+}
+
+/// Keeps it.
+pub fn save(stored: &Stored) {
+    let Some(path) = path() else { return };
+    let Ok(text) = ron::to_string(stored) else { return };
+    if let Some(folder) = path.parent() {
+        let _ = std::fs::create_dir_all(folder);
+    }
+    // Written beside and moved, so that a crash leaves the old file or the new one.
+    let fresh = path.with_extension("new");
+    if std::fs::write(&fresh, text).is_ok() {
+        let _ = std::fs::rename(fresh, path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_reads_back() {
+        // A context that has drawn something, so that there is a layout to be kept.
+        let context = egui::Context::default();
+        for _ in 0..2 {
+            let _ = context.run_ui(egui::RawInput::default(), |ui| {
+                egui::Panel::left("side").show(ui, |ui| ui.collapsing("more", |ui| ui.label("x")));
+                egui::ScrollArea::vertical().show(ui, |ui| ui.label("y"));
+            });
+        }
+        let mut stored = Stored::default();
+        stored.preferences.speed = 0.5;
+        stored.preferences.scene.grains = Some(40);
+        stored.layout = context.memory(Clone::clone);
+        let text = ron::to_string(&stored).unwrap();
+        let back: Stored = ron::from_str(&text).unwrap();
+        assert_eq!(back.preferences, stored.preferences);
+    }
+}

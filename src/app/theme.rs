@@ -1,0 +1,117 @@
+//! Fonts, colours and spacing of the window.
+
+use std::sync::Arc;
+
+use egui::{
+    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle,
+};
+
+use crate::render::{Colour, Theme};
+
+/// The font of figures, which has all the symbols that labels use.
+const FONT: &[u8] = include_bytes!("../../assets/fonts/DejaVuSansCondensed.ttf");
+const BOLD_FONT: &[u8] = include_bytes!("../../assets/fonts/DejaVuSansCondensed-Bold.ttf");
+/// Name of the family of headings.
+const BOLD: &str = "bold";
+
+/// The family of headings.
+pub fn bold() -> FontFamily {
+    FontFamily::Name(BOLD.into())
+}
+
+/// A colour of a picture as egui has it.
+pub fn color32(colour: Colour) -> Color32 {
+    let [red, green, blue, alpha] = colour.to_rgba8().0;
+    Color32::from_rgba_unmultiplied(red, green, blue, alpha)
+}
+
+/// What calls for action: the release button, the present time in plots.
+pub fn accent(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(0x4d, 0xa3, 0xd9) } else { Color32::from_rgb(0x00, 0x6c, 0xa8) }
+}
+
+/// What went wrong.
+pub fn warning(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(0xf0, 0x8a, 0x4a) } else { Color32::from_rgb(0xb8, 0x46, 0x00) }
+}
+
+/// What went well.
+pub fn good(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(0x5c, 0xc9, 0x8a) } else { Color32::from_rgb(0x0a, 0x7d, 0x46) }
+}
+
+/// Colours of the compared worlds, which colour-blind people tell apart (Okabe & Ito).
+pub fn world_colour(index: usize, dark: bool) -> Color32 {
+    const COLOURS: [u32; 6] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9];
+    const ON_DARK: [u32; 6] = [0x56b4e9, 0xe8772e, 0x2fc49a, 0xe09cc4, 0xf0bf4c, 0x9a8cff];
+    let colours = if dark { ON_DARK } else { COLOURS };
+    color32(Colour::hex(colours[index % colours.len()]))
+}
+
+/// Sets a context up: fonts, spacing and colours of both themes.
+pub fn install(context: &egui::Context) {
+    context.set_fonts(fonts());
+    context.all_styles_mut(|style| {
+        style.text_styles = [
+            (TextStyle::Small, FontId::new(11.0, FontFamily::Proportional)),
+            (TextStyle::Body, FontId::new(13.0, FontFamily::Proportional)),
+            (TextStyle::Button, FontId::new(13.0, FontFamily::Proportional)),
+            (TextStyle::Heading, FontId::new(15.0, bold())),
+            (TextStyle::Monospace, FontId::new(12.0, FontFamily::Monospace)),
+        ]
+        .into();
+        style.spacing.item_spacing = egui::vec2(6.0, 5.0);
+        style.spacing.button_padding = egui::vec2(7.0, 3.0);
+        style.spacing.interact_size.y = 21.0;
+        style.spacing.slider_rail_height = 5.0;
+        style.spacing.indent = 16.0;
+        style.spacing.icon_width = 13.0;
+        style.spacing.icon_width_inner = 8.0;
+        style.interaction.tooltip_delay = 0.35;
+        for widget in [
+            &mut style.visuals.widgets.inactive,
+            &mut style.visuals.widgets.hovered,
+            &mut style.visuals.widgets.active,
+            &mut style.visuals.widgets.open,
+        ] {
+            widget.corner_radius = CornerRadius::same(4);
+        }
+    });
+    for (theme, palette) in [(egui::Theme::Light, Theme::Light), (egui::Theme::Dark, Theme::Dark)] {
+        context.style_mut_of(theme, |style| {
+            let dark = palette == Theme::Dark;
+            let visuals = &mut style.visuals;
+            let accent = accent(dark);
+            visuals.panel_fill =
+                if dark { Color32::from_rgb(0x1d, 0x21, 0x28) } else { Color32::from_gray(0xf5) };
+            visuals.window_fill = visuals.panel_fill;
+            visuals.extreme_bg_color =
+                if dark { Color32::from_rgb(0x12, 0x15, 0x1a) } else { Color32::WHITE };
+            visuals.selection.bg_fill = accent.gamma_multiply(0.45);
+            visuals.selection.stroke = Stroke::new(1.0, visuals.strong_text_color());
+            visuals.hyperlink_color = accent;
+            visuals.warn_fg_color = warning(dark);
+            visuals.error_fg_color = warning(dark);
+            visuals.slider_trailing_fill = true;
+            let text = if dark { Color32::from_gray(214) } else { Color32::from_gray(38) };
+            visuals.widgets.noninteractive.fg_stroke.color = text;
+            visuals.widgets.inactive.fg_stroke.color = text;
+            visuals.weak_text_color =
+                Some(if dark { Color32::from_gray(158) } else { Color32::from_gray(96) });
+        });
+    }
+}
+
+fn fonts() -> FontDefinitions {
+    let mut fonts = FontDefinitions::default();
+    for (name, bytes) in [("figures", FONT), (BOLD, BOLD_FONT)] {
+        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
+    }
+    let fallbacks = fonts.families.get(&FontFamily::Proportional).cloned().unwrap_or_default();
+    let family = |first: &str| {
+        std::iter::once(first.to_owned()).chain(fallbacks.iter().cloned()).collect::<Vec<_>>()
+    };
+    fonts.families.insert(FontFamily::Proportional, family("figures"));
+    fonts.families.insert(bold(), family(BOLD));
+    fonts
+}

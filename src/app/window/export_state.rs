@@ -1,0 +1,84 @@
+//! The state of window and run as a JSON file, for tests that drive the window from outside.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use winit::window::Window;
+
+use crate::app::state::AppState;
+use crate::world::Parameters;
+
+/// Least time between two files.
+const INTERVAL: Duration = Duration::from_millis(50);
+
+/// Writes the file, not too often.
+pub(super) struct StateFile {
+    path: PathBuf,
+    written: Option<Instant>,
+}
+
+#[derive(Serialize)]
+struct State<'a> {
+    scene: Option<&'a str>,
+    playing: bool,
+    step: u64,
+    time_secs: f64,
+    slump: f64,
+    /// Parameters of the next step, as the solver's thread has them.
+    parameters: Option<Parameters>,
+    worlds: usize,
+    steps_per_sec: f64,
+    /// How often a graphics device was opened.
+    devices: u32,
+    /// Frames that the solver's thread has published.
+    frames: u64,
+    window: [u32; 2],
+    /// Left, top, right and bottom of controls, pixels of the window.
+    controls: BTreeMap<&'a str, [f32; 4]>,
+}
+
+impl StateFile {
+    pub fn new(path: PathBuf) -> Self {
+        Self { path, written: None }
+    }
+
+    pub fn write(&mut self, state: &AppState, window: &Window, devices: u32) {
+        if self.written.is_some_and(|at| at.elapsed() < INTERVAL && state.frame.playing) {
+            return;
+        }
+        self.written = Some(Instant::now());
+        let world = state.world();
+        let last = world.map(|world| world.snapshot.observables).unwrap_or_default();
+        let scale = window.scale_factor() as f32;
+        let size = window.inner_size();
+        let record = State {
+            scene: state.frame.start.as_ref().map(|start| start.name.as_str()),
+            playing: state.frame.playing,
+            step: last.step,
+            time_secs: last.time_secs,
+            slump: last.slump,
+            parameters: world.map(|world| world.settings.parameters),
+            worlds: state.frame.worlds.len(),
+            steps_per_sec: state.frame.steps_per_sec,
+            devices,
+            frames: state.frame.number,
+            window: [size.width, size.height],
+            controls: state
+                .controls
+                .iter()
+                .map(|(name, rect)| {
+                    let corners = [rect.left(), rect.top(), rect.right(), rect.bottom()];
+                    (name.as_str(), corners.map(|at| at * scale))
+                })
+                .collect(),
+        };
+        let Ok(text) = serde_json::to_string_pretty(&record) else { return };
+        // Moved into place, so that a reader never sees half a file.
+        let fresh = self.path.with_extension("new");
+        if std::fs::write(&fresh, text).is_ok() {
+            let _ = std::fs::rename(fresh, &self.path);
+        }
+    }
+}

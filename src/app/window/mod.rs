@@ -1,0 +1,311 @@
+//! The window: winit's events, egui's input and output, and when to draw.
+
+mod export_state;
+mod surface;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::window::{Window, WindowId};
+
+use super::options::WindowOptions;
+use super::state::AppState;
+use super::storage::{self, Stored};
+use super::theme;
+use super::ui::ui;
+use crate::error::{Error, Result};
+use crate::scene::Config;
+use crate::sim::live::{Live, LiveOptions};
+use export_state::StateFile;
+use surface::{Drawn, Surface};
+
+/// Size of a new window, points.
+const SIZE: [f64; 2] = [1280.0, 800.0];
+const LEAST_SIZE: [f64; 2] = [720.0, 480.0];
+/// Least time between two frames that only the run asks for. A software rasteriser takes processor
+/// time that the solver needs; the eye follows a pile at 30 frames a second.
+pub const FRAME_INTERVAL: Duration = Duration::from_millis(16);
+/// The same, where the processor draws.
+pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(33);
+/// A device that is lost this many times in a row does not come back.
+const MOST_LOSSES: u32 = 3;
+
+/// What other threads send to the window.
+#[derive(Debug)]
+enum Message {
+    /// There is a new frame of the run, or a file was written.
+    Repaint,
+}
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// Says what is missing where there is no display or no graphics driver, and which package brings
+/// it; otherwise what the system reports.
+pub fn run(config: &Config, options: &WindowOptions) -> Result<()> {
+    if options.reset_ui {
+        storage::forget();
+    }
+    let stored = storage::load();
+    let config = start_config(config, &stored)?;
+    let events =
+        EventLoop::<Message>::with_user_event().build().map_err(|error| no_display(&error))?;
+    let proxy = events.create_proxy();
+    let wake = proxy.clone();
+    let live = Live::spawn(LiveOptions {
+        // The loop is gone only when the window is.
+        wake: Box::new(move || drop(wake.send_event(Message::Repaint))),
+        ..LiveOptions::default()
+    })?;
+    let state = AppState::new(live, config, stored.preferences.clone());
+    let mut app = App {
+        context: context(&proxy, stored.layout),
+        proxy,
+        state,
+        open: None,
+        failure: None,
+        losses: 0,
+        devices: 0,
+        next_repaint: None,
+        drawn: Instant::now(),
+        state_file: options.export_state.clone().map(StateFile::new),
+    };
+    events.run_app(&mut app).map_err(|error| no_display(&error))?;
+    app.failure.map_or(Ok(()), Err)
+}
+
+/// What is opened first: what the command line asks for, or the last scene, or the default one where
+/// that is gone.
+fn start_config(asked: &Config, stored: &Stored) -> Result<Config> {
+    // A pile is made on the solver's thread; everything else of a scene is checked before a window
+    // opens.
+    let check = |config: &Config| {
+        let made = Config { grains: None, box_width: None, seed: None, ..config.clone() };
+        made.scene(|_| true)
+    };
+    if !asked.is_empty() {
+        check(asked)?;
+        return Ok(asked.clone());
+    }
+    let last = &stored.preferences.scene;
+    Ok(if check(last).is_ok() { last.clone() } else { Config::default() })
+}
+
+fn no_display(error: &dyn std::fmt::Display) -> Error {
+    let message = error.to_string();
+    // winit puts the places in its own source in front.
+    let reason = message.rsplit(": ").next().unwrap_or(&message).trim_end_matches('.');
+    Error::Renderer(format!(
+        "no window can be opened ({reason}): start Slump on a desktop, or install the Debian \
+         packages libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libx11-xcb1 for X11, or \
+         libwayland-client0 and libxkbcommon0 for Wayland; --headless needs none of them"
+    ))
+}
+
+/// A context with the project's look, which wakes the loop when another thread asks for a frame.
+fn context(proxy: &EventLoopProxy<Message>, layout: egui::Memory) -> egui::Context {
+    let context = egui::Context::default();
+    context.memory_mut(|memory| *memory = layout);
+    theme::install(&context);
+    let wake = proxy.clone();
+    let window_thread = std::thread::current().id();
+    context.set_request_repaint_callback(move |info| {
+        // Requests of the window's own thread come back as the delay of its pass.
+        if info.delay.is_zero() && std::thread::current().id() != window_thread {
+            drop(wake.send_event(Message::Repaint));
+        }
+    });
+    context
+}
+
+struct App {
+    context: egui::Context,
+    proxy: EventLoopProxy<Message>,
+    state: AppState,
+    open: Option<Open>,
+    failure: Option<Error>,
+    losses: u32,
+    devices: u32,
+    next_repaint: Option<Instant>,
+    drawn: Instant,
+    state_file: Option<StateFile>,
+}
+
+/// What exists while the window does.
+struct Open {
+    window: Arc<Window>,
+    input: egui_winit::State,
+    surface: Surface,
+}
+
+impl App {
+    fn open(&mut self, events: &ActiveEventLoop) -> Result<Open> {
+        let attributes = Window::default_attributes()
+            .with_title("Slump")
+            .with_inner_size(LogicalSize::new(SIZE[0], SIZE[1]))
+            .with_min_inner_size(LogicalSize::new(LEAST_SIZE[0], LEAST_SIZE[1]));
+        let window =
+            Arc::new(events.create_window(attributes).map_err(|error| no_display(&error))?);
+        let surface = Surface::new(events, &window)?;
+        let input = self.input(&window, &surface);
+        window.request_redraw();
+        Ok(Open { window, input, surface })
+    }
+
+    fn input(&self, window: &Window, surface: &Surface) -> egui_winit::State {
+        egui_winit::State::new(
+            self.context.clone(),
+            egui::ViewportId::ROOT,
+            window,
+            Some(window.scale_factor() as f32),
+            window.theme(),
+            Some(surface.largest_side()),
+        )
+    }
+
+    fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
+        self.failure = Some(error);
+        events.exit();
+    }
+
+    /// Opens the graphics device anew after it was lost. The old surface goes first: two surfaces
+    /// of one window exclude each other. A new context sends all textures again; the old one's
+    /// memory keeps the layout.
+    fn recover(&mut self, events: &ActiveEventLoop) {
+        let Some(Open { window, input, surface }) = self.open.take() else { return };
+        drop(surface);
+        drop(input);
+        self.losses += 1;
+        if self.losses > MOST_LOSSES {
+            let message = "the graphics device was lost again and again; --headless still works";
+            self.fail(events, Error::Renderer(message.into()));
+            return;
+        }
+        let memory = self.context.memory(Clone::clone);
+        self.context = context(&self.proxy, memory);
+        self.state.forget_textures();
+        match Surface::new(events, &window) {
+            Ok(surface) => {
+                let input = self.input(&window, &surface);
+                window.request_redraw();
+                self.open = Some(Open { window, input, surface });
+                self.devices += 1;
+                self.state.warn("The graphics device was lost and opened anew; the run went on.");
+            }
+            Err(error) => self.fail(events, error),
+        }
+    }
+
+    fn redraw(&mut self, events: &ActiveEventLoop) {
+        let Some(Open { window, input, surface }) = &mut self.open else { return };
+        let size = window.inner_size();
+        if size.width == 0 || size.height == 0 || window.is_minimized() == Some(true) {
+            return;
+        }
+        surface.resize(size);
+        let raw_input = input.take_egui_input(window);
+        let mut output = self.context.run_ui(raw_input, |ui_root| ui(ui_root, &mut self.state));
+        input.handle_platform_output(window, std::mem::take(&mut output.platform_output));
+        let viewport = output.viewport_output.get(&egui::ViewportId::ROOT);
+        let delay = viewport.map_or(Duration::MAX, |viewport| viewport.repaint_delay);
+        let closes = viewport.is_some_and(|viewport| {
+            viewport.commands.iter().any(|command| *command == egui::ViewportCommand::Close)
+        });
+        if closes {
+            events.exit();
+            return;
+        }
+        let drawn = surface.draw(&self.context, output);
+        if let Some(file) = &mut self.state_file {
+            file.write(&self.state, window, self.devices);
+        }
+        if std::mem::take(&mut self.state.restart_graphics) {
+            surface.destroy_device();
+            window.request_redraw();
+            return;
+        }
+        self.next_repaint = None;
+        self.drawn = Instant::now();
+        match drawn {
+            Drawn::Shown => {
+                self.losses = 0;
+                if delay.is_zero() {
+                    window.request_redraw();
+                } else {
+                    self.next_repaint = Instant::now().checked_add(delay);
+                }
+            }
+            Drawn::Again => window.request_redraw(),
+            Drawn::Hidden => {}
+            Drawn::Lost => self.recover(events),
+        }
+    }
+}
+
+impl ApplicationHandler<Message> for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        match self.open(events) {
+            Ok(open) => {
+                self.devices += 1;
+                self.open = Some(open);
+            }
+            Err(error) => self.fail(events, error),
+        }
+    }
+
+    fn user_event(&mut self, _events: &ActiveEventLoop, message: Message) {
+        match message {
+            Message::Repaint => {
+                let software = self.open.as_ref().is_some_and(|open| open.surface.is_software());
+                let interval = if software { SOFTWARE_FRAME_INTERVAL } else { FRAME_INTERVAL };
+                let at = self.drawn + interval;
+                self.next_repaint = Some(self.next_repaint.map_or(at, |planned| planned.min(at)));
+            }
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _window: WindowId, event: WindowEvent) {
+        if let WindowEvent::CloseRequested | WindowEvent::Destroyed = event {
+            events.exit();
+            return;
+        }
+        if let WindowEvent::RedrawRequested = event {
+            self.redraw(events);
+            return;
+        }
+        let Some(Open { window, input, .. }) = &mut self.open else { return };
+        if input.on_window_event(window, &event).repaint {
+            window.request_redraw();
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        let due = self.next_repaint.is_some_and(|at| at <= Instant::now());
+        if due {
+            self.next_repaint = None;
+            if let Some(open) = &self.open {
+                open.window.request_redraw();
+            }
+        }
+        events.set_control_flow(match self.next_repaint {
+            Some(at) => ControlFlow::WaitUntil(at),
+            None => ControlFlow::Wait,
+        });
+    }
+
+    fn exiting(&mut self, _events: &ActiveEventLoop) {
+        storage::save(&Stored {
+            preferences: self.state.preferences.clone(),
+            layout: self.context.memory(Clone::clone),
+        });
+        // The surface goes while its window and display still exist.
+        self.open = None;
+    }
+}

@@ -1,0 +1,208 @@
+//! The window's surface on a graphics device, and what to do when either is lost.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use wgpu::CurrentSurfaceTexture;
+use winit::dpi::PhysicalSize;
+use winit::event_loop::ActiveEventLoop;
+use winit::window::Window;
+
+use crate::app::graphics::Screen;
+use crate::error::{Error, Result};
+
+/// Textures of fonts are up to this large, pixels a side; every driver allows it.
+const LARGEST_SIDE_NEEDED: u32 = 2048;
+
+/// What became of a frame.
+pub(super) enum Drawn {
+    /// It shows.
+    Shown,
+    /// The surface had changed; the frame is to be drawn again.
+    Again,
+    /// Nobody can see the window.
+    Hidden,
+    /// The device is lost.
+    Lost,
+}
+
+/// The surface and the device that draws on it.
+pub(super) struct Surface {
+    // Before the window, so that it is dropped first.
+    surface: wgpu::Surface<'static>,
+    instance: wgpu::Instance,
+    window: Arc<Window>,
+    configuration: wgpu::SurfaceConfiguration,
+    screen: Screen,
+    software: bool,
+    lost: Arc<AtomicBool>,
+    /// Textures that the device is still to be told of: of frames that were not drawn.
+    textures: egui::TexturesDelta,
+}
+
+impl Surface {
+    /// Opens the strongest device that can draw on the window: on Vulkan, or else on OpenGL.
+    pub fn new(events: &ActiveEventLoop, window: &Arc<Window>) -> Result<Self> {
+        // Each kind is tried by itself: a driver that is there but cannot draw on this display
+        // must not keep the other from being found. `WGPU_BACKEND` overrides the choice.
+        let first = match wgpu::Backends::from_env() {
+            Some(backends) => backends,
+            None => wgpu::Backends::PRIMARY,
+        };
+        Self::with_backends(events, window, first)
+            .or_else(|_| Self::with_backends(events, window, wgpu::Backends::GL))
+    }
+
+    fn with_backends(
+        events: &ActiveEventLoop,
+        window: &Arc<Window>,
+        backends: wgpu::Backends,
+    ) -> Result<Self> {
+        let display = Box::new(events.owned_display_handle());
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            flags: wgpu::InstanceFlags::empty(),
+            ..wgpu::InstanceDescriptor::new_with_display_handle(display)
+        });
+        let surface =
+            instance.create_surface(Arc::clone(window)).map_err(|error| no_driver(&error))?;
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: Some(&surface),
+            ..wgpu::RequestAdapterOptions::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|error| no_driver(&error))?;
+        let available = adapter.limits();
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("slump window"),
+            required_limits: wgpu::Limits {
+                max_buffer_size: available.max_buffer_size,
+                ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(available)
+            },
+            ..wgpu::DeviceDescriptor::default()
+        });
+        let (device, queue) = pollster::block_on(request).map_err(|error| no_driver(&error))?;
+        let lost = Arc::new(AtomicBool::new(false));
+        let seen = Arc::clone(&lost);
+        device.set_device_lost_callback(move |_, _| seen.store(true, Ordering::Relaxed));
+        // An error that no call reports leaves the picture as it is; it must not end the program.
+        device.on_uncaptured_error(Arc::new(|_| {}));
+
+        let size = window.inner_size();
+        let mut configuration = surface
+            .get_default_config(&adapter, size.width.max(1), size.height.max(1))
+            .ok_or_else(|| no_driver(&"the driver cannot draw on this display"))?;
+        configuration.format = plain_format(&surface.get_capabilities(&adapter).formats)
+            .unwrap_or(configuration.format);
+        configuration.present_mode = wgpu::PresentMode::AutoVsync;
+        surface.configure(&device, &configuration);
+        let software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        let screen = Screen::new(&device, &queue, configuration.format);
+        Ok(Self {
+            surface,
+            instance,
+            window: Arc::clone(window),
+            configuration,
+            screen,
+            software,
+            lost,
+            textures: egui::TexturesDelta::default(),
+        })
+    }
+
+    /// Whether the processor draws.
+    pub fn is_software(&self) -> bool {
+        self.software
+    }
+
+    /// Largest side of a texture, pixels.
+    pub fn largest_side(&self) -> usize {
+        self.screen.device.limits().max_texture_dimension_2d.max(LARGEST_SIDE_NEEDED) as usize
+    }
+
+    /// Follows the window's size, pixels.
+    pub fn resize(&mut self, size: PhysicalSize<u32>) {
+        let largest = self.screen.device.limits().max_texture_dimension_2d;
+        let [width, height] = [size.width, size.height].map(|side| side.clamp(1, largest));
+        if (self.configuration.width, self.configuration.height) != (width, height) {
+            (self.configuration.width, self.configuration.height) = (width, height);
+            self.configure();
+        }
+    }
+
+    fn configure(&self) {
+        self.surface.configure(&self.screen.device, &self.configuration);
+    }
+
+    /// Gives the device up, as if the driver had.
+    pub fn destroy_device(&self) {
+        self.screen.device.destroy();
+    }
+
+    /// Draws what a pass of egui put out.
+    pub fn draw(&mut self, context: &egui::Context, output: egui::FullOutput) -> Drawn {
+        self.textures.append(output.textures_delta);
+        // Callbacks of the device, the one that tells of its loss included, run in here.
+        let polled = self.screen.device.poll(wgpu::PollType::Poll);
+        if polled.is_err() || self.lost.load(Ordering::Relaxed) {
+            return Drawn::Lost;
+        }
+        let (texture, again) = match self.surface.get_current_texture() {
+            CurrentSurfaceTexture::Success(texture) => (texture, false),
+            CurrentSurfaceTexture::Suboptimal(texture) => (texture, true),
+            CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => {
+                return Drawn::Hidden;
+            }
+            CurrentSurfaceTexture::Outdated => {
+                self.configure();
+                return Drawn::Again;
+            }
+            CurrentSurfaceTexture::Lost | CurrentSurfaceTexture::Validation => {
+                return self.replace_surface();
+            }
+        };
+        let pixels_per_point = output.pixels_per_point;
+        let primitives = context.tessellate(output.shapes, pixels_per_point);
+        self.screen.update_textures(&self.textures);
+        let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let size = [self.configuration.width, self.configuration.height];
+        let mut encoder = self.screen.device.create_command_encoder(&Default::default());
+        let extra = self.screen.paint(&mut encoder, &view, size, pixels_per_point, &primitives);
+        self.screen.queue.submit(extra.into_iter().chain([encoder.finish()]));
+        self.window.pre_present_notify();
+        self.screen.queue.present(texture);
+        let textures = std::mem::take(&mut self.textures);
+        self.screen.free_textures(&textures);
+        if again {
+            self.configure();
+        }
+        Drawn::Shown
+    }
+
+    /// A new surface on the same device.
+    fn replace_surface(&mut self) -> Drawn {
+        match self.instance.create_surface(Arc::clone(&self.window)) {
+            Ok(surface) => {
+                self.surface = surface;
+                self.configure();
+                Drawn::Again
+            }
+            Err(_) => Drawn::Lost,
+        }
+    }
+}
+
+/// A format that stores the numbers it is given: colours are blended as files store them.
+fn plain_format(formats: &[wgpu::TextureFormat]) -> Option<wgpu::TextureFormat> {
+    let plain = [wgpu::TextureFormat::Bgra8Unorm, wgpu::TextureFormat::Rgba8Unorm];
+    formats.iter().copied().find(|format| plain.contains(format))
+}
+
+fn no_driver(error: &dyn std::fmt::Display) -> Error {
+    let reason = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    Error::Renderer(format!(
+        "no graphics driver can draw in a window: install the Debian packages mesa-vulkan-drivers \
+         and libvulkan1, or libegl1 and libgl1-mesa-dri; --headless still works ({reason})"
+    ))
+}

@@ -1,0 +1,68 @@
+//! Simulated time against the time on the wall.
+
+use std::time::{Duration, Instant};
+
+use super::Pace;
+
+/// A run that is further behind its pace than this does not try to make up for it.
+const MOST_LAG: Duration = Duration::from_millis(100);
+/// Rates are means over this long.
+const RATE_WINDOW: Duration = Duration::from_millis(300);
+
+/// Says when the next step is due, and how fast steps were taken.
+pub(super) struct Clock {
+    pub pace: Pace,
+    anchor: (Instant, f64),
+    window: (Instant, f64, u64),
+    steps: u64,
+    /// Simulated time per time on the wall, lately.
+    pub real_time_factor: f64,
+    /// Steps of all worlds together, lately, 1/s.
+    pub steps_per_sec: f64,
+}
+
+impl Clock {
+    pub fn new() -> Self {
+        let now = Instant::now();
+        Self {
+            pace: Pace::RealTime(1.0),
+            anchor: (now, 0.0),
+            window: (now, 0.0, 0),
+            steps: 0,
+            real_time_factor: 0.0,
+            steps_per_sec: 0.0,
+        }
+    }
+
+    /// Time starts to pass at this simulated time.
+    pub fn start(&mut self, time_secs: f64) {
+        let now = Instant::now();
+        self.anchor = (now, time_secs);
+        self.window = (now, time_secs, self.steps);
+    }
+
+    /// How long to wait before the step from `time_secs` is due.
+    pub fn wait(&mut self, time_secs: f64) -> Duration {
+        let Pace::RealTime(factor) = self.pace else { return Duration::ZERO };
+        let (anchor, anchor_secs) = self.anchor;
+        let due_secs = ((time_secs - anchor_secs) / factor.max(1e-6)).clamp(0.0, 1e6);
+        let due = anchor + Duration::from_secs_f64(due_secs);
+        let now = Instant::now();
+        if now.saturating_duration_since(due) > MOST_LAG {
+            self.anchor = (now, time_secs);
+        }
+        due.saturating_duration_since(now)
+    }
+
+    /// Counts steps that led to `time_secs`.
+    pub fn count(&mut self, steps: u64, time_secs: f64) {
+        self.steps += steps;
+        let (since, secs, steps) = self.window;
+        let elapsed = since.elapsed();
+        if elapsed >= RATE_WINDOW {
+            self.real_time_factor = (time_secs - secs) / elapsed.as_secs_f64();
+            self.steps_per_sec = (self.steps - steps) as f64 / elapsed.as_secs_f64();
+            self.window = (Instant::now(), time_secs, self.steps);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! What can be asked of a live run.
+
+use glam::DVec2;
+
+use super::Settings;
+use crate::error::Result;
+use crate::sim::{Pull, Simulation};
+use crate::solver::SolverSettings;
+use crate::world::{Boundary, Parameters};
+
+/// The state that a run starts from.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// Name of the scene.
+    pub name: String,
+    /// The world at t = 0.
+    pub simulation: Simulation,
+    /// The run pauses here once, s; played on, it goes further.
+    pub duration_secs: f64,
+    /// Shapes that are drawn before the first step: what holds a state that is at rest.
+    pub held_by: Vec<Boundary>,
+    /// Lower left and upper right corner of what pictures show, m.
+    pub view: [DVec2; 2],
+}
+
+/// How far a long preparation has come.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// 0 … 1.
+    pub part: f32,
+    /// One line.
+    pub text: String,
+}
+
+/// Makes a start. It runs on the solver's thread, tells of its progress, and gives up with an error
+/// where the callback returns false.
+pub type Loader = Box<dyn FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<Start> + Send>;
+
+/// One of the worlds that run side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variant {
+    /// Its parameters.
+    pub parameters: Parameters,
+    /// Its solver.
+    pub solver: SolverSettings,
+}
+
+/// Simulated time per time on the wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pace {
+    /// This many simulated seconds a second, or as many as the machine computes.
+    RealTime(f64),
+    /// As fast as the machine computes.
+    Max,
+}
+
+/// What can be asked of a live run. World indices that do not exist are ignored.
+pub enum Command {
+    /// Replace everything by a new start, with one world.
+    Load(Loader),
+    /// Give up the loading that is going on.
+    CancelLoading,
+    /// Run worlds side by side from the present start; one variant is the ordinary case.
+    Compare(Vec<Variant>),
+    /// Change the parameters of a world from its next step on.
+    SetParameters(usize, Parameters),
+    /// Change the solver of a world from its next step on.
+    SetSolver(usize, SolverSettings),
+    /// Tie a spring to a grain of a world, or take it away.
+    SetPull(usize, Option<Pull>),
+    /// Let time pass.
+    Play,
+    /// Stop time.
+    Pause,
+    /// Take one step (the world with the largest time step does; the others catch up), and pause.
+    Step,
+    /// Back to the start with the present settings; forgets the recording; pauses.
+    Reset,
+    /// Go to the recorded moment nearest to this simulated time, s; pauses.
+    Seek(f64),
+    /// Change the pace.
+    SetPace(Pace),
+    /// End the thread.
+    Quit,
+}
+
+impl Settings {
+    /// The settings of a simulation's next step.
+    pub fn of(simulation: &Simulation) -> Self {
+        Self {
+            parameters: *simulation.parameters(),
+            solver: *simulation.solver(),
+            pull: simulation.pull(),
+        }
+    }
+}

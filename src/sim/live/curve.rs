@@ -1,0 +1,117 @@
+//! The observables of a run, as they are shared with a window: cheap to hand over at any length.
+
+use std::sync::Arc;
+
+use crate::sim::Observables;
+
+/// Rows in a chunk that is shared and never changes again.
+const CHUNK: usize = 256;
+/// Where a curve becomes longer, every second row is dropped. 32,768 rows are 6 MB.
+const MOST_ROWS: usize = 32_768;
+
+/// Observables in the order of time: every step's, or every n-th's in a long run.
+///
+/// A clone shares all full chunks and copies fewer than 256 rows.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    chunks: Vec<Arc<Vec<Observables>>>,
+    tail: Vec<Observables>,
+    stride: u64,
+}
+
+impl Default for Curve {
+    fn default() -> Self {
+        Self { chunks: Vec::new(), tail: Vec::new(), stride: 1 }
+    }
+}
+
+impl Curve {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.chunks.len() * CHUNK + self.tail.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Only steps whose number is a multiple of this are kept.
+    pub fn stride(&self) -> u64 {
+        self.stride
+    }
+
+    /// The rows, first to last.
+    pub fn rows(&self) -> impl Iterator<Item = &Observables> {
+        self.chunks.iter().flat_map(|chunk| chunk.iter()).chain(&self.tail)
+    }
+
+    /// The last row.
+    pub fn last(&self) -> Option<&Observables> {
+        self.tail.last().or_else(|| self.chunks.last().and_then(|chunk| chunk.last()))
+    }
+
+    /// Appends a step's observables.
+    pub fn push(&mut self, row: Observables) {
+        if !row.step.is_multiple_of(self.stride) {
+            return;
+        }
+        self.tail.push(row);
+        if self.tail.len() == CHUNK {
+            self.chunks.push(Arc::new(std::mem::take(&mut self.tail)));
+        }
+        if self.len() > MOST_ROWS {
+            self.stride *= 2;
+            let stride = self.stride;
+            self.keep(|row| row.step.is_multiple_of(stride));
+        }
+    }
+
+    /// Forgets all steps after `step`.
+    pub fn truncate(&mut self, step: u64) {
+        if self.last().is_some_and(|row| row.step > step) {
+            self.keep(|row| row.step <= step);
+        }
+    }
+
+    fn keep(&mut self, kept: impl Fn(&Observables) -> bool) {
+        let rows: Vec<Observables> = self.rows().filter(|row| kept(row)).copied().collect();
+        let full = rows.len() / CHUNK * CHUNK;
+        self.chunks = rows[..full].chunks(CHUNK).map(|rows| Arc::new(rows.to_vec())).collect();
+        self.tail = rows[full..].to_vec();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(steps: u64) -> Curve {
+        let mut curve = Curve::default();
+        for step in 0..=steps {
+            curve.push(Observables { step, ..Observables::default() });
+        }
+        curve
+    }
+
+    #[test]
+    fn a_long_curve_keeps_its_ends_and_its_order() {
+        let curve = curve(3 * MOST_ROWS as u64);
+        assert!(curve.len() <= MOST_ROWS && curve.len() > MOST_ROWS / 2);
+        assert_eq!(curve.stride(), 4);
+        let steps: Vec<u64> = curve.rows().map(|row| row.step).collect();
+        assert!(steps.windows(2).all(|pair| pair[1] == pair[0] + 4));
+        assert_eq!(steps[0], 0);
+    }
+
+    #[test]
+    fn a_truncated_curve_goes_on_where_it_was_cut() {
+        let mut curve = curve(1000);
+        let shared = curve.clone();
+        curve.truncate(300);
+        curve.push(Observables { step: 301, ..Observables::default() });
+        let steps: Vec<u64> = curve.rows().map(|row| row.step).collect();
+        assert_eq!(steps, (0..=301).collect::<Vec<_>>());
+        assert_eq!(shared.len(), 1001, "a copy that was handed out is left alone");
+    }
+}

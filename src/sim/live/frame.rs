@@ -1,0 +1,97 @@
+//! What a live run shows of itself: plain data, cheap to copy.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::{Curve, Progress, Settings};
+use crate::sim::Snapshot;
+use crate::solver::SolverSettings;
+use crate::world::{Parameters, Physics};
+
+/// The newest moment of a live run.
+#[derive(Clone, Debug, Default)]
+pub struct Frame {
+    /// Counts frames.
+    pub number: u64,
+    /// The last command that this frame knows of.
+    pub acknowledged: u64,
+    /// What the run started from; none before the first load.
+    pub start: Option<Arc<StartInfo>>,
+    /// The worlds, one unless they are compared.
+    pub worlds: Vec<WorldFrame>,
+    /// Whether time passes.
+    pub playing: bool,
+    /// Whether a recorded moment is being computed.
+    pub seeking: bool,
+    /// A start that is being made.
+    pub loading: Option<Progress>,
+    /// Why the last start could not be made.
+    pub refusal: Option<Arc<str>>,
+    /// Simulated time per time on the wall, lately.
+    pub real_time_factor: f64,
+    /// Steps of all worlds together, lately, 1/s.
+    pub steps_per_sec: f64,
+}
+
+/// What does not change after a load.
+#[derive(Clone, Debug)]
+pub struct StartInfo {
+    /// Counts loads.
+    pub number: u64,
+    /// Name of the scene.
+    pub name: String,
+    /// Where the run pauses once, s.
+    pub duration_secs: f64,
+    /// Whether shapes hold the start until it is released.
+    pub held: bool,
+    /// Lower left and upper right corner of what pictures show, m.
+    pub view: [DVec2; 2],
+    /// The physics that the scene computes.
+    pub physics: Physics,
+    /// The parameters that the scene states.
+    pub parameters: Parameters,
+    /// The solver that the scene states.
+    pub solver: SolverSettings,
+}
+
+/// One world at one moment.
+#[derive(Clone, Debug)]
+pub struct WorldFrame {
+    /// The world. Before the first step, with the shapes that hold it.
+    pub snapshot: Arc<Snapshot>,
+    /// The settings of its next step.
+    pub settings: Settings,
+    /// The observables of the whole recording.
+    pub curve: Curve,
+    /// Simulated time of the last recorded step, s.
+    pub recorded_secs: f64,
+    /// Steps up to this moment that were not solved to the tolerance.
+    pub unconverged_steps: u64,
+    /// Mean time that a step takes lately, ms.
+    pub step_ms: f64,
+    /// Why the run cannot go on from here.
+    pub failure: Option<Arc<str>>,
+}
+
+impl Frame {
+    /// Simulated time of the first world, s.
+    pub fn time_secs(&self) -> f64 {
+        self.worlds.first().map_or(0.0, |world| world.snapshot.observables.time_secs)
+    }
+
+    /// Simulated time of the last recorded step of any world, s.
+    pub fn recorded_secs(&self) -> f64 {
+        self.worlds.iter().map(|world| world.recorded_secs).fold(0.0, f64::max)
+    }
+
+    /// Whether the run is at its start.
+    pub fn at_start(&self) -> bool {
+        self.worlds.iter().all(|world| world.snapshot.observables.step == 0)
+    }
+
+    /// Whether the scene is held and has not been released.
+    pub fn held(&self) -> bool {
+        self.at_start() && self.start.as_ref().is_some_and(|start| start.held)
+    }
+}

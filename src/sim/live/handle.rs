@@ -1,0 +1,85 @@
+//! The side of a live run that a window holds.
+
+use std::sync::mpsc::{Sender, channel};
+use std::time::Duration;
+
+use triple_buffer::{Output, triple_buffer};
+
+use super::engine::Engine;
+use super::{Command, Frame};
+use crate::error::{Error, Result};
+
+/// How a live run serves its window.
+pub struct LiveOptions {
+    /// Called on the solver's thread after each new frame.
+    pub wake: Box<dyn Fn() + Send>,
+    /// Least time between two frames while the run goes on.
+    pub frame_interval: Duration,
+    /// Memory for keyframes, of all worlds together.
+    pub recording_bytes: usize,
+}
+
+impl Default for LiveOptions {
+    /// Nobody to wake, 60 frames a second, 256 MiB.
+    fn default() -> Self {
+        Self {
+            wake: Box::new(|| {}),
+            frame_interval: Duration::from_micros(16_600),
+            recording_bytes: 256 << 20,
+        }
+    }
+}
+
+/// A run on a thread of its own. Dropped, it ends after the step that it is computing.
+pub struct Live {
+    commands: Sender<(u64, Command)>,
+    frames: Output<Frame>,
+    sent: u64,
+}
+
+impl Live {
+    /// Starts the thread, with nothing loaded.
+    ///
+    /// # Errors
+    /// Where the system refuses a thread.
+    pub fn spawn(options: LiveOptions) -> Result<Self> {
+        let (commands, inbox) = channel();
+        let (output, frames) = triple_buffer(&Frame::default());
+        let engine = Engine::new(inbox, output, options);
+        std::thread::Builder::new()
+            .name("solver".into())
+            .spawn(move || engine.run())
+            .map_err(|error| Error::value("solver thread", error, "startable"))?;
+        Ok(Self { commands, frames, sent: 0 })
+    }
+
+    /// Sends a command and returns its number, which [`Frame::acknowledged`] reaches once the
+    /// command has been carried out (loading and seeking: once they have begun).
+    pub fn send(&mut self, command: Command) -> u64 {
+        self.sent += 1;
+        // The thread ends only with this handle; a panic there shows as a run that stands still.
+        let _ = self.commands.send((self.sent, command));
+        self.sent
+    }
+
+    /// The number of the last command that was sent.
+    pub fn sent(&self) -> u64 {
+        self.sent
+    }
+
+    /// The newest frame. Never waits.
+    pub fn latest(&mut self) -> &Frame {
+        self.frames.read()
+    }
+
+    /// Whether there is a frame that [`Live::latest`] has not returned yet.
+    pub fn has_news(&self) -> bool {
+        self.frames.updated()
+    }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        let _ = self.commands.send((self.sent + 1, Command::Quit));
+    }
+}

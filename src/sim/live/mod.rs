@@ -1,0 +1,22 @@
+//! A run that someone watches: simulations on a thread of their own.
+//!
+//! Commands go in by a channel ([`Command`]); the newest moment comes out by a triple buffer
+//! ([`Frame`]). Neither side ever waits for the other. The thread records what it computes, so that
+//! a run can be looked at again and continued from any moment ([`Recording`]); several worlds that
+//! start from one state are kept at the same simulated time.
+
+mod clock;
+mod command;
+mod curve;
+mod engine;
+mod frame;
+mod handle;
+mod recording;
+mod track;
+mod worlds;
+
+pub use command::{Command, Loader, Pace, Progress, Start, Variant};
+pub use curve::Curve;
+pub use frame::{Frame, StartInfo, WorldFrame};
+pub use handle::{Live, LiveOptions};
+pub use recording::{Recording, Settings};

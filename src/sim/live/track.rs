@@ -1,0 +1,148 @@
+//! One world of a live run: its simulation, its recording and its curve.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::{Curve, Recording, Settings, Variant};
+use crate::sim::Simulation;
+
+/// Weight of the newest step in the mean time a step takes.
+const NEWEST: f64 = 0.05;
+
+/// One world of a live run.
+pub(super) struct Track {
+    pub simulation: Simulation,
+    pub recording: Recording,
+    pub curve: Curve,
+    /// Unconverged steps up to the present moment.
+    pub unconverged: u64,
+    /// Mean time that a step takes, s.
+    pub step_secs: f64,
+    /// Why the last step was no success.
+    pub failure: Option<Arc<str>>,
+    /// The simulated time that a seek is on its way to, s.
+    goal_secs: Option<f64>,
+}
+
+impl Track {
+    pub fn new(start: &Simulation, variant: &Variant, budget_bytes: usize) -> Self {
+        let mut simulation = start.clone();
+        // A variant is checked where it is made; what is refused here stays as the start has it.
+        let _ = simulation.set_parameters(variant.parameters);
+        let _ = simulation.set_solver(variant.solver);
+        let mut curve = Curve::default();
+        curve.push(*simulation.observables());
+        Self {
+            recording: Recording::new(&simulation, budget_bytes),
+            simulation,
+            curve,
+            unconverged: 0,
+            step_secs: 0.0,
+            failure: None,
+            goal_secs: None,
+        }
+    }
+
+    pub fn variant(&self) -> Variant {
+        Variant { parameters: *self.simulation.parameters(), solver: *self.simulation.solver() }
+    }
+
+    pub fn time_secs(&self) -> f64 {
+        self.simulation.time_secs()
+    }
+
+    pub fn time_step_secs(&self) -> f64 {
+        self.simulation.parameters().time_step_secs
+    }
+
+    /// Takes a step and records it. Whether it succeeded.
+    pub fn step(&mut self) -> bool {
+        if self.failure.is_some() {
+            return false;
+        }
+        let step = self.simulation.observables().step;
+        self.recording.before_step(&self.simulation, self.unconverged);
+        self.curve.truncate(step);
+        let before = Instant::now();
+        let outcome = self.simulation.step().map(|observables| *observables);
+        self.note_duration(before.elapsed().as_secs_f64());
+        self.recording.after_step(&self.simulation);
+        match outcome {
+            Ok(observables) => {
+                self.unconverged += u64::from(!observables.converged);
+                self.curve.push(observables);
+                true
+            }
+            Err(error) => {
+                self.failure = Some(error.to_string().into());
+                false
+            }
+        }
+    }
+
+    fn note_duration(&mut self, secs: f64) {
+        let weight = if self.step_secs == 0.0 { 1.0 } else { NEWEST };
+        self.step_secs += weight * (secs - self.step_secs);
+    }
+
+    /// Steps until the time of the world is the one nearest to `time_secs`. Whether all succeeded.
+    pub fn catch_up(&mut self, time_secs: f64) -> bool {
+        while self.time_secs() + 0.5 * self.time_step_secs() < time_secs {
+            if !self.step() {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Starts on the way to a recorded moment.
+    pub fn seek(&mut self, time_secs: f64) {
+        let (keyframe, unconverged) = self.recording.keyframe_before(time_secs);
+        self.simulation.clone_from(keyframe);
+        self.unconverged = unconverged;
+        self.failure = None;
+        self.goal_secs = Some(time_secs);
+        self.adopt_recorded_settings();
+    }
+
+    /// Takes one step of a seek. Whether it has arrived.
+    pub fn advance_seek(&mut self) -> bool {
+        let Some(goal) = self.goal_secs else { return true };
+        let there = self.time_secs() + 0.5 * self.time_step_secs() >= goal
+            || self.simulation.observables().step >= self.recording.end_step();
+        if there || !self.replay_step() {
+            self.goal_secs = None;
+            // The hand that pulled a grain back then is not there when the run goes on from here.
+            self.simulation.set_pull(None);
+            return true;
+        }
+        false
+    }
+
+    fn replay_step(&mut self) -> bool {
+        match self.simulation.step() {
+            Ok(observables) => {
+                self.unconverged += u64::from(!observables.converged);
+                self.adopt_recorded_settings();
+                true
+            }
+            Err(error) => {
+                self.failure = Some(error.to_string().into());
+                false
+            }
+        }
+    }
+
+    /// The settings with which the next step was recorded.
+    fn adopt_recorded_settings(&mut self) {
+        let step = self.simulation.observables().step;
+        if let Some(Settings { parameters, solver, pull }) =
+            self.recording.settings_after(step).copied()
+        {
+            // They were accepted when they were recorded.
+            let _ = self.simulation.set_parameters(parameters);
+            let _ = self.simulation.set_solver(solver);
+            self.simulation.set_pull(pull);
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Worlds that run side by side, kept at the same simulated time.
+
+use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+
+use super::Variant;
+use super::track::Track;
+use crate::sim::Simulation;
+
+/// One track a world. The world with the largest time step leads; the others follow to within half
+/// a step of their own.
+#[derive(Default)]
+pub(super) struct Worlds {
+    pub tracks: Vec<Track>,
+}
+
+impl Worlds {
+    /// Worlds at one start, with `recording_bytes` for the keyframes of all of them.
+    pub fn new(start: &Simulation, variants: &[Variant], recording_bytes: usize) -> Self {
+        let budget_bytes = recording_bytes / variants.len().max(1);
+        let track = |variant: &Variant| Track::new(start, variant, budget_bytes);
+        Self { tracks: variants.iter().map(track).collect() }
+    }
+
+    pub fn variants(&self) -> Vec<Variant> {
+        self.tracks.iter().map(Track::variant).collect()
+    }
+
+    pub fn has_failed(&self) -> bool {
+        self.tracks.iter().any(|track| track.failure.is_some())
+    }
+
+    fn leader(&self) -> Option<&Track> {
+        self.tracks.iter().reduce(|best, next| {
+            if next.time_step_secs() > best.time_step_secs() { next } else { best }
+        })
+    }
+
+    /// Simulated time of the leader, s.
+    pub fn time_secs(&self) -> f64 {
+        self.leader().map_or(0.0, Track::time_secs)
+    }
+
+    /// Time step of the leader, s.
+    pub fn time_step_secs(&self) -> f64 {
+        self.leader().map_or(0.0, Track::time_step_secs)
+    }
+
+    /// One step of the leader, and as many of the others as bring them to the same time. Returns
+    /// the number of steps of all worlds, and whether all succeeded.
+    pub fn tick(&mut self) -> (u64, bool) {
+        let steps_before = self.steps();
+        let target_secs = self.time_secs() + self.time_step_secs();
+        let all_well = match self.tracks.as_mut_slice() {
+            [track] => track.step(),
+            tracks => tracks
+                .par_iter_mut()
+                .map(|track| track.catch_up(target_secs))
+                .reduce(|| true, |one, other| one && other),
+        };
+        (self.steps() - steps_before, all_well)
+    }
+
+    fn steps(&self) -> u64 {
+        self.tracks.iter().map(|track| track.simulation.observables().step).sum()
+    }
+
+    /// Starts on the way to a recorded moment.
+    pub fn seek(&mut self, time_secs: f64) {
+        for track in &mut self.tracks {
+            track.seek(time_secs);
+        }
+    }
+
+    /// Takes one step of a seek. Whether all worlds have arrived.
+    pub fn advance_seek(&mut self) -> bool {
+        match self.tracks.as_mut_slice() {
+            [track] => track.advance_seek(),
+            tracks => tracks
+                .par_iter_mut()
+                .map(Track::advance_seek)
+                .reduce(|| true, |one, other| one && other),
+        }
+    }
+}

@@ -1,0 +1,134 @@
+#!/usr/bin/env bash
+# Starts the real window under Xvfb, drags the slider of the time step with the mouse, and checks
+# through the state that the window exports that the drag reached the solver. Also: release, resize,
+# a lost graphics device, closing, and the sentence that a missing display is told with.
+#
+#   tests/window.sh [FOLDER]        screenshots go to FOLDER (default target/window)
+#
+# Needs a release build (cargo build --release), and of Debian: xvfb xdotool imagemagick python3,
+# mesa-vulkan-drivers libvulkan1 (or libegl1 libgl1-mesa-dri), and the X11 client libraries that
+# winit loads: libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0.
+set -euo pipefail
+
+cd "$(dirname "$0")/.."
+program=${SLUMP:-target/release/slump}
+shots=${1:-target/window}
+mkdir -p "$shots"
+work=$(mktemp -d)
+state=$work/state.json
+export XDG_CONFIG_HOME=$work/config
+[ -n "${XDG_RUNTIME_DIR:-}" ] || { export XDG_RUNTIME_DIR=$work/runtime; mkdir -m 700 "$XDG_RUNTIME_DIR"; }
+unset WAYLAND_DISPLAY
+
+window=
+server=
+cleanup() {
+    [ -z "$window" ] || kill "$window" 2>/dev/null || true
+    [ -z "$server" ] || kill "$server" 2>/dev/null || true
+    rm -rf "$work"
+}
+trap cleanup EXIT
+
+fail() {
+    echo "window.sh: $1" >&2
+    [ ! -s "$work/log" ] || sed 's/^/    /' "$work/log" >&2
+    exit 1
+}
+
+# Without a display, one sentence says what is missing.
+if env -u DISPLAY "$program" --reset-ui > /dev/null 2> "$work/log"; then
+    fail "a window opened without a display"
+fi
+grep -q -- "--headless" "$work/log" || fail "a missing display is not explained"
+[ "$(wc -l < "$work/log")" -eq 1 ] || fail "a missing display takes more than one sentence"
+
+# Any display number that is free.
+Xvfb -displayfd 4 -screen 0 1280x800x24 4> "$work/display" > "$work/xvfb.log" 2>&1 &
+server=$!
+for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
+[ -s "$work/display" ] || fail "Xvfb does not start"
+export DISPLAY=:$(cat "$work/display")
+
+# value EXPRESSION: a value of the exported state; s is the state.
+value() { python3 -c "import json,sys; s=json.load(open('$state')); print($1)"; }
+
+# wait_for WHAT EXPRESSION: until the expression is true.
+wait_for() {
+    for _ in $(seq 300); do
+        if [ -s "$state" ] && [ "$(value "$2" 2>/dev/null)" = True ]; then return; fi
+        kill -0 "$window" 2>/dev/null || fail "the window is gone while waiting for $1"
+        sleep 0.1
+    done
+    fail "waited in vain for $1"
+}
+
+# at CONTROL PART: the pixel at a part of the width of a control.
+at() { value "'%d %d' % (lambda c: (c[0] + $2 * (c[2] - c[0]), (c[1] + c[3]) / 2))(s['controls']['$1'])"; }
+
+"$program" --reset-ui --bond 20 --dt 1e-3 --export-state "$state" > "$work/log" 2>&1 &
+window=$!
+wait_for "the pile" "s['scene'] == 'pile'"
+sleep 1
+xdotool search --name Slump windowfocus
+import -window root "$shots/window-start.png"
+
+# The slider, from its handle to the right end.
+xdotool mousemove $(at Δt 0.66) mousedown 1
+for part in 0.75 0.85 0.95 1.0; do xdotool mousemove $(at Δt $part); sleep 0.05; done
+xdotool mouseup 1
+wait_for "the time step" "5e-3 <= s['parameters']['time_step_secs'] <= 1e-2"
+dragged=$(value "s['parameters']['time_step_secs']")
+
+# Release; the solver steps with what was dragged.
+xdotool mousemove $(at release 0.5) click 1
+wait_for "three steps" "s['step'] >= 3 and abs(s['time_secs'] / s['step'] - $dragged) < 1e-9"
+import -window root "$shots/window-released.png"
+
+# Keys.
+xdotool key space
+wait_for "the pause" "not s['playing']"
+step=$(value "s['step']")
+xdotool key Right
+wait_for "one step" "s['step'] == $step + 1"
+xdotool key r
+wait_for "the reset" "s['step'] == 0"
+
+# Another size, and a small one.
+for size in "1000 700" "1280 800"; do
+    xdotool search --name Slump windowsize $size
+    wait_for "$size pixels" "s['window'] == [${size/ /, }]"
+    sleep 0.5
+    import -window root "$shots/window-${size/ /x}.png"
+done
+
+# A lost graphics device comes back, and the run goes on.
+xdotool key ctrl+shift+g
+sleep 2
+xdotool key Right
+wait_for "a step after the device was lost" "s['step'] == 1 and s['devices'] == 2"
+import -window root "$shots/window-recovered.png"
+
+# Idle costs nothing: less than a tenth of a second of processor time in two.
+ticks() { awk '{ print $14 + $15 }' "/proc/$window/stat"; }
+sleep 1
+before=$(ticks)
+sleep 2
+used=$(($(ticks) - before))
+[ "$used" -lt "$(($(getconf CLK_TCK) / 10))" ] || fail "an idle window used $used ticks in 2 s"
+
+# Closed, it keeps its layout: without the plots, the scene is higher.
+height() { value "s['controls']['scene'][3]"; }
+with_plots=$(height)
+xdotool mousemove $(at "Plots" 0.5) click 1
+wait_for "the plots to go" "s['controls']['scene'][3] > $with_plots + 100"
+sleep 0.5
+without_plots=$(height)
+xdotool key ctrl+q
+for _ in $(seq 50); do kill -0 "$window" 2>/dev/null || break; sleep 0.1; done
+! kill -0 "$window" 2>/dev/null || fail "the window does not close"
+rm -f "$state"
+"$program" --export-state "$state" > "$work/log" 2>&1 &
+window=$!
+wait_for "the pile" "s['scene'] == 'pile'"
+wait_for "the layout of the last time" "abs(s['controls']['scene'][3] - $without_plots) < 2"
+echo "window.sh: Δt dragged to $dragged s reached the solver; screenshots in $shots"

@@ -1,0 +1,133 @@
+//! Sliders, fields, buttons and keys reach the solver's thread.
+
+use egui_kittest::kittest::Queryable;
+use slump::scene::Config;
+
+use crate::robot::{Robot, pile};
+
+#[test]
+fn a_slider_changes_the_time_step_of_the_next_snapshot() {
+    let mut robot = Robot::open(pile());
+    let (from, to) = (robot.place("Δt", 0.66, 0.5), robot.place("Δt", 1.0, 0.5));
+    robot.drag(from, to);
+    robot.button(to, false);
+    robot.settle();
+    let wanted = robot.world().settings.parameters.time_step_secs;
+    assert!((5e-3..=1e-2).contains(&wanted), "the slider's right end means 1e-2 s, not {wanted}");
+    robot.click("Step");
+    assert_eq!(robot.world().snapshot.observables.time_step_secs, wanted);
+}
+
+#[test]
+fn a_paper_value_is_one_click_away() {
+    let mut robot = Robot::open(pile());
+    robot.click("5e-4");
+    robot.click("Step");
+    assert_eq!(robot.world().snapshot.observables.time_step_secs, 5e-4);
+}
+
+#[test]
+fn the_run_changes_while_it_runs() {
+    let mut robot = Robot::open(pile());
+    robot.click("▶  Release the walls");
+    robot.until("ten steps", |state| state.world().unwrap().snapshot.observables.step >= 10);
+    robot.type_number("Bond", "75");
+    let world = robot.world();
+    assert!(robot.state().frame.playing);
+    assert_eq!(world.settings.parameters.bond, 75.0);
+}
+
+#[test]
+fn pause_stops_time() {
+    let mut robot = Robot::open(pile());
+    robot.key(egui::Key::Space);
+    robot.until("some steps", |state| state.world().unwrap().snapshot.observables.step >= 5);
+    robot.key(egui::Key::Space);
+    let steps = robot.steps();
+    assert!(!robot.state().frame.playing);
+    std::thread::sleep(std::time::Duration::from_millis(100));
+    robot.harness.step();
+    assert_eq!(robot.steps(), steps);
+}
+
+#[test]
+fn a_step_is_exactly_one() {
+    let mut robot = Robot::open(pile());
+    robot.key(egui::Key::ArrowRight);
+    assert_eq!(robot.steps(), 1);
+    robot.click("Step");
+    assert_eq!(robot.steps(), 2);
+    robot.key(egui::Key::R);
+    assert_eq!(robot.steps(), 0);
+}
+
+#[test]
+fn a_run_pauses_at_the_end_of_its_scene_and_plays_on_from_there() {
+    let config = Config { duration: Some(0.02), ..pile() };
+    let mut robot = Robot::open(config);
+    robot.state_mut().preferences.full_speed = true;
+    robot.key(egui::Key::Space);
+    robot.until("the end", |state| !state.frame.playing);
+    assert_eq!(robot.steps(), 20);
+    robot.key(egui::Key::Space);
+    robot.until("more", |state| state.world().unwrap().snapshot.observables.step > 22);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_visibly() {
+    let mut robot = Robot::open(pile());
+    for (text, complaint) in
+        [("-5", "bond is -5, but must be a finite number ≥ 0"), ("strong", "“strong” is no number")]
+    {
+        robot.type_number("Bond", text);
+        assert_eq!(robot.world().settings.parameters.bond, 20.0);
+        assert!(robot.harness.query_by_label(complaint).is_some(), "{complaint}");
+    }
+    robot.type_number("Bond", "500");
+    assert_eq!(robot.world().settings.parameters.bond, 500.0, "beyond the slider is no mistake");
+    assert!(robot.harness.query_by_label_contains("is no number").is_none());
+}
+
+#[test]
+fn a_scene_that_cannot_be_opened_says_why_and_leaves_the_old_one() {
+    let mut robot = Robot::open(pile());
+    let config = Config { scene: Some("no-such.toml".into()), ..Config::default() };
+    robot.state_mut().load(config);
+    robot.settle();
+    let (notice, _) = robot.state().notice().expect("a complaint");
+    assert!(notice.text.starts_with("no-such.toml: "), "{}", notice.text);
+    assert_eq!(robot.world().snapshot.grains.len(), 138);
+}
+
+#[test]
+fn a_new_pile_can_be_given_up() {
+    let mut robot = Robot::open(pile());
+    robot.state_mut().load(Config { grains: Some(300), seed: Some(1), ..pile() });
+    robot.until("progress", |state| {
+        state.frame.loading.as_ref().is_some_and(|progress| !progress.text.is_empty())
+    });
+    robot.click("Cancel");
+    assert_eq!(robot.world().snapshot.grains.len(), 138, "the old pile is still there");
+    assert!(robot.state().notice().is_none(), "giving up is no failure");
+}
+
+#[test]
+fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
+    // No sweep can hold a grain that a step carries to infinity.
+    let mut robot = Robot::open(pile());
+    robot.key(egui::Key::ArrowRight);
+    robot.type_number("Δt, time step", "1e200");
+    robot.key(egui::Key::ArrowRight);
+    robot.key(egui::Key::ArrowRight);
+    let failure = robot.world().failure.clone().expect("a failure");
+    assert!(
+        failure.contains("no longer finite at step") && failure.contains("Bond 20"),
+        "{failure}"
+    );
+    assert!(!robot.state().frame.playing);
+    assert!(robot.harness.query_by_label_contains("no longer finite").is_some());
+    robot.state_mut().live.send(slump::sim::live::Command::Seek(1e-3));
+    robot.settle();
+    assert!(robot.world().failure.is_none());
+    assert_eq!(robot.steps(), 1);
+}

@@ -1,0 +1,16 @@
+//! The window's real panels with a real solver thread, driven through their accessibility tree.
+//!
+//! Pictures of panels are kept in `screenshots/window-*.png`; they may differ by 2/255 in any channel
+//! and in 1 % of the pixels at all. After a change that is meant, look at the pictures that a failure
+//! leaves in `target/golden/` and renew the files with
+//!
+//! ```text
+//! SLUMP_BLESS=1 cargo test --release --test window
+//! ```
+
+mod compare;
+mod controls;
+mod mouse;
+mod pictures;
+mod recording;
+mod robot;

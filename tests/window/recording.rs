@@ -1,0 +1,110 @@
+//! The recording gives back what was computed, bit for bit.
+
+use egui_kittest::kittest::Queryable;
+use slump::sim::live::{Command, Live, LiveOptions, Start};
+
+use crate::robot::{Robot, bits, pile};
+
+#[test]
+fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
+    let mut robot = Robot::open(pile());
+    for step in 0..90 {
+        if step == 30 {
+            robot.click("2e-3");
+        }
+        if step == 50 {
+            robot.type_number("Bond", "80");
+        }
+        robot.state_mut().step();
+    }
+    robot.settle();
+    assert_eq!(robot.steps(), 90);
+    let uninterrupted = bits(robot.world());
+    let curve: Vec<_> = robot.world().curve.rows().copied().collect();
+
+    // Drag the timeline to a moment before both changes, and go on.
+    let (from, to) = (robot.place("timeline", 0.99, 0.5), robot.place("timeline", 0.1, 0.5));
+    robot.drag(from, to);
+    robot.button(to, false);
+    robot.settle();
+    let scrubbed = robot.steps();
+    assert!((1..30).contains(&scrubbed), "step {scrubbed}");
+    let settings = robot.world().settings;
+    assert_eq!((settings.parameters.bond, settings.parameters.time_step_secs), (20.0, 1e-3));
+    assert_eq!(robot.state().frame.recorded_secs(), curve[90].time_secs, "nothing is lost yet");
+
+    // To the end again, without stepping: a replay of the recording.
+    robot.state_mut().live.send(Command::Seek(curve[90].time_secs));
+    robot.settle();
+    assert_eq!(bits(robot.world()), uninterrupted);
+    let parameters = robot.world().settings.parameters;
+    assert_eq!((parameters.bond, parameters.time_step_secs), (80.0, 2e-3));
+
+    // From step 60 on, stepping: a continuation.
+    robot.state_mut().live.send(Command::Seek(curve[60].time_secs));
+    robot.settle();
+    assert_eq!(robot.steps(), 60);
+    for _ in 60..90 {
+        robot.state_mut().step();
+    }
+    robot.settle();
+    assert_eq!(bits(robot.world()), uninterrupted);
+    let again: Vec<_> = robot.world().curve.rows().copied().collect();
+    assert_eq!(again, curve);
+}
+
+#[test]
+fn a_run_that_goes_on_differently_forgets_the_old_future() {
+    let mut robot = Robot::open(pile());
+    for _ in 0..50 {
+        robot.state_mut().step();
+    }
+    robot.settle();
+    robot.state_mut().live.send(Command::Seek(0.02));
+    robot.settle();
+    robot.click("5e-3");
+    robot.click("Step");
+    assert_eq!(robot.steps(), 21);
+    assert_eq!(robot.world().curve.len(), 22);
+    assert!((robot.state().frame.recorded_secs() - 0.025).abs() < 1e-12);
+    assert!(robot.harness.query_by_label("Timeline").is_some());
+}
+
+#[test]
+fn little_memory_is_enough_to_get_anywhere() {
+    let scene = pile().scene(|_| true).unwrap();
+    let simulation = scene.simulation().unwrap();
+    let mut expected = simulation.clone();
+    let mut moments = Vec::new();
+    for _ in 0..200 {
+        expected.step().unwrap();
+        moments.push(expected.snapshot().grains);
+    }
+    let options = LiveOptions { recording_bytes: 300_000, ..LiveOptions::default() };
+    let mut live = Live::spawn(options).unwrap();
+    live.send(Command::Load(Box::new(move |_| {
+        Ok(Start {
+            name: "pile".into(),
+            simulation,
+            duration_secs: 1.0,
+            held_by: Vec::new(),
+            view: [glam::DVec2::ZERO, glam::DVec2::ONE],
+        })
+    })));
+    for _ in 0..200 {
+        live.send(Command::Step);
+    }
+    for step in [3usize, 150, 64, 199, 1] {
+        let number = live.send(Command::Seek(step as f64 * 1e-3));
+        let start = std::time::Instant::now();
+        loop {
+            let frame = live.latest();
+            if frame.acknowledged == number && !frame.seeking {
+                assert_eq!(frame.worlds[0].snapshot.grains, moments[step - 1], "step {step}");
+                break;
+            }
+            assert!(start.elapsed().as_secs() < 30, "waited in vain for step {step}");
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+    }
+}
