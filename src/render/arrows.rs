@@ -43,7 +43,7 @@ pub(super) fn velocity_links(
     height: u32,
 ) -> Vec<LinkInstance> {
     let reference = speed_reference(style, snapshot);
-    if !(reference > 0.0) {
+    if reference.is_nan() || reference <= 0.0 {
         return Vec::new();
     }
     let diameter = snapshot.surroundings.mean_diameter;
@@ -52,7 +52,8 @@ pub(super) fn velocity_links(
     let mut links = Vec::new();
     for grain in &snapshot.grains {
         let part = grain.velocity / reference;
-        if !(part.length() >= LEAST_PART) {
+        // A velocity that is not a number is no arrow.
+        if part.length().is_nan() || part.length() < LEAST_PART {
             continue;
         }
         let shaft = part * full_length(snapshot);

@@ -99,6 +99,36 @@ fn a_scene_that_cannot_be_opened_says_why_and_leaves_the_old_one() {
     assert_eq!(robot.world().snapshot.grains.len(), 138);
 }
 
+/// A file in the hand of the mouse.
+#[derive(Debug)]
+struct File(std::path::PathBuf);
+
+impl egui::DroppedFile for File {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn a_dropped_list_of_discs_is_opened_and_anything_else_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let discs = folder.path().join("three.csv");
+    std::fs::write(&discs, "x,y,radius\n0,0.01,0.002\n0.01,0.01,0.002\n0.02,0.01,0.002\n").unwrap();
+    let mut robot = Robot::open(pile());
+    for (path, grains) in [(discs, 3), (folder.path().join("photograph.jpeg"), 3)] {
+        robot.harness.input_mut().dropped_files.push(std::sync::Arc::new(File(path)));
+        robot.harness.step();
+        robot.settle();
+        assert_eq!(robot.world().snapshot.grains.len(), grains);
+    }
+    let (notice, _) = robot.state().notice().expect("a complaint");
+    assert!(notice.text.contains("photograph.jpeg is neither a scene"), "{}", notice.text);
+}
+
 #[test]
 fn a_new_pile_can_be_given_up() {
     let mut robot = Robot::open(pile());

@@ -81,8 +81,14 @@ fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {
     });
 }
 
-/// A number with three digits and a prefixed unit.
+/// A number with four digits and a prefixed unit.
 fn si(value: f64, unit: &str) -> String {
     let (prefix, factor) = si_prefix(value);
-    format!("{:.3} {prefix}{unit}", value / factor)
+    let number = value / factor;
+    let decimals = match number.abs() {
+        100.0.. => 1,
+        10.0.. => 2,
+        _ => 3,
+    };
+    format!("{number:.decimals$} {prefix}{unit}")
 }

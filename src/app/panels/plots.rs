@@ -151,7 +151,10 @@ pub fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     }
     let spacing = ui.spacing().item_spacing;
     let fitting = ((ui.available_width() + spacing.x) / (LEAST_WIDTH + spacing.x)).floor();
-    let columns = count.min((fitting as usize).max(1));
+    // Plots wider than high read best; a high area holds two rows of them.
+    let high = ui.available_height() > 0.45 * ui.available_width();
+    let most = if high { count.div_ceil(2) } else { count };
+    let columns = most.min((fitting as usize).max(1));
     let rows = count.div_ceil(columns);
     let size = egui::vec2(
         (ui.available_width() - spacing.x * (columns - 1) as f32) / columns as f32,
@@ -162,6 +165,7 @@ pub fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
         ui.horizontal(|ui| {
             for quantity in row {
                 ui.allocate_ui(size, |ui| {
+                    ui.set_min_width(size.x);
                     ui.vertical(|ui| clicked = clicked.or(plot(ui, data, *quantity)));
                 });
             }
@@ -189,6 +193,8 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
         .link_cursor(group, [true, false])
         .allow_scroll(false)
         .allow_zoom([true, false])
+        // egui would fill it pixel by pixel (see `fill`).
+        .show_background(false)
         .show_grid([true, true])
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
         .include_x(0.0)

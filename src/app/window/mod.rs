@@ -1,6 +1,7 @@
 //! The window: winit's events, egui's input and output, and when to draw.
 
 mod export_state;
+mod start;
 mod surface;
 
 use std::sync::Arc;
@@ -21,16 +22,17 @@ use crate::error::{Error, Result};
 use crate::scene::Config;
 use crate::sim::live::{Live, LiveOptions};
 use export_state::StateFile;
+use start::{no_display, start_config};
 use surface::{Drawn, Surface};
 
 /// Size of a new window, points.
 const SIZE: [f64; 2] = [1280.0, 800.0];
 const LEAST_SIZE: [f64; 2] = [720.0, 480.0];
 /// Least time between two frames that only the run asks for. A software rasteriser takes processor
-/// time that the solver needs; the eye follows a pile at 30 frames a second.
+/// time that the solver needs; the eye follows a pile at 25 frames a second.
 pub const FRAME_INTERVAL: Duration = Duration::from_millis(16);
 /// The same, where the processor draws.
-pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(33);
+pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
 /// A device that is lost this many times in a row does not come back.
 const MOST_LOSSES: u32 = 3;
 
@@ -76,34 +78,6 @@ pub fn run(config: &Config, options: &WindowOptions) -> Result<()> {
     };
     events.run_app(&mut app).map_err(|error| no_display(&error))?;
     app.failure.map_or(Ok(()), Err)
-}
-
-/// What is opened first: what the command line asks for, or the last scene, or the default one where
-/// that is gone.
-fn start_config(asked: &Config, stored: &Stored) -> Result<Config> {
-    // A pile is made on the solver's thread; everything else of a scene is checked before a window
-    // opens.
-    let check = |config: &Config| {
-        let made = Config { grains: None, box_width: None, seed: None, ..config.clone() };
-        made.scene(|_| true)
-    };
-    if !asked.is_empty() {
-        check(asked)?;
-        return Ok(asked.clone());
-    }
-    let last = &stored.preferences.scene;
-    Ok(if check(last).is_ok() { last.clone() } else { Config::default() })
-}
-
-fn no_display(error: &dyn std::fmt::Display) -> Error {
-    let message = error.to_string();
-    // winit puts the places in its own source in front.
-    let reason = message.rsplit(": ").next().unwrap_or(&message).trim_end_matches('.');
-    Error::Renderer(format!(
-        "no window can be opened ({reason}): start Slump on a desktop, or install the Debian \
-         packages libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libx11-xcb1 for X11, or \
-         libwayland-client0 and libxkbcommon0 for Wayland; --headless needs none of them"
-    ))
 }
 
 /// A context with the project's look, which wakes the loop when another thread asks for a frame.
@@ -212,9 +186,8 @@ impl App {
         input.handle_platform_output(window, std::mem::take(&mut output.platform_output));
         let viewport = output.viewport_output.get(&egui::ViewportId::ROOT);
         let delay = viewport.map_or(Duration::MAX, |viewport| viewport.repaint_delay);
-        let closes = viewport.is_some_and(|viewport| {
-            viewport.commands.iter().any(|command| *command == egui::ViewportCommand::Close)
-        });
+        let closes = viewport
+            .is_some_and(|viewport| viewport.commands.contains(&egui::ViewportCommand::Close));
         if closes {
             events.exit();
             return;

@@ -8,43 +8,40 @@ use std::time::{Duration, Instant};
 use triple_buffer::Input;
 
 use super::clock::Clock;
-use super::track::Track;
+use super::loading::message;
 use super::worlds::Worlds;
-use super::{
-    Command, Frame, LiveOptions, Loader, Progress, Settings, Start, StartInfo, Variant, WorldFrame,
-};
-use crate::sim::{Snapshot, Surroundings};
+use super::{Command, Frame, LiveOptions, Progress, Start, StartInfo, Variant};
+use crate::sim::Surroundings;
 
 /// A frame that nobody fetched yet is renewed after so many frame intervals: making one costs time,
 /// and an old one shows late what happens.
 const UNFETCHED_INTERVALS: u32 = 3;
-/// Least time between two frames that tell of the progress of a loading.
-const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
-
 pub(super) struct Engine {
-    inbox: Receiver<(u64, Command)>,
+    pub(super) inbox: Receiver<(u64, Command)>,
     /// Commands that wait for the end of a loading or a seek.
-    waiting: VecDeque<(u64, Command)>,
-    output: Input<Frame>,
-    options: LiveOptions,
-    start: Option<Start>,
-    info: Option<Arc<StartInfo>>,
-    held: Option<Arc<Surroundings>>,
-    worlds: Worlds,
-    clock: Clock,
-    playing: bool,
-    seeking: bool,
+    pub(super) waiting: VecDeque<(u64, Command)>,
+    pub(super) output: Input<Frame>,
+    pub(super) options: LiveOptions,
+    pub(super) start: Option<Start>,
+    pub(super) info: Option<Arc<StartInfo>>,
+    pub(super) held: Option<Arc<Surroundings>>,
+    pub(super) worlds: Worlds,
+    pub(super) clock: Clock,
+    pub(super) playing: bool,
+    pub(super) seeking: bool,
     /// Where this play pauses, s.
-    stop_at_secs: Option<f64>,
-    loading: Option<Progress>,
-    refusal: Option<Arc<str>>,
-    acknowledged: u64,
-    frames: u64,
-    loads: u64,
-    published: Instant,
+    pub(super) stop_at_secs: Option<f64>,
+    pub(super) loading: Option<Progress>,
+    pub(super) refusal: Option<Arc<str>>,
+    pub(super) acknowledged: u64,
+    pub(super) frames: u64,
+    pub(super) loads: u64,
+    pub(super) published: Instant,
     /// Whether the newest state is one that no frame shows.
-    unpublished: bool,
-    quit: bool,
+    pub(super) unpublished: bool,
+    /// Whether the next step is to be shown as soon as it is taken.
+    pub(super) urgent: bool,
+    pub(super) quit: bool,
 }
 
 impl Engine {
@@ -73,6 +70,7 @@ impl Engine {
             loads: 0,
             published: Instant::now(),
             unpublished: false,
+            urgent: false,
             quit: false,
         }
     }
@@ -88,7 +86,8 @@ impl Engine {
                 self.tick();
                 self.stop_when_done();
             }
-            if self.unpublished && self.wait_for_frame().is_zero() {
+            if self.unpublished && (self.urgent || self.wait_for_frame().is_zero()) {
+                self.urgent = false;
                 self.publish();
             }
         }
@@ -122,7 +121,11 @@ impl Engine {
             commanded = true;
         }
         if commanded && !self.seeking {
-            self.publish();
+            // What was changed shows in the step that comes next, if that comes at once.
+            self.urgent = self.playing && self.wait_for_step().is_zero();
+            if !self.urgent {
+                self.publish();
+            }
         }
         true
     }
@@ -208,7 +211,7 @@ impl Engine {
     }
 
     /// Puts worlds at the start, one a variant.
-    fn restart(&mut self, variants: &[Variant]) {
+    pub(super) fn restart(&mut self, variants: &[Variant]) {
         let Some(start) = &self.start else { return };
         if variants.is_empty() {
             return;
@@ -216,65 +219,6 @@ impl Engine {
         self.worlds = Worlds::new(&start.simulation, variants, self.options.recording_bytes);
         self.playing = false;
         self.seeking = false;
-    }
-
-    fn load(&mut self, loader: Loader) {
-        self.playing = false;
-        self.refusal = None;
-        self.loading = Some(Progress::default());
-        self.publish();
-        let mut cancelled = false;
-        let outcome = loader(&mut |progress| {
-            self.tell_progress(progress);
-            cancelled |= self.is_interrupted();
-            !cancelled
-        });
-        self.loading = None;
-        match outcome {
-            Ok(start) => self.begin(start),
-            Err(_) if cancelled => {}
-            Err(error) => self.refusal = Some(message(error)),
-        }
-    }
-
-    fn tell_progress(&mut self, progress: Progress) {
-        self.loading = Some(progress);
-        if self.published.elapsed() >= PROGRESS_INTERVAL {
-            self.publish();
-        }
-    }
-
-    /// Whether a command came that makes the present loading pointless. The others wait.
-    fn is_interrupted(&mut self) -> bool {
-        let mut interrupted = false;
-        while let Ok((number, command)) = self.inbox.try_recv() {
-            interrupted |=
-                matches!(command, Command::CancelLoading | Command::Load(_) | Command::Quit);
-            self.waiting.push_back((number, command));
-        }
-        interrupted
-    }
-
-    fn begin(&mut self, start: Start) {
-        self.loads += 1;
-        let settings = Settings::of(&start.simulation);
-        self.info = Some(Arc::new(StartInfo {
-            number: self.loads,
-            name: start.name.clone(),
-            duration_secs: start.duration_secs,
-            held: !start.held_by.is_empty(),
-            view: start.view,
-            physics: start.simulation.physics(),
-            parameters: settings.parameters,
-            solver: settings.solver,
-        }));
-        let mut surroundings = Surroundings::clone(&start.simulation.snapshot().surroundings);
-        surroundings.boundaries.extend_from_slice(&start.held_by);
-        self.held = Some(Arc::new(surroundings));
-        let Settings { parameters, solver, .. } = settings;
-        let variant = Variant { parameters, solver };
-        self.start = Some(start);
-        self.restart(&[variant]);
     }
 
     fn tick(&mut self) {
@@ -298,45 +242,6 @@ impl Engine {
             self.publish();
         }
     }
-
-    fn publish(&mut self) {
-        self.frames += 1;
-        let worlds = self.worlds.tracks.iter().map(|track| self.world_frame(track)).collect();
-        let frame = Frame {
-            number: self.frames,
-            acknowledged: self.acknowledged,
-            start: self.info.clone(),
-            worlds,
-            playing: self.playing,
-            seeking: self.seeking,
-            loading: self.loading.clone(),
-            refusal: self.refusal.clone(),
-            real_time_factor: self.clock.real_time_factor,
-            steps_per_sec: self.clock.steps_per_sec,
-        };
-        self.output.write(frame);
-        self.published = Instant::now();
-        self.unpublished = false;
-        (self.options.wake)();
-    }
-
-    fn world_frame(&self, track: &Track) -> WorldFrame {
-        let mut snapshot: Snapshot = track.simulation.snapshot();
-        if snapshot.observables.step == 0
-            && let Some(held) = &self.held
-        {
-            snapshot.surroundings = Arc::clone(held);
-        }
-        WorldFrame {
-            snapshot: Arc::new(snapshot),
-            settings: Settings::of(&track.simulation),
-            curve: track.curve.clone(),
-            recorded_secs: track.recording.end_secs(),
-            unconverged_steps: track.unconverged,
-            step_ms: 1e3 * track.step_secs,
-            failure: track.failure.clone(),
-        }
-    }
 }
 
 impl Command {
@@ -352,8 +257,4 @@ impl Command {
                 | Self::Reset
         )
     }
-}
-
-fn message(error: crate::error::Error) -> Arc<str> {
-    error.to_string().into()
 }

@@ -11,6 +11,8 @@ mod curve;
 mod engine;
 mod frame;
 mod handle;
+mod loading;
+mod publish;
 mod recording;
 mod track;
 mod worlds;

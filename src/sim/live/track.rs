@@ -64,7 +64,7 @@ impl Track {
         self.recording.before_step(&self.simulation, self.unconverged);
         self.curve.truncate(step);
         let before = Instant::now();
-        let outcome = self.simulation.step().map(|observables| *observables);
+        let outcome = self.simulation.step().copied();
         self.note_duration(before.elapsed().as_secs_f64());
         self.recording.after_step(&self.simulation);
         match outcome {

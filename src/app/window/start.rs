@@ -1,0 +1,34 @@
+//! What has to be settled before a window opens.
+
+use crate::app::storage::Stored;
+use crate::error::{Error, Result};
+use crate::scene::Config;
+
+/// What is opened first: what the command line asks for, or the last scene, or the default one where
+/// that is gone.
+pub(super) fn start_config(asked: &Config, stored: &Stored) -> Result<Config> {
+    // A pile is made on the solver's thread; everything else of a scene is checked before a window
+    // opens.
+    let check = |config: &Config| {
+        let made = Config { grains: None, box_width: None, seed: None, ..config.clone() };
+        made.scene(|_| true)
+    };
+    if !asked.is_empty() {
+        check(asked)?;
+        return Ok(asked.clone());
+    }
+    let last = &stored.preferences.scene;
+    Ok(if check(last).is_ok() { last.clone() } else { Config::default() })
+}
+
+/// What is missing where no window can be opened, and what brings it.
+pub(super) fn no_display(error: &dyn std::fmt::Display) -> Error {
+    let message = error.to_string();
+    // winit puts the places in its own source in front.
+    let reason = message.rsplit(": ").next().unwrap_or(&message).trim_end_matches('.');
+    Error::Renderer(format!(
+        "no window can be opened ({reason}): start Slump on a desktop, or install the Debian \
+         packages libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libx11-xcb1 for X11, or \
+         libwayland-client0 and libxkbcommon0 for Wayland; --headless needs none of them"
+    ))
+}

@@ -1,0 +1,79 @@
+//! Making a start on the solver's thread, with progress told and commands heard.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::engine::Engine;
+use super::{Command, Loader, Progress, Settings, Start, StartInfo, Variant};
+use crate::error::Error;
+use crate::sim::Surroundings;
+
+/// Least time between two frames that tell of the progress of a loading.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
+
+impl Engine {
+    /// Replaces everything by what `loader` makes, unless that fails or is given up.
+    pub(super) fn load(&mut self, loader: Loader) {
+        self.playing = false;
+        self.refusal = None;
+        self.loading = Some(Progress::default());
+        self.publish();
+        let mut cancelled = false;
+        let outcome = loader(&mut |progress| {
+            self.tell_progress(progress);
+            cancelled |= self.is_interrupted();
+            !cancelled
+        });
+        self.loading = None;
+        match outcome {
+            Ok(start) => self.begin(start),
+            Err(_) if cancelled => {}
+            Err(error) => self.refusal = Some(message(error)),
+        }
+    }
+
+    fn tell_progress(&mut self, progress: Progress) {
+        self.loading = Some(progress);
+        if self.published.elapsed() >= PROGRESS_INTERVAL {
+            self.publish();
+        }
+    }
+
+    /// Whether a command came that makes the present loading pointless. The others wait.
+    fn is_interrupted(&mut self) -> bool {
+        let mut interrupted = false;
+        while let Ok((number, command)) = self.inbox.try_recv() {
+            interrupted |=
+                matches!(command, Command::CancelLoading | Command::Load(_) | Command::Quit);
+            self.waiting.push_back((number, command));
+        }
+        interrupted
+    }
+
+    fn begin(&mut self, start: Start) {
+        self.loads += 1;
+        let settings = Settings::of(&start.simulation);
+        self.info = Some(Arc::new(StartInfo {
+            number: self.loads,
+            name: start.name.clone(),
+            duration_secs: start.duration_secs,
+            held: !start.held_by.is_empty(),
+            view: start.view,
+            physics: start.simulation.physics(),
+            parameters: settings.parameters,
+            solver: settings.solver,
+        }));
+        let mut surroundings = Surroundings::clone(&start.simulation.snapshot().surroundings);
+        surroundings.boundaries.extend_from_slice(&start.held_by);
+        self.held = Some(Arc::new(surroundings));
+        let Settings { parameters, solver, .. } = settings;
+        let variant = Variant { parameters, solver };
+        self.start = Some(start);
+        self.restart(&[variant]);
+    }
+}
+
+/// An error as frames carry it.
+pub(super) fn message(error: Error) -> Arc<str> {
+    error.to_string().into()
+}

@@ -1,0 +1,51 @@
+//! What the solver's thread hands out.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::engine::Engine;
+use super::track::Track;
+use super::{Frame, Settings, WorldFrame};
+use crate::sim::Snapshot;
+
+impl Engine {
+    /// Hands out the newest state, and wakes whoever waits for it.
+    pub(super) fn publish(&mut self) {
+        self.frames += 1;
+        let worlds = self.worlds.tracks.iter().map(|track| self.world_frame(track)).collect();
+        let frame = Frame {
+            number: self.frames,
+            acknowledged: self.acknowledged,
+            start: self.info.clone(),
+            worlds,
+            playing: self.playing,
+            seeking: self.seeking,
+            loading: self.loading.clone(),
+            refusal: self.refusal.clone(),
+            real_time_factor: self.clock.real_time_factor,
+            steps_per_sec: self.clock.steps_per_sec,
+        };
+        self.output.write(frame);
+        self.published = Instant::now();
+        self.unpublished = false;
+        (self.options.wake)();
+    }
+
+    fn world_frame(&self, track: &Track) -> WorldFrame {
+        let mut snapshot: Snapshot = track.simulation.snapshot();
+        if snapshot.observables.step == 0
+            && let Some(held) = &self.held
+        {
+            snapshot.surroundings = Arc::clone(held);
+        }
+        WorldFrame {
+            snapshot: Arc::new(snapshot),
+            settings: Settings::of(&track.simulation),
+            curve: track.curve.clone(),
+            recorded_secs: track.recording.end_secs(),
+            unconverged_steps: track.unconverged,
+            step_ms: 1e3 * track.step_secs,
+            failure: track.failure.clone(),
+        }
+    }
+}
