@@ -84,7 +84,7 @@ fn run(cli: Cli) -> Result<()> {
             Ok(())
         }
         None if cli.headless.headless => slump::headless::run(&cli.config, &cli.headless),
-        None => slump::app::run(&cli.config, &cli.window),
+        None => slump::app::run(&cli.config, &cli.headless, &cli.window),
     }
 }
 
