@@ -1,5 +1,7 @@
 //! The command line.
 
+mod sweep_command;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -40,6 +42,8 @@ enum Command {
     },
     /// List the built-in scenes and the methods
     List,
+    /// Run a study: all combinations of lists and ranges of parameters, on all cores
+    Sweep(sweep_command::SweepCommand),
     /// Print a scene, with the changes asked for, as a scene file
     Scene {
         #[command(flatten)]
@@ -76,6 +80,7 @@ fn run(cli: Cli) -> Result<()> {
             list();
             Ok(())
         }
+        Some(Command::Sweep(command)) => command.run(),
         Some(Command::Scene { config }) => {
             print!("{}", scene_to_toml(&slump::headless::settled(&config)?)?);
             Ok(())
