@@ -2,6 +2,8 @@
 //! parameters.
 
 mod axis;
+pub mod chart;
+mod figures;
 mod journal;
 mod outcome;
 mod paper;
@@ -9,9 +11,11 @@ mod plan;
 mod run;
 mod shard;
 mod states;
+mod statistics;
 mod sweep;
 mod table;
 
+pub use figures::{figure_names, reproduce};
 pub use outcome::{Outcome, Status, run_to_end};
 pub use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
