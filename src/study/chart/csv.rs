@@ -23,8 +23,8 @@ pub(super) fn of(sheet: &Sheet) -> Result<Vec<u8>> {
                     }
                 }
                 Layer::Cells { name, cells, .. } => {
-                    for (left, right, lower, upper, value) in cells {
-                        let place = [0.5 * (left + right), 0.5 * (lower + upper), *value];
+                    for cell in cells {
+                        let place = [cell.x.0, cell.y.0, cell.value];
                         let [x, y, value] = place.map(|number| number.to_string());
                         writer
                             .write_record([&panel, name, &x, &y, "", "", &value])

@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use plotters::style::register_font;
 
 use super::places::Places;
-use super::{Chart, Corner, Layer, Look, Rgb, Sheet};
+use super::{Cell, Chart, Corner, Layer, Look, Rgb, Sheet};
 use crate::error::{Error, Result};
 
 /// Sizes of words, pixels.
@@ -86,7 +86,7 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
     let (x_places, y_places) = (Places::of(&chart.x), Places::of(&chart.y));
     let words = (FONT, WORDS).into_font().color(&rgb(super::INK));
     let mut builder = ChartBuilder::on(area);
-    builder.margin(14).margin_right(26).x_label_area_size(62).y_label_area_size(88);
+    builder.margin(14).margin_right(26).x_label_area_size(62).y_label_area_size(104);
     if !chart.title.is_empty() {
         builder.caption(&chart.title, (FONT, TITLE).into_font().color(&rgb(super::INK)));
     }
@@ -103,6 +103,7 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
         .map_err(failed)?;
 
     let place = |x: f64, y: f64| (chart.x.scale.place(x), chart.y.scale.place(y));
+    let width = place(chart.x.to, 1.0).0 - place(chart.x.from, 1.0).0;
     let mut has_legend = false;
     for layer in &chart.layers {
         match layer {
@@ -113,14 +114,18 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
                     .map_err(failed)?;
             }
             Layer::Cells { cells, colour, .. } => {
-                let rectangles = cells.iter().map(|&(left, right, lower, upper, value)| {
-                    let corners = [place(left, lower), place(right, upper)];
-                    Rectangle::new(corners, rgb(colour(value)).filled())
+                let rectangles = cells.iter().map(|Cell { x: (_, x), y: (_, y), value }| {
+                    let corners = [place(x[0], y[0]), place(x[1], y[1])];
+                    Rectangle::new(corners, rgb(colour(*value)).filled())
                 });
                 context.draw_series(rectangles).map_err(failed)?;
             }
-            Layer::Curve { name, in_legend, points, colour, look } => {
+            Layer::Curve { name, in_legend, points, colour, look, aside } => {
                 let colour = rgb(*colour);
+                let place = |x: f64, y: f64| {
+                    let (x, y) = place(x, y);
+                    (x + aside * width, y)
+                };
                 let line: Vec<_> = points.iter().map(|point| place(point.x, point.y)).collect();
                 let bars = points.iter().filter_map(|point| {
                     let (low, high) = point.interval?;
@@ -155,12 +160,16 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
                 if *in_legend {
                     has_legend = true;
                     let key = move |(x, y): (i32, i32)| {
+                        // Without a line there is none in the key either.
+                        let seen = if stroke > 0 { 1.0 } else { 0.0 };
                         let stroke = PathElement::new(
-                            vec![(x, y), (x + if stroke > 0 { 28 } else { 0 }, y)],
-                            colour.stroke_width(stroke.max(1)),
+                            vec![(x, y), (x + 28, y)],
+                            colour.mix(seen).stroke_width(stroke.max(1)),
                         );
-                        let (radius, style) = dot.unwrap_or((0, colour.filled()));
-                        EmptyElement::at((0, 0)) + stroke + Circle::new((x + 14, y), radius, style)
+                        let (radius, style) = dot.unwrap_or((0, colour.mix(0.0).filled()));
+                        EmptyElement::at((0, 0))
+                            + stroke
+                            + Circle::new((x + 14, y), radius.min(8), style)
                     };
                     let nothing: [EmptyElement<(f64, f64), DB>; 0] = [];
                     context.draw_series(nothing).map_err(failed)?.label(name).legend(key);

@@ -25,6 +25,9 @@ pub const PALETTE: [Rgb; 7] = [
     (213, 94, 0),
 ];
 
+/// Distance of curves that stand side by side, in widths of the chart.
+const ASIDE: f64 = 0.006;
+
 /// One axis of a chart.
 #[derive(Clone, Debug)]
 pub struct Axis {
@@ -68,6 +71,17 @@ pub fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point> {
     places.into_iter().map(|(x, y)| Point { x, y, interval: None }).collect()
 }
 
+/// A filled rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// What it stands for on the x axis, and the edges to its left and right.
+    pub x: (f64, [f64; 2]),
+    /// What it stands for on the y axis, and its lower and upper edge.
+    pub y: (f64, [f64; 2]),
+    /// What its colour stands for.
+    pub value: f64,
+}
+
 /// How a layer is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
@@ -98,13 +112,15 @@ pub enum Layer {
         colour: Rgb,
         /// How it is drawn.
         look: Look,
+        /// How far aside it is drawn, in widths of the chart, so that bars do not hide each other.
+        aside: f64,
     },
     /// Filled rectangles, each with the value that its colour stands for.
     Cells {
         /// Name in the CSV.
         name: String,
-        /// Left, right, lower and upper edge, and value.
-        cells: Vec<(f64, f64, f64, f64, f64)>,
+        /// The rectangles.
+        cells: Vec<Cell>,
         /// Value → colour.
         colour: fn(f64) -> Rgb,
     },
@@ -122,12 +138,20 @@ pub enum Layer {
 impl Layer {
     /// A curve that the legend tells of.
     pub fn curve(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
-        Self::Curve { name: name.into(), in_legend: true, points, colour, look }
+        Self::Curve { name: name.into(), in_legend: true, points, colour, look, aside: 0.0 }
+    }
+
+    /// The same curve, number `index` of `count` side by side.
+    pub fn beside(mut self, index: usize, count: usize) -> Self {
+        if let Self::Curve { aside, .. } = &mut self {
+            *aside = ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0));
+        }
+        self
     }
 
     /// A curve that the legend leaves out.
     pub fn quiet(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
-        Self::Curve { name: name.into(), in_legend: false, points, colour, look }
+        Self::Curve { name: name.into(), in_legend: false, points, colour, look, aside: 0.0 }
     }
 }
 

@@ -12,6 +12,9 @@ pub enum Scale {
 /// Marks on a linear axis, about.
 const MARKS: f64 = 6.0;
 
+/// On a logarithmic axis that ends below this many times its beginning, 2 and 5 have words too.
+const SHORT: f64 = 80.0;
+
 impl Scale {
     /// Where a number stands, in a unit that grows evenly along the axis.
     pub(super) fn place(self, number: f64) -> f64 {
@@ -51,7 +54,11 @@ fn log_marks(from: f64, to: f64) -> Vec<(f64, String)> {
         for digit in 1..10 {
             let number = f64::from(digit) * 10f64.powi(exponent);
             if number >= from * (1.0 - 1e-9) && number <= to * (1.0 + 1e-9) {
-                let words = if digit == 1 { power_of_ten(exponent) } else { String::new() };
+                let words = match digit {
+                    1 => power_of_ten(exponent),
+                    2 | 5 if to < SHORT * from => format!("{digit}·{}", power_of_ten(exponent)),
+                    _ => String::new(),
+                };
                 marks.push((number, words));
             }
         }
@@ -93,7 +100,11 @@ mod tests {
             words(Scale::Linear, -10.0, 5.0),
             ["−10", "−8", "−6", "−4", "−2", "0", "2", "4"]
         );
-        assert_eq!(words(Scale::Log, 8e-5, 6e-3), ["10⁻⁴", "10⁻³"]);
-        assert_eq!(words(Scale::Log, 1e-12, 1e-11), ["10⁻¹²", "10⁻¹¹"]);
+        assert_eq!(
+            words(Scale::Log, 8e-5, 6e-3),
+            ["10⁻⁴", "2·10⁻⁴", "5·10⁻⁴", "10⁻³", "2·10⁻³", "5·10⁻³"]
+        );
+        assert_eq!(words(Scale::Log, 1e-12, 1e-11), ["10⁻¹²", "2·10⁻¹²", "5·10⁻¹²", "10⁻¹¹"]);
+        assert_eq!(words(Scale::Log, 1e-4, 1e-2), ["10⁻⁴", "10⁻³", "0.01"]);
     }
 }

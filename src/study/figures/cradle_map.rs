@@ -4,20 +4,24 @@ use super::fig8::is_open;
 use super::{Claim, Figure, Workshop};
 use crate::error::Result;
 use crate::scene::cradle;
-use crate::study::chart::{Axis, Chart, INK, Layer, Look, Rgb, Sheet, points};
+use crate::study::chart::{Axis, Cell, Chart, INK, Layer, Look, Rgb, Sheet, points};
 
 /// Outcome → colour: open is orange, closed is blue.
 fn colour(value: f64) -> Rgb {
     if value > 0.5 { (240, 176, 80) } else { (70, 120, 175) }
 }
 
-/// The edges of cells around values that are evenly spaced in ratio.
-pub(super) fn log_edges(values: &[f64]) -> Vec<(f64, f64)> {
-    let ratio = match values {
+/// The edges of cells around values that are evenly spaced in ratio. Neighbours share theirs to the
+/// last bit, so that no gap is drawn between them.
+pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
+    let half = match values {
         [first, second, ..] => (second / first).sqrt(),
         _ => 1.1,
     };
-    values.iter().map(|value| (value / ratio, value * ratio)).collect()
+    let mut edges = vec![values.first().map_or(1.0, |first| first / half)];
+    edges.extend(values.windows(2).map(|pair| (pair[0] * pair[1]).sqrt()));
+    edges.extend(values.last().map(|last| last * half));
+    edges.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
 pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
@@ -31,12 +35,15 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         .0
         .iter()
         .map(|(config, outcome)| {
-            let (left, right) = step_edges[place(&steps, config.dt)];
-            let (lower, upper) = tolerance_edges[place(&tolerances, config.tolerance)];
-            (left, right, lower, upper, f64::from(u8::from(is_open(outcome))))
+            let (column, row) = (place(&steps, config.dt), place(&tolerances, config.tolerance));
+            Cell {
+                x: (steps[column], step_edges[column]),
+                y: (tolerances[row], tolerance_edges[row]),
+                value: f64::from(u8::from(is_open(outcome))),
+            }
         })
         .collect();
-    let ends = |edges: &[(f64, f64)]| (edges[0].0, edges[edges.len() - 1].1);
+    let ends = |edges: &[[f64; 2]]| (edges[0][0], edges[edges.len() - 1][1]);
     let (x, y) = (ends(&step_edges), ends(&tolerance_edges));
     let mut chart = Chart::new(
         "The cradle's bond: open (orange) or closed (blue)",

@@ -23,7 +23,7 @@ pub(super) fn make(_workshop: &Workshop) -> Result<Figure> {
         let (x_reach, y_reach) = REACH;
         let mut chart = Chart::new(
             title,
-            Axis::linear("v̄ / (ΔtC₀/m)", -x_reach, x_reach),
+            Axis::linear("formal velocity v / (ΔtC₀/m)", -x_reach, x_reach),
             Axis::linear("N / C₀", -y_reach, y_reach),
         );
         chart.legend = Corner::LowerRight;
@@ -64,7 +64,7 @@ pub(super) fn make(_workshop: &Workshop) -> Result<Figure> {
         size: (1500, 780),
         charts,
         caption: vec![format!(
-            "Thick: the graph of the law. Thin: N = K v̄ + A with K = m(1 + ρ)/Δt. Dots: one simulated \
+            "Thick: the graph of the law. Thin: N = K v + A with K = m(1 + ρ)/Δt. Dots: one simulated \
              step each (ρ = {RESTITUTION})."
         )],
     };

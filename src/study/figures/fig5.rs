@@ -16,7 +16,7 @@ const FLAT_PER_DECADE: f64 = 0.02;
 
 pub(super) fn slump(workshop: &Workshop) -> Result<Figure> {
     let rows = workshop.rows("pile")?;
-    let y = Axis::linear("slump Δy_G", 0.0, 0.6);
+    let y = Axis::linear("slump Δy_G", 0.0, 0.7);
     let chart = chart(&rows, "Fig. 5a: slump after 1 s", y, |outcome| outcome.slump);
     let claims = [
         (0.0, "at Bond 0 the slump does not depend on Δt", flat as Test),
@@ -84,14 +84,13 @@ fn chart(rows: &Rows<'_>, title: &str, y: Axis, number: fn(&Outcome) -> f64) -> 
         });
         let name = format!("Bond {bond}, single state");
         chart.layers.push(Layer::quiet(name, points(shared), colour, Look::Line(1)));
-        // Side by side, so that bars do not hide each other.
-        let aside = 1.0 + 0.02 * (index as f64 - 0.5 * (bonds.len() - 1) as f64);
         let means = steps.iter().map(|&step| {
             let mean = mean(&of_bond.such_that(|c| c.dt == Some(step)).outcomes(number));
-            Point { x: step * aside, y: mean.mean, interval: Some((mean.low.max(1e-6), mean.high)) }
+            Point { x: step, y: mean.mean, interval: Some((mean.low.max(1e-6), mean.high)) }
         });
         let name = format!("Bond {bond}");
-        chart.layers.push(Layer::curve(name, means.collect(), colour, Look::LineAndDots));
+        let curve = Layer::curve(name, means.collect(), colour, Look::LineAndDots);
+        chart.layers.push(curve.beside(index, bonds.len()));
     }
     chart
 }

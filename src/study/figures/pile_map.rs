@@ -5,7 +5,7 @@ use super::fig6::unit_secs;
 use super::verdict::Verdict;
 use super::{Claim, Figure, Workshop};
 use crate::error::Result;
-use crate::study::chart::{Axis, Chart, Layer, Look, Rgb, Sheet, points};
+use crate::study::chart::{Axis, Cell, Chart, Layer, Look, Rgb, Sheet, points};
 use crate::study::statistics::mean;
 
 /// Slump that the scale of colours ends at.
@@ -33,12 +33,18 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     let edges = log_edges(&steps);
     let mut cells = Vec::new();
     let mut lowest = Vec::new();
-    for &bond in &bonds {
+    for (index, &bond) in bonds.iter().enumerate() {
+        // Counted from one end, so that neighbours share their edges to the last bit.
+        let edge = |number: usize| bonds[0] + half * (2.0 * number as f64 - 1.0);
         let mut best = (f64::INFINITY, 0.0);
-        for (step, (lower, upper)) in steps.iter().zip(&edges) {
+        for (step, edges) in steps.iter().zip(&edges) {
             let cell = rows.such_that(|c| c.bond == Some(bond) && c.dt == Some(*step));
             let slump = mean(&cell.outcomes(|outcome| outcome.slump)).mean;
-            cells.push((bond - half, bond + half, *lower, *upper, slump));
+            cells.push(Cell {
+                x: (bond, [edge(index), edge(index + 1)]),
+                y: (*step, *edges),
+                value: slump,
+            });
             if slump < best.0 {
                 best = (slump, *step);
             }
@@ -46,7 +52,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         lowest.push((bond, best.1));
     }
     let (x_from, x_to) = (bonds[0] - half, bonds[bonds.len() - 1] + half);
-    let (y_from, y_to) = (edges[0].0, edges[edges.len() - 1].1);
+    let (y_from, y_to) = (edges[0][0], edges[edges.len() - 1][1]);
     let mut chart = Chart::new(
         "Slump after 1 s, with contours of Bond·Δt/√(d/g)",
         Axis::linear("Bond", x_from, x_to),
@@ -84,7 +90,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     scale.x.ticks = vec![(-1.0, String::new())];
     let shade = |k: u32| {
         let at = |k: u32| MOST * f64::from(k) / f64::from(SHADES);
-        (0.0, 1.0, at(k), at(k + 1), at(k))
+        Cell { x: (0.5, [0.0, 1.0]), y: (at(k), [at(k), at(k + 1)]), value: at(k) }
     };
     let cells = (0..SHADES).map(shade).collect();
     scale.layers.push(Layer::Cells { name: "scale".into(), cells, colour });

@@ -10,6 +10,9 @@ use crate::scene::Config;
 use crate::study::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
 use crate::study::statistics::{mean, p_value, slope};
 
+/// Initial states from which on a difference that is not seen counts as none.
+const FEWEST_STATES: usize = 8;
+
 pub(super) fn size(workshop: &Workshop) -> Result<Figure> {
     let rows = workshop.rows("pile-size")?;
     let grains = |config: &Config| config.grains.map(|count| count as f64);
@@ -68,7 +71,8 @@ pub(super) fn tolerance(workshop: &Workshop) -> Result<Figure> {
         };
         let settled = values.iter().copied().take_while(|&tolerance| !differs(tolerance)).last();
         let settled = settled.unwrap_or(values[0]);
-        let still_moves = settled == values[0];
+        // That no difference is seen says little where few states were looked at.
+        let undecided = settled == values[0] || of_step.seeds().len() < FEWEST_STATES;
         let bond = of_step.values(|config| config.bond)[0];
         Claim::new(
             format!(
@@ -79,7 +83,7 @@ pub(super) fn tolerance(workshop: &Workshop) -> Result<Figure> {
                 "no difference from a relative change of {:e} is seen at {settled:e} and tighter, {} states",
                 values[0], of_step.seeds().len()
             ).replace("e-", "e−"),
-            if still_moves { Verdict::Open } else { Verdict::Holds },
+            if undecided { Verdict::Open } else { Verdict::Holds },
         )
     });
     let claims = claims.collect();
@@ -98,21 +102,22 @@ fn series(
     number: impl Fn(&Config) -> Option<f64>,
 ) -> Result<(Sheet, Vec<Slopes>)> {
     let unit_secs = unit_secs()?;
-    let mut chart = Chart::new(title, x, Axis::linear("slump Δy_G", 0.0, 0.6));
-    chart.legend = Corner::UpperLeft;
+    let mut chart = Chart::new(title, x, Axis::linear("slump Δy_G", 0.0, 0.7));
+    chart.legend = Corner::UpperRight;
     let mut curves = Vec::new();
     for (index, step) in rows.values(|config| config.dt).into_iter().enumerate() {
         let of_step = rows.such_that(|config| config.dt == Some(step));
         let time = of_step.0.first().map_or(0.0, |(config, _)| cohesive_time(config, unit_secs));
         let means = of_step.values(&number).into_iter().map(|value| {
             let mean = mean(&of_step.such_that(|c| number(c) == Some(value)).outcomes(|o| o.slump));
-            // A mean of one run has no interval.
-            let interval = mean.low.is_finite().then_some((mean.low.max(0.0), mean.high.min(0.6)));
+            // Two states tell next to nothing of their spread.
+            let interval = (mean.count > 2).then_some((mean.low.max(0.0), mean.high.min(0.7)));
             Point { x: value, y: mean.mean, interval }
         });
         let name = format!("cohesive time {time:.1}");
         let colour = PALETTE[index + 1];
-        chart.layers.push(Layer::curve(name, means.collect(), colour, Look::LineAndDots));
+        let curve = Layer::curve(name, means.collect(), colour, Look::LineAndDots);
+        chart.layers.push(curve.beside(index, 3));
         let of_seed = |seed| {
             let run = of_step.such_that(|config| config.seed == Some(seed));
             let places = run.0.iter().filter_map(|(c, o)| Some((number(c)?.log10(), o.slump)));
@@ -123,7 +128,7 @@ fn series(
     let mut sheet = Sheet::of(chart);
     let bond = rows.values(|config| config.bond)[0];
     sheet.caption = vec![format!(
-        "Bond {bond}; means over {} initial states with 95 % intervals.",
+        "Bond {bond}; means over {} initial states, with 95 % intervals from three states up.",
         rows.seeds().len()
     )];
     sheet.caption.extend(workshop.note());

@@ -47,8 +47,9 @@ impl Workshop {
         }
         let path = format!("{name}.toml");
         let study = Study::parse(text, path.as_ref(), self.quick)?;
-        let options =
-            SweepOptions { states: Some(self.folder.join("states")), ..SweepOptions::default() };
+        // Results of an older program's study are of no use here: they are made anew.
+        let states = Some(self.folder.join("states"));
+        let options = SweepOptions { redo: true, states, shard: None };
         let done = sweep(&study, &self.study_folder(name), &options)?;
         let table = done.ok_or_else(|| Error::value("study", name, "run as a whole"))?;
         self.finished.insert(name, (study, table));
