@@ -1,14 +1,18 @@
 //! The command line.
 
+mod sweep_command;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
 use slump::app::WindowOptions;
 use slump::error::Result;
 use slump::headless::{HeadlessOptions, Progress, check_writable, write_file};
 use slump::scene::{Config, Rain, SCENES, Settling, scene_to_toml, settle, write_discs};
 use slump::solver::METHODS;
+use slump::study::{figure_names, reproduce};
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
@@ -43,6 +47,20 @@ enum Command {
     },
     /// List the built-in scenes and the methods
     List,
+    /// Run a study: all combinations of lists and ranges of parameters, on all cores
+    Sweep(sweep_command::SweepCommand),
+    /// Make the paper's figures, and those its conclusion asks for, from simulation alone
+    Reproduce {
+        /// Figures, or all
+        #[arg(required = true, value_name = "FIGURE", value_parser = PossibleValuesParser::new(figure_names()))]
+        figures: Vec<String>,
+        /// Folder for figures, tables and report; the same command goes on where it stopped
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Coarser, in a few minutes
+        #[arg(long)]
+        quick: bool,
+    },
     /// Print a scene, with the changes asked for, as a scene file
     Scene {
         #[command(flatten)]
@@ -79,6 +97,8 @@ fn run(cli: Cli) -> Result<()> {
             list();
             Ok(())
         }
+        Some(Command::Sweep(command)) => command.run(),
+        Some(Command::Reproduce { figures, out, quick }) => reproduce(&figures, &out, quick),
         Some(Command::Scene { config }) => {
             print!("{}", scene_to_toml(&slump::headless::settled(&config)?)?);
             Ok(())

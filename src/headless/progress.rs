@@ -37,6 +37,11 @@ impl Progress {
         self.bar.set_position(units);
     }
 
+    /// Whether there is a terminal that shows a bar.
+    pub fn is_drawn(&self) -> bool {
+        !self.bar.is_hidden()
+    }
+
     /// Says something in a line of its own.
     pub fn say(&self, line: &str) {
         self.bar.suspend(|| eprintln!("{line}"));

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Rain, Scene, Settling, built_in, pile_of, read_discs, read_scene, settle};
+use super::{
+    Rain, Scene, Settling, built_in, cradle_from, pile_of, read_discs, read_scene, settle,
+};
 use crate::error::{Error, Result};
 use crate::solver::{Method, StopTest};
-use crate::world::FrictionCone;
+use crate::world::{FrictionCone, Grain, Parameters};
 
 /// A scene and changes to it. What is left out stays as the scene says.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, clap::Args)]
@@ -34,6 +36,10 @@ pub struct Config {
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
+    /// Where the cradle's k starts, in diameters left of i, centre to centre
+    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start: Option<f64>,
     /// Bond number: cohesion force over effective weight, at least 0
     #[arg(long, value_name = "BOND", help_heading = "Physics", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -116,6 +122,15 @@ impl Config {
             pile_alone("grains, box-width or seed")?;
             self.rain().validate()?;
         }
+        if let Some(start) = self.start {
+            if name != "cradle" {
+                return Err(Error::value("scene", name, "cradle where start is given"));
+            }
+            if !(start >= 1.0 && start.is_finite()) {
+                return Err(Error::value("start", start, "a finite number of diameters ≥ 1"));
+            }
+            scene = cradle_from(start);
+        }
         self.change(&mut scene)?;
         Ok(scene)
     }
@@ -130,10 +145,39 @@ impl Config {
         if !self.makes_new_pile() {
             return Ok(scene);
         }
-        let rain = self.rain();
-        let mut pile = pile_of(settle(&rain, progress)?, rain.box_width_in_diameters);
+        self.scene_from(settle(&self.rain(), progress)?)
+    }
+
+    /// The scene of a new pile whose settled grains are at hand.
+    ///
+    /// # Errors
+    /// As [`Config::without_settling`].
+    pub fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
+        let mut pile = pile_of(settled, self.rain().box_width_in_diameters);
         self.change(&mut pile)?;
         Ok(pile)
+    }
+
+    /// The same asked for, with every number that `scene` fills in.
+    pub fn resolved(&self, scene: &Scene) -> Self {
+        let Parameters { bond, time_step_secs, restitution, friction, cone, restitution_threshold } =
+            scene.parameters;
+        Self {
+            scene: Some(self.scene.clone().unwrap_or_else(|| Self::DEFAULT_SCENE.into())),
+            bond: Some(bond),
+            dt: Some(time_step_secs),
+            rho: Some(restitution),
+            mu: Some(friction),
+            cone: Some(cone),
+            restitution_threshold: Some(restitution_threshold),
+            duration: Some(scene.duration_secs),
+            solver: Some(scene.solver.method),
+            stop: Some(scene.solver.stop),
+            tolerance: Some(scene.solver.tolerance),
+            max_sweeps: Some(scene.solver.max_sweeps),
+            warm_start: Some(scene.solver.warm_start),
+            ..self.clone()
+        }
     }
 
     /// The rain that `grains`, `box_width` and `seed` ask for.
@@ -146,7 +190,8 @@ impl Config {
         }
     }
 
-    fn makes_new_pile(&self) -> bool {
+    /// Whether grains have to be rained and settled.
+    pub fn makes_new_pile(&self) -> bool {
         self.grains.is_some() || self.box_width.is_some() || self.seed.is_some()
     }
 
