@@ -90,7 +90,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
             "the best broken line through all runs bends at {found:.2}; {low:.2} … {high:.2} in 95 % of \
              {RESAMPLINGS} resamplings of the initial states"
         ),
-        if low <= 1.0 && 1.0 <= high { Verdict::Holds } else { Verdict::Fails },
+        Verdict::of_interval(1.0, low, high),
     );
     let mut sheet = Sheet::of(chart);
     sheet.caption = vec![format!(

@@ -113,10 +113,10 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
             told(turn.high),
             times.len()
         ),
-        match turn.low <= 0.0 && 0.0 <= turn.high {
-            _ if times.len() < 3 => Verdict::Open,
-            true => Verdict::Holds,
-            false => Verdict::Fails,
+        if times.len() < 3 {
+            Verdict::Open
+        } else {
+            Verdict::of_interval(1.0, told(turn.low), told(turn.high))
         },
     );
     let sheet = Sheet {

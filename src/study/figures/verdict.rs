@@ -3,6 +3,9 @@
 /// p-values below this count as evidence.
 pub const SIGNIFICANT: f64 = 0.05;
 
+/// Ratio of the ends of an interval that is narrow enough to confirm what lies in it.
+const NARROW: f64 = 3.0;
+
 /// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -21,6 +24,18 @@ impl Verdict {
             (true, _) => Self::Holds,
             (false, true) => Self::Fails,
             (false, false) => Self::Open,
+        }
+    }
+
+    /// A guess at a ratio: it fails outside the interval, and an interval wider than a factor of
+    /// [`NARROW`] decides nothing.
+    pub fn of_interval(guess: f64, low: f64, high: f64) -> Self {
+        if guess < low || guess > high {
+            Self::Fails
+        } else if high < NARROW * low {
+            Self::Holds
+        } else {
+            Self::Open
         }
     }
 
