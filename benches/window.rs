@@ -6,7 +6,6 @@
 //! cargo bench --bench window
 //! ```
 
-#[allow(dead_code, reason = "other benches use the rest of it")]
 mod common;
 
 use std::time::{Duration, Instant};

@@ -1,5 +1,9 @@
 //! Discs at rest in a box, for the benches.
 
+#![allow(dead_code, reason = "every bench uses its own part of this")]
+
+pub mod timing;
+
 use glam::DVec2;
 use slump::scene::{Scene, pile_of};
 use slump::sim::Simulation;

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::panels::plots::Quantity;
-use crate::render::Style;
+use crate::error::Result;
+use crate::headless::{HeadlessOptions, PictureSize};
+use crate::render::{Style, Theme};
 use crate::scene::Config;
 use crate::sim::live::Pace;
 
@@ -53,6 +55,35 @@ impl Default for Preferences {
 }
 
 impl Preferences {
+    /// Takes over what the command line says of pictures.
+    ///
+    /// # Errors
+    /// Where the size of a picture is none.
+    pub fn follow(&mut self, pictures: &HeadlessOptions) -> Result<()> {
+        if pictures.size.is_some() {
+            let PictureSize { width, height } = pictures.size()?;
+            self.picture_size = [width, height];
+        }
+        if let Some(colour) = pictures.colour {
+            self.style.colour_by = colour;
+        }
+        if !pictures.show.is_empty() {
+            let asked = pictures.style();
+            self.style.show_forces = asked.show_forces;
+            self.style.angles = asked.angles;
+        }
+        if let Some(theme) = pictures.theme {
+            self.theme = match theme {
+                Theme::Light => egui::ThemePreference::Light,
+                Theme::Dark => egui::ThemePreference::Dark,
+            };
+        }
+        if let Some(folder) = &pictures.frames {
+            self.folder.clone_from(folder);
+        }
+        Ok(())
+    }
+
     /// The pace that the preferences ask for.
     pub fn pace(&self) -> Pace {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }

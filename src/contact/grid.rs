@@ -1,7 +1,8 @@
 //! A cell list over a hashed uniform grid: points sorted by cell, in linear time and memory.
 //!
-//! Cells are square and as wide as the reach of a query, so that the points within reach of a
-//! place lie in the 3 × 3 cells around it (3 × 1 on a line). A cell's number is hashed into as many
+//! Cells are square and as wide as the pairs looked for are apart at most, so that the two points
+//! of a pair lie in one cell or in neighbouring ones. Each point looks at its own cell and at half
+//! of the 8 around it (of the 2 on a line), so each pair is seen once. A cell's number is hashed into as many
 //! buckets as there are points: a grain that flies off far away costs one bucket, not a larger
 //! grid, and a scene far from the origin costs nothing. Points are sorted by bucket with a counting
 //! sort; points of other cells in the same bucket are told apart by the stored cell.
@@ -54,22 +55,25 @@ impl Grid {
         self.starts[buckets] = positions.len() as u32;
     }
 
-    /// Calls `found` with every point in the cells around `position`: all points within one cell
-    /// width are among them, in an order that depends only on the points' cells and indices.
-    pub fn around<const AXES: usize>(&self, position: DVec2, mut found: impl FnMut(u32)) {
-        if self.entries.is_empty() {
-            return;
-        }
-        let [x, y] = self.cell::<AXES>(position);
-        let rows = if AXES == 1 { 0..=0 } else { -1..=1 };
-        for row in rows {
-            for column in -1..=1 {
-                let cell = [x.wrapping_add(column), y.wrapping_add(row)];
-                let bucket = self.bucket(cell);
-                let range = self.starts[bucket] as usize..self.starts[bucket + 1] as usize;
-                for slot in range {
-                    if self.cells[slot] == cell {
-                        found(self.entries[slot]);
+    /// Calls `found` once with every pair of points in the same or in neighbouring cells: all pairs
+    /// within one cell width are among them.
+    pub fn pairs<const AXES: usize>(&self, mut found: impl FnMut(u32, u32)) {
+        /// Neighbours in front, row by row; the first is the only one on a line.
+        const FORWARD: [Cell; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
+        let forward = if AXES == 1 { &FORWARD[..1] } else { &FORWARD };
+        for (slot, (&point, &cell)) in self.entries.iter().zip(&self.cells).enumerate() {
+            let own_bucket_end = self.starts[self.bucket(cell) + 1] as usize;
+            for other in slot + 1..own_bucket_end {
+                if self.cells[other] == cell {
+                    found(point, self.entries[other]);
+                }
+            }
+            for step in forward {
+                let neighbour = [cell[0].wrapping_add(step[0]), cell[1].wrapping_add(step[1])];
+                let bucket = self.bucket(neighbour);
+                for other in self.starts[bucket] as usize..self.starts[bucket + 1] as usize {
+                    if self.cells[other] == neighbour {
+                        found(point, self.entries[other]);
                     }
                 }
             }
@@ -96,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_query_finds_all_points_within_one_cell_width_and_none_twice() {
+    fn all_pairs_within_one_cell_width_are_found_and_none_twice() {
         for origin in [DVec2::ZERO, DVec2::new(1e6, -3e5)] {
             let positions: Vec<DVec2> = (0..400)
                 .map(|k| {
@@ -106,19 +110,20 @@ mod tests {
                 .collect();
             let mut grid = Grid::default();
             grid.rebuild::<2>(&positions, 0.7);
-            for &place in &positions {
-                let mut found = Vec::new();
-                grid.around::<2>(place, |index| found.push(index));
-                let count = found.len();
-                found.sort_unstable();
-                found.dedup();
-                assert_eq!(count, found.len(), "a point was found twice");
-                for (index, &position) in positions.iter().enumerate() {
-                    if position.distance(place) <= 0.7 {
-                        assert!(found.contains(&(index as u32)));
+            let mut found = std::collections::HashSet::new();
+            grid.pairs::<2>(|i, j| {
+                assert!(found.insert((i.min(j), i.max(j))), "{i} and {j} were found twice");
+            });
+            let mut close = 0;
+            for i in 0..positions.len() {
+                for j in i + 1..positions.len() {
+                    if positions[i].distance(positions[j]) <= 0.7 {
+                        close += 1;
+                        assert!(found.contains(&(i as u32, j as u32)));
                     }
                 }
             }
+            assert!(close > 400, "{close} pairs are close");
         }
     }
 

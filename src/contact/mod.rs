@@ -5,8 +5,10 @@ mod contact_list;
 mod features;
 mod grid;
 pub mod law;
+mod tree;
 
 pub use candidates::{Candidates, Reach};
 pub use contact_list::{Contact, ContactList, Impulse};
 pub use features::Feature;
 pub use grid::Grid;
+pub use tree::Tree;

@@ -30,6 +30,7 @@ pub fn collision() -> Scene {
             restitution: 0.5,
             friction: 0.0,
             cone: FrictionCone::Shifted,
+            restitution_threshold: 0.0,
         },
         solver: SolverSettings::default(),
         view: Some(View {

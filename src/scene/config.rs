@@ -5,10 +5,12 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Rain, Scene, Settling, built_in, pile_of, read_discs, read_scene, settle};
+use super::{
+    Rain, Scene, Settling, built_in, cradle_from, pile_of, read_discs, read_scene, settle,
+};
 use crate::error::{Error, Result};
 use crate::solver::{Method, StopTest};
-use crate::world::FrictionCone;
+use crate::world::{FrictionCone, Grain, Parameters};
 
 /// A scene and changes to it. What is left out stays as the scene says.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, clap::Args)]
@@ -34,6 +36,10 @@ pub struct Config {
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
+    /// Where the cradle's k starts, in diameters left of i, centre to centre
+    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start: Option<f64>,
     /// Bond number: cohesion force over effective weight, at least 0
     #[arg(long, value_name = "BOND", help_heading = "Physics", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -54,6 +60,10 @@ pub struct Config {
     #[arg(long, value_name = "CONE", help_heading = "Physics")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cone: Option<FrictionCone>,
+    /// Contacts slower than this many g·dt do not bounce; 0 in the paper's scheme, 2 lets nearly every step be solved
+    #[arg(long, value_name = "X", help_heading = "Physics", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution_threshold: Option<f64>,
     /// Simulated time, seconds
     #[arg(long, value_name = "SECONDS", help_heading = "Physics", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -89,30 +99,85 @@ impl Config {
         *self == Self::default()
     }
 
-    /// The scene with the changes made, checked. A new pile is settled here, which takes a while:
-    /// `progress` is told, and can end it by returning false.
+    /// The scene with the changes made, checked, but for the grains of a new pile: those of the
+    /// built-in one stand in for them. Quick, so that a wrong value is told of before long work.
     ///
     /// # Errors
     /// Names the first field that is unknown or outside its range, or the file that cannot be read.
-    pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
+    pub fn without_settling(&self) -> Result<Scene> {
         let name = self.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
-        let mut scene = if self.makes_new_pile() {
-            self.check_is_pile(name, "grains, box-width and seed")?;
-            // Values are checked before the long work starts.
-            let mut checked = built_in(name)?;
-            self.change(&mut checked)?;
-            let rain = self.rain();
-            pile_of(settle(&rain, progress)?, rain.box_width_in_diameters)
-        } else if let Some(path) = &self.initial {
-            self.check_is_pile(name, "initial")?;
+        let pile_alone = |fields: &str| match name {
+            Self::DEFAULT_SCENE => Ok(()),
+            _ => Err(Error::value("scene", name, format!("pile where {fields} are given"))),
+        };
+        let mut scene = if let Some(path) = &self.initial {
+            pile_alone("initial grains")?;
             pile_of(read_discs(path)?, Rain::default().box_width_in_diameters)
         } else if name.ends_with(".toml") {
             read_scene(name.as_ref())?
         } else {
             built_in(name)?
         };
+        if self.makes_new_pile() {
+            pile_alone("grains, box-width or seed")?;
+            self.rain().validate()?;
+        }
+        if let Some(start) = self.start {
+            if name != "cradle" {
+                return Err(Error::value("scene", name, "cradle where start is given"));
+            }
+            if !(start >= 1.0 && start.is_finite()) {
+                return Err(Error::value("start", start, "a finite number of diameters ≥ 1"));
+            }
+            scene = cradle_from(start);
+        }
         self.change(&mut scene)?;
         Ok(scene)
+    }
+
+    /// The scene with the changes made, checked. A new pile is settled here, which takes a while:
+    /// `progress` is told, and can end it by returning false.
+    ///
+    /// # Errors
+    /// As [`Config::without_settling`], and where the grains do not come to rest.
+    pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
+        let scene = self.without_settling()?;
+        if !self.makes_new_pile() {
+            return Ok(scene);
+        }
+        self.scene_from(settle(&self.rain(), progress)?)
+    }
+
+    /// The scene of a new pile whose settled grains are at hand.
+    ///
+    /// # Errors
+    /// As [`Config::without_settling`].
+    pub fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
+        let mut pile = pile_of(settled, self.rain().box_width_in_diameters);
+        self.change(&mut pile)?;
+        Ok(pile)
+    }
+
+    /// The same asked for, with every number that `scene` fills in.
+    pub fn resolved(&self, scene: &Scene) -> Self {
+        let Parameters { bond, time_step_secs, restitution, friction, cone, restitution_threshold } =
+            scene.parameters;
+        Self {
+            scene: Some(self.scene.clone().unwrap_or_else(|| Self::DEFAULT_SCENE.into())),
+            bond: Some(bond),
+            dt: Some(time_step_secs),
+            rho: Some(restitution),
+            mu: Some(friction),
+            cone: Some(cone),
+            restitution_threshold: Some(restitution_threshold),
+            duration: Some(scene.duration_secs),
+            solver: Some(scene.solver.method),
+            stop: Some(scene.solver.stop),
+            tolerance: Some(scene.solver.tolerance),
+            max_sweeps: Some(scene.solver.max_sweeps),
+            warm_start: Some(scene.solver.warm_start),
+            ..self.clone()
+        }
     }
 
     /// The rain that `grains`, `box_width` and `seed` ask for.
@@ -125,15 +190,9 @@ impl Config {
         }
     }
 
-    fn makes_new_pile(&self) -> bool {
+    /// Whether grains have to be rained and settled.
+    pub fn makes_new_pile(&self) -> bool {
         self.grains.is_some() || self.box_width.is_some() || self.seed.is_some()
-    }
-
-    fn check_is_pile(&self, name: &str, fields: &str) -> Result<()> {
-        if name == Self::DEFAULT_SCENE {
-            return Ok(());
-        }
-        Err(Error::value("scene", name, format!("pile where {fields} are given")))
     }
 
     fn change(&self, scene: &mut Scene) -> Result<()> {
@@ -147,14 +206,13 @@ impl Config {
         set(&mut scene.parameters.restitution, self.rho);
         set(&mut scene.parameters.friction, self.mu);
         set(&mut scene.parameters.cone, self.cone);
+        set(&mut scene.parameters.restitution_threshold, self.restitution_threshold);
         set(&mut scene.duration_secs, self.duration);
         set(&mut scene.solver.method, self.solver);
         set(&mut scene.solver.stop, self.stop);
         set(&mut scene.solver.tolerance, self.tolerance);
         set(&mut scene.solver.max_sweeps, self.max_sweeps);
         set(&mut scene.solver.warm_start, self.warm_start);
-        scene.parameters.validate()?;
-        scene.solver.validate()?;
         scene.validate()
     }
 }

@@ -44,6 +44,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             restitution: 0.2,
             friction: 0.0,
             cone: FrictionCone::Shifted,
+            restitution_threshold: 0.0,
         },
         solver: SolverSettings {
             method: Method::Nsgs,

@@ -59,7 +59,7 @@ pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
             Ok(false) => break,
             Err(error) => return Err(Error::file(path, error)),
         }
-        let line_number = record.position().map_or(0, csv::Position::line);
+        let line_number = record.position().map_or(0, |place| line_of_record(text, place));
         let refuse = |reason: String| Error::file(path, format!("line {line_number}: {reason}"));
         let line: Line = record.deserialize(Some(&headers)).map_err(|error| {
             let reason = match error.kind() {
@@ -89,6 +89,14 @@ pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
         return Err(Error::file(path, "holds no disc, but must hold at least one"));
     }
     Ok(grains)
+}
+
+/// The line of the record that was read from `place` on: the reader's own place is before the blank
+/// lines and comments that it skipped.
+fn line_of_record(text: &str, place: &csv::Position) -> u64 {
+    let rest = text.get(place.byte() as usize..).unwrap_or_default();
+    let skipped = rest.lines().take_while(|line| line.is_empty() || line.starts_with('#')).count();
+    place.line() + skipped as u64
 }
 
 /// The text of a CSV file of discs; `comment` goes in front, each line of it behind `# `.

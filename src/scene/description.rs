@@ -63,7 +63,7 @@ pub struct View {
 
 /// Where the grains of a scene come from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "from", rename_all = "kebab-case")]
+#[serde(tag = "from", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum GrainSource {
     /// A CSV of discs.
     Csv {
@@ -79,7 +79,7 @@ fn one() -> f64 {
 }
 
 impl Scene {
-    /// Checks what [`Simulation::new`] does not see.
+    /// Checks all that the scene says, but for the shapes of its boundaries.
     ///
     /// # Errors
     /// Names the first field outside its range.
@@ -91,6 +91,9 @@ impl Scene {
                 Err(Error::value(field, value, format!("a finite number > 0{unit}")))
             }
         };
+        self.physics.validate()?;
+        self.parameters.validate()?;
+        self.solver.validate()?;
         positive("areal_density", self.areal_density, " kg/m²")?;
         positive("duration", self.duration_secs, " s")?;
         positive("mean_diameter", self.mean_diameter, " m")?;
@@ -115,8 +118,13 @@ impl Scene {
             }
         }
         let magnitude = self.gravity.magnitude();
-        if !magnitude.is_finite() {
-            return Err(Error::value("gravity", magnitude, "finite"));
+        if !(magnitude >= 0.0 && magnitude.is_finite()) {
+            return Err(Error::value("gravity", magnitude, "a finite norm ≥ 0 m/s²"));
+        }
+        if let Gravity::Attraction { centre, .. } = self.gravity
+            && !centre.is_finite()
+        {
+            return Err(Error::value("gravity.centre", centre, "finite"));
         }
         if let Some(View { min, max }) = self.view
             && !(min.cmplt(max).all() && (max - min).is_finite())
@@ -163,8 +171,16 @@ impl Scene {
             min = min.min(grain.position - grain.radius);
             max = max.max(grain.position + grain.radius);
         }
-        let room = if self.physics.axes == 1 { 0.0 } else { max.y - min.y };
-        View { min: min - DVec2::new(room, 0.0), max: max + DVec2::new(room, 0.0) }
+        let room = DVec2::new(if self.physics.axes == 1 { 0.0 } else { max.y - min.y }, 0.0);
+        (min, max) = (min - room, max + room);
+        // Of what never moves, the part beside the grains.
+        for disc in &self.fixed_discs {
+            if (min.x..max.x).contains(&disc.position.x) {
+                min.y = min.y.min(disc.position.y - disc.radius);
+                max.y = max.y.max(disc.position.y + disc.radius);
+            }
+        }
+        View { min, max }
     }
 
     /// Sets the scene up at t = 0.

@@ -50,6 +50,7 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
             restitution: 0.1,
             friction: 0.5,
             cone: FrictionCone::Shifted,
+            restitution_threshold: 0.0,
         },
         solver: SolverSettings::default(),
         view: None,

@@ -6,8 +6,10 @@ mod pull;
 mod simulation;
 mod snapshot;
 mod step;
+mod tally;
 
 pub use observables::Observables;
 pub use pull::Pull;
 pub use simulation::Simulation;
 pub use snapshot::{ContactView, GrainView, Snapshot, Surroundings};
+pub use tally::Tally;

@@ -13,6 +13,8 @@ pub struct Observables {
     pub time_step_secs: f64,
     /// Sweeps of the solver.
     pub sweeps: u32,
+    /// Matrices that the solver factorised.
+    pub factorisations: u32,
     /// Whether the stopping test was met within the sweep limit.
     pub converged: bool,
     /// The common residual (`solver::residual`), dimensionless.
@@ -37,6 +39,6 @@ pub struct Observables {
     pub tangential_work: f64,
     /// Work of the gravity field, and of a spring that pulls a grain, in this step, J.
     pub gravity_work: f64,
-    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11).
+    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11); 0 where Σ y_i(0) is 0.
     pub slump: f64,
 }

@@ -116,7 +116,9 @@ impl Simulation {
         let grains = &self.world.grains;
         // A sum is finite only where every term is (or where an overflow is close enough to count).
         let total = |vectors: &[DVec2]| vectors.iter().sum::<DVec2>().is_finite();
-        total(&grains.positions) && total(&grains.velocities)
+        total(&grains.positions)
+            && total(&grains.velocities)
+            && grains.angular_velocities.iter().sum::<f64>().is_finite()
     }
 
     /// The world as it is now.

@@ -60,6 +60,7 @@ impl ModelVisitor for Step<'_> {
             time_secs: before.time_secs + time_step_secs,
             time_step_secs,
             sweeps: report.sweeps,
+            factorisations: report.factorisations,
             converged: report.converged,
             residual: measures.residual,
             compressive_contacts: measures.compressive_contacts,
@@ -155,8 +156,8 @@ fn geometry<M: Model>(simulation: &Simulation) -> Observables {
         mean_overlap: overlap_of_pairs / f64::from(pairs.max(1)) / world.mean_diameter,
         max_overlap: -smallest_gap / world.mean_diameter,
         potential_energy,
-        // On a line nothing can slump.
-        slump: if M::Kinematics::AXES == 1 || dropped == 0.0 {
+        // On a line nothing can slump, and about a mean height of 0 a relative drop says nothing.
+        slump: if M::Kinematics::AXES == 1 || simulation.initial_heights == 0.0 {
             0.0
         } else {
             dropped / simulation.initial_heights

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Model, SolverSettings, StepProblem, nsgs};
+use super::{Model, SolverSettings, StepProblem, newton, nsgs};
 
 /// A method, by the name that command line, scene files and panels use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -10,6 +10,8 @@ use super::{Model, SolverSettings, StepProblem, nsgs};
 pub enum Method {
     /// Non-linear Gauss–Seidel.
     Nsgs,
+    /// Semi-smooth Newton with a sparse factorisation.
+    Newton,
 }
 
 /// What there is to know of a method.
@@ -26,18 +28,28 @@ pub struct MethodInfo {
 }
 
 /// All methods.
-pub const METHODS: [MethodInfo; 1] = [MethodInfo {
-    method: Method::Nsgs,
-    name: "nsgs",
-    summary: "non-linear Gauss-Seidel: one contact after the other, exact for each",
-    source: "M. Jean, The non-smooth contact dynamics method (1999)",
-}];
+pub const METHODS: [MethodInfo; 2] = [
+    MethodInfo {
+        method: Method::Nsgs,
+        name: "nsgs",
+        summary: "non-linear Gauss-Seidel: one contact after the other, exact for each",
+        source: "M. Jean, The non-smooth contact dynamics method (1999)",
+    },
+    MethodInfo {
+        method: Method::Newton,
+        name: "newton",
+        summary: "semi-smooth Newton, sparse direct: all contacts together, for tight tolerances",
+        source: "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)",
+    },
+];
 
 /// How a solve ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolveReport {
     /// Sweeps done.
     pub sweeps: u32,
+    /// Matrices factorised.
+    pub factorisations: u32,
     /// Whether the stopping test was met.
     pub converged: bool,
 }
@@ -50,5 +62,6 @@ pub fn solve<M: Model>(
 ) -> SolveReport {
     match settings.method {
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
+        Method::Newton => newton::solve::<M>(problem, settings),
     }
 }

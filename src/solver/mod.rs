@@ -4,6 +4,7 @@ mod kinematics;
 mod measure;
 mod method;
 mod model;
+mod newton;
 mod nsgs;
 mod problem;
 mod settings;

@@ -24,9 +24,8 @@ pub(super) fn solve<M: Model>(
     settings: &SolverSettings,
 ) -> SolveReport {
     if problem.contact_of_row.is_empty() {
-        return SolveReport { sweeps: 0, converged: true };
+        return SolveReport { converged: true, ..SolveReport::default() };
     }
-    let tolerance = settings.tolerance;
     for sweeps in 1..=settings.max_sweeps {
         let tested = sweeps <= SWEEPS_TESTED_EACH
             || sweeps % TEST_INTERVAL == 0
@@ -36,24 +35,33 @@ pub(super) fn solve<M: Model>(
             sweep::<M, false>(problem);
             continue;
         }
-        let converged = match settings.stop {
-            StopTest::RelativeChange => {
-                let change = sweep::<M, true>(problem);
-                change.squared <= tolerance * tolerance * squared_impulses(problem)
-            }
-            StopTest::ImpulsePerMass => {
-                sweep::<M, true>(problem).absolute <= tolerance * problem.mean_mass
-            }
-            StopTest::Residual => {
-                sweep::<M, false>(problem);
-                residual::<M>(problem) <= tolerance
-            }
-        };
+        let converged = tested_sweep::<M>(problem, settings);
         if converged {
-            return SolveReport { sweeps, converged };
+            return SolveReport { sweeps, converged, ..SolveReport::default() };
         }
     }
-    SolveReport { sweeps: settings.max_sweeps, converged: false }
+    SolveReport { sweeps: settings.max_sweeps, ..SolveReport::default() }
+}
+
+/// One sweep, and whether the stopping test is met after it.
+pub(super) fn tested_sweep<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+) -> bool {
+    let tolerance = settings.tolerance;
+    match settings.stop {
+        StopTest::RelativeChange => {
+            let change = sweep::<M, true>(problem);
+            change.squared <= tolerance * tolerance * squared_impulses(problem)
+        }
+        StopTest::ImpulsePerMass => {
+            sweep::<M, true>(problem).absolute <= tolerance * problem.mean_mass
+        }
+        StopTest::Residual => {
+            sweep::<M, false>(problem);
+            residual::<M>(problem) <= tolerance
+        }
+    }
 }
 
 /// How much a sweep changed the impulses; zero where it was not asked to measure.

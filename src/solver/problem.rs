@@ -1,5 +1,6 @@
 //! The problem of one step: packed bodies and one row a contact, in the order of the sweep.
 
+use super::newton::Workspaces;
 use super::{Kinematics, Line, Model, Plane, SpinningPlane};
 use crate::contact::{Contact, ContactList, Impulse, law};
 use crate::world::{Parameters, World};
@@ -20,7 +21,7 @@ pub struct Row<K: Kinematics> {
     pub normal: K::Normal,
     /// g_i = m_ij/m_i; 1 against a fixed body.
     pub share: f64,
-    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}.
+    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold.
     pub restitution_velocity: f64,
     /// σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
@@ -55,8 +56,11 @@ pub struct StepProblem<K: Kinematics> {
     pub friction: f64,
     /// C₀Δt/m_ij = Bond·g·Δt, m/s; 0 in a scene without cohesion.
     pub capture_speed: f64,
+    /// Masses of the bodies, kg.
+    pub masses: Vec<f64>,
     /// Mean mass of the grains, kg.
     pub mean_mass: f64,
+    pub(super) newton: Workspaces,
     in_detection_order: Vec<u32>,
 }
 
@@ -71,7 +75,9 @@ impl<K: Kinematics> Default for StepProblem<K> {
             contact_of_row: Vec::new(),
             friction: 0.0,
             capture_speed: 0.0,
+            masses: Vec::new(),
             mean_mass: 0.0,
+            newton: Workspaces::default(),
             in_detection_order: Vec::new(),
         }
     }
@@ -98,6 +104,7 @@ impl<K: Kinematics> StepProblem<K> {
         self.capture_speed =
             if cohesion { parameters.capture_speed(gravity_magnitude) } else { 0.0 };
         self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
+        self.masses.clone_from(&grains.masses);
         self.before.clear();
         self.free.clear();
         for index in 0..grains.len() {
@@ -109,8 +116,6 @@ impl<K: Kinematics> StepProblem<K> {
                 body
             });
         }
-        self.bodies.clone_from(&self.free);
-
         let list = contacts.contacts();
         let against_grain = |index: &u32| (list[*index as usize].other as usize) < grains.len();
         self.contact_of_row.clear();
@@ -119,7 +124,7 @@ impl<K: Kinematics> StepProblem<K> {
         let fixed_count = self.contact_of_row.len();
         self.interleave(all.filter(against_grain));
 
-        let restitution = parameters.restitution;
+        let rebound = |velocity| parameters.restitution_velocity(velocity, gravity_magnitude);
         let start = |index: u32| warm_start.then(|| contacts.impulses()[index as usize]);
         self.fixed_rows.clear();
         for at in 0..fixed_count {
@@ -128,7 +133,7 @@ impl<K: Kinematics> StepProblem<K> {
             let i = contact.grain as usize;
             let [velocity, _] = K::velocity(K::normal(contact.normal), &self.before[i]);
             let masses = (grains.masses[i], 1.0);
-            let row = self.row::<M>(contact, masses, restitution * velocity, start(index));
+            let row = self.row::<M>(contact, masses, rebound(velocity), start(index));
             self.fixed_rows.push(row);
         }
         self.pair_rows.clear();
@@ -140,10 +145,10 @@ impl<K: Kinematics> StepProblem<K> {
             let [velocity, _] = K::relative_velocity(K::normal(contact.normal), before_i, before_j);
             let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
             let masses = (grains.masses[i] * share, share);
-            let row = self.row::<M>(contact, masses, restitution * velocity, start(index));
+            let row = self.row::<M>(contact, masses, rebound(velocity), start(index));
             self.pair_rows.push(row);
         }
-        self.apply_impulses();
+        self.form_velocities();
     }
 
     /// Appends contacts, given in the order of detection, to the order of the sweep.
@@ -187,7 +192,8 @@ impl<K: Kinematics> StepProblem<K> {
     }
 
     /// Moves the bodies from their free velocities by the rows' impulses.
-    fn apply_impulses(&mut self) {
+    pub(super) fn form_velocities(&mut self) {
+        self.bodies.clone_from(&self.free);
         for row in &self.fixed_rows {
             let impulse = self.reduced_impulse(row);
             K::push_single(&mut self.bodies[row.i as usize], row.normal, impulse);

@@ -69,6 +69,12 @@ pub struct Parameters {
     /// Which part of the normal force bounds friction.
     #[serde(default)]
     pub cone: FrictionCone,
+    /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
+    ///
+    /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step
+    /// then has no solution. Below about 2 g·Δt it stands for no bounce that anyone could see.
+    #[serde(default)]
+    pub restitution_threshold: f64,
 }
 
 impl Parameters {
@@ -77,7 +83,8 @@ impl Parameters {
     /// # Errors
     /// Names the first field outside its range, its value and the range.
     pub fn validate(&self) -> Result<()> {
-        let Self { bond, time_step_secs, restitution, friction, cone: _ } = *self;
+        let Self { bond, time_step_secs, restitution, friction, cone: _, restitution_threshold } =
+            *self;
         // Written so that NaN fails each of them.
         if !(bond >= 0.0 && bond.is_finite()) {
             return Err(Error::value("bond", bond, "a finite number ≥ 0"));
@@ -91,7 +98,17 @@ impl Parameters {
         if !(friction >= 0.0 && friction.is_finite()) {
             return Err(Error::value("mu", friction, "a finite number ≥ 0"));
         }
+        if !(restitution_threshold >= 0.0 && restitution_threshold.is_finite()) {
+            let field = "restitution-threshold";
+            return Err(Error::value(field, restitution_threshold, "a finite number ≥ 0"));
+        }
         Ok(())
+    }
+
+    /// ρ v_n^{n−1}, m/s, of a contact with that normal velocity at the beginning of the step.
+    pub fn restitution_velocity(&self, normal_velocity: f64, gravity_magnitude: f64) -> f64 {
+        let least = self.restitution_threshold * gravity_magnitude * self.time_step_secs;
+        if normal_velocity.abs() < least { 0.0 } else { self.restitution * normal_velocity }
     }
 
     /// Bond·Δt/√(d/g), dimensionless (paper §3.3).

@@ -19,6 +19,7 @@ use super::storage::{self, Stored};
 use super::theme;
 use super::ui::ui;
 use crate::error::{Error, Result};
+use crate::headless::HeadlessOptions;
 use crate::scene::Config;
 use crate::sim::live::{Live, LiveOptions};
 use export_state::StateFile;
@@ -48,11 +49,12 @@ enum Message {
 /// # Errors
 /// Says what is missing where there is no display or no graphics driver, and which package brings
 /// it; otherwise what the system reports.
-pub fn run(config: &Config, options: &WindowOptions) -> Result<()> {
+pub fn run(config: &Config, pictures: &HeadlessOptions, options: &WindowOptions) -> Result<()> {
     if options.reset_ui {
         storage::forget();
     }
-    let stored = storage::load();
+    let mut stored = storage::load();
+    stored.preferences.follow(pictures)?;
     let config = start_config(config, &stored)?;
     let events =
         EventLoop::<Message>::with_user_event().build().map_err(|error| no_display(&error))?;

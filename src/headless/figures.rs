@@ -1,0 +1,243 @@
+//! The paper's Fig. 3, 4 and 7, from simulation to finished figure.
+
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use glam::DVec2;
+use image::RgbaImage;
+use rayon::prelude::*;
+
+use super::Progress;
+use super::frames::{ObservablesTable, tell_of_unconverged_steps};
+use super::manifest::{Manifest, Moment, PictureEntry, RunEntry};
+use super::output::{check_writable, write_png};
+use crate::error::Result;
+use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
+use crate::scene::View;
+use crate::sim::{Snapshot, Tally};
+use crate::study::{
+    FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
+    record,
+};
+
+/// Width of a panel of Fig. 4, pixels.
+const PILE_PANEL_WIDTH: u32 = 640;
+/// Width of Fig. 3, pixels.
+const FIG3_WIDTH: u32 = 1280;
+/// Width of a panel of Fig. 7, pixels.
+const CRADLE_PANEL_WIDTH: u32 = 720;
+
+/// One finished run.
+struct Outcome {
+    run: PaperRun,
+    snapshots: Vec<Snapshot>,
+    tally: Tally,
+}
+
+/// Simulates the runs on all cores and draws the figures into `folder`.
+pub(super) fn draw(folder: &Path, renderer: RendererChoice) -> Result<()> {
+    let mut renderer = Renderer::new(renderer)?;
+    check_writable(folder)?;
+    eprintln!("drawing with {}", renderer.name());
+    let outcomes = simulate(folder)?;
+
+    let mut manifest = Manifest::new(renderer.name());
+    for outcome in &outcomes {
+        manifest.runs.push(RunEntry::new(&outcome.run.name, &outcome.run.scene, outcome.tally)?);
+        tell_of_unconverged_steps(&outcome.run.scene, &outcome.tally);
+    }
+    let mut press = Press { folder, renderer: &mut renderer, manifest };
+    press.fig3(&outcomes)?;
+    press.fig4(&outcomes)?;
+    press.fig7(&outcomes)?;
+    press.manifest.write(&folder.join("manifest.json"))?;
+    println!("{} pictures in {}", press.manifest.pictures.len(), folder.display());
+    Ok(())
+}
+
+/// Runs everything, dearest first, so that no core waits long for the last one.
+fn simulate(folder: &Path) -> Result<Vec<Outcome>> {
+    let runs = paper_runs()?;
+    let steps = |run: &PaperRun| run.scene.duration_secs / run.scene.parameters.time_step_secs;
+    let progress = Progress::new("simulating", runs.iter().map(|run| steps(run) as u64).sum());
+    let said = Mutex::new(());
+    let outcomes = runs
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|run| {
+            let started = Instant::now();
+            let mut table = ObservablesTable::start_as(folder.join(format!("{}.csv", run.name)))?;
+            let mut snapshots = Vec::new();
+            let recorded = record(
+                &run.scene,
+                &run.times_secs,
+                |_, snapshot| {
+                    snapshots.push(snapshot);
+                    Ok(())
+                },
+                |observables| {
+                    progress.advance(1);
+                    table.add(observables)
+                },
+            )?;
+            if recorded.tally.steps > 0 {
+                table.finish()?;
+            }
+            let _one_at_a_time = said.lock();
+            progress.say(&format!("{}: {:.1} s", run.name, started.elapsed().as_secs_f64()));
+            Ok(Outcome { run, snapshots, tally: recorded.tally })
+        })
+        .collect();
+    progress.finish();
+    outcomes
+}
+
+/// Draws figures and keeps the books.
+struct Press<'a> {
+    folder: &'a Path,
+    renderer: &'a mut Renderer,
+    manifest: Manifest,
+}
+
+impl Press<'_> {
+    fn fig3(&mut self, outcomes: &[Outcome]) -> Result<()> {
+        let Some(outcome) = of_figure(outcomes, "fig3").next() else { return Ok(()) };
+        let view = outcome.run.scene.view();
+        let style = Style::default();
+        let panel = self.panel(outcome, 0, "fig3_panel", view, FIG3_WIDTH, &style)?;
+        let mut figure = Figure::new(1, 1, vec![panel]);
+        figure.title = "Initial state shared by all piles".into();
+        figure.caption = format!(
+            "{} discs rained between walls over a rough base and left to come to rest. \
+             Greys mark layers two diameters high. At t = 0 the walls go.",
+            outcome.run.scene.grains.len()
+        );
+        self.write("fig3.png", &figure.draw()?, vec![moment(outcome, 0)])
+    }
+
+    fn fig4(&mut self, outcomes: &[Outcome]) -> Result<()> {
+        let mut view = common_view(outcomes, "fig4");
+        // The base belongs to the picture: its discs reach half a diameter below y = 0.
+        view.min.y = -0.5 * outcomes[0].run.scene.mean_diameter;
+        let mut panels = Vec::new();
+        let mut titles = Vec::new();
+        let mut moments = Vec::new();
+        for bond in FIG4_BONDS {
+            for time_step_secs in FIG4_TIME_STEPS_SECS {
+                let is_this = |outcome: &&Outcome| {
+                    let parameters = outcome.run.scene.parameters;
+                    parameters.bond == bond && parameters.time_step_secs == time_step_secs
+                };
+                let Some(outcome) = of_figure(outcomes, "fig4").find(is_this) else { continue };
+                // The scale is the same in all panels: one bar says it.
+                let style = Style { scale_bar: panels.is_empty(), ..Style::default() };
+                let name = outcome.run.name.clone();
+                let slump = outcome.snapshots[0].observables.slump;
+                titles.push(format!("Δy_{{G}} = {slump:.3}"));
+                moments.push(moment(outcome, 0));
+                panels.push(self.panel(outcome, 0, &name, view, PILE_PANEL_WIDTH, &style)?);
+            }
+        }
+        let mut figure = Figure::new(FIG4_BONDS.len(), FIG4_TIME_STEPS_SECS.len(), panels);
+        figure.row_labels = FIG4_BONDS.map(|bond| format!("Bond = {bond}")).to_vec();
+        figure.column_labels =
+            FIG4_TIME_STEPS_SECS.map(|step| format!("Δt = {} s", power_of_ten(step))).to_vec();
+        figure.panel_titles = titles;
+        figure.titles_inside = true;
+        let Some(outcome) = of_figure(outcomes, "fig4").next() else { return Ok(()) };
+        figure.caption = format!(
+            "The pile at t = {} s, from one initial state; Δy_{{G}} is the slump.",
+            outcome.run.scene.duration_secs
+        );
+        self.write("fig4.png", &figure.draw()?, moments)
+    }
+
+    fn fig7(&mut self, outcomes: &[Outcome]) -> Result<()> {
+        let view = common_view(outcomes, "fig7");
+        let mut panels = Vec::new();
+        let mut moments = Vec::new();
+        for (row, time_secs) in FIG7_TIMES_SECS.iter().enumerate() {
+            for outcome in of_figure(outcomes, "fig7") {
+                let style = Style { scale_bar: panels.is_empty(), ..Style::default() };
+                let name = format!("{}_t{time_secs}", outcome.run.name);
+                moments.push(moment(outcome, row));
+                panels.push(self.panel(outcome, row, &name, view, CRADLE_PANEL_WIDTH, &style)?);
+            }
+        }
+        let mut figure = Figure::new(FIG7_TIMES_SECS.len(), FIG7_TIME_STEPS_SECS.len(), panels);
+        figure.row_labels = FIG7_TIMES_SECS.map(|time| format!("t = {time} s")).to_vec();
+        figure.column_labels =
+            FIG7_TIME_STEPS_SECS.map(|step| format!("Δt = {} s", power_of_ten(step))).to_vec();
+        figure.caption =
+            "Three discs drawn towards the dot: k (dark grey) falls on the bonded pair \
+                          of i (white) and j (light grey; does not feel the attraction)."
+                .into();
+        self.write("fig7.png", &figure.draw()?, moments)
+    }
+
+    /// Draws one panel `width` pixels wide and as high as its view asks, and writes it by itself.
+    fn panel(
+        &mut self,
+        outcome: &Outcome,
+        number: usize,
+        name: &str,
+        View { min, max }: View,
+        width: u32,
+        style: &Style,
+    ) -> Result<RgbaImage> {
+        let height = panel_height(min, max, width);
+        // The same camera with and without the bar: panels of one figure lie alike.
+        let camera: Camera = Style::default().camera(min, max, width, height);
+        let snapshot = &outcome.snapshots[number];
+        let image = draw_scene(self.renderer, snapshot, style, &camera, width, height)?;
+        self.write(&format!("{name}.png"), &image, vec![moment(outcome, number)])?;
+        Ok(image)
+    }
+
+    fn write(&mut self, file: &str, image: &RgbaImage, shows: Vec<Moment>) -> Result<()> {
+        write_png(&self.folder.join(file), image)?;
+        self.manifest.pictures.push(PictureEntry { file: file.to_owned(), shows });
+        Ok(())
+    }
+}
+
+fn moment(outcome: &Outcome, number: usize) -> Moment {
+    let observables = outcome.snapshots[number].observables;
+    Moment { run: outcome.run.name.clone(), observables }
+}
+
+fn of_figure<'a>(outcomes: &'a [Outcome], figure: &'a str) -> impl Iterator<Item = &'a Outcome> {
+    outcomes.iter().filter(move |outcome| outcome.run.figure == figure)
+}
+
+/// One view for all panels of a figure, so that they can be compared: it shows all grains of all.
+fn common_view(outcomes: &[Outcome], figure: &str) -> View {
+    let snapshots = of_figure(outcomes, figure).flat_map(|outcome| &outcome.snapshots);
+    let mut view = View { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
+    for grain in snapshots.flat_map(|snapshot| &snapshot.grains) {
+        view.min = view.min.min(grain.position - grain.radius);
+        view.max = view.max.max(grain.position + grain.radius);
+    }
+    view
+}
+
+/// Height in pixels that shows a view whole, with the margins that [`Style::camera`] leaves.
+fn panel_height(min: DVec2, max: DVec2, width: u32) -> u32 {
+    /// Room above and below for margins and scale bar, pixels.
+    const ROOM: f64 = 70.0;
+    let shape = (max.y - min.y) / (max.x - min.x);
+    (f64::from(width) * shape + ROOM).ceil() as u32
+}
+
+/// A number as a journal writes it: 10^{−4}, 2·10^{−3}.
+fn power_of_ten(number: f64) -> String {
+    let text = format!("{number:e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let exponent = exponent.replace('-', "−");
+    if mantissa == "1" {
+        format!("10^{{{exponent}}}")
+    } else {
+        format!("{mantissa}·10^{{{exponent}}}")
+    }
+}

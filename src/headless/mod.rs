@@ -1,0 +1,38 @@
+//! Pictures without a window: the paper's figures, or frames of one scene.
+
+mod figures;
+mod frames;
+mod gif;
+mod manifest;
+mod options;
+mod output;
+mod progress;
+
+pub use frames::settled;
+pub use options::{HeadlessOptions, PictureSize, Show};
+pub use output::{check_writable, write_file};
+pub use progress::Progress;
+
+use crate::error::{Error, Result};
+use crate::scene::Config;
+
+/// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
+/// figures.
+///
+/// # Errors
+/// In one sentence; nothing has been written where a value is refused.
+pub fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
+    if options.frames.is_none() && options.gif.is_none() {
+        return Err(Error::value(
+            "frames",
+            "missing",
+            "a folder (--frames out/), or give --gif FILE",
+        ));
+    }
+    match &options.frames {
+        Some(folder) if config.is_empty() && !options.asks_for_frames() => {
+            figures::draw(folder, options.renderer)
+        }
+        _ => frames::draw(config, options),
+    }
+}

@@ -1,0 +1,148 @@
+//! Options of pictures.
+
+use std::path::PathBuf;
+
+use crate::error::{Error, Result};
+use crate::render::{ColourBy, RendererChoice, Style, Theme};
+
+/// Width and height of a picture, pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureSize {
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+}
+
+impl std::str::FromStr for PictureSize {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let refuse = || Error::value("size", text, "WIDTHxHEIGHT in pixels, both at least 1");
+        let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(refuse)?;
+        let side = |text: &str| text.trim().parse().ok().filter(|&side| side > 0);
+        match (side(width), side(height)) {
+            (Some(width), Some(height)) => Ok(Self { width, height }),
+            _ => Err(refuse()),
+        }
+    }
+}
+
+/// What can be laid over the grains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Show {
+    /// Contact forces as links
+    Forces,
+    /// A mark on each grain that turns with it
+    Angles,
+}
+
+/// Options of pictures.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct HeadlessOptions {
+    /// Draw pictures without a window; with --frames alone, the paper's Fig. 3, 4 and 7
+    #[arg(long, help_heading = "Pictures")]
+    pub headless: bool,
+    /// Folder for pictures, observables.csv and manifest.json
+    #[arg(long, value_name = "DIR", help_heading = "Pictures")]
+    pub frames: Option<PathBuf>,
+    /// Size of a picture, pixels [default: 960x540]
+    #[arg(long, value_name = "WxH", help_heading = "Pictures")]
+    pub size: Option<String>,
+    /// Pictures per simulated second: frame_00000.png and so on [default: 25]
+    #[arg(
+        long,
+        value_name = "N",
+        help_heading = "Pictures",
+        conflicts_with = "times",
+        allow_negative_numbers = true
+    )]
+    pub fps: Option<f64>,
+    /// Pictures at these simulated times, seconds
+    #[arg(
+        long,
+        value_name = "T1,T2",
+        help_heading = "Pictures",
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
+    pub times: Vec<f64>,
+    /// Write the pictures as an animation too, 25 a second
+    #[arg(long, value_name = "FILE", help_heading = "Pictures")]
+    pub gif: Option<PathBuf>,
+    /// What to lay over the grains
+    #[arg(long, value_name = "WHAT", help_heading = "Pictures", value_delimiter = ',')]
+    pub show: Vec<Show>,
+    /// What the colours of the grains stand for
+    #[arg(long, value_name = "BY", help_heading = "Pictures", alias = "color")]
+    pub colour: Option<ColourBy>,
+    /// Ground and ink
+    #[arg(long, value_name = "THEME", help_heading = "Pictures")]
+    pub theme: Option<Theme>,
+    /// What draws: auto tries Vulkan, OpenGL and then the processor
+    #[arg(long, value_name = "KIND", help_heading = "Pictures", default_value = "auto")]
+    pub renderer: RendererChoice,
+}
+
+/// Size of a picture that no size is given for.
+const DEFAULT_SIZE: PictureSize = PictureSize { width: 960, height: 540 };
+/// Pictures per simulated second where neither rate nor times are given.
+const DEFAULT_FPS: f64 = 25.0;
+/// More pictures than this are a mistake rather than a wish.
+const MOST_PICTURES: f64 = 1e5;
+
+impl HeadlessOptions {
+    /// Whether anything is said that only frames of one scene have.
+    pub fn asks_for_frames(&self) -> bool {
+        self.fps.is_some()
+            || !self.times.is_empty()
+            || self.size.is_some()
+            || self.gif.is_some()
+            || !self.show.is_empty()
+            || self.colour.is_some()
+            || self.theme.is_some()
+    }
+
+    /// The size of a picture.
+    ///
+    /// # Errors
+    /// Where it is none.
+    pub fn size(&self) -> Result<PictureSize> {
+        self.size.as_ref().map_or(Ok(DEFAULT_SIZE), |text| text.parse())
+    }
+
+    /// How the scene is drawn.
+    pub fn style(&self) -> Style {
+        Style {
+            colour_by: self.colour.unwrap_or_default(),
+            theme: self.theme.unwrap_or_default(),
+            show_forces: self.show.contains(&Show::Forces),
+            angles: self.show.contains(&Show::Angles),
+            ..Style::default()
+        }
+    }
+
+    /// The times of the pictures of a run that lasts `duration_secs`, s, rising.
+    ///
+    /// # Errors
+    /// Where the rate or a time is outside its range.
+    pub fn picture_times(&self, duration_secs: f64) -> Result<Vec<f64>> {
+        if !self.times.is_empty() {
+            let allowed = format!("between 0 and the duration of {duration_secs} s");
+            let outside = |time: &&f64| !(0.0..=duration_secs).contains(*time);
+            if let Some(time) = self.times.iter().find(outside) {
+                return Err(Error::value("times", time, allowed));
+            }
+            let mut times = self.times.clone();
+            times.sort_by(f64::total_cmp);
+            return Ok(times);
+        }
+        let fps = self.fps.unwrap_or(DEFAULT_FPS);
+        let last = (duration_secs * fps * (1.0 + 1e-12)).floor();
+        if !(fps > 0.0 && last < MOST_PICTURES) {
+            let allowed = format!("> 0, and no more than {MOST_PICTURES} pictures in all");
+            return Err(Error::value("fps", fps, allowed));
+        }
+        Ok((0..=last as u64).map(|number| number as f64 / fps).collect())
+    }
+}

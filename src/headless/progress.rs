@@ -1,0 +1,54 @@
+//! How far long work has come: a bar on a terminal, a line for each finished part elsewhere.
+
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Progress of one piece of work on stderr.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    bar: ProgressBar,
+}
+
+impl Progress {
+    /// Starts work of `length` units of any kind. `what` stands in front of the bar.
+    pub fn new(what: &str, length: u64) -> Self {
+        let bar = if std::io::stderr().is_terminal() {
+            let template = "{prefix} {wide_bar} {percent:>3} %  {eta} left";
+            let style = ProgressStyle::with_template(template)
+                .unwrap_or_else(|_| ProgressStyle::default_bar());
+            let bar = ProgressBar::new(length).with_style(style).with_prefix(what.to_owned());
+            bar.enable_steady_tick(Duration::from_millis(200));
+            bar
+        } else {
+            ProgressBar::hidden()
+        };
+        Self { bar }
+    }
+
+    /// Counts units done.
+    pub fn advance(&self, units: u64) {
+        self.bar.inc(units);
+    }
+
+    /// Sets the units done.
+    pub fn set(&self, units: u64) {
+        self.bar.set_position(units);
+    }
+
+    /// Whether there is a terminal that shows a bar.
+    pub fn is_drawn(&self) -> bool {
+        !self.bar.is_hidden()
+    }
+
+    /// Says something in a line of its own.
+    pub fn say(&self, line: &str) {
+        self.bar.suspend(|| eprintln!("{line}"));
+    }
+
+    /// Ends the work.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,261 @@
+//! Semi-smooth Newton in body-velocity space, with a sparse direct factorisation.
+//!
+//! The contact law is a fixed point of projections (`contact::law`). Regularised with a compliance ε
+//! it reads, per contact and in reduced impulses,
+//!
+//! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±μσ'),
+//!
+//! u = v_n + ρ v_n^{n−1}, with the velocities at the *end* of the Newton step. Whether a contact is
+//! open, sticks or slips is guessed from the present state; each guess makes the law linear, so that
+//! impulses can be eliminated and velocities V remain:
+//!
+//! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],  c the capture speed,
+//!
+//! one sparse system with a D × D block a body: masses plus contact stiffnesses m_ij/ε. A slipping
+//! contact, λ_t' = ±μσ', brings the unsymmetric n + (±μ) t. The exact solution is a fixed point for
+//! any ε: a small one converges in few steps, a larger one is more robust where guesses flip.
+//! After each step the impulses are projected on what the law allows, velocities are formed
+//! anew from them, and two Gauss–Seidel sweeps mend what the guesses got wrong.
+//!
+//! The method is that of an augmented Lagrangian treated by generalised Newton steps (P. Alart,
+//! A. Curnier 1991), with ε adapted as in a trust region.
+
+mod assembly;
+mod block_lu;
+mod ordering;
+
+use self::assembly::{Guess, assemble};
+use self::block_lu::BlockMatrix;
+use self::ordering::Elimination;
+use super::measure::residual;
+use super::nsgs::{sweep, tested_sweep};
+use super::{Kinematics, Model, SolveReport, SolverSettings, StepProblem};
+use crate::contact::law;
+
+/// Compliance of the first step.
+const FIRST_COMPLIANCE: f64 = 1e-6;
+/// Below this, rounding in the factorisation eats what a smaller compliance would gain.
+const SMALLEST_COMPLIANCE: f64 = 1e-7;
+/// Above this a Newton step is no better than sweeps, which then take over for a while.
+const LARGEST_COMPLIANCE: f64 = 0.1;
+/// Factor of the compliance after a step that is accepted.
+const AFTER_SUCCESS: f64 = 0.1;
+/// Factor of the compliance after a step that is refused.
+const AFTER_FAILURE: f64 = 30.0;
+/// A step is accepted if its residual is below [`ENOUGH`] times the largest of this many before:
+/// the residual may rise for a few steps on the way down. With 1, steps are refused that lead on;
+/// with 10, many are taken that lead nowhere.
+const MEMORY: usize = 4;
+/// See [`MEMORY`].
+const ENOUGH: f64 = 0.9;
+/// Sweeps before the first factorisation: many steps of a pile at rest need no more.
+const SWEEPS_FIRST: u32 = 4;
+/// Sweeps where Newton stalls, doubled each time up to [`MOST_SWEEPS_BETWEEN`].
+const SWEEPS_BETWEEN: u32 = 20;
+/// See [`SWEEPS_BETWEEN`].
+const MOST_SWEEPS_BETWEEN: u32 = 200;
+/// Factorisations without halving the best residual after which the solve is given up. With 40, one
+/// step in three of a moving pile is given up that has a solution to 1e-8; with 100, one in thirty.
+const PATIENCE: u32 = 100;
+
+/// A workspace for each number of degrees of freedom; those that are not used hold no memory.
+#[derive(Clone, Debug, Default)]
+pub struct Workspaces {
+    one: Workspace<1>,
+    two: Workspace<2>,
+    three: Workspace<3>,
+}
+
+/// What Newton's method keeps from one factorisation to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace<const D: usize> {
+    elimination: Elimination,
+    matrix: BlockMatrix<D>,
+    vector: Vec<[f64; D]>,
+    guesses: Vec<Guess>,
+    /// (σ, λ_t) of the rows to go back to.
+    saved: Vec<[f64; 2]>,
+    /// (σ, λ_t) of the smallest residual so far.
+    best: Vec<[f64; 2]>,
+    /// What `elimination` was made for.
+    bodies: usize,
+    pairs: Vec<(u32, u32)>,
+}
+
+/// Solves a prepared problem.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+) -> SolveReport {
+    if problem.contact_of_row.is_empty() {
+        return SolveReport { converged: true, ..SolveReport::default() };
+    }
+    let mut workspaces = std::mem::take(&mut problem.newton);
+    let report = match M::Kinematics::DEGREES {
+        1 => Newton::<M, 1> { problem, settings, workspace: &mut workspaces.one }.run(),
+        2 => Newton::<M, 2> { problem, settings, workspace: &mut workspaces.two }.run(),
+        _ => Newton::<M, 3> { problem, settings, workspace: &mut workspaces.three }.run(),
+    };
+    problem.newton = workspaces;
+    report
+}
+
+/// One solve.
+struct Newton<'a, M: Model, const D: usize> {
+    problem: &'a mut StepProblem<M::Kinematics>,
+    settings: &'a SolverSettings,
+    workspace: &'a mut Workspace<D>,
+}
+
+impl<M: Model, const D: usize> Newton<'_, M, D> {
+    fn run(mut self) -> SolveReport {
+        let mut report = SolveReport::default();
+        for _ in 0..SWEEPS_FIRST.min(self.settings.max_sweeps) {
+            report.sweeps += 1;
+            if tested_sweep::<M>(self.problem, self.settings) {
+                return SolveReport { converged: true, ..report };
+            }
+        }
+        self.analyse();
+        let mut history = [0.0; MEMORY];
+        let mut accepted = 0;
+        history[0] = residual::<M>(self.problem);
+        save(self.problem, &mut self.workspace.saved);
+        self.workspace.best.clone_from(&self.workspace.saved);
+        let mut best = history[0];
+        // The best residual is told apart from the last one that was half of the one before, so
+        // that creeping down does not count as progress.
+        let mut milestone = best;
+        let mut since_milestone = 0;
+        let mut compliance = FIRST_COMPLIANCE;
+        let mut sweeps_between = SWEEPS_BETWEEN;
+        while report.sweeps + 2 <= self.settings.max_sweeps && since_milestone < PATIENCE {
+            self.newton_step(compliance);
+            report.factorisations += 1;
+            sweep::<M, false>(self.problem);
+            report.sweeps += 2;
+            if tested_sweep::<M>(self.problem, self.settings) {
+                return SolveReport { converged: true, ..report };
+            }
+            let mut now = residual::<M>(self.problem);
+            since_milestone += 1;
+            let bound = ENOUGH * history.iter().copied().fold(0.0, f64::max);
+            // Not a number is not below anything.
+            if now < bound {
+                compliance = (compliance * AFTER_SUCCESS).max(SMALLEST_COMPLIANCE);
+            } else {
+                restore(self.problem, &self.workspace.saved);
+                compliance *= AFTER_FAILURE;
+                if compliance <= LARGEST_COMPLIANCE {
+                    continue;
+                }
+                for _ in 0..sweeps_between.min(self.settings.max_sweeps - report.sweeps) {
+                    report.sweeps += 1;
+                    if tested_sweep::<M>(self.problem, self.settings) {
+                        return SolveReport { converged: true, ..report };
+                    }
+                }
+                sweeps_between = (2 * sweeps_between).min(MOST_SWEEPS_BETWEEN);
+                compliance = FIRST_COMPLIANCE;
+                now = residual::<M>(self.problem);
+            }
+            save(self.problem, &mut self.workspace.saved);
+            accepted += 1;
+            history[accepted % MEMORY] = now;
+            if now < best {
+                best = now;
+                self.workspace.best.clone_from(&self.workspace.saved);
+            }
+            if best < 0.5 * milestone {
+                milestone = best;
+                since_milestone = 0;
+            }
+        }
+        restore(self.problem, &self.workspace.best);
+        report
+    }
+
+    /// Orders the elimination, unless the contacts between grains are those of the last time.
+    fn analyse(&mut self) {
+        let pairs = || self.problem.pair_rows.iter().map(|row| (row.i, row.j));
+        let bodies = self.problem.bodies.len();
+        let workspace = &mut *self.workspace;
+        if workspace.bodies == bodies && pairs().eq(workspace.pairs.iter().copied()) {
+            return;
+        }
+        workspace.bodies = bodies;
+        workspace.pairs.clear();
+        workspace.pairs.extend(pairs());
+        workspace.elimination.analyse(bodies, workspace.pairs.iter().copied());
+    }
+
+    /// Guesses, solves for velocities, and takes the impulses that go with them.
+    fn newton_step(&mut self, compliance: f64) {
+        assemble::<M, D>(self.problem, self.workspace, compliance);
+        let Workspace { elimination, matrix, vector, .. } = &mut *self.workspace;
+        matrix.factorise(elimination);
+        matrix.solve(elimination, vector);
+        self.take_impulses(compliance);
+        self.problem.form_velocities();
+    }
+
+    /// The regularised law at the new velocities, projected on what the law allows.
+    fn take_impulses(&mut self, compliance: f64) {
+        let Workspace { elimination, vector, guesses, .. } = &*self.workspace;
+        let StepProblem { fixed_rows, pair_rows, friction, capture_speed, .. } = &mut *self.problem;
+        let along = |gradient: &[f64; 3], body: u32| -> f64 {
+            let velocity = &vector[elimination.place_of[body as usize] as usize];
+            (0..D).map(|axis| gradient[axis] * velocity[axis]).sum()
+        };
+        let fixed_count = fixed_rows.len();
+        let rows = fixed_rows.iter_mut().chain(pair_rows).enumerate();
+        for ((number, row), guess) in rows.zip(guesses) {
+            let [[normal_i, tangent_i], [normal_j, tangent_j]] =
+                M::Kinematics::gradients(row.normal);
+            let mut normal_velocity = along(&normal_i, row.i);
+            let mut tangential_velocity = along(&tangent_i, row.i);
+            if number >= fixed_count {
+                normal_velocity += along(&normal_j, row.j);
+                tangential_velocity += along(&tangent_j, row.j);
+            }
+            let u = normal_velocity + row.restitution_velocity;
+            let shifted = match guess {
+                Guess::Open => 0.0,
+                _ => law::signorini(row.shifted_impulse - u / compliance),
+            };
+            row.shifted_impulse = shifted;
+            if M::FRICTION {
+                let bound = if M::COMPRESSIVE_CONE {
+                    law::friction_bound::<true>(*friction, shifted, *capture_speed)
+                } else {
+                    law::friction_bound::<false>(*friction, shifted, 0.0)
+                };
+                let softness = M::Kinematics::TANGENTIAL_COMPLIANCE * compliance;
+                row.tangential_impulse = match guess {
+                    Guess::Open => 0.0,
+                    Guess::Stick => {
+                        law::coulomb(row.tangential_impulse - tangential_velocity / softness, bound)
+                    }
+                    Guess::Slip(sign) => sign * bound,
+                };
+            }
+        }
+    }
+}
+
+/// Keeps the rows' impulses.
+fn save<K: Kinematics>(problem: &StepProblem<K>, impulses: &mut Vec<[f64; 2]>) {
+    let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
+    impulses.clear();
+    impulses.extend(rows.map(|row| [row.shifted_impulse, row.tangential_impulse]));
+}
+
+/// Goes back to kept impulses, and to the velocities that they make.
+fn restore<K: Kinematics>(problem: &mut StepProblem<K>, impulses: &[[f64; 2]]) {
+    let rows = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
+    for (row, &[shifted, tangential]) in rows.zip(impulses) {
+        row.shifted_impulse = shifted;
+        row.tangential_impulse = tangential;
+    }
+    problem.form_velocities();
+}

@@ -1,0 +1,203 @@
+//! Sheets drawn by plotters, with the font that comes with the program.
+
+use std::sync::OnceLock;
+
+use image::{ImageFormat, RgbImage};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::register_font;
+
+use super::places::Places;
+use super::{Cell, Chart, Corner, Layer, Look, Rgb, Sheet};
+use crate::error::{Error, Result};
+
+/// Sizes of words, pixels.
+const TITLE: u32 = 27;
+const WORDS: u32 = 24;
+const CAPTION: u32 = 20;
+/// Room below the charts for one line of the caption, pixels.
+const CAPTION_LINE: u32 = 28;
+/// Name that the font goes by; one that browsers know too, for the SVG.
+const FONT: &str = "sans-serif";
+
+/// The sheet as PNG.
+///
+/// # Errors
+/// Where plotters or the encoder fails.
+pub fn png(sheet: &Sheet) -> Result<Vec<u8>> {
+    let (width, height) = sheet.size;
+    let mut pixels = vec![0; 3 * width as usize * height as usize];
+    draw(sheet, BitMapBackend::with_buffer(&mut pixels, sheet.size).into_drawing_area())?;
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    RgbImage::from_raw(width, height, pixels)
+        .ok_or_else(|| failed("the picture has another size"))?
+        .write_to(&mut bytes, ImageFormat::Png)
+        .map_err(failed)?;
+    Ok(bytes.into_inner())
+}
+
+/// The sheet as SVG.
+///
+/// # Errors
+/// Where plotters fails.
+pub fn svg(sheet: &Sheet) -> Result<String> {
+    let mut text = String::new();
+    draw(sheet, SVGBackend::with_string(&mut text, sheet.size).into_drawing_area())?;
+    Ok(text)
+}
+
+fn failed(error: impl std::fmt::Display) -> Error {
+    Error::file("figure", format!("cannot be drawn ({error})"))
+}
+
+fn register_fonts() -> Result<()> {
+    static DONE: OnceLock<bool> = OnceLock::new();
+    let regular = include_bytes!("../../../assets/fonts/DejaVuSansCondensed.ttf");
+    let done = DONE.get_or_init(|| register_font(FONT, FontStyle::Normal, regular).is_ok());
+    if *done { Ok(()) } else { Err(failed("its font is broken")) }
+}
+
+fn draw<DB: DrawingBackend>(sheet: &Sheet, area: DrawingArea<DB, Shift>) -> Result<()> {
+    register_fonts()?;
+    area.fill(&WHITE).map_err(failed)?;
+    let (width, height) = sheet.size;
+    let caption_height = CAPTION_LINE * sheet.caption.len() as u32 + 8;
+    let (charts, caption) = area.split_vertically(height - caption_height);
+    for (number, line) in sheet.caption.iter().enumerate() {
+        let at = (16, (CAPTION_LINE * number as u32) as i32);
+        let style = (FONT, CAPTION).into_font().color(&RGBColor(90, 90, 90));
+        caption.draw_text(line, &style, at).map_err(failed)?;
+    }
+    let total: f64 = sheet.charts.iter().map(|chart| chart.width).sum();
+    let mut edges = vec![0.0];
+    for chart in &sheet.charts {
+        edges.push(edges[edges.len() - 1] + chart.width / total * f64::from(width));
+    }
+    let inner: Vec<i32> = edges[1..edges.len() - 1].iter().map(|edge| *edge as i32).collect();
+    let no_rows: Vec<i32> = Vec::new();
+    let panels = charts.split_by_breakpoints(inner, no_rows);
+    for (chart, panel) in sheet.charts.iter().zip(&panels) {
+        draw_chart(chart, panel)?;
+    }
+    area.present().map_err(failed)
+}
+
+fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
+    let (x_places, y_places) = (Places::of(&chart.x), Places::of(&chart.y));
+    let words = (FONT, WORDS).into_font().color(&rgb(super::INK));
+    let mut builder = ChartBuilder::on(area);
+    builder.margin(14).margin_right(26).x_label_area_size(62).y_label_area_size(104);
+    if !chart.title.is_empty() {
+        builder.caption(&chart.title, (FONT, TITLE).into_font().color(&rgb(super::INK)));
+    }
+    let mut context = builder.build_cartesian_2d(x_places, y_places).map_err(failed)?;
+    context
+        .configure_mesh()
+        .bold_line_style(RGBColor(228, 228, 228))
+        .light_line_style(TRANSPARENT)
+        .x_desc(&chart.x.label)
+        .y_desc(&chart.y.label)
+        .label_style(words.clone())
+        .axis_desc_style(words.clone())
+        .draw()
+        .map_err(failed)?;
+
+    let place = |x: f64, y: f64| (chart.x.scale.place(x), chart.y.scale.place(y));
+    let width = place(chart.x.to, 1.0).0 - place(chart.x.from, 1.0).0;
+    let mut has_legend = false;
+    for layer in &chart.layers {
+        match layer {
+            Layer::Words { at: (x, y), text, colour } => {
+                let style = (FONT, CAPTION).into_font().color(&rgb(*colour));
+                context
+                    .draw_series([Text::new(text.clone(), place(*x, *y), style)])
+                    .map_err(failed)?;
+            }
+            Layer::Cells { cells, colour, .. } => {
+                let rectangles = cells.iter().map(|Cell { x: (_, x), y: (_, y), value }| {
+                    let corners = [place(x[0], y[0]), place(x[1], y[1])];
+                    Rectangle::new(corners, rgb(colour(*value)).filled())
+                });
+                context.draw_series(rectangles).map_err(failed)?;
+            }
+            Layer::Curve { name, in_legend, points, colour, look, aside } => {
+                let colour = rgb(*colour);
+                let place = |x: f64, y: f64| {
+                    let (x, y) = place(x, y);
+                    (x + aside * width, y)
+                };
+                let line: Vec<_> = points.iter().map(|point| place(point.x, point.y)).collect();
+                let bars = points.iter().filter_map(|point| {
+                    let (low, high) = point.interval?;
+                    let bar = vec![place(point.x, low), place(point.x, high)];
+                    Some(PathElement::new(bar, colour.stroke_width(2)))
+                });
+                context.draw_series(bars).map_err(failed)?;
+                let stroke = match look {
+                    Look::Line(width) | Look::Dashes(width) => *width,
+                    Look::LineAndDots => 3,
+                    Look::Dots(_) | Look::Rings(_) => 0,
+                };
+                if matches!(look, Look::Line(_) | Look::LineAndDots) {
+                    let style = colour.stroke_width(stroke);
+                    context.draw_series(LineSeries::new(line.clone(), style)).map_err(failed)?;
+                }
+                if matches!(look, Look::Dashes(_)) {
+                    let style = colour.stroke_width(stroke);
+                    let dashes = DashedLineSeries::new(line.clone(), 8, 6, style);
+                    context.draw_series(dashes).map_err(failed)?;
+                }
+                let dot = match look {
+                    Look::LineAndDots => Some((5, colour.filled())),
+                    Look::Dots(radius) => Some((*radius, colour.filled())),
+                    Look::Rings(radius) => Some((*radius, colour.stroke_width(2))),
+                    Look::Line(_) | Look::Dashes(_) => None,
+                };
+                if let Some((radius, style)) = dot {
+                    let dots = line.iter().map(|place| Circle::new(*place, radius, style));
+                    context.draw_series(dots).map_err(failed)?;
+                }
+                if *in_legend {
+                    has_legend = true;
+                    let key = move |(x, y): (i32, i32)| {
+                        // Without a line there is none in the key either.
+                        let seen = if stroke > 0 { 1.0 } else { 0.0 };
+                        let stroke = PathElement::new(
+                            vec![(x, y), (x + 28, y)],
+                            colour.mix(seen).stroke_width(stroke.max(1)),
+                        );
+                        let (radius, style) = dot.unwrap_or((0, colour.mix(0.0).filled()));
+                        EmptyElement::at((0, 0))
+                            + stroke
+                            + Circle::new((x + 14, y), radius.min(8), style)
+                    };
+                    let nothing: [EmptyElement<(f64, f64), DB>; 0] = [];
+                    context.draw_series(nothing).map_err(failed)?.label(name).legend(key);
+                }
+            }
+        }
+    }
+    if has_legend {
+        let position = match chart.legend {
+            Corner::UpperLeft => SeriesLabelPosition::UpperLeft,
+            Corner::UpperRight => SeriesLabelPosition::UpperRight,
+            Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
+            Corner::LowerRight => SeriesLabelPosition::LowerRight,
+        };
+        context
+            .configure_series_labels()
+            .position(position)
+            .margin(12)
+            .legend_area_size(36)
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(200, 200, 200))
+            .label_font((FONT, CAPTION + 2).into_font().color(&rgb(super::INK)))
+            .draw()
+            .map_err(failed)?;
+    }
+    Ok(())
+}
+
+fn rgb((red, green, blue): Rgb) -> RGBColor {
+    RGBColor(red, green, blue)
+}

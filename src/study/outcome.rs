@@ -1,0 +1,143 @@
+//! What one run of a study comes to.
+
+use serde::{Deserialize, Serialize};
+
+use super::SeriesSettings;
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::sim::{Observables, Simulation, Tally};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// At its full duration.
+    Done,
+    /// Its state was no longer finite.
+    NotFinite,
+}
+
+/// What a run comes to. A row of the study's table.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// How it ended.
+    pub status: Status,
+    /// Steps taken.
+    pub steps: u64,
+    /// Δy_G at the end (paper eq. 11).
+    pub slump: f64,
+    /// Mean over the steps of the mean overlap, in diameters.
+    pub mean_overlap: f64,
+    /// Largest overlap of any contact in any step, in diameters.
+    pub max_overlap: f64,
+    /// Gap between the first two grains at the end, in diameters; 0 where there is one grain.
+    pub first_gap: f64,
+    /// Steps whose stopping test was not met.
+    pub unconverged_steps: u64,
+    /// Sweeps of all steps.
+    pub sweeps: u64,
+    /// Largest common residual of any step.
+    pub largest_residual: f64,
+}
+
+/// Takes a scene to its end. With `series`, `row` is called at the start and then at every interval.
+///
+/// # Errors
+/// Where the scene is not sound, or `row` says so. A state that is no longer finite is an outcome.
+pub fn run_to_end(
+    scene: &Scene,
+    series: Option<&SeriesSettings>,
+    mut row: impl FnMut(&Simulation) -> Result<()>,
+) -> Result<Outcome> {
+    let mut simulation = scene.simulation()?;
+    let time_step_secs = scene.parameters.time_step_secs;
+    let steps = (scene.duration_secs / time_step_secs).round() as u64;
+    let mut tally = Tally::default();
+    let mut status = Status::Done;
+    let mut rows = 0;
+    // The row of a moment is that of the first step that reaches it, but for rounding.
+    let mut tell = |simulation: &Simulation| {
+        let Some(series) = series else { return Ok(()) };
+        let reached = simulation.time_secs() + 1e-6 * time_step_secs;
+        if reached < f64::from(rows) * series.interval {
+            return Ok(());
+        }
+        rows = 1 + (reached / series.interval) as u32;
+        row(simulation)
+    };
+    tell(&simulation)?;
+    for _ in 0..steps {
+        match simulation.step() {
+            Ok(observables) => tally.add(observables),
+            Err(Error::NonFinite { .. }) => {
+                status = Status::NotFinite;
+                break;
+            }
+            Err(error) => return Err(error),
+        }
+        tell(&simulation)?;
+    }
+    // What is not finite has no place in a table of numbers.
+    let finite = |number: f64| if number.is_finite() { number } else { 0.0 };
+    Ok(Outcome {
+        status,
+        steps: tally.steps,
+        slump: finite(simulation.observables().slump),
+        mean_overlap: finite(tally.mean_overlap),
+        max_overlap: finite(tally.max_overlap),
+        first_gap: finite(first_gap(&simulation)),
+        unconverged_steps: tally.unconverged_steps,
+        sweeps: tally.sweeps,
+        largest_residual: finite(tally.largest_residual),
+    })
+}
+
+fn first_gap(simulation: &Simulation) -> f64 {
+    let grains = &simulation.world().grains;
+    match (&grains.positions[..], &grains.radii[..]) {
+        ([i, j, ..], [r_i, r_j, ..]) => {
+            (i.distance(*j) - (r_i + r_j)) / simulation.world().mean_diameter
+        }
+        _ => 0.0,
+    }
+}
+
+/// One row of a run's series as CSV cells: the observables and the chosen grains' places.
+pub(super) fn series_cells(simulation: &Simulation, grains: &[usize]) -> Result<Vec<String>> {
+    let mut cells = cells_of(simulation.observables())?;
+    let positions = &simulation.world().grains.positions;
+    cells.extend(
+        grains
+            .iter()
+            .flat_map(|&grain| [positions[grain].x.to_string(), positions[grain].y.to_string()]),
+    );
+    Ok(cells)
+}
+
+/// The names of [`series_cells`].
+pub(super) fn series_names(grains: &[usize]) -> Result<Vec<String>> {
+    let mut names = names_of(&Observables::default())?;
+    names.extend(grains.iter().flat_map(|grain| [format!("x{grain}"), format!("y{grain}")]));
+    Ok(names)
+}
+
+/// The fields of a flat structure, as the cells of a CSV row.
+pub(super) fn cells_of(row: &impl Serialize) -> Result<Vec<String>> {
+    csv_lines(row, false)
+}
+
+/// The names of the fields of a flat structure.
+pub(super) fn names_of(row: &impl Serialize) -> Result<Vec<String>> {
+    csv_lines(row, true)
+}
+
+fn csv_lines(row: &impl Serialize, header: bool) -> Result<Vec<String>> {
+    let refuse = |reason: String| Error::value("row", reason, "a flat structure");
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.serialize(row).map_err(|error| refuse(error.to_string()))?;
+    let bytes = writer.into_inner().map_err(|error| refuse(error.error().to_string()))?;
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(&bytes[..]);
+    let line = reader.records().nth(usize::from(!header));
+    let record = line.transpose().map_err(|error| refuse(error.to_string()))?;
+    Ok(record.iter().flatten().map(str::to_owned).collect())
+}

@@ -1,0 +1,261 @@
+//! A study as its file says it, laid out as runs.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+use super::axis;
+use crate::error::{Error, Result};
+use crate::scene::Config;
+
+/// More runs than this are a mistake rather than a wish.
+const MOST_RUNS: usize = 10_000_000;
+
+/// A study file. Tables are read by hand below, since what they may hold is what a [`Config`] holds.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StudyFile {
+    name: String,
+    /// What it is for, in words.
+    #[serde(default, rename = "about")]
+    _about: String,
+    #[serde(default)]
+    base: Table,
+    #[serde(default)]
+    vary: Table,
+    series: Option<SeriesSettings>,
+    #[serde(default)]
+    quick: Quick,
+}
+
+/// What a quick pass does otherwise.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Quick {
+    base: Table,
+    vary: Table,
+}
+
+/// What is kept of the course of each run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SeriesSettings {
+    /// Simulated time between two rows, s.
+    pub interval: f64,
+    /// The grains whose positions are kept, by number.
+    #[serde(default)]
+    pub grains: Vec<usize>,
+}
+
+/// A study: a list of runs in the order of its table.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// Its name.
+    pub name: String,
+    /// Tells studies apart: hash of the keys of all runs.
+    pub fingerprint: String,
+    /// The parameters that vary; the first varies slowest.
+    pub varied: Vec<String>,
+    /// What is kept of the course of each run, if anything.
+    pub series: Option<SeriesSettings>,
+    /// The runs.
+    pub runs: Vec<PlannedRun>,
+}
+
+/// One run of a study.
+#[derive(Clone, Debug)]
+pub struct PlannedRun {
+    /// Names it: hash of all that its result hangs on.
+    pub key: String,
+    /// What it runs, every number filled in.
+    pub config: Config,
+    /// How long it may take, in any unit: for the order of work and for progress.
+    pub cost: f64,
+}
+
+impl Study {
+    /// Reads a study file and lays out its runs, all of them checked.
+    ///
+    /// # Errors
+    /// Where the file cannot be read or says something that no study says.
+    pub fn read(path: &Path, quick: bool) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
+        Self::parse(&text, path, quick)
+    }
+
+    /// Lays out the runs of a study file's text; `path` is for messages.
+    ///
+    /// # Errors
+    /// Where it says something that no study says.
+    pub fn parse(text: &str, path: &Path, quick: bool) -> Result<Self> {
+        let mut file: StudyFile = toml::from_str(text).map_err(|error| {
+            let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+            let place = line.map_or(String::new(), |line| format!("line {line}: "));
+            Error::file(path, format!("{place}{}", one_line(error.message())))
+        })?;
+        if quick {
+            replace(
+                "quick.base",
+                &mut file.base,
+                &mut file.vary,
+                std::mem::take(&mut file.quick.base),
+            )?;
+            replace(
+                "quick.vary",
+                &mut file.vary,
+                &mut file.base,
+                std::mem::take(&mut file.quick.vary),
+            )?;
+        }
+        let series_is_sound =
+            |series: &SeriesSettings| series.interval > 0.0 && series.interval.is_finite();
+        if let Some(series) = file.series.as_ref().filter(|series| !series_is_sound(series)) {
+            return Err(Error::value(
+                "series.interval",
+                series.interval,
+                "a finite number of seconds > 0",
+            ));
+        }
+        let runs = lay_out(&file)?;
+        let mut hasher = blake3::Hasher::new();
+        for run in &runs {
+            hasher.update(run.key.as_bytes());
+        }
+        Ok(Self {
+            name: file.name,
+            fingerprint: short(&hasher),
+            varied: file.vary.keys().cloned().collect(),
+            series: file.series,
+            runs,
+        })
+    }
+}
+
+/// Puts the values of a quick pass in the place of those they stand for, whether those vary or not.
+fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Result<()> {
+    for (key, value) in values {
+        if other.remove(&key).is_none() && !to.contains_key(&key) {
+            let field = format!("{from}.{key}");
+            return Err(Error::value(field, "given", "a parameter of base or vary"));
+        }
+        to.insert(key, value);
+    }
+    Ok(())
+}
+
+fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
+    let varied = file.vary.keys().flat_map(|key| key.split_whitespace());
+    let mut given: Vec<&str> = file.base.keys().map(String::as_str).collect();
+    for name in varied {
+        if given.contains(&name) {
+            let field = format!("vary.{name}");
+            return Err(Error::value(field, "given twice", "in one place alone"));
+        }
+        given.push(name);
+    }
+    // Wrong names and types are told of by table and key, before any product is formed.
+    for (key, value) in &file.base {
+        config_of("base", [(key, value)])?;
+    }
+    let mut axes = Vec::new();
+    let mut count = 1usize;
+    for (key, said) in &file.vary {
+        let axis = Axis::read(key, said)?;
+        count = count.saturating_mul(axis.values.len());
+        axes.push(axis);
+    }
+    if count > MOST_RUNS {
+        return Err(Error::value(
+            "vary",
+            format!("{count} runs"),
+            format!("no more than {MOST_RUNS}"),
+        ));
+    }
+    let run = |mut number: usize| {
+        let mut chosen = Vec::new();
+        for Axis { names, values } in axes.iter().rev() {
+            chosen.extend(names.iter().zip(&values[number % values.len()]));
+            number /= values.len();
+        }
+        chosen.extend(&file.base);
+        PlannedRun::new(&config_of("base", chosen)?, file.series.as_ref())
+    };
+    (0..count).map(run).collect()
+}
+
+/// What varies together: most often one parameter, or several that go hand in hand, which the file
+/// writes as `"grains box-width" = [[138, 16], [500, 30]]`.
+struct Axis {
+    names: Vec<String>,
+    /// A value for each name.
+    values: Vec<Vec<Value>>,
+}
+
+impl Axis {
+    fn read(key: &str, said: &Value) -> Result<Self> {
+        let field = format!("vary.{key}");
+        let names: Vec<String> = key.split_whitespace().map(str::to_owned).collect();
+        let sets = axis::values(&field, said)?.into_iter().map(|value| match value {
+            value if names.len() == 1 => Ok(vec![value]),
+            Value::Array(set) if set.len() == names.len() => Ok(set),
+            other => {
+                let allowed = format!("a list of {} values", names.len());
+                Err(Error::value(&field, other, allowed))
+            }
+        });
+        let values = sets.collect::<Result<Vec<_>>>()?;
+        for (name, value) in values.iter().flat_map(|set| names.iter().zip(set)) {
+            config_of("vary", [(name, value)])?;
+        }
+        Ok(Self { names, values })
+    }
+}
+
+fn config_of<'a>(
+    table: &str,
+    said: impl IntoIterator<Item = (&'a String, &'a Value)>,
+) -> Result<Config> {
+    let said: Table = said.into_iter().map(|(key, value)| (key.clone(), value.clone())).collect();
+    let words = said.iter().next().map(|(key, value)| (key.clone(), value.to_string()));
+    Config::deserialize(said).map_err(|error| {
+        let (key, value) = words.unwrap_or_default();
+        let reason = one_line(&error.to_string());
+        match reason.split_once("expected ") {
+            Some((_, expected)) => {
+                let expected = expected.split(" in '").next().unwrap_or(expected);
+                Error::value(format!("{table}.{key}"), value, expected)
+            }
+            None => Error::value(format!("{table}.{key}"), value, reason),
+        }
+    })
+}
+
+impl PlannedRun {
+    fn new(config: &Config, series: Option<&SeriesSettings>) -> Result<Self> {
+        let scene = config.without_settling()?;
+        let config = config.resolved(&scene);
+        let grains = config.grains.unwrap_or(scene.grains.len());
+        if let Some(grain) = series.and_then(|series| series.grains.iter().find(|&&g| g >= grains))
+        {
+            return Err(Error::value("series.grains", grain, format!("below {grains}")));
+        }
+        // The scene stands in for the files that it may have been read from.
+        let said = serde_json::to_vec(&(env!("CARGO_PKG_VERSION"), &config, &scene, series))
+            .map_err(|error| Error::value("scene", &scene.name, error.to_string()))?;
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&said);
+        let steps = scene.duration_secs / scene.parameters.time_step_secs;
+        let digits = 1.0 - scene.solver.tolerance.log10().min(0.0);
+        Ok(Self { key: short(&hasher), cost: steps * grains as f64 * digits, config })
+    }
+}
+
+/// Half of a hash: 128 bits never meet by chance.
+fn short(hasher: &blake3::Hasher) -> String {
+    hasher.finalize().to_hex()[..32].to_owned()
+}
+
+fn one_line(message: &str) -> String {
+    message.trim_end().replace('\n', " ").replace('`', "'")
+}

@@ -1,0 +1,46 @@
+//! One run of a scene, with snapshots at given times.
+
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::sim::{Observables, Simulation, Snapshot, Tally};
+
+/// What a run leaves.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// The simulation at its end.
+    pub simulation: Simulation,
+    /// Sums over its steps.
+    pub tally: Tally,
+}
+
+/// Runs a scene through `times_secs` (rising, s), calling `picture` at each with its number and the
+/// state at the nearest step, and `after_step` after every step.
+///
+/// # Errors
+/// Where the scene is not sound, a time lies outside 0 … duration, the state is no longer finite, or
+/// a call says so.
+pub fn record(
+    scene: &Scene,
+    times_secs: &[f64],
+    mut picture: impl FnMut(usize, Snapshot) -> Result<()>,
+    mut after_step: impl FnMut(&Observables) -> Result<()>,
+) -> Result<Recorded> {
+    let mut simulation = scene.simulation()?;
+    let time_step_secs = scene.parameters.time_step_secs;
+    let mut tally = Tally::default();
+    for (number, &time_secs) in times_secs.iter().enumerate() {
+        // Half a step of room, so that a duration that is no multiple of Δt can be asked for.
+        if !(0.0..=scene.duration_secs + 0.5 * time_step_secs).contains(&time_secs) {
+            let allowed = format!("between 0 and the duration of {} s", scene.duration_secs);
+            return Err(Error::value("times", time_secs, allowed));
+        }
+        let step = (time_secs / time_step_secs).round() as u64;
+        while simulation.observables().step < step {
+            let observables = simulation.step()?;
+            tally.add(observables);
+            after_step(observables)?;
+        }
+        picture(number, simulation.snapshot())?;
+    }
+    Ok(Recorded { simulation, tally })
+}

@@ -1,0 +1,241 @@
+//! The sweep engine: runs a study on all cores, keeps each result as it comes, goes on where it
+//! stopped, and joins parts that ran elsewhere.
+//!
+//! A folder of results holds `study.json` (which study it is), journals (results as they come),
+//! `states/` (initial states), `series/` (courses of runs) and, once all runs are there, `runs.csv`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::journal::{self, Entry, Journal};
+use super::outcome::{run_to_end, series_cells, series_names};
+use super::states::States;
+use super::table::RunsTable;
+use super::{PlannedRun, Shard, Study};
+use crate::error::{Error, Result};
+use crate::headless::{Progress, check_writable, write_file};
+
+/// File that says which study a folder holds.
+const STUDY_FILE: &str = "study.json";
+/// Lines that tell of progress where there is no terminal to draw a bar on.
+const LINES_OF_PROGRESS: usize = 20;
+
+/// How a sweep is to run.
+#[derive(Clone, Debug, Default)]
+pub struct SweepOptions {
+    /// The part of the study to run; all of it where there is none.
+    pub shard: Option<Shard>,
+    /// Throw away what a folder holds of another study.
+    pub redo: bool,
+    /// Where initial states are kept; in the folder of results where nothing is said.
+    pub states: Option<PathBuf>,
+}
+
+/// What `study.json` says.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Label {
+    study: String,
+    fingerprint: String,
+    runs: usize,
+    version: String,
+}
+
+/// Runs a study, or a part of it, into `folder`. Where that completes the study, `runs.csv` is
+/// written and given back.
+///
+/// # Errors
+/// Where the folder holds another study or cannot be written, or a state does not settle.
+pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Option<RunsTable>> {
+    check_writable(folder)?;
+    claim(study, folder, options.redo)?;
+    let journal_name = match options.shard {
+        Some(Shard { index, count }) => format!("runs-{index}-of-{count}"),
+        None => "runs".to_owned(),
+    };
+    let journal = Journal::open(folder, &journal_name)?;
+    let folders = [folder.to_owned()];
+    let done = journal::read_all(&folders)?;
+
+    let mine = |index: usize| options.shard.is_none_or(|shard| shard.has(index));
+    let mut part: Vec<&PlannedRun> = study
+        .runs
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| mine(*index))
+        .map(|(_, run)| run)
+        .collect();
+    let of_part = part.len();
+    part.retain(|run| !done.contains_key(&run.key));
+    if part.len() < of_part {
+        eprintln!("{}: {} of {of_part} runs were there", study.name, of_part - part.len());
+    }
+    // Longest first, so that no core waits long for the last one. The sort is stable.
+    part.sort_by(|one, other| other.cost.total_cmp(&one.cost));
+    let states_folder = options.states.clone().unwrap_or_else(|| folder.join("states"));
+    let states = States::of(states_folder, part.iter().map(|run| &run.config))?;
+    run_all(study, folder, &journal, &states, part)?;
+    if options.shard.is_some() {
+        return Ok(None);
+    }
+    join(study, &folders, folder).map(Some)
+}
+
+/// Joins the parts that lie in `folders` into `runs.csv` in `out`.
+///
+/// # Errors
+/// Where a folder holds another study, runs are missing, or two parts disagree.
+pub fn merge(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
+    for folder in folders {
+        match read_label(folder)? {
+            Some(label) if label == label_of(study) => {}
+            Some(label) => return Err(other_study(folder, study, &label)),
+            None => {
+                return Err(Error::file(
+                    folder.join(STUDY_FILE),
+                    "No such file: no sweep began here",
+                ));
+            }
+        }
+    }
+    check_writable(out)?;
+    join(study, folders, out)
+}
+
+fn join(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
+    let table = RunsTable::new(study, &journal::read_all(folders)?)?;
+    table.write(&out.join("runs.csv"))?;
+    Ok(table)
+}
+
+fn run_all(
+    study: &Study,
+    folder: &Path,
+    journal: &Journal,
+    states: &States,
+    part: Vec<&PlannedRun>,
+) -> Result<()> {
+    let total = part.len();
+    let cost = |run: &PlannedRun| run.cost.ceil() as u64;
+    let progress = Progress::new(&study.name, part.iter().map(|run| cost(run)).sum());
+    let finished = std::sync::atomic::AtomicUsize::new(0);
+    let ended = part.into_iter().par_bridge().try_for_each(|run| {
+        let started = Instant::now();
+        let scene = states.scene(&run.config)?;
+        let mut course = Course::start(study)?;
+        let outcome =
+            run_to_end(&scene, study.series.as_ref(), |simulation| course.add(simulation))?;
+        course.finish(folder, run)?;
+        let wall_secs = started.elapsed().as_secs_f64();
+        journal.add(&Entry { key: run.key.clone(), wall_secs, outcome })?;
+        progress.advance(cost(run));
+        let count = 1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        if !progress.is_drawn()
+            && count * LINES_OF_PROGRESS / total > (count - 1) * LINES_OF_PROGRESS / total
+        {
+            progress.say(&format!("{}: {count} of {total} runs", study.name));
+        }
+        Ok(())
+    });
+    progress.finish();
+    ended
+}
+
+/// The course of one run as CSV; empty where none is kept.
+struct Course<'a> {
+    study: &'a Study,
+    writer: Option<csv::Writer<Vec<u8>>>,
+}
+
+impl<'a> Course<'a> {
+    fn start(study: &'a Study) -> Result<Self> {
+        let mut course = Self { study, writer: None };
+        if let Some(series) = &study.series {
+            course.writer = Some(csv::Writer::from_writer(Vec::new()));
+            course.write(&series_names(&series.grains)?)?;
+        }
+        Ok(course)
+    }
+
+    fn add(&mut self, simulation: &crate::sim::Simulation) -> Result<()> {
+        match &self.study.series {
+            Some(series) => self.write(&series_cells(simulation, &series.grains)?),
+            None => Ok(()),
+        }
+    }
+
+    fn write(&mut self, cells: &[String]) -> Result<()> {
+        match &mut self.writer {
+            Some(writer) => {
+                writer.write_record(cells).map_err(|error| Error::file("series", error))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn finish(self, folder: &Path, run: &PlannedRun) -> Result<()> {
+        let Some(writer) = self.writer else { return Ok(()) };
+        let bytes = writer.into_inner().map_err(|error| Error::file("series", error.error()))?;
+        let path = series_path(folder, run);
+        if let Some(series) = path.parent() {
+            std::fs::create_dir_all(series).map_err(|error| Error::file(series, error))?;
+        }
+        write_file(&path, &bytes)
+    }
+}
+
+/// Where the course of a run lies.
+pub fn series_path(folder: &Path, run: &PlannedRun) -> PathBuf {
+    folder.join("series").join(format!("{}.csv", run.key))
+}
+
+fn label_of(study: &Study) -> Label {
+    Label {
+        study: study.name.clone(),
+        fingerprint: study.fingerprint.clone(),
+        runs: study.runs.len(),
+        version: env!("CARGO_PKG_VERSION").into(),
+    }
+}
+
+fn read_label(folder: &Path) -> Result<Option<Label>> {
+    let path = folder.join(STUDY_FILE);
+    match std::fs::read(&path) {
+        Ok(bytes) => {
+            serde_json::from_slice(&bytes).map(Some).map_err(|error| Error::file(&path, error))
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Error::file(&path, error)),
+    }
+}
+
+/// Makes the folder that of this study, or finds that it is.
+fn claim(study: &Study, folder: &Path, redo: bool) -> Result<()> {
+    let label = label_of(study);
+    match read_label(folder)? {
+        Some(found) if found == label => return Ok(()),
+        Some(found) if !redo => return Err(other_study(folder, study, &found)),
+        Some(_) => {
+            for path in journal::journals(&[folder.to_owned()])? {
+                std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
+            }
+        }
+        None => {}
+    }
+    let path = folder.join(STUDY_FILE);
+    let mut text =
+        serde_json::to_string_pretty(&label).map_err(|error| Error::file(&path, error))?;
+    text.push('\n');
+    write_file(&path, text.as_bytes())
+}
+
+fn other_study(folder: &Path, study: &Study, found: &Label) -> Error {
+    let reason = format!(
+        "holds {} runs of study {} ({}), but must be empty or hold study {} ({}); --redo throws \
+         them away",
+        found.runs, found.study, found.fingerprint, study.name, study.fingerprint
+    );
+    Error::file(folder, reason)
+}

@@ -1,0 +1,92 @@
+//! `runs.csv`: a row a run, in the study's own order, with its whole config and its outcome.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use clap::Args;
+use serde_json::Value;
+
+use super::journal::Entry;
+use super::outcome::{cells_of, names_of};
+use super::{Outcome, Status, Study};
+use crate::error::{Error, Result};
+use crate::headless::write_file;
+use crate::scene::Config;
+
+/// The results of a study.
+#[derive(Clone, Debug)]
+pub struct RunsTable {
+    /// A run and what came of it, in the study's order.
+    pub rows: Vec<(String, Config, Outcome)>,
+    /// Wall-clock time of all runs together, one after the other, s. Not in the file: it is
+    /// another one every time.
+    pub core_secs: f64,
+}
+
+impl RunsTable {
+    /// Puts finished runs in the study's order.
+    pub(super) fn new(study: &Study, entries: &HashMap<String, Entry>) -> Result<Self> {
+        let mut rows = Vec::with_capacity(study.runs.len());
+        let mut core_secs = 0.0;
+        for run in &study.runs {
+            if let Some(entry) = entries.get(&run.key) {
+                core_secs += entry.wall_secs;
+                rows.push((run.key.clone(), run.config.clone(), entry.outcome));
+            }
+        }
+        let (found, all) = (rows.len(), study.runs.len());
+        if found < all {
+            let allowed = "complete; run the sweep or its missing parts again";
+            return Err(Error::value(&study.name, format!("{found} of {all} runs"), allowed));
+        }
+        Ok(Self { rows, core_secs })
+    }
+
+    /// Runs whose state was no longer finite.
+    pub fn not_finite(&self) -> usize {
+        self.rows.iter().filter(|(.., outcome)| outcome.status == Status::NotFinite).count()
+    }
+
+    /// Writes the table as CSV.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        write_file(path, &self.to_csv()?)
+    }
+
+    /// The table as CSV. Numbers read back bit for bit.
+    ///
+    /// # Errors
+    /// Where a row cannot be said in CSV.
+    pub fn to_csv(&self) -> Result<Vec<u8>> {
+        let refuse = |error: csv::Error| Error::file("runs.csv", error);
+        let fields = config_fields();
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut names = vec!["run".to_owned(), "key".to_owned()];
+        names.extend(fields.iter().cloned());
+        if let Some((.., outcome)) = self.rows.first() {
+            names.extend(names_of(outcome)?);
+        }
+        writer.write_record(&names).map_err(refuse)?;
+        for (number, (key, config, outcome)) in self.rows.iter().enumerate() {
+            let said = serde_json::to_value(config)
+                .map_err(|error| Error::value("config", key, error.to_string()))?;
+            let mut cells = vec![number.to_string(), key.clone()];
+            cells.extend(fields.iter().map(|field| match said.get(field) {
+                None | Some(Value::Null) => String::new(),
+                Some(Value::String(text)) => text.clone(),
+                Some(other) => other.to_string(),
+            }));
+            cells.extend(cells_of(outcome)?);
+            writer.write_record(&cells).map_err(refuse)?;
+        }
+        writer.into_inner().map_err(|error| Error::file("runs.csv", error.error()))
+    }
+}
+
+/// The names of all parameters, as command line and study files write them.
+fn config_fields() -> Vec<String> {
+    let command = Config::augment_args(clap::Command::new("config"));
+    command.get_arguments().filter_map(|argument| argument.get_long()).map(str::to_owned).collect()
+}

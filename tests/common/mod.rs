@@ -1,0 +1,146 @@
+//! What the tests of physics share: short ways to write scenes, and comparisons that say what
+//! differs.
+
+#![allow(dead_code, reason = "every test binary uses its own part of this")]
+
+pub mod natural_map;
+
+use glam::DVec2;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use slump::scene::{Scene, rough_base};
+use slump::sim::Simulation;
+use slump::solver::{Method, SolverSettings, StopTest};
+use slump::world::{Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
+
+/// g of the scenes made here, m/s².
+pub const G: f64 = 9.8;
+
+/// The x axis alone.
+pub const LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
+/// The plane without friction.
+pub const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false, cohesion: true };
+/// The plane with friction between grains that do not turn.
+pub const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: false, cohesion: true };
+
+/// Parameters with the shifted cone.
+pub fn parameters(bond: f64, time_step_secs: f64, restitution: f64, friction: f64) -> Parameters {
+    Parameters {
+        bond,
+        time_step_secs,
+        restitution,
+        friction,
+        cone: FrictionCone::Shifted,
+        restitution_threshold: 0.0,
+    }
+}
+
+/// As far as rounding allows.
+pub fn tight() -> SolverSettings {
+    to_residual(1e-12)
+}
+
+/// Gauss–Seidel to the given residual.
+pub fn to_residual(tolerance: f64) -> SolverSettings {
+    SolverSettings {
+        method: Method::Nsgs,
+        stop: StopTest::Residual,
+        tolerance,
+        max_sweeps: 20_000,
+        warm_start: true,
+    }
+}
+
+/// Grains under uniform gravity and nothing else.
+pub fn scene(
+    physics: Physics,
+    gravity: DVec2,
+    parameters: Parameters,
+    grains: Vec<Grain>,
+) -> Scene {
+    Scene {
+        name: "test".into(),
+        mean_diameter: 2.0 * grains[0].radius,
+        areal_density: 1.0,
+        gap_tolerance: 0.0,
+        duration_secs: 1.0,
+        physics,
+        gravity: Gravity::Uniform { acceleration: gravity },
+        parameters,
+        solver: tight(),
+        view: None,
+        source: None,
+        boundaries: Vec::new(),
+        fixed_discs: Vec::new(),
+        grains,
+    }
+}
+
+/// A simulation of a scene that has no fault.
+pub fn start(scene: &Scene) -> Simulation {
+    scene.simulation().expect("a proper scene")
+}
+
+/// Takes `count` steps.
+pub fn take_steps(simulation: &mut Simulation, count: usize) {
+    for _ in 0..count {
+        simulation.step().expect("a finite state");
+    }
+}
+
+/// A disc with a velocity.
+pub fn moving(position: DVec2, radius: f64, velocity: DVec2) -> Grain {
+    Grain { velocity, ..Grain::at_rest(position, radius) }
+}
+
+/// Fails unless the two differ by at most `tolerance` times the larger one.
+#[track_caller]
+pub fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
+    let scale = found.abs().max(expected.abs());
+    assert!(
+        (found - expected).abs() <= tolerance * scale,
+        "{what}: found {found:e}, expected {expected:e}, off by {:e} of it",
+        (found - expected).abs() / scale
+    );
+}
+
+/// A generator with a seed.
+pub fn random(seed: u64) -> Pcg64 {
+    Pcg64::seed_from_u64(seed)
+}
+
+/// `count` discs, pressed together on a lattice over a rough base so that about
+/// half of all neighbours overlap, with velocities of about `speed` (m/s) and like spins.
+pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters) -> Scene {
+    let mut random = random(seed);
+    let diameter = 5e-3;
+    let columns = (count as f64).sqrt().ceil() as usize;
+    let grains = (0..count)
+        .map(|index| {
+            let radius = 0.5 * diameter * random.random_range(0.9..=1.1);
+            let (row, column) = (index / columns, index % columns);
+            let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
+            let place = DVec2::new(
+                column as f64 - 0.5 * columns as f64 + shift,
+                0.5 + (0.75f64).sqrt() * row as f64,
+            );
+            let jitter =
+                DVec2::new(random.random_range(-0.05..0.05), random.random_range(-0.05..0.05));
+            let mut component = || speed * random.random_range(-1.0..=1.0);
+            Grain {
+                velocity: DVec2::new(component(), component()),
+                angular_velocity: component() / radius,
+                ..Grain::at_rest(diameter * (place + jitter), radius)
+            }
+        })
+        .collect();
+    Scene {
+        fixed_discs: rough_base(columns as f64 + 2.0, diameter),
+        ..scene(Physics::FULL, DVec2::new(0.0, -G), parameters, grains)
+    }
+}
+
+/// A fixed disc.
+pub fn fixed(position: DVec2, radius: f64) -> Disc {
+    Disc { position, radius }
+}

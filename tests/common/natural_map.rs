@@ -1,0 +1,88 @@
+//! The judge of a solved step, written anew from the design: it takes positions, velocities and
+//! impulses, and none of the solver's own arithmetic.
+
+use glam::DVec2;
+use slump::sim::Simulation;
+use slump::world::{FrictionCone, Grains, Parameters};
+
+/// One contact as the design describes it, from world data alone.
+pub struct Judged {
+    pub normal_mass: f64,
+    pub tangential_mass: f64,
+    pub cohesion_impulse: f64,
+    /// (v_n, v_t) at the beginning, at the end, and without contact impulses.
+    pub before: [f64; 2],
+    pub after: [f64; 2],
+    pub free: [f64; 2],
+}
+
+/// Velocities and spins of the grains, for [`judge`].
+type Motion = (Vec<DVec2>, Vec<f64>);
+
+pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
+    let world = simulation.world();
+    let grains = &world.grains;
+    let dt = simulation.parameters().time_step_secs;
+    let turning = simulation.physics().rotation;
+    let motion = |grains: &Grains| (grains.velocities.clone(), grains.angular_velocities.clone());
+    let (start, end) = (motion(before), motion(grains));
+    let mut free = start.clone();
+    for (k, velocity) in free.0.iter_mut().enumerate() {
+        *velocity += dt * world.gravity.acceleration(before.positions[k]);
+    }
+    let list = simulation.contacts().contacts().iter();
+    list.map(|contact| {
+        let (i, j) = (contact.grain as usize, contact.other as usize);
+        let j = (j < grains.len()).then_some(j);
+        let mobility = |f: &dyn Fn(usize) -> f64| f(i) + j.map_or(0.0, f);
+        let normal_mobility = mobility(&|k| 1.0 / grains.masses[k]);
+        let spin_mobility = mobility(&|k| grains.radii[k].powi(2) / grains.inertia(k));
+        let relative = |(velocities, spins): &Motion| {
+            let velocity = velocities[i] - j.map_or(DVec2::ZERO, |j| velocities[j]);
+            let rim = grains.radii[i] * spins[i] + j.map_or(0.0, |j| grains.radii[j] * spins[j]);
+            let tangent = DVec2::new(-contact.normal.y, contact.normal.x);
+            let rim = if turning { rim } else { 0.0 };
+            [contact.normal.dot(velocity), tangent.dot(velocity) - rim]
+        };
+        let normal_mass = 1.0 / normal_mobility;
+        let spin_mobility = if turning { spin_mobility } else { 0.0 };
+        let cohesion_force = simulation.parameters().bond * normal_mass * world.gravity.magnitude();
+        Judged {
+            normal_mass,
+            tangential_mass: 1.0 / (normal_mobility + spin_mobility),
+            cohesion_impulse: dt * cohesion_force,
+            before: relative(&start),
+            after: relative(&end),
+            free: relative(&free),
+        }
+    })
+    .collect()
+}
+
+/// The residual's ‖error‖ and ‖scale‖ (N·s), and how far impulses are outside their cones (N·s).
+pub fn natural_map(simulation: &Simulation, before: &Grains) -> (f64, f64, f64) {
+    let Parameters { friction, restitution, cone, .. } = *simulation.parameters();
+    let (mut error, mut scale, mut outside) = (0.0, 0.0, 0f64);
+    let judged = judge(simulation, before);
+    for (contact, impulse) in judged.iter().zip(simulation.contacts().impulses()) {
+        let p = impulse.normal + contact.cohesion_impulse;
+        let formal = |velocity: f64| velocity + restitution * contact.before[0];
+        let bound = friction
+            * match cone {
+                FrictionCone::Shifted => p.max(0.0),
+                FrictionCone::Compressive => impulse.normal.max(0.0),
+            };
+        let (m_n, m_t) = (contact.normal_mass, contact.tangential_mass);
+        let normal = p - (p - m_n * formal(contact.after[0])).max(0.0);
+        error += normal * normal;
+        scale += (m_n * formal(contact.free[0])).powi(2);
+        outside = outside.max(-p).max(impulse.tangential.abs() - bound);
+        if friction > 0.0 {
+            let stuck = impulse.tangential - m_t * contact.after[1];
+            let tangential = impulse.tangential - stuck.clamp(-bound, bound);
+            error += tangential * tangential;
+            scale += (m_t * contact.free[1]).powi(2);
+        }
+    }
+    (error.sqrt(), scale.sqrt(), outside)
+}

@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# Tries a study on a real Slurm: one node, Debian's packages (apt install slurm-wlm munge), as root.
+# Sixty runs in six tasks; one task is killed in the middle and the study sent again; the merged table
+# must be that of one machine, bit for bit.
+#
+#   cargo build --release && tests/slurm/try.sh
+#
+# Starts its own munged, slurmctld and slurmd with files in a temporary folder and ends them again.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+export SLUMP=$PWD/target/release/slump
+study=$PWD/tests/slurm/study.toml
+work=$(mktemp -d)
+pids=()
+finish() {
+    ((${#pids[@]})) && kill "${pids[@]}" 2>/dev/null || true
+    wait
+    rm -rf "$work"
+}
+trap finish EXIT
+
+mkdir -p "$work/munge" "$work/spool" "$work/state"
+chmod 755 "$work"
+dd if=/dev/urandom of="$work/munge/key" bs=1024 count=1 status=none
+chmod 700 "$work/munge" && chmod 600 "$work/munge/key"
+socket=$work/munge.socket
+# Its own folder of keys is private; the socket must be reached by all.
+munged --foreground --force --key-file="$work/munge/key" --socket="$socket" \
+    --pid-file="$work/munge/pid" --log-file="$work/munge/log" --seed-file="$work/munge/seed" 2> "$work/munged.log" &
+pids+=($!)
+
+host=$(hostname -s)
+cpus=$(nproc)
+cat > "$work/slurm.conf" <<CONF
+ClusterName=try
+SlurmctldHost=$host(127.0.0.1)
+AuthType=auth/munge
+AuthInfo=socket=$socket
+CredType=cred/munge
+SlurmUser=root
+SlurmctldPort=16817
+SlurmdPort=16818
+StateSaveLocation=$work/state
+SlurmdSpoolDir=$work/spool
+SlurmctldPidFile=$work/slurmctld.pid
+SlurmdPidFile=$work/slurmd.pid
+SlurmctldLogFile=$work/slurmctld.log
+SlurmdLogFile=$work/slurmd.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+MpiDefault=none
+ReturnToService=2
+SchedulerParameters=sched_interval=1
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$cpus State=UNKNOWN
+PartitionName=all Nodes=$host Default=YES MaxTime=INFINITE State=UP
+CONF
+export SLURM_CONF=$work/slurm.conf
+slurmctld -D -f "$SLURM_CONF" 2> /dev/null & pids+=($!)
+sleep 2
+slurmd -D -f "$SLURM_CONF" 2> /dev/null & pids+=($!)
+for _ in $(seq 30); do
+    sinfo --noheader --format=%T 2>/dev/null | grep -q idle && break
+    sleep 1
+done
+sinfo
+
+# Waits until a job and all its tasks are out of the queue.
+ended() {
+    while [ -n "$(squeue --noheader --jobs="$1" 2>/dev/null)" ]; do sleep 0.2; done
+}
+
+out=$work/array
+read -r array merge < <(assets/studies/array.sh "$study" "$out" 6)
+echo "array $array, merge $merge"
+journal=$out/runs-1-of-6.jsonl
+until [ -s "$journal" ]; do sleep 0.02; done
+scancel --signal=KILL "${array}_1"
+before=$(wc -l < "$journal")
+ended "$array"
+ended "$merge"
+echo "task 1 was killed after $before of 10 runs"
+((before < 10)) || { echo "task 1 had ended before it was killed" >&2; exit 1; }
+[ ! -e "$out/runs.csv" ] || { echo "a table of a half study" >&2; exit 1; }
+
+read -r array merge < <(assets/studies/array.sh "$study" "$out" 6)
+ended "$array"
+ended "$merge"
+cat "$out/task-1.log"
+
+"$SLUMP" sweep "$study" --out "$work/one" 2>/dev/null
+cmp "$out/runs.csv" "$work/one/runs.csv"
+echo "$(($(wc -l < "$out/runs.csv") - 1)) runs, bit for bit those of one machine"
