@@ -8,11 +8,6 @@ use crate::world::Boundary;
 
 /// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
 const ORDERS_OF_SETTLING: f64 = 3.5;
-/// Tolerance and sweep limit of a pile of which neither is asked: some thousand steps a second, and
-/// the verdicts of the paper (at 1e-4, piles slump that hold when their steps are solved well).
-/// Figures take more care and far more time.
-const LIVE_TOLERANCE: f64 = 1e-5;
-const LIVE_SWEEPS: u32 = 2000;
 /// Height of the walls that are drawn around a pile, in its own heights.
 const WALL_HEIGHTS: f64 = 1.1;
 
@@ -20,7 +15,7 @@ const WALL_HEIGHTS: f64 = 1.1;
 pub fn loader(config: Config) -> Loader {
     Box::new(move |tell| {
         let mut part = 0f64;
-        let mut scene = config.scene(|settling| {
+        let scene = config.scene(|settling| {
             // Rain falls for a quarter of the limit at most; then the slowing down tells how far it
             // has come.
             let rained = 4.0 * settling.time_secs / settling.limit_secs;
@@ -32,22 +27,8 @@ pub fn loader(config: Config) -> Loader {
             );
             tell(Progress { part: part as f32, text })
         })?;
-        keep_pace(&config, &mut scene);
         start(&scene)
     })
-}
-
-/// Loosens the solver of the built-in pile, unless something is asked of it.
-fn keep_pace(config: &Config, scene: &mut Scene) {
-    let asked = config.solver.is_some()
-        || config.stop.is_some()
-        || config.tolerance.is_some()
-        || config.max_sweeps.is_some();
-    let built_in = scene.name == Config::DEFAULT_SCENE && scene.solver == Default::default();
-    if built_in && !asked {
-        scene.solver.tolerance = LIVE_TOLERANCE;
-        scene.solver.max_sweeps = LIVE_SWEEPS;
-    }
 }
 
 fn start(scene: &Scene) -> crate::error::Result<Start> {

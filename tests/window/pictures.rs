@@ -1,4 +1,4 @@
-//! What the panels look like, at moments that no change of the physics alters.
+//! What the panels look like at the start, before the first step: what is solved how changes nothing.
 
 #[path = "../golden/compare.rs"]
 mod compare;

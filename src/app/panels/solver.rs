@@ -73,21 +73,15 @@ fn tolerance_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
         return;
     }
     ui.horizontal(|ui| {
-        for (tolerance, max_sweeps, name, hint) in [
-            (1e-3, 2000, "1e-3 fast", "For a look: piles slump that hold when solved well."),
-            (1e-5, 2000, "1e-5 live", "What the window starts with: at most 2,000 sweeps."),
-            (
-                1e-6,
-                20_000,
-                "1e-6 figures",
-                "What figures are computed with: at most 20,000 sweeps.",
-            ),
+        for (tolerance, name, hint) in [
+            (1e-3, "1e-3 fast", "For a look: piles slump that hold when solved well."),
+            (1e-6, "1e-6 live", "For watching a pile."),
+            (1e-7, "1e-7 figures", "For what is to be published; slower."),
         ] {
             let text = RichText::new(name).size(11.5);
             let button = egui::Button::selectable(solver.tolerance == tolerance, text);
             if ui.add(button).on_hover_text(hint).clicked() {
                 solver.tolerance = tolerance;
-                solver.max_sweeps = max_sweeps;
             }
         }
     });
