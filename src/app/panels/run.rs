@@ -136,7 +136,8 @@ fn speed(ui: &mut Ui, state: &mut AppState) {
             }
         });
     });
-    if state.frame.playing {
+    // A run that has just begun has no speed yet.
+    if state.frame.playing && state.frame.steps_per_sec > 0.0 {
         let factor = state.frame.real_time_factor;
         let behind = !state.preferences.full_speed && factor < 0.8 * state.preferences.speed;
         let dark = ui.visuals().dark_mode;

@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
             let mono = |text: String| RichText::new(text).monospace();
             ui.label(mono(format!("t = {:.4} s", last.time_secs))).on_hover_text("Simulated time");
             ui.label(mono(format!("step {}", last.step)));
-            if state.frame.playing {
+            if state.frame.playing && state.frame.steps_per_sec > 0.0 {
                 ui.label(mono(format!("{:.0} steps/s", state.frame.steps_per_sec)))
                     .on_hover_text("Steps of all worlds together");
                 ui.label(mono(format!("{:.2}× real time", state.frame.real_time_factor)));
