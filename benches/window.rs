@@ -64,6 +64,12 @@ impl Window {
         }
     }
 
+    /// The newest step that the solver has handed out.
+    fn newest_step(&mut self) -> u64 {
+        let frame = self.state.live.latest();
+        frame.worlds.first().map_or(0, |world| world.snapshot.observables.step)
+    }
+
     fn steps(&self) -> u64 {
         self.state.world().map_or(0, |world| world.snapshot.observables.step)
     }
@@ -140,12 +146,18 @@ fn steps() {
     let shown = best(&|| {
         let mut window = Window::open(pile());
         let start = Instant::now();
-        let mut drawn = start;
+        let (mut drawn, mut news) = (start, false);
         window.state.live.send(Command::Play);
-        while window.steps() < STEPS {
+        loop {
+            news |= window.state.live.has_news();
+            // The end is looked for in the newest frame, drawn or not: that a picture of it comes
+            // later is no loss of the solver's.
+            if window.newest_step() >= STEPS {
+                break;
+            }
             // As the loop of a window does: a frame when there is something new, not too often.
-            if window.state.live.has_news() && drawn.elapsed() >= SOFTWARE_FRAME_INTERVAL {
-                drawn = Instant::now();
+            if news && drawn.elapsed() >= SOFTWARE_FRAME_INTERVAL {
+                (drawn, news) = (Instant::now(), false);
                 window.draw();
             } else {
                 std::thread::sleep(Duration::from_millis(1));
