@@ -20,6 +20,7 @@ use super::theme;
 use super::ui::ui;
 use crate::error::{Error, Result};
 use crate::headless::HeadlessOptions;
+use crate::render::RendererChoice;
 use crate::scene::Config;
 use crate::sim::live::{Live, LiveOptions};
 use export_state::StateFile;
@@ -77,6 +78,7 @@ pub fn run(config: &Config, pictures: &HeadlessOptions, options: &WindowOptions)
         next_repaint: None,
         drawn: Instant::now(),
         state_file: options.export_state.clone().map(StateFile::new),
+        renderer: pictures.renderer,
     };
     events.run_app(&mut app).map_err(|error| no_display(&error))?;
     app.failure.map_or(Ok(()), Err)
@@ -109,6 +111,7 @@ struct App {
     next_repaint: Option<Instant>,
     drawn: Instant,
     state_file: Option<StateFile>,
+    renderer: RendererChoice,
 }
 
 /// What exists while the window does.
@@ -126,7 +129,7 @@ impl App {
             .with_min_inner_size(LogicalSize::new(LEAST_SIZE[0], LEAST_SIZE[1]));
         let window =
             Arc::new(events.create_window(attributes).map_err(|error| no_display(&error))?);
-        let surface = Surface::new(events, &window)?;
+        let surface = Surface::new(events, &window, self.renderer)?;
         let input = self.input(&window, &surface);
         window.request_redraw();
         Ok(Open { window, input, surface })
@@ -164,7 +167,7 @@ impl App {
         let memory = self.context.memory(Clone::clone);
         self.context = context(&self.proxy, memory);
         self.state.forget_textures();
-        match Surface::new(events, &window) {
+        match Surface::new(events, &window, self.renderer) {
             Ok(surface) => {
                 let input = self.input(&window, &surface);
                 window.request_redraw();

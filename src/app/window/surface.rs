@@ -10,6 +10,7 @@ use winit::window::Window;
 
 use crate::app::graphics::Screen;
 use crate::error::{Error, Result};
+use crate::render::RendererChoice;
 
 /// Textures of fonts are up to this large, pixels a side; every driver allows it.
 const LARGEST_SIDE_NEEDED: u32 = 2048;
@@ -41,16 +42,30 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// Opens the strongest device that can draw on the window: on Vulkan, or else on OpenGL.
-    pub fn new(events: &ActiveEventLoop, window: &Arc<Window>) -> Result<Self> {
+    /// Opens the strongest device that can draw on the window: on Vulkan, or else on OpenGL, or on the
+    /// one that is asked for.
+    ///
+    /// # Errors
+    /// Where there is none, or the processor alone is asked for, which draws no window.
+    pub fn new(
+        events: &ActiveEventLoop,
+        window: &Arc<Window>,
+        renderer: RendererChoice,
+    ) -> Result<Self> {
         // Each kind is tried by itself: a driver that is there but cannot draw on this display
         // must not keep the other from being found. `WGPU_BACKEND` overrides the choice.
-        let first = match wgpu::Backends::from_env() {
-            Some(backends) => backends,
-            None => wgpu::Backends::PRIMARY,
+        let (first, second) = match (renderer, wgpu::Backends::from_env()) {
+            (RendererChoice::Auto, Some(backends)) => (backends, wgpu::Backends::GL),
+            (RendererChoice::Auto, None) => (wgpu::Backends::PRIMARY, wgpu::Backends::GL),
+            (RendererChoice::Vulkan, _) => (wgpu::Backends::VULKAN, wgpu::Backends::VULKAN),
+            (RendererChoice::Gl, _) => (wgpu::Backends::GL, wgpu::Backends::GL),
+            (RendererChoice::Cpu, _) => {
+                let allowed = "auto, vulkan or gl for the window (cpu with --headless)";
+                return Err(Error::value("renderer", "cpu", allowed));
+            }
         };
         Self::with_backends(events, window, first)
-            .or_else(|_| Self::with_backends(events, window, wgpu::Backends::GL))
+            .or_else(|_| Self::with_backends(events, window, second))
     }
 
     fn with_backends(
