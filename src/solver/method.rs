@@ -60,6 +60,9 @@ pub fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> SolveReport {
+    if problem.contact_of_row.is_empty() {
+        return SolveReport { converged: true, ..SolveReport::default() };
+    }
     match settings.method {
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
         Method::Newton => newton::solve::<M>(problem, settings),

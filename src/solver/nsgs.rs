@@ -23,9 +23,6 @@ pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> SolveReport {
-    if problem.contact_of_row.is_empty() {
-        return SolveReport { converged: true, ..SolveReport::default() };
-    }
     for sweeps in 1..=settings.max_sweeps {
         let tested = sweeps <= SWEEPS_TESTED_EACH
             || sweeps % TEST_INTERVAL == 0

@@ -9,16 +9,12 @@ use crate::scene::Config;
 pub(super) fn start_config(asked: &Config, stored: &Stored) -> Result<Config> {
     // A pile is made on the solver's thread; everything else of a scene is checked before a window
     // opens.
-    let check = |config: &Config| {
-        let made = Config { grains: None, box_width: None, seed: None, ..config.clone() };
-        made.scene(|_| true)
-    };
     if !asked.is_empty() {
-        check(asked)?;
+        asked.without_settling()?;
         return Ok(asked.clone());
     }
     let last = &stored.preferences.scene;
-    Ok(if check(last).is_ok() { last.clone() } else { Config::default() })
+    Ok(if last.without_settling().is_ok() { last.clone() } else { Config::default() })
 }
 
 /// What is missing where no window can be opened, and what brings it.

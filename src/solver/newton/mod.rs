@@ -87,9 +87,6 @@ pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> SolveReport {
-    if problem.contact_of_row.is_empty() {
-        return SolveReport { converged: true, ..SolveReport::default() };
-    }
     let mut workspaces = std::mem::take(&mut problem.newton);
     let report = match M::Kinematics::DEGREES {
         1 => Newton::<M, 1> { problem, settings, workspace: &mut workspaces.one }.run(),
