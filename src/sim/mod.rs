@@ -12,4 +12,5 @@ pub use observables::Observables;
 pub use pull::Pull;
 pub use simulation::Simulation;
 pub use snapshot::{ContactView, GrainView, Snapshot, Surroundings};
+pub use step::ProblemVisitor;
 pub use tally::Tally;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::snapshot::{ContactView, GrainView, Snapshot, Surroundings};
-use super::{Observables, Pull, step};
+use super::{Observables, ProblemVisitor, Pull, step};
 use crate::contact::{Candidates, ContactList, Feature, Reach};
 use crate::error::{Error, Result};
 use crate::solver::{Problems, SolverSettings};
@@ -110,6 +110,12 @@ impl Simulation {
             restitution,
             friction,
         })
+    }
+
+    /// Shows the problem of the next step, as its method would get it, to `visitor`; this simulation
+    /// stays as it is.
+    pub fn next_problem<V: ProblemVisitor>(&self, visitor: V) -> V::Output {
+        step::show_problem(&mut self.clone(), visitor)
     }
 
     fn is_finite(&self) -> bool {

@@ -1,7 +1,8 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
 use super::{Observables, Simulation, pull};
-use crate::solver::{Kinematics, Model, ModelVisitor, measure, solve, visit_leanest};
+use crate::contact::ContactList;
+use crate::solver::{Kinematics, Model, ModelVisitor, StepProblem, measure, solve, visit_leanest};
 
 /// Takes one step of Δt, compiled for the leanest model that the scene and its parameters allow.
 pub(super) fn take(simulation: &mut Simulation) {
@@ -15,6 +16,61 @@ pub(super) fn measure_start(simulation: &mut Simulation) {
     visit_leanest(physics, &parameters, Start(simulation));
 }
 
+/// Something to be done with a step's problem, before it is solved.
+pub trait ProblemVisitor {
+    /// What it gives.
+    type Output;
+    /// Does it; row `k` of the problem is contact `problem.contact_of_row[k]` of `contacts`.
+    fn visit<M: Model>(
+        self,
+        problem: &mut StepProblem<M::Kinematics>,
+        contacts: &ContactList,
+    ) -> Self::Output;
+}
+
+/// Shows the next step's problem to `visitor`. The simulation is then between detection and
+/// solution, and good for nothing else.
+pub(super) fn show_problem<V: ProblemVisitor>(
+    simulation: &mut Simulation,
+    visitor: V,
+) -> V::Output {
+    let (physics, parameters) = (simulation.physics, simulation.parameters);
+    visit_leanest(physics, &parameters, Show { simulation, visitor })
+}
+
+struct Show<'a, V> {
+    simulation: &'a mut Simulation,
+    visitor: V,
+}
+
+impl<V: ProblemVisitor> ModelVisitor for Show<'_, V> {
+    type Output = V::Output;
+
+    fn visit<M: Model>(self) -> V::Output {
+        prepare::<M>(self.simulation);
+        let Simulation { problems, contacts, .. } = self.simulation;
+        self.visitor.visit::<M>(M::Kinematics::problem(problems), contacts)
+    }
+}
+
+/// Detects the contacts and sets up the problem of the next step.
+fn prepare<M: Model>(simulation: &mut Simulation) {
+    let time_step_secs = simulation.parameters.time_step_secs;
+    let time_step_before = simulation.time_step_of_impulses_secs;
+    if time_step_secs != time_step_before {
+        simulation.contacts.scale_impulses(time_step_secs / time_step_before);
+        simulation.time_step_of_impulses_secs = time_step_secs;
+    }
+    detect::<M>(simulation);
+    let push = simulation.push_of_pull(M::Kinematics::AXES);
+    let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
+    let problem = M::Kinematics::problem(problems);
+    problem.prepare::<M>(world, contacts, parameters, physics.cohesion, solver.warm_start);
+    if let Some(push) = push {
+        pull::apply(problem, push);
+    }
+}
+
 struct Step<'a>(&'a mut Simulation);
 
 impl ModelVisitor for Step<'_> {
@@ -22,23 +78,10 @@ impl ModelVisitor for Step<'_> {
 
     fn visit<M: Model>(self) {
         let simulation = self.0;
+        prepare::<M>(simulation);
+        let Simulation { world, solver, contacts, problems, .. } = simulation;
         let time_step_secs = simulation.parameters.time_step_secs;
-        let time_step_before = simulation.time_step_of_impulses_secs;
-        if time_step_secs != time_step_before {
-            simulation.contacts.scale_impulses(time_step_secs / time_step_before);
-            simulation.time_step_of_impulses_secs = time_step_secs;
-        }
-        detect::<M>(simulation);
-
-        let push = simulation.push_of_pull(M::Kinematics::AXES);
-
-        let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
         let problem = M::Kinematics::problem(problems);
-        let cohesion = physics.cohesion;
-        problem.prepare::<M>(world, contacts, parameters, cohesion, solver.warm_start);
-        if let Some(push) = push {
-            pull::apply(problem, push);
-        }
         let report = solve::<M>(problem, solver);
         let measures = measure::<M>(problem);
         problem.store_impulses(contacts);
