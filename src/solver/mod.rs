@@ -8,6 +8,7 @@ mod newton;
 mod nsgs;
 mod problem;
 mod settings;
+mod system;
 
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, measure, residual};
@@ -15,6 +16,7 @@ pub use method::{METHODS, Method, MethodInfo, SolveReport, solve};
 pub use model::{Model, ModelVisitor, StepModel, visit_leanest};
 pub use problem::{Problems, Row, StepProblem};
 pub use settings::{SolverSettings, StopTest};
+pub use system::{BodySystem, ContactSystem, Pairs, Vectors};
 
 #[doc(hidden)]
 pub use nsgs::sweep;
