@@ -6,7 +6,7 @@ mod common;
 use std::hint::black_box;
 
 use common::timing::{criterion, least_secs};
-use slump::solver::{PlaneBody, SpinningPlane, StepModel, StepProblem, sweep};
+use slump::solver::{PlaneBody, SolverSettings, SpinningPlane, StepModel, StepProblem, sweep};
 
 type Full = StepModel<SpinningPlane, true, false>;
 
@@ -138,8 +138,9 @@ fn main() {
         let mut simulation = common::with(&common::settled(count), |numbers| numbers.bond = 20.0);
         simulation.step().expect("a finite state");
         let (world, contacts) = (simulation.world(), simulation.contacts());
+        let cold = SolverSettings { warm_start: false, ..SolverSettings::default() };
         let mut structures = StepProblem::<SpinningPlane>::default();
-        structures.prepare::<Full>(world, contacts, simulation.parameters(), true, false);
+        structures.prepare::<Full>(world, contacts, simulation.parameters(), true, &cold);
         let mut lists = Lists::of(&structures);
         for _ in 0..20 {
             sweep::<Full, false>(&mut structures);
