@@ -3,6 +3,7 @@
 
 mod axis;
 pub mod chart;
+mod collection;
 mod figures;
 mod journal;
 mod outcome;
@@ -15,6 +16,7 @@ mod statistics;
 mod sweep;
 mod table;
 
+pub use collection::{CollectedStep, CollectionPlan, collect};
 pub use figures::{figure_names, reproduce};
 pub use outcome::{Outcome, Status, run_to_end};
 pub use paper::{
