@@ -42,13 +42,14 @@ pub struct CollectionPlan {
 }
 
 impl CollectionPlan {
-    /// 48 steps of piles of 138 grains, from first motion to rest.
+    /// 48 steps of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its end,
+    /// and rest.
     pub fn piles(restitution_threshold: f64) -> Self {
         let rain = Rain::default();
         Self {
             bonds: vec![0.0, 20.0, 50.0, 100.0],
             time_steps_secs: vec![1e-4, 1e-3, 5e-3],
-            times_secs: vec![0.05, 0.2, 0.5, 0.9],
+            times_secs: vec![0.03, 0.1, 0.25, 0.6],
             seeds: vec![rain.seed, 1, 2, 3],
             grains: rain.grains,
             box_width_in_diameters: rain.box_width_in_diameters,
@@ -56,9 +57,9 @@ impl CollectionPlan {
         }
     }
 
-    /// 24 of them: the two middle times.
+    /// 24 of them: the first two times.
     pub fn fewer_piles(restitution_threshold: f64) -> Self {
-        Self { times_secs: vec![0.05, 0.2], ..Self::piles(restitution_threshold) }
+        Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
     }
 
     /// 8 steps of piles of 2,000 grains, as steep as those of 138.
@@ -66,7 +67,7 @@ impl CollectionPlan {
         Self {
             bonds: vec![0.0, 50.0],
             time_steps_secs: vec![1e-3, 5e-3],
-            times_secs: vec![0.05, 0.2],
+            times_secs: vec![0.03, 0.1],
             seeds: vec![1],
             grains: 2000,
             box_width_in_diameters: 60.0,

@@ -38,6 +38,8 @@ pub(super) struct Race {
     pub method: String,
     /// Contacts of the problem.
     pub contacts: usize,
+    /// Residual of the start, with the impulses of the step before.
+    pub start_residual: f64,
     /// Smallest residual of any of its solves.
     pub smallest_residual: f64,
     /// (residual asked for, s) of what was reached.
@@ -80,6 +82,7 @@ impl ProblemVisitor for Runner<'_> {
             problem: self.problem.to_owned(),
             method: self.name.to_owned(),
             contacts: contacts.contacts().len(),
+            start_residual: residual::<M>(problem),
             smallest_residual: residual::<M>(problem),
             reached: Vec::new(),
             gave_up_secs: None,

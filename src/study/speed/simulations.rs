@@ -136,7 +136,8 @@ fn config((bond, seed): (f64, u64), time_step_secs: f64) -> Config {
 
 fn settings(method: Method, effort: Effort) -> SolverSettings {
     let (tolerance, max_sweeps) = match effort {
-        Effort::Residual(tolerance) => (tolerance, 100_000),
+        // A step without a solution must not take for ever.
+        Effort::Residual(tolerance) => (tolerance, SolverSettings::default().max_sweeps),
         Effort::Sweeps(count) => (f64::MIN_POSITIVE, count),
     };
     SolverSettings { method, stop: StopTest::Residual, tolerance, max_sweeps, warm_start: true }
@@ -171,8 +172,6 @@ fn references(
                 None => {
                     let mut scene = states.scene(&config(numbers, time_step_secs))?;
                     scene.solver = settings(Method::Newton, Effort::Residual(tolerance));
-                    // A step without a solution must not take for ever.
-                    scene.solver.max_sweeps = 4000;
                     let run = timed_run(key, &scene, 1, f64::INFINITY)?;
                     journal.add(&run)?;
                     run
@@ -318,7 +317,9 @@ fn draw(
         }
         let places: Vec<(f64, f64)> =
             good.iter().map(|point| (point.speed, point.errors[panel].max(LEAST_ERROR))).collect();
-        let front = pareto_front(&places).into_iter().map(|index| places[index]);
+        // Below the floor no error is better than another.
+        let honest: Vec<_> = places.iter().map(|&(x, y)| (x, y.max(floor))).collect();
+        let front = pareto_front(&honest).into_iter().map(|index| honest[index]);
         chart.layers.push(Layer::curve("Pareto front", points(front), INK, Look::Line(1)));
         for (method, info) in METHODS.iter().enumerate() {
             let of_method = || charted.iter().filter(|point| point.method == method);
@@ -342,7 +343,7 @@ fn draw(
         if panel == 1 {
             chart.layers.extend(peer_layers(plan, peers, references));
         }
-        chart.legend = if panel == 0 { Corner::LowerLeft } else { Corner::LowerLeft };
+        chart.legend = Corner::LowerLeft;
         charts.push(chart);
     }
     let sheet = Sheet {
