@@ -1,7 +1,10 @@
 //! The problem of one step: packed bodies and one row a contact, in the order of the sweep.
 
 use super::newton::Workspaces;
-use super::{Kinematics, Line, Model, Plane, SpinningPlane};
+use super::nsgs_parallel::Colouring;
+use super::order::Sorter;
+use super::system::Vectors;
+use super::{Kinematics, Line, Model, Plane, SolverSettings, SpinningPlane};
 use crate::contact::{Contact, ContactList, Impulse, law};
 use crate::world::{Parameters, World};
 
@@ -33,11 +36,8 @@ pub struct Row<K: Kinematics> {
 
 /// All contacts of one step. Memory is kept between steps.
 ///
-/// The sweep's order is fixed: first the contacts with fixed bodies, then those between grains, each
-/// kind interleaved from [`StepProblem::STREAMS`] stretches of the order of detection (sorted by
-/// grain i, then by j). Neighbours in the order of detection share a grain, so each update would
-/// wait for the one before it to finish; interleaved, updates in flight touch different grains. Up
-/// to [`StepProblem::STREAMS`] contacts of a kind the two orders are the same.
+/// Rows are in the order of the sweep (`solver::order`): first the contacts with fixed bodies, then
+/// those between grains.
 #[derive(Clone, Debug)]
 pub struct StepProblem<K: Kinematics> {
     /// Bodies as the sweep moves them.
@@ -61,7 +61,11 @@ pub struct StepProblem<K: Kinematics> {
     /// Mean mass of the grains, kg.
     pub mean_mass: f64,
     pub(super) newton: Workspaces,
-    in_detection_order: Vec<u32>,
+    pub(super) vectors: Vectors,
+    /// √m_n of the rows, kg^½; filled where a method asks for it.
+    pub(super) root_masses: Vec<f64>,
+    pub(super) colouring: Colouring,
+    sorter: Sorter,
 }
 
 impl<K: Kinematics> Default for StepProblem<K> {
@@ -78,25 +82,24 @@ impl<K: Kinematics> Default for StepProblem<K> {
             masses: Vec::new(),
             mean_mass: 0.0,
             newton: Workspaces::default(),
-            in_detection_order: Vec::new(),
+            vectors: Vectors::default(),
+            root_masses: Vec::new(),
+            colouring: Colouring::default(),
+            sorter: Sorter::default(),
         }
     }
 }
 
 impl<K: Kinematics> StepProblem<K> {
-    /// Stretches that the order of detection is cut into. With fewer, updates wait for each other;
-    /// with many more, a sweep over a large pile loses its locality in the cache.
-    pub const STREAMS: usize = 8;
-
-    /// Sets up the step: free velocities, and rows that carry the impulses of `contacts`
-    /// (`warm_start`) or none. `cohesion` tells whether the scene has any.
+    /// Sets up the step: free velocities, and rows in the settings' order that carry the impulses of
+    /// `contacts` (warm start) or none. `cohesion` tells whether the scene has any.
     pub fn prepare<M: Model<Kinematics = K>>(
         &mut self,
         world: &World,
         contacts: &ContactList,
         parameters: &Parameters,
         cohesion: bool,
-        warm_start: bool,
+        settings: &SolverSettings,
     ) {
         let grains = &world.grains;
         let gravity_magnitude = world.gravity.magnitude();
@@ -118,14 +121,19 @@ impl<K: Kinematics> StepProblem<K> {
         }
         let list = contacts.contacts();
         let against_grain = |index: &u32| (list[*index as usize].other as usize) < grains.len();
-        self.contact_of_row.clear();
         let all = 0..list.len() as u32;
-        self.interleave(all.clone().filter(|index| !against_grain(index)));
-        let fixed_count = self.contact_of_row.len();
-        self.interleave(all.filter(against_grain));
+        let fixed = all.clone().filter(|index| !against_grain(index));
+        let pairs = all.filter(against_grain);
+        let ordering = settings.method.ordering(settings.ordering);
+        let [fixed_ends, pair_ends] = &mut self.colouring.ends;
+        let rows = &mut self.contact_of_row;
+        rows.clear();
+        self.sorter.append(ordering, (world, list), fixed, rows, fixed_ends);
+        let fixed_count = rows.len();
+        self.sorter.append(ordering, (world, list), pairs, rows, pair_ends);
 
         let rebound = |velocity| parameters.restitution_velocity(velocity, gravity_magnitude);
-        let start = |index: u32| warm_start.then(|| contacts.impulses()[index as usize]);
+        let start = |index: u32| settings.warm_start.then(|| contacts.impulses()[index as usize]);
         self.fixed_rows.clear();
         for at in 0..fixed_count {
             let index = self.contact_of_row[at];
@@ -149,17 +157,6 @@ impl<K: Kinematics> StepProblem<K> {
             self.pair_rows.push(row);
         }
         self.form_velocities();
-    }
-
-    /// Appends contacts, given in the order of detection, to the order of the sweep.
-    fn interleave(&mut self, contacts: impl Iterator<Item = u32>) {
-        self.in_detection_order.clear();
-        self.in_detection_order.extend(contacts);
-        let stretch = self.in_detection_order.len().div_ceil(Self::STREAMS);
-        for offset in 0..stretch {
-            let across_stretches = self.in_detection_order[offset..].iter().step_by(stretch);
-            self.contact_of_row.extend(across_stretches);
-        }
     }
 
     /// One row, with the impulses of `start` (N·s) projected on what the contact law allows now.
