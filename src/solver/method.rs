@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Model, SolverSettings, StepProblem, newton, nsgs};
+use crate::error::{Error, Result};
 
 /// A method, by the name that command line, scene files and panels use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -12,6 +13,45 @@ pub enum Method {
     Nsgs,
     /// Semi-smooth Newton with a sparse factorisation.
     Newton,
+    /// Substeps with soft contacts.
+    TgsSoft,
+    /// Discrete elements with springs and dashpots.
+    Dem,
+}
+
+/// What a method replaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MethodKind {
+    /// The solution of a step's problem ([`solve`]).
+    Problem,
+    /// The whole step.
+    Scheme(Scheme),
+}
+
+/// A way to step that knows no problem of the whole step. It needs detection and motion between
+/// its substeps, so it lives with the step (`sim::schemes`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Substeps with soft contacts.
+    TgsSoft,
+    /// Discrete elements with springs and dashpots.
+    Dem,
+}
+
+impl Method {
+    /// What the method replaces.
+    pub fn kind(self) -> MethodKind {
+        match self {
+            Self::TgsSoft => MethodKind::Scheme(Scheme::TgsSoft),
+            Self::Dem => MethodKind::Scheme(Scheme::Dem),
+            _ => MethodKind::Problem,
+        }
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        METHODS.iter().find(|info| info.method == self).map_or("", |info| info.name)
+    }
 }
 
 /// What there is to know of a method.
@@ -28,7 +68,7 @@ pub struct MethodInfo {
 }
 
 /// All methods.
-pub const METHODS: [MethodInfo; 2] = [
+pub const METHODS: [MethodInfo; 4] = [
     MethodInfo {
         method: Method::Nsgs,
         name: "nsgs",
@@ -40,6 +80,18 @@ pub const METHODS: [MethodInfo; 2] = [
         name: "newton",
         summary: "semi-smooth Newton, sparse direct: all contacts together, for tight tolerances",
         source: "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)",
+    },
+    MethodInfo {
+        method: Method::TgsSoft,
+        name: "tgs-soft",
+        summary: "substeps with soft contacts and a relaxing sweep, as game engines step",
+        source: "E. Catto, Solver2D (2024)",
+    },
+    MethodInfo {
+        method: Method::Dem,
+        name: "dem",
+        summary: "smooth discrete elements: springs, dashpots and a constant attraction",
+        source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
     },
 ];
 
@@ -56,15 +108,25 @@ pub struct SolveReport {
 
 /// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
 /// the rows' impulses.
+///
+/// # Errors
+/// Where the method is a scheme, which replaces the step and solves no problem.
 pub fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
-) -> SolveReport {
+) -> Result<SolveReport> {
     if problem.contact_of_row.is_empty() {
-        return SolveReport { converged: true, ..SolveReport::default() };
+        return Ok(SolveReport { converged: true, ..SolveReport::default() });
     }
-    match settings.method {
+    Ok(match settings.method {
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
         Method::Newton => newton::solve::<M>(problem, settings),
-    }
+        Method::TgsSoft | Method::Dem => {
+            let of_problems =
+                METHODS.iter().filter(|info| info.method.kind() == MethodKind::Problem);
+            let names: Vec<_> = of_problems.map(|info| info.name).collect();
+            let allowed = format!("a method that solves a step's problem ({})", names.join(", "));
+            return Err(Error::value("solver", settings.method.name(), allowed));
+        }
+    })
 }

@@ -11,10 +11,10 @@ mod settings;
 
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, measure, residual};
-pub use method::{METHODS, Method, MethodInfo, SolveReport, solve};
+pub use method::{METHODS, Method, MethodInfo, MethodKind, Scheme, SolveReport, solve};
 pub use model::{Model, ModelVisitor, StepModel, visit_leanest};
 pub use problem::{Problems, Row, StepProblem};
-pub use settings::{SolverSettings, StopTest};
+pub use settings::{MAX_SUBSTEPS, SolverSettings, StopTest};
 
 #[doc(hidden)]
 pub use nsgs::sweep;
