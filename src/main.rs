@@ -11,7 +11,7 @@ use slump::app::WindowOptions;
 use slump::error::Result;
 use slump::headless::{HeadlessOptions, Progress, check_writable, write_file};
 use slump::scene::{Config, Rain, SCENES, Settling, scene_to_toml, settle, write_discs};
-use slump::solver::METHODS;
+use slump::solver::{METHODS, MethodKind};
 use slump::study::{figure_names, reproduce};
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
@@ -133,10 +133,16 @@ fn list() {
     for scene in SCENES {
         println!("  {:10} {}", scene.name, scene.summary);
     }
-    println!("Methods:");
-    for method in METHODS {
-        println!("  {:10} {} ({})", method.name, method.summary, method.source);
-    }
+    let methods = |heading: &str, of_problem: bool| {
+        println!("{heading}:");
+        for info in METHODS {
+            if (info.method.kind() == MethodKind::Problem) == of_problem {
+                println!("  {:10} {} ({})", info.name, info.summary, info.source);
+            }
+        }
+    };
+    methods("Methods", true);
+    methods("Stepping schemes, in place of the whole step", false);
 }
 
 /// The first sentence of what the argument parser says: it also gives usage and hints.
