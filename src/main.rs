@@ -11,7 +11,7 @@ use slump::app::WindowOptions;
 use slump::error::Result;
 use slump::headless::{HeadlessOptions, Progress, check_writable, write_file};
 use slump::scene::{Config, Rain, SCENES, Settling, scene_to_toml, settle, write_discs};
-use slump::solver::METHODS;
+use slump::solver::{METHODS, MethodKind};
 use slump::study::{
     ChartOptions, ChartPart, chart_speed, default_peers_folder, figure_names, reproduce,
 };
@@ -156,11 +156,17 @@ fn list() {
     for scene in SCENES {
         println!("  {:10} {}", scene.name, scene.summary);
     }
-    println!("Methods:");
-    for method in METHODS {
-        println!("  {:14} {}", method.name, method.summary);
-        println!("  {:14} solves {} ({})", "", method.solves, method.source);
-    }
+    let methods = |heading: &str, of_problem: bool| {
+        println!("{heading}:");
+        for info in METHODS {
+            if (info.method.kind() == MethodKind::Problem) == of_problem {
+                println!("  {:14} {}", info.name, info.summary);
+                println!("  {:14} solves {} ({})", "", info.solves, info.source);
+            }
+        }
+    };
+    methods("Methods", true);
+    methods("Stepping schemes, in place of the whole step", false);
 }
 
 /// The first sentence of what the argument parser says: it also gives usage and hints.

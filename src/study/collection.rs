@@ -10,16 +10,18 @@ use crate::error::Result;
 use crate::headless::Progress;
 use crate::scene::{Config, Rain};
 use crate::sim::Simulation;
-use crate::solver::{Method, SolverSettings, StopTest};
+use crate::solver::{Method, Ordering, SolverSettings, StopTest};
 
 /// How the piles get to the steps that are collected: far better solved than any claim about a pile
 /// needs, so that a collection does not favour the errors of the methods it is to compare.
 const ADVANCE: SolverSettings = SolverSettings {
     method: Method::Newton,
+    ordering: Ordering::Interleaved,
     stop: StopTest::Residual,
     tolerance: 1e-8,
     max_sweeps: 1000,
     warm_start: true,
+    substeps: 0,
 };
 
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.

@@ -5,11 +5,13 @@
 //! `measured/`: journals of what was measured, by program and processor, so that the same command
 //! goes on where it was stopped and never mixes times of different programs.
 
+mod entrants;
 mod look;
 mod machine;
 mod models;
 mod peers;
 mod race;
+mod rest;
 mod runs;
 mod simulations;
 mod steps;
@@ -35,6 +37,8 @@ pub enum ChartPart {
     Simulation,
     /// What a scene's model costs
     Model,
+    /// A step of 2,000 grains at rest against other engines
+    Rest,
 }
 
 /// What to chart, and how.
@@ -85,13 +89,16 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
         peers: options.peers.clone(),
         machine: Machine::this()?,
     };
-    let wanted = |part| options.only.is_empty() || options.only.contains(&part);
+    // Settling 2,000 grains takes longer than the whole quick pass.
+    let unasked = |part| options.only.is_empty() && !(options.quick && part == ChartPart::Rest);
+    let wanted = |part| unasked(part) || options.only.contains(&part);
     let mut report = format!("# Speed against accuracy\n\n{}\n", bench.machine.words());
     type Make = fn(&Bench) -> Result<Vec<Part>>;
-    let makers: [(ChartPart, &str, Make); 3] = [
+    let makers: [(ChartPart, &str, Make); 4] = [
         (ChartPart::Step, "Single steps", steps::make),
         (ChartPart::Simulation, "Whole simulations", simulations::make),
         (ChartPart::Model, "What a scene's model costs", models::make),
+        (ChartPart::Rest, "A step at rest, against other engines", rest::make),
     ];
     for (part, title, make) in makers {
         if !wanted(part) {

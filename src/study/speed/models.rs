@@ -68,6 +68,7 @@ fn pile(physics: Physics) -> Result<Simulation> {
         tolerance: 1e-15,
         max_sweeps: 50,
         warm_start: false,
+        ..SolverSettings::default()
     };
     Scene { physics, solver, ..paper_pile()? }.simulation()
 }

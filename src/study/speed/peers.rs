@@ -11,15 +11,32 @@ use crate::error::{Error, Result};
 pub(super) struct PeerRun {
     /// Its name, version and precision.
     pub engine: String,
+    /// Whether it collapses or rests between walls.
+    pub scene: String,
+    /// Time of a step, s.
+    pub time_step_secs: f64,
+    /// Substeps of a step.
+    pub substeps: u32,
     /// Grains of the pile.
     pub grains: usize,
     /// Δy_G at the end.
     pub slump: f64,
+    /// Mean overlap of touching grains, in diameters.
+    pub mean_overlap: f64,
+    /// Time that a step took, ms.
+    pub ms_per_step: f64,
+    /// The processor that it was measured on.
+    pub processor: String,
     /// Time that a simulated second took, s.
     pub secs_per_simulated_sec: f64,
 }
 
 impl PeerRun {
+    /// Whether it is a collapse of so many grains.
+    pub fn is_collapse_of(&self, grains: usize) -> bool {
+        self.scene == "collapse" && self.grains == grains
+    }
+
     /// Simulated seconds per second.
     pub fn speed(&self) -> f64 {
         1.0 / self.secs_per_simulated_sec
@@ -45,4 +62,9 @@ pub(super) fn read(folder: &Path) -> Result<Vec<PeerRun>> {
         }
     }
     Ok(runs)
+}
+
+/// The colour of engine number `index`, unlike that of any method.
+pub(super) fn colour(index: usize) -> crate::study::chart::Rgb {
+    [(120, 120, 120), (150, 90, 40), (90, 60, 140)][index % 3]
 }

@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use super::entrants::Entrant;
 use crate::contact::ContactList;
 use crate::sim::ProblemVisitor;
-use crate::solver::{Method, Model, SolverSettings, StepProblem, StopTest, residual, solve};
+use crate::solver::{Model, SolverSettings, StepProblem, residual, solve};
 use crate::study::performance::Timing;
 
 /// Least number of solves that a time is the minimum of.
@@ -64,9 +65,7 @@ impl Race {
 pub(super) struct Runner<'a> {
     /// Name of the problem.
     pub problem: &'a str,
-    pub method: Method,
-    /// Name of the method.
-    pub name: &'a str,
+    pub entrant: &'a Entrant,
     pub course: &'a Course,
 }
 
@@ -80,7 +79,7 @@ impl ProblemVisitor for Runner<'_> {
     ) -> Race {
         let mut race = Race {
             problem: self.problem.to_owned(),
-            method: self.name.to_owned(),
+            method: self.entrant.name.clone(),
             contacts: contacts.contacts().len(),
             start_residual: residual::<M>(problem),
             smallest_residual: residual::<M>(problem),
@@ -89,7 +88,7 @@ impl ProblemVisitor for Runner<'_> {
         };
         let max_sweeps = self.sweeps_in_time::<M>(problem);
         for &tolerance in &self.course.tolerances {
-            let settings = self.settings(tolerance, max_sweeps);
+            let settings = self.entrant.to_residual(tolerance, max_sweeps);
             let (mut least, mut sum) = (f64::INFINITY, 0.0);
             for repeat in 0..MOST_REPEATS {
                 if repeat >= LEAST_REPEATS && sum > ENOUGH_SECS {
@@ -112,14 +111,9 @@ impl ProblemVisitor for Runner<'_> {
 }
 
 impl Runner<'_> {
-    fn settings(&self, tolerance: f64, max_sweeps: u32) -> SolverSettings {
-        let (method, stop) = (self.method, StopTest::Residual);
-        SolverSettings { method, stop, tolerance, max_sweeps, warm_start: true }
-    }
-
     /// The sweeps that fit in the time limit, from what a few take.
     fn sweeps_in_time<M: Model>(&self, problem: &StepProblem<M::Kinematics>) -> u32 {
-        let of = |sweeps| timed::<M>(problem, &self.settings(f64::MIN_POSITIVE, sweeps));
+        let of = |sweeps| timed::<M>(problem, &self.entrant.sweeps(sweeps));
         let (few_secs, few, _) = of(20);
         let (many_secs, many, _) = of(220);
         if many <= few {
@@ -140,5 +134,6 @@ fn timed<M: Model>(
     let started = Instant::now();
     let report = solve::<M>(&mut copy, settings);
     let secs = started.elapsed().as_secs_f64();
-    (secs, report.sweeps, residual::<M>(&copy))
+    // Fails only for schemes, which do not race.
+    (secs, report.map_or(0, |report| report.sweeps), residual::<M>(&copy))
 }

@@ -12,6 +12,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use rayon::prelude::*;
 
+use super::entrants::{self, Entrant};
 use super::look::{colour, dots};
 use super::peers::{self, PeerRun};
 use super::runs::{Ending, TimedRun, timed_run};
@@ -19,7 +20,7 @@ use super::{Bench, Part};
 use crate::error::Result;
 use crate::headless::Progress;
 use crate::scene::{Config, Rain};
-use crate::solver::{METHODS, Method, SolverSettings, StopTest};
+use crate::solver::{Method, MethodKind, SolverSettings, StopTest};
 use crate::study::chart::{Axis, Chart, Corner, INK, Layer, Look, Sheet, points};
 use crate::study::journal::Journal;
 use crate::study::performance::pareto_front;
@@ -30,6 +31,8 @@ use crate::study::statistics::mean;
 const FINEST_SECS: f64 = 1e-4;
 /// Residual of the references, and of those that show the floor.
 const REFERENCE: [f64; 2] = [1e-8, 1e-9];
+/// A step gets no more sweeps: one without a solution must not take for ever.
+const MOST_SWEEPS: u32 = 5_000;
 /// A pile that slumps less than this holds.
 const HOLDS: f64 = 0.1;
 /// Contacts slower than this many g·Δt do not bounce.
@@ -42,21 +45,12 @@ struct Plan {
     time_steps_secs: Vec<f64>,
     /// (Bond, seed) of each pile.
     piles: Vec<(f64, u64)>,
-    /// How well steps are solved, with a name.
-    efforts: Vec<(String, Effort)>,
+    /// Methods, each with how well it is to solve its steps, in words and as settings.
+    efforts: Vec<(Entrant, String, SolverSettings)>,
     /// How often each run is timed.
     repeats: u32,
     /// Wall time that a simulated second may take, s.
     limit_secs: f64,
-}
-
-/// How well steps are solved.
-#[derive(Clone, Copy, Debug)]
-enum Effort {
-    /// To a residual.
-    Residual(f64),
-    /// With a fixed number of sweeps.
-    Sweeps(u32),
 }
 
 impl Plan {
@@ -65,10 +59,35 @@ impl Plan {
         let residuals: &[f64] =
             if quick { &[1e-2, 1e-4, 1e-6] } else { &[1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8] };
         let sweeps: &[u32] = if quick { &[20] } else { &[10, 40] };
-        let efforts = residuals
-            .iter()
-            .map(|&tolerance| (format!("residual {tolerance:e}"), Effort::Residual(tolerance)))
-            .chain(sweeps.iter().map(|&count| (format!("{count} sweeps"), Effort::Sweeps(count))));
+        let substeps: &[u32] = if quick { &[0] } else { &[0, 16, 64] };
+        let mut efforts = Vec::new();
+        for entrant in entrants::all() {
+            match entrant.method.kind() {
+                MethodKind::Problem => {
+                    for &tolerance in residuals {
+                        let settings = entrant.to_residual(tolerance, MOST_SWEEPS);
+                        efforts.push((
+                            entrant.clone(),
+                            format!("residual {tolerance:e}"),
+                            settings,
+                        ));
+                    }
+                    for &count in sweeps {
+                        let settings = entrant.sweeps(count);
+                        efforts.push((entrant.clone(), format!("{count} sweeps"), settings));
+                    }
+                }
+                MethodKind::Scheme(_) => {
+                    for &count in substeps {
+                        let name = match count {
+                            0 => "its own substeps".to_owned(),
+                            count => format!("{count} substeps"),
+                        };
+                        efforts.push((entrant.clone(), name, entrant.substeps(count)));
+                    }
+                }
+            }
+        }
         // Bond numbers are dealt out to the seeds: each is met by several, and each meets several.
         let piles = if quick {
             vec![(0.0, shared), (20.0, 1), (50.0, 2), (100.0, 3)]
@@ -81,7 +100,7 @@ impl Plan {
         Self {
             time_steps_secs: if quick { vec![1e-3, 5e-3] } else { vec![5e-4, 1e-3, 2e-3, 5e-3] },
             piles,
-            efforts: efforts.collect(),
+            efforts,
             repeats: if quick { 1 } else { 2 },
             limit_secs: if quick { 0.8 } else { 10.0 },
         }
@@ -90,7 +109,7 @@ impl Plan {
 
 /// What one method at one Δt and one effort comes to.
 struct Charted {
-    method: usize,
+    /// Number in `Plan::efforts`.
     effort: usize,
     time_step_secs: f64,
     /// The runs that reached their end, pile by pile; `None` where one did not.
@@ -134,15 +153,6 @@ fn config((bond, seed): (f64, u64), time_step_secs: f64) -> Config {
     }
 }
 
-fn settings(method: Method, effort: Effort) -> SolverSettings {
-    let (tolerance, max_sweeps) = match effort {
-        // A step without a solution must not take for ever.
-        Effort::Residual(tolerance) => (tolerance, SolverSettings::default().max_sweeps),
-        Effort::Sweeps(count) => (f64::MIN_POSITIVE, count),
-    };
-    SolverSettings { method, stop: StopTest::Residual, tolerance, max_sweeps, warm_start: true }
-}
-
 fn references(
     plan: &Plan,
     states: &States,
@@ -171,7 +181,12 @@ fn references(
                 Some(run) => run.clone(),
                 None => {
                     let mut scene = states.scene(&config(numbers, time_step_secs))?;
-                    scene.solver = settings(Method::Newton, Effort::Residual(tolerance));
+                    scene.solver = SolverSettings {
+                        method: Method::Newton,
+                        stop: StopTest::Residual,
+                        tolerance,
+                        ..SolverSettings::default()
+                    };
                     let run = timed_run(key, &scene, 1, f64::INFINITY)?;
                     journal.add(&run)?;
                     run
@@ -208,54 +223,51 @@ fn run_all(
     done: &mut HashMap<String, TimedRun>,
     references: &References,
 ) -> Result<Vec<Charted>> {
-    let points = METHODS.len() * plan.time_steps_secs.len() * plan.efforts.len();
+    let points = plan.time_steps_secs.len() * plan.efforts.len();
     let progress = Progress::new("simulations", (points * plan.piles.len()) as u64);
     let mut charted = Vec::with_capacity(points);
     for &time_step_secs in &plan.time_steps_secs {
-        for (method, info) in METHODS.iter().enumerate() {
-            for (effort, (name, value)) in plan.efforts.iter().enumerate() {
-                let mut runs = Vec::new();
-                let mut failed = None;
-                for &(bond, seed) in &plan.piles {
-                    progress.advance(1);
-                    if failed.is_some() {
-                        runs.push(None);
-                        continue;
-                    }
-                    let key = format!(
-                        "{}, {name}, Bond {bond}, seed {seed}, dt {time_step_secs:e}",
-                        info.name
-                    );
-                    let run = match done.remove(&key) {
-                        Some(run) => run,
-                        None => {
-                            let mut scene = states.scene(&config((bond, seed), time_step_secs))?;
-                            scene.solver = settings(info.method, *value);
-                            let run = timed_run(key, &scene, plan.repeats, plan.limit_secs)?;
-                            journal.add(&run)?;
-                            run
-                        }
-                    };
-                    failed = match run.ending {
-                        Ending::Done => None,
-                        Ending::TooSlow => Some("too slow"),
-                        Ending::NotFinite => Some("not finite"),
-                    };
-                    runs.push(failed.is_none().then_some(run));
+        for (effort, (entrant, name, settings)) in plan.efforts.iter().enumerate() {
+            let mut runs = Vec::new();
+            let mut failed = None;
+            for &(bond, seed) in &plan.piles {
+                progress.advance(1);
+                if failed.is_some() {
+                    runs.push(None);
+                    continue;
                 }
-                let mut point = Charted {
-                    method,
-                    effort,
-                    time_step_secs,
-                    runs,
-                    failed,
-                    speed: 0.0,
-                    errors: [f64::NAN; 2],
-                    verdicts: 0.0,
+                let key = format!(
+                    "{}, {name}, Bond {bond}, seed {seed}, dt {time_step_secs:e}",
+                    entrant.name
+                );
+                let run = match done.remove(&key) {
+                    Some(run) => run,
+                    None => {
+                        let mut scene = states.scene(&config((bond, seed), time_step_secs))?;
+                        scene.solver = *settings;
+                        let run = timed_run(key, &scene, plan.repeats, plan.limit_secs)?;
+                        journal.add(&run)?;
+                        run
+                    }
                 };
-                point.sum_up(references);
-                charted.push(point);
+                failed = match run.ending {
+                    Ending::Done => None,
+                    Ending::TooSlow => Some("too slow"),
+                    Ending::NotFinite => Some("not finite"),
+                };
+                runs.push(failed.is_none().then_some(run));
             }
+            let mut point = Charted {
+                effort,
+                time_step_secs,
+                runs,
+                failed,
+                speed: 0.0,
+                errors: [f64::NAN; 2],
+                verdicts: 0.0,
+            };
+            point.sum_up(references);
+            charted.push(point);
         }
     }
     progress.finish();
@@ -294,7 +306,10 @@ fn draw(
     peers: &[PeerRun],
 ) -> Part {
     let good: Vec<&Charted> = charted.iter().filter(|point| point.failed.is_none()).collect();
-    let speeds = || good.iter().map(|point| point.speed).chain(peers.iter().map(PeerRun::speed));
+    let speeds = || {
+        let peers = peers.iter().filter(|run| run.is_collapse_of(Rain::default().grains));
+        good.iter().map(|point| point.speed).chain(peers.map(PeerRun::speed))
+    };
     let slowest = speeds().fold(f64::INFINITY, f64::min).min(1.0);
     let fastest = speeds().fold(0.0, f64::max).max(10.0 * slowest);
     let mut charts = Vec::new();
@@ -321,23 +336,25 @@ fn draw(
         let honest: Vec<_> = places.iter().map(|&(x, y)| (x, y.max(floor))).collect();
         let front = pareto_front(&honest).into_iter().map(|index| honest[index]);
         chart.layers.push(Layer::curve("Pareto front", points(front), INK, Look::Line(1)));
-        for (method, info) in METHODS.iter().enumerate() {
-            let of_method = || charted.iter().filter(|point| point.method == method);
+        for entrant in entrants::all() {
+            let is_its = |point: &Charted| plan.efforts[point.effort].0.method == entrant.method;
+            let of_method = || charted.iter().filter(|point| is_its(point));
             let failed = of_method().filter(|point| point.failed.is_some()).count();
             let told = match failed {
-                0 => info.name.to_owned(),
-                failed => format!("{} ({failed} of {} failed)", info.name, of_method().count()),
+                0 => entrant.name.clone(),
+                failed => format!("{} ({failed} of {} failed)", entrant.name, of_method().count()),
             };
             let mut in_legend = panel == 1;
             for (size, time_step_secs) in plan.time_steps_secs.iter().enumerate() {
-                let here = good.iter().zip(&places).filter(|(point, _)| {
-                    point.method == method && point.time_step_secs == *time_step_secs
-                });
+                let here = good
+                    .iter()
+                    .zip(&places)
+                    .filter(|(point, _)| is_its(point) && point.time_step_secs == *time_step_secs);
                 let layer = points(here.map(|(_, place)| *place));
-                let look = dots(method, 4 + 2 * size as u32);
+                let look = dots(entrant.look, 4 + 2 * size as u32);
                 let make = if in_legend { Layer::curve } else { Layer::quiet };
                 in_legend = false;
-                chart.layers.push(make(told.clone(), layer, colour(method), look));
+                chart.layers.push(make(told.clone(), layer, colour(entrant.look), look));
             }
         }
         if panel == 1 {
@@ -350,9 +367,8 @@ fn draw(
         size: (1640, 900),
         charts,
         caption: bench.caption(&[&format!(
-            "A point for each method, Δt (larger: {}) and effort ({}): means over {} piles of 138 grains.",
+            "A point for each method, effort and Δt (the larger the dot, the larger: {}); means over {} piles of 138 grains.",
             said(plan.time_steps_secs.iter().map(|step| format!("{step:e} s"))),
-            said(plan.efforts.iter().map(|(name, _)| name.clone())),
             plan.piles.len()
         )]),
     };
@@ -371,14 +387,13 @@ fn peer_layers(plan: &Plan, peers: &[PeerRun], references: &References) -> Vec<L
     let Some(pile) = plan.piles.iter().position(|pile| *pile == shared) else { return Vec::new() };
     let reference = references[&(FINEST_SECS.to_bits(), pile)];
     let mut by_engine: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
-    for run in peers.iter().filter(|run| run.grains == Rain::default().grains) {
+    for run in peers.iter().filter(|run| run.is_collapse_of(Rain::default().grains)) {
         let error = (run.slump - reference).abs().max(LEAST_ERROR);
         by_engine.entry(&run.engine).or_default().push((run.speed(), error));
     }
-    let greys = [(120, 120, 120), (170, 120, 60)];
     let layers = by_engine.into_iter().enumerate().map(|(index, (engine, places))| {
         let name = format!("{engine}, Bond 0 alone");
-        Layer::curve(name, points(places), greys[index % greys.len()], Look::Rings(9))
+        Layer::curve(name, points(places), peers::colour(index), Look::Rings(9))
     });
     layers.collect()
 }
@@ -397,8 +412,8 @@ fn told(plan: &Plan, charted: &[Charted], floor: f64) -> String {
         "\n| method | Δt, s | effort | simulated s per s | error, same Δt | error, finest Δt | verdicts agreed |\n|---|---|---|---|---|---|---|".into(),
     ];
     for point in charted {
-        let name = METHODS[point.method].name;
-        let (step, effort) = (point.time_step_secs, &plan.efforts[point.effort].0);
+        let (entrant, effort, _) = &plan.efforts[point.effort];
+        let (name, step) = (&entrant.name, point.time_step_secs);
         lines.push(match point.failed {
             Some(why) => format!("| {name} | {step:e} | {effort} | {why} | | | |"),
             None => format!(
@@ -419,6 +434,7 @@ fn table(plan: &Plan, charted: &[Charted]) -> String {
          verdicts_agreed,mean_overlap,unconverged_steps,steps\n",
     );
     for point in charted {
+        let (entrant, effort, _) = &plan.efforts[point.effort];
         let runs = || point.runs.iter().flatten();
         let overlap = mean(&runs().map(|run| run.mean_overlap).collect::<Vec<_>>()).mean;
         let sum = |number: fn(&TimedRun) -> u64| runs().map(number).sum::<u64>();
@@ -436,7 +452,7 @@ fn table(plan: &Plan, charted: &[Charted]) -> String {
         };
         text.push_str(&format!(
             "{},{:e},{},{numbers}\n",
-            METHODS[point.method].name, point.time_step_secs, plan.efforts[point.effort].0
+            entrant.name, point.time_step_secs, effort
         ));
     }
     text

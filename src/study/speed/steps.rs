@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::look::{colour, line_layers, staircase};
+use super::entrants::{self, Entrant};
+use super::look::{colour, line_layers, staircase, stroke};
 use super::race::{Course, Race, Runner};
 use super::{Bench, Part};
 use crate::error::Result;
 use crate::headless::Progress;
-use crate::solver::{METHODS, Method, MethodInfo};
+use crate::solver::{Method, Ordering};
 use crate::study::chart::{Axis, Chart, Corner, Layer, Sheet};
 use crate::study::collection::{CollectedStep, CollectionPlan, collect};
 use crate::study::performance::{
@@ -18,7 +19,7 @@ use crate::study::performance::{
 /// Residuals of the profiles' panels.
 const PROFILED: [f64; 3] = [1e-3, 1e-6, 1e-8];
 /// The method that the others are compared with.
-const BASE: Method = Method::Nsgs;
+const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 /// A warm start below this residual leaves next to nothing to be told about a method: the pile rests.
 const FAR: f64 = 1e-3;
 /// Threshold of restitution with which nearly every step has a solution.
@@ -31,7 +32,8 @@ struct Raced {
     label: &'static str,
     /// In titles.
     title: String,
-    /// `races[method][problem]`, methods as in the registry.
+    entrants: Vec<Entrant>,
+    /// `races[entrant][problem]`.
     races: Vec<Vec<Race>>,
 }
 
@@ -85,18 +87,19 @@ fn race_all(
     let mut done: HashMap<(String, String), Race> =
         done.into_iter().map(|race| ((race.problem.clone(), race.method.clone()), race)).collect();
     let collected = collect(plan, &bench.states_folder())?;
-    let total = (METHODS.len() * collected.len()) as u64;
+    let entrants = entrants::of_problems(!bench.quick);
+    let total = (entrants.len() * collected.len()) as u64;
     let progress = Progress::new(&format!("steps{label}"), total);
-    let mut races: Vec<Vec<Race>> = METHODS.iter().map(|_| Vec::new()).collect();
+    let mut races: Vec<Vec<Race>> = entrants.iter().map(|_| Vec::new()).collect();
     for CollectedStep { name, simulation, .. } in &collected {
-        for (MethodInfo { method, name: method_name, .. }, races) in METHODS.iter().zip(&mut races)
-        {
-            let race = match done.remove(&(name.clone(), (*method_name).to_owned())) {
+        for (entrant, races) in entrants.iter().zip(&mut races) {
+            let race = match done.remove(&(name.clone(), entrant.name.clone())) {
                 Some(race) => race,
                 None => {
-                    let runner =
-                        Runner { problem: name, method: *method, name: method_name, course };
-                    let race = simulation.next_problem(runner);
+                    // The method decides on the order of the problem's rows.
+                    let mut simulation = simulation.clone();
+                    simulation.set_solver(entrant.sweeps(1))?;
+                    let race = simulation.next_problem(Runner { problem: name, entrant, course });
                     journal.add(&race)?;
                     race
                 }
@@ -107,7 +110,7 @@ fn race_all(
     }
     progress.finish();
     let title = format!("{} steps, {title}", collected.len());
-    Ok(Raced { label, title, races })
+    Ok(Raced { label, title, entrants, races })
 }
 
 impl Raced {
@@ -123,7 +126,7 @@ impl Raced {
         let races: Vec<Vec<Race>> = self.races.iter().map(far).collect();
         let count = races.first().map_or(0, Vec::len);
         let title = format!("the {count} of them that begin with a residual above {FAR:e}");
-        Self { label: self.label, title, races }
+        Self { label: self.label, title, entrants: self.entrants.clone(), races }
     }
 
     fn all_timings(&self, tolerance: f64) -> Vec<Vec<Timing>> {
@@ -145,8 +148,8 @@ impl Raced {
 fn residuals(bench: &Bench, raced: &[Raced], course: &Course) -> Part {
     let tightest = course.tolerances.iter().copied().fold(1.0, f64::min);
     let mut charts = Vec::new();
-    for (panel, raced) in raced.iter().enumerate() {
-        let curves: Vec<Vec<(f64, f64)>> = (0..METHODS.len())
+    for raced in raced {
+        let curves: Vec<Vec<(f64, f64)>> = (0..raced.entrants.len())
             .map(|method| {
                 let point = |&tolerance: &f64| {
                     let median = median_with_failures(&raced.timings(method, tolerance))?;
@@ -163,10 +166,10 @@ fn residuals(bench: &Bench, raced: &[Raced], course: &Course) -> Part {
             Axis::log("time of a step (ms)", 0.7 * least, 1.5 * most),
             Axis::log("residual", 0.5 * tightest, 0.2),
         );
-        for (method, (info, curve)) in METHODS.iter().zip(curves).enumerate() {
+        for (method, (entrant, curve)) in raced.entrants.iter().zip(curves).enumerate() {
             let share = 100.0 * share_solved(&raced.timings(method, 1e-8));
-            let name = format!("{}, {share:.0} % to 1e-8", info.name);
-            chart.layers.extend(line_layers(method, name, curve, panel == 0 || share > 0.0));
+            let name = format!("{}, {share:.0} % to 1e-8", entrant.name);
+            chart.layers.extend(line_layers(entrant.look, name, curve, true));
         }
         chart.legend = Corner::LowerLeft;
         charts.push(chart);
@@ -198,14 +201,14 @@ fn profiles(bench: &Bench, raced: &Raced) -> Part {
             Axis::log("times the fastest method's time", 1.0, most),
             Axis::linear(if panel == 0 { "share of steps solved" } else { "" }, 0.0, 1.0),
         );
-        for (method, (info, profile)) in METHODS.iter().zip(profiles).enumerate() {
+        for (entrant, profile) in raced.entrants.iter().zip(profiles) {
             let stairs = staircase(&profile, most);
             let failed = profile.len() == 1;
-            let name = format!("{}{}", info.name, if failed { ": none" } else { "" });
+            let name = format!("{}{}", entrant.name, if failed { ": none" } else { "" });
             let layer = if panel == 0 || failed {
-                Layer::curve(name, stairs, colour(method), super::look::stroke(method))
+                Layer::curve(name, stairs, colour(entrant.look), stroke(entrant.look))
             } else {
-                Layer::quiet(name, stairs, colour(method), super::look::stroke(method))
+                Layer::quiet(name, stairs, colour(entrant.look), stroke(entrant.look))
             };
             chart.layers.push(layer);
         }
@@ -228,7 +231,8 @@ fn profiles(bench: &Bench, raced: &Raced) -> Part {
 /// A row of what the methods come to at one residual.
 fn summary(raced: &Raced, method: usize, tolerance: f64) -> (f64, Option<f64>, SpeedRatio) {
     let timings = raced.timings(method, tolerance);
-    let base = METHODS.iter().position(|info| info.method == BASE).unwrap_or(0);
+    let is_base = |entrant: &Entrant| (entrant.method, entrant.ordering) == BASE;
+    let base = raced.entrants.iter().position(is_base).unwrap_or(0);
     let solved = timings.iter().filter(|timing| timing.solved).map(|timing| timing.secs);
     let ratio = speed_ratio(&raced.timings(base, tolerance), &timings);
     (share_solved(&timings), geometric_mean(solved), ratio)
@@ -249,7 +253,7 @@ fn told(raced: &[Raced], course: &Course) -> String {
                 .into(),
         );
         for tolerance in PROFILED {
-            for (method, info) in METHODS.iter().enumerate() {
+            for (method, info) in raced.entrants.iter().enumerate() {
                 let (share, secs, ratio) = summary(&raced, method, tolerance);
                 let number = |value: Option<f64>, count: usize| {
                     value.map_or("none".into(), |value| format!("{value:.2} ({count} steps)"))
@@ -294,7 +298,7 @@ fn tables(raced: &[Raced], course: &Course) -> Vec<(String, String)> {
     let cell = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
     for raced in raced {
         for &tolerance in &course.tolerances {
-            for (method, info) in METHODS.iter().enumerate() {
+            for (method, info) in raced.entrants.iter().enumerate() {
                 for race in &raced.races[method] {
                     let Timing { secs, solved } = race.timing(tolerance);
                     times.push_str(&format!(
