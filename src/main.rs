@@ -11,8 +11,10 @@ use slump::app::WindowOptions;
 use slump::error::Result;
 use slump::headless::{HeadlessOptions, Progress, check_writable, write_file};
 use slump::scene::{Config, Rain, SCENES, Settling, scene_to_toml, settle, write_discs};
-use slump::solver::METHODS;
-use slump::study::{figure_names, reproduce};
+use slump::solver::{METHODS, MethodKind};
+use slump::study::{
+    ChartOptions, ChartPart, chart_speed, default_peers_folder, figure_names, reproduce,
+};
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
@@ -61,6 +63,24 @@ enum Command {
         #[arg(long)]
         quick: bool,
     },
+    /// Chart speed against accuracy of every method: of steps, of simulations, and of lean models
+    Chart {
+        /// Folder for pictures, tables and measurements; the same command goes on where it stopped
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Coarser, in a few minutes
+        #[arg(long)]
+        quick: bool,
+        /// Also race on steps of 2,000 grains
+        #[arg(long)]
+        large: bool,
+        /// Chart these alone
+        #[arg(long, value_name = "PART", value_delimiter = ',')]
+        only: Vec<ChartPart>,
+        /// Folder with the tables of other engines' runs
+        #[arg(long, value_name = "DIR", default_value_os_t = default_peers_folder().to_owned())]
+        peers: PathBuf,
+    },
     /// Print a scene, with the changes asked for, as a scene file
     Scene {
         #[command(flatten)]
@@ -99,6 +119,9 @@ fn run(cli: Cli) -> Result<()> {
         }
         Some(Command::Sweep(command)) => command.run(),
         Some(Command::Reproduce { figures, out, quick }) => reproduce(&figures, &out, quick),
+        Some(Command::Chart { out, quick, large, only, peers }) => {
+            chart_speed(&ChartOptions { out, quick, large, only, peers })
+        }
         Some(Command::Scene { config }) => {
             print!("{}", scene_to_toml(&slump::headless::settled(&config)?)?);
             Ok(())
@@ -133,11 +156,17 @@ fn list() {
     for scene in SCENES {
         println!("  {:10} {}", scene.name, scene.summary);
     }
-    println!("Methods:");
-    for method in METHODS {
-        println!("  {:14} {}", method.name, method.summary);
-        println!("  {:14} solves {} ({})", "", method.solves, method.source);
-    }
+    let methods = |heading: &str, of_problem: bool| {
+        println!("{heading}:");
+        for info in METHODS {
+            if (info.method.kind() == MethodKind::Problem) == of_problem {
+                println!("  {:14} {}", info.name, info.summary);
+                println!("  {:14} solves {} ({})", "", info.solves, info.source);
+            }
+        }
+    };
+    methods("Methods", true);
+    methods("Stepping schemes, in place of the whole step", false);
 }
 
 /// The first sentence of what the argument parser says: it also gives usage and hints.

@@ -19,7 +19,8 @@ pub struct Contact {
 }
 
 impl Contact {
-    fn pair(&self) -> (u32, u32) {
+    /// The bodies (i, other), which contacts are sorted by.
+    pub fn pair(&self) -> (u32, u32) {
         (self.grain, self.other)
     }
 }
@@ -33,46 +34,82 @@ pub struct Impulse {
     pub tangential: f64,
 }
 
+/// What a stepping scheme keeps of a contact from one substep to the next, whatever its length. A
+/// method that solves the step's problem neither reads nor writes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactMemory {
+    /// How far the tangential spring is stretched, m; positive as v_t is.
+    pub tangential_displacement: f64,
+    /// N of the last substep, newton.
+    pub normal_force: f64,
+    /// T of the last substep, newton.
+    pub tangential_force: f64,
+}
+
+/// What is kept of a contact as long as it lives.
+#[derive(Clone, Debug, Default)]
+struct Kept {
+    contacts: Vec<Contact>,
+    impulses: Vec<Impulse>,
+    memories: Vec<ContactMemory>,
+}
+
 /// The contacts of a step, sorted by (i, other), and their impulses. Memory is kept between steps.
 #[derive(Clone, Debug, Default)]
 pub struct ContactList {
-    contacts: Vec<Contact>,
-    impulses: Vec<Impulse>,
-    contacts_before: Vec<Contact>,
-    impulses_before: Vec<Impulse>,
+    now: Kept,
+    before: Kept,
 }
 
 impl ContactList {
     /// The contacts, sorted by (i, other).
     pub fn contacts(&self) -> &[Contact] {
-        &self.contacts
+        &self.now.contacts
     }
 
     /// The impulses, one a contact.
     pub fn impulses(&self) -> &[Impulse] {
-        &self.impulses
+        &self.now.impulses
     }
 
     /// The impulses, one a contact, to be filled in by the solver.
     pub fn impulses_mut(&mut self) -> &mut [Impulse] {
-        &mut self.impulses
+        &mut self.now.impulses
+    }
+
+    /// What a stepping scheme keeps, one a contact.
+    pub fn memories(&self) -> &[ContactMemory] {
+        &self.now.memories
+    }
+
+    /// The contacts, with impulses and memories to be changed, one a contact.
+    pub fn parts_mut(&mut self) -> (&[Contact], &mut [Impulse], &mut [ContactMemory]) {
+        let Kept { contacts, impulses, memories } = &mut self.now;
+        (contacts, impulses, memories)
+    }
+
+    /// Empties the memories: what comes next was not prepared by the scheme that filled them.
+    pub fn forget(&mut self) {
+        self.now.memories.fill(ContactMemory::default());
     }
 
     /// Multiplies all impulses, so that a change of Δt leaves the forces as they were.
     pub fn scale_impulses(&mut self, factor: f64) {
-        for impulse in &mut self.impulses {
+        for impulse in &mut self.now.impulses {
             impulse.normal *= factor;
             impulse.tangential *= factor;
         }
     }
 
     /// Finds the contacts at the present positions: candidates with a gap below the tolerance. A
-    /// contact that was there the step before starts from its impulses of then, any other from 0.
+    /// contact that was there the step before starts from its impulses and its memory of then, any
+    /// other from 0.
     pub fn detect<const AXES: usize>(&mut self, world: &World, candidates: &Candidates) {
-        std::mem::swap(&mut self.contacts, &mut self.contacts_before);
-        std::mem::swap(&mut self.impulses, &mut self.impulses_before);
-        self.contacts.clear();
-        self.impulses.clear();
+        std::mem::swap(&mut self.now, &mut self.before);
+        let Self { now, before: old } = self;
+        now.contacts.clear();
+        now.impulses.clear();
+        now.memories.clear();
         let grains = &world.grains;
         let gap_tolerance = candidates.gap_tolerance();
         let mut before = 0;
@@ -89,21 +126,19 @@ impl ContactList {
                 }
                 let contact = Contact { grain: index as u32, other, normal, gap };
                 // Both lists are sorted alike, so one walk over the old one serves all.
-                while before < self.contacts_before.len()
-                    && self.contacts_before[before].pair() < contact.pair()
-                {
+                while before < old.contacts.len() && old.contacts[before].pair() < contact.pair() {
                     before += 1;
                 }
-                let lives_on = self
-                    .contacts_before
-                    .get(before)
-                    .is_some_and(|old| old.pair() == contact.pair());
-                self.impulses.push(if lives_on {
-                    self.impulses_before[before]
+                let lives_on =
+                    old.contacts.get(before).is_some_and(|then| then.pair() == contact.pair());
+                let (impulse, memory) = if lives_on {
+                    (old.impulses[before], old.memories[before])
                 } else {
-                    Impulse::default()
-                });
-                self.contacts.push(contact);
+                    Default::default()
+                };
+                now.impulses.push(impulse);
+                now.memories.push(memory);
+                now.contacts.push(contact);
             }
         }
     }

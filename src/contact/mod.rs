@@ -8,7 +8,7 @@ pub mod law;
 mod tree;
 
 pub use candidates::{Candidates, Reach};
-pub use contact_list::{Contact, ContactList, Impulse};
+pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
 pub use features::Feature;
 pub use grid::Grid;
 pub use tree::Tree;

@@ -37,6 +37,11 @@ pub(super) struct RunEntry {
     pub cohesive_time: f64,
     /// m/s (paper eq. 9).
     pub capture_speed: f64,
+    /// Substeps of each step; 1 where its problem is solved as a whole.
+    pub substeps: u32,
+    /// The longest substep that is surely stable, s, where the method has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub critical_time_step_secs: Option<f64>,
 }
 
 /// One picture.
@@ -84,6 +89,7 @@ impl RunEntry {
             fields.remove("fixed_discs");
         }
         let gravity = scene.gravity.magnitude();
+        let start = scene.simulation()?;
         Ok(Self {
             name: name.to_owned(),
             scene: said,
@@ -93,6 +99,8 @@ impl RunEntry {
             tally,
             cohesive_time: scene.parameters.cohesive_time(scene.mean_diameter, gravity),
             capture_speed: scene.parameters.capture_speed(gravity),
+            substeps: start.substeps(),
+            critical_time_step_secs: start.critical_time_step_secs(),
         })
     }
 }

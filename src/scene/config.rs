@@ -92,6 +92,10 @@ pub struct Config {
     #[arg(long, value_name = "BOOL", help_heading = "Solver")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub warm_start: Option<bool>,
+    /// Substeps of a stepping scheme; 0 takes 4 for tgs-soft, and as many as keep dem stable
+    #[arg(long, value_name = "N", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub substeps: Option<u32>,
 }
 
 impl Config {
@@ -181,6 +185,7 @@ impl Config {
             tolerance: Some(scene.solver.tolerance),
             max_sweeps: Some(scene.solver.max_sweeps),
             warm_start: Some(scene.solver.warm_start),
+            substeps: Some(scene.solver.substeps),
             ..self.clone()
         }
     }
@@ -219,6 +224,7 @@ impl Config {
         set(&mut scene.solver.tolerance, self.tolerance);
         set(&mut scene.solver.max_sweeps, self.max_sweeps);
         set(&mut scene.solver.warm_start, self.warm_start);
+        set(&mut scene.solver.substeps, self.substeps);
         scene.validate()
     }
 }

@@ -53,6 +53,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             tolerance: 2.2e-3,
             max_sweeps: 20_000,
             warm_start: false,
+            ..SolverSettings::default()
         },
         view: Some(View {
             min: DIAMETER * DVec2::new(-9.0, -1.2),

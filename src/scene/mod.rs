@@ -18,5 +18,5 @@ pub use csv_states::{parse_discs, read_discs, write_discs};
 pub use description::{GrainSource, Scene, View};
 pub use file::{read_scene, scene_to_toml};
 pub use pile::{paper_pile, pile_of, rough_base, tone_in_layers};
-pub use rain::{Rain, Settling, settle};
+pub use rain::{Rain, Settling, settle, walls};
 pub use registry::{SCENES, SceneInfo, built_in, scene_names};

@@ -155,15 +155,20 @@ fn lattice(rain: &Rain) -> Vec<Grain> {
         .collect()
 }
 
-/// The pile's scene without cohesion and with walls.
-fn box_of(grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
+/// The walls of a box for the pile's scene.
+pub fn walls(box_width_in_diameters: f64) -> Vec<Boundary> {
     let wall = |side: f64| Boundary::HalfSpace {
         point: DVec2::new(side * 0.5 * box_width_in_diameters * DIAMETER, 0.0),
         normal: DVec2::new(-side, 0.0),
     };
+    vec![wall(-1.0), wall(1.0)]
+}
+
+/// The pile's scene without cohesion and with walls.
+fn box_of(grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
     let pile = pile_of(grains, box_width_in_diameters);
     Scene {
-        boundaries: vec![wall(-1.0), wall(1.0)],
+        boundaries: walls(box_width_in_diameters),
         parameters: Parameters { bond: 0.0, time_step_secs: TIME_STEP_SECS, ..pile.parameters },
         solver: SolverSettings { tolerance: 1e-4, max_sweeps: 1000, ..pile.solver },
         ..pile

@@ -3,6 +3,7 @@
 pub mod live;
 mod observables;
 mod pull;
+mod schemes;
 mod simulation;
 mod snapshot;
 mod step;
@@ -10,6 +11,7 @@ mod tally;
 
 pub use observables::Observables;
 pub use pull::Pull;
+pub use schemes::SpringDashpot;
 pub use simulation::Simulation;
 pub use snapshot::{ContactView, GrainView, Snapshot, Surroundings};
 pub use step::ProblemVisitor;

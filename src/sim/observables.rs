@@ -11,13 +11,15 @@ pub struct Observables {
     pub time_secs: f64,
     /// Δt of this step, s.
     pub time_step_secs: f64,
-    /// Sweeps of the solver.
+    /// Sweeps of the solver; of a scheme, its passes over all contacts.
     pub sweeps: u32,
     /// Matrices that the solver factorised.
     pub factorisations: u32,
-    /// Whether the stopping test was met within the sweep limit.
+    /// Whether the stopping test was met within the sweep limit; true for a scheme, which does a
+    /// fixed amount of work and tests nothing. What its step is worth, `residual` tells.
     pub converged: bool,
-    /// The common residual (`solver::residual`), dimensionless.
+    /// The common residual (`solver::residual`), dimensionless. For a scheme: that of the step's
+    /// problem with the impulses that the scheme summed up and the velocities it ended with.
     pub residual: f64,
     /// All contacts, with grains and with fixed shapes.
     pub contacts: u32,

@@ -4,13 +4,13 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
-use crate::solver::{Kinematics, StepProblem};
+use crate::solver::Kinematics;
 
 /// Stiffness per mass of the grain, in units of g/d: one diameter of stretch pulls with this many
 /// times the grain's weight.
 const STIFFNESS: f64 = 40.0;
 /// g that the stiffness refers to on a scene without gravity, m/s².
-const GRAVITY_IF_NONE: f64 = 9.8;
+pub(super) const GRAVITY_IF_NONE: f64 = 9.8;
 
 /// A spring from a grain to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,11 +51,15 @@ impl Simulation {
         time_step_secs * acceleration / (1.0 + 2.0 * turn + turn * turn)
     }
 
-    /// The push of the spring in the next step: which grain, along which unit vector, how fast
-    /// (m/s). None without a spring.
-    pub(super) fn push_of_pull(&self, axes: usize) -> Option<(usize, DVec2, f64)> {
+    /// The push of the spring in the next `time_step_secs`: which grain, along which unit vector,
+    /// how fast (m/s). None without a spring.
+    pub(super) fn push_of_pull(
+        &self,
+        axes: usize,
+        time_step_secs: f64,
+    ) -> Option<(usize, DVec2, f64)> {
         let pull = self.pull?;
-        let mut change = self.pulled_velocity(pull, self.parameters.time_step_secs);
+        let mut change = self.pulled_velocity(pull, time_step_secs);
         if axes == 1 {
             change.y = 0.0;
         }
@@ -64,13 +68,11 @@ impl Simulation {
     }
 }
 
-/// Adds the push of a spring to a prepared problem, as a part of the free velocity.
+/// Adds the push of a spring to bodies.
 pub(super) fn apply<K: Kinematics>(
-    problem: &mut StepProblem<K>,
+    bodies: &mut [K::Body],
     (grain, direction, speed): (usize, DVec2, f64),
 ) {
     // A normal impulse against a fixed body changes the velocity by just itself.
-    let normal = K::normal(direction);
-    K::push_single(&mut problem.free[grain], normal, [speed, 0.0]);
-    K::push_single(&mut problem.bodies[grain], normal, [speed, 0.0]);
+    K::push_single(&mut bodies[grain], K::normal(direction), [speed, 0.0]);
 }

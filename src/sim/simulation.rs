@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::snapshot::{ContactView, GrainView, Snapshot, Surroundings};
-use super::{Observables, ProblemVisitor, Pull, step};
+use super::{Observables, ProblemVisitor, Pull, schemes, step};
 use crate::contact::{Candidates, ContactList, Feature, Reach};
 use crate::error::{Error, Result};
-use crate::solver::{Problems, SolverSettings};
+use crate::solver::{Method, Problems, SolverSettings};
 use crate::world::{Gravity, Parameters, Physics, World};
 
 /// Skin of the candidate search, in units of d. Smaller: the list is built more often; larger: more
@@ -32,6 +32,8 @@ pub struct Simulation {
     pub(super) initial_heights: f64,
     /// Δt of the impulses in `contacts`, s.
     pub(super) time_step_of_impulses_secs: f64,
+    /// The method of the last step: the contacts' memories are its own.
+    pub(super) method_of_memories: Option<Method>,
     /// A spring on one grain, from the next step on.
     pub(super) pull: Option<Pull>,
     surroundings: Arc<Surroundings>,
@@ -84,6 +86,7 @@ impl Simulation {
             problems: Problems::default(),
             observables: Observables::default(),
             time_step_of_impulses_secs: parameters.time_step_secs,
+            method_of_memories: None,
             pull: None,
             surroundings,
         };
@@ -97,7 +100,7 @@ impl Simulation {
     /// [`Error::NonFinite`] where a position or velocity is no longer a number; the state is then
     /// left as it is, for looking at.
     pub fn step(&mut self) -> Result<&Observables> {
-        step::take(self);
+        step::take(self)?;
         if self.is_finite() {
             return Ok(&self.observables);
         }
@@ -118,7 +121,7 @@ impl Simulation {
         step::show_problem(&mut self.clone(), visitor)
     }
 
-    fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         let grains = &self.world.grains;
         // A sum is finite only where every term is (or where an overflow is close enough to count).
         let total = |vectors: &[DVec2]| vectors.iter().sum::<DVec2>().is_finite();
@@ -172,6 +175,17 @@ impl Simulation {
         Ok(())
     }
 
+    /// Substeps of the next step: 1 where its problem is solved as a whole.
+    pub fn substeps(&self) -> u32 {
+        schemes::substeps(self)
+    }
+
+    /// The longest substep, s, with which the springs of the next step are surely stable; none
+    /// where there are no springs.
+    pub fn critical_time_step_secs(&self) -> Option<f64> {
+        schemes::critical_time_step_secs(self)
+    }
+
     /// What the last step measured; before the first step, the initial state.
     pub fn observables(&self) -> &Observables {
         &self.observables
@@ -187,6 +201,7 @@ impl Simulation {
         self.world.grains.velocities.fill(DVec2::ZERO);
         self.world.grains.angular_velocities.fill(0.0);
         self.contacts.scale_impulses(0.0);
+        self.contacts.forget();
     }
 
     /// Multiplies all velocities, as a drag during the last step would have.

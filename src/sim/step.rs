@@ -1,13 +1,25 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
-use super::{Observables, Simulation, pull};
+use super::{Observables, Simulation, pull, schemes};
 use crate::contact::ContactList;
-use crate::solver::{Kinematics, Model, ModelVisitor, StepProblem, measure, solve, visit_leanest};
+use crate::error::Result;
+use crate::solver::{
+    Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport, StepProblem, measure,
+    solve, visit_leanest,
+};
 
 /// Takes one step of Δt, compiled for the leanest model that the scene and its parameters allow.
-pub(super) fn take(simulation: &mut Simulation) {
+pub(super) fn take(simulation: &mut Simulation) -> Result<()> {
     let (physics, parameters) = (simulation.physics, simulation.parameters);
-    visit_leanest(physics, &parameters, Step(simulation));
+    visit_leanest(physics, &parameters, Step(simulation))
+}
+
+/// What a way to step tells of the step that it took.
+pub(super) struct Taken {
+    pub report: SolveReport,
+    pub measures: Measures,
+    /// Work of gravity and of a spring, J.
+    pub gravity_work: f64,
 }
 
 /// Measures the initial state: energies, and the contacts that are there before any impulse.
@@ -62,41 +74,40 @@ fn prepare<M: Model>(simulation: &mut Simulation) {
         simulation.time_step_of_impulses_secs = time_step_secs;
     }
     detect::<M>(simulation);
-    let push = simulation.push_of_pull(M::Kinematics::AXES);
+    let push = simulation.push_of_pull(M::Kinematics::AXES, time_step_secs);
     let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
     let problem = M::Kinematics::problem(problems);
     problem.prepare::<M>(world, contacts, parameters, physics.cohesion, solver);
     if let Some(push) = push {
-        pull::apply(problem, push);
+        pull::apply::<M::Kinematics>(&mut problem.free, push);
+        pull::apply::<M::Kinematics>(&mut problem.bodies, push);
     }
 }
 
 struct Step<'a>(&'a mut Simulation);
 
 impl ModelVisitor for Step<'_> {
-    type Output = ();
+    type Output = Result<()>;
 
-    fn visit<M: Model>(self) {
+    fn visit<M: Model>(self) -> Result<()> {
         let simulation = self.0;
+        let method = simulation.solver.method;
         prepare::<M>(simulation);
-        let Simulation { world, solver, contacts, problems, .. } = simulation;
-        let time_step_secs = simulation.parameters.time_step_secs;
-        let problem = M::Kinematics::problem(problems);
-        let report = solve::<M>(problem, solver);
-        let measures = measure::<M>(problem);
-        problem.store_impulses(contacts);
-
-        let mut kinetic_energy = 0.0;
-        let mut gravity_work = 0.0;
-        for (index, body) in problem.bodies.iter().enumerate() {
-            M::Kinematics::store(body, world, index);
-            let mass = world.grains.masses[index];
-            kinetic_energy += M::Kinematics::kinetic_energy(body, mass);
-            let (before, free) = (&problem.before[index], &problem.free[index]);
-            gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
+        if simulation.method_of_memories != Some(method) {
+            simulation.contacts.forget();
+            simulation.method_of_memories = Some(method);
         }
-        integrate::<M>(simulation);
+        let Taken { report, measures, gravity_work } = match method.kind() {
+            MethodKind::Problem => solve_and_move::<M>(simulation)?,
+            MethodKind::Scheme(scheme) => schemes::advance::<M>(simulation, scheme),
+        };
 
+        let problem = M::Kinematics::problem(&mut simulation.problems);
+        let masses = &simulation.world.grains.masses;
+        let moving = problem.bodies.iter().zip(masses);
+        let kinetic_energy =
+            moving.map(|(body, &mass)| M::Kinematics::kinetic_energy(body, mass)).sum();
+        let time_step_secs = simulation.parameters.time_step_secs;
         let before = simulation.observables;
         simulation.observables = Observables {
             step: before.step + 1,
@@ -114,7 +125,26 @@ impl ModelVisitor for Step<'_> {
             kinetic_energy,
             ..geometry::<M>(simulation)
         };
+        Ok(())
     }
+}
+
+/// Solves the prepared problem and moves the grains.
+fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
+    let Simulation { world, solver, contacts, problems, .. } = simulation;
+    let problem = M::Kinematics::problem(problems);
+    let report = solve::<M>(problem, solver)?;
+    let measures = measure::<M>(problem);
+    problem.store_impulses(contacts);
+    let mut gravity_work = 0.0;
+    for (index, body) in problem.bodies.iter().enumerate() {
+        M::Kinematics::store(body, world, index);
+        let (before, free) = (&problem.before[index], &problem.free[index]);
+        let mass = world.grains.masses[index];
+        gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
+    }
+    integrate::<M>(simulation, simulation.parameters.time_step_secs);
+    Ok(Taken { report, measures, gravity_work })
 }
 
 struct Start<'a>(&'a mut Simulation);
@@ -139,7 +169,8 @@ impl ModelVisitor for Start<'_> {
     }
 }
 
-fn detect<M: Model>(simulation: &mut Simulation) {
+/// Finds the contacts at the present positions.
+pub(super) fn detect<M: Model>(simulation: &mut Simulation) {
     let Simulation { world, candidates, contacts, .. } = simulation;
     if M::Kinematics::AXES == 1 {
         candidates.update::<1>(world);
@@ -151,8 +182,7 @@ fn detect<M: Model>(simulation: &mut Simulation) {
 }
 
 /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and the angles where grains turn.
-fn integrate<M: Model>(simulation: &mut Simulation) {
-    let time_step_secs = simulation.parameters.time_step_secs;
+pub(super) fn integrate<M: Model>(simulation: &mut Simulation, time_step_secs: f64) {
     let grains = &mut simulation.world.grains;
     for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
         if M::Kinematics::AXES == 1 {

@@ -6,6 +6,7 @@ use super::system::{BodySystem, ContactSystem, Vectors};
 use super::{
     Model, Ordering, SolverSettings, StepProblem, apgd, jacobi, newton, nncg, nsgs, nsgs_parallel,
 };
+use crate::error::{Error, Result};
 
 /// A method, by the name that command line, scene files and panels use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -23,6 +24,29 @@ pub enum Method {
     Apgd,
     /// Jacobi with mass splitting.
     Jacobi,
+    /// Substeps with soft contacts.
+    TgsSoft,
+    /// Discrete elements with springs and dashpots.
+    Dem,
+}
+
+/// What a method replaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MethodKind {
+    /// The solution of a step's problem ([`solve`]).
+    Problem,
+    /// The whole step.
+    Scheme(Scheme),
+}
+
+/// A way to step that knows no problem of the whole step. It needs detection and motion between
+/// its substeps, so it lives with the step (`sim::schemes`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Substeps with soft contacts.
+    TgsSoft,
+    /// Discrete elements with springs and dashpots.
+    Dem,
 }
 
 impl Method {
@@ -34,6 +58,20 @@ impl Method {
     /// The order of the rows that the method needs where the settings ask for `asked`.
     pub(super) fn ordering(self, asked: Ordering) -> Ordering {
         if self == Self::NsgsParallel { Ordering::Coloured } else { asked }
+    }
+
+    /// What the method replaces.
+    pub fn kind(self) -> MethodKind {
+        match self {
+            Self::TgsSoft => MethodKind::Scheme(Scheme::TgsSoft),
+            Self::Dem => MethodKind::Scheme(Scheme::Dem),
+            _ => MethodKind::Problem,
+        }
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        METHODS.iter().find(|info| info.method == self).map_or("", |info| info.name)
     }
 }
 
@@ -56,7 +94,7 @@ pub struct MethodInfo {
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 
 /// All methods.
-pub const METHODS: [MethodInfo; 6] = [
+pub const METHODS: [MethodInfo; 8] = [
     MethodInfo {
         method: Method::Nsgs,
         name: "nsgs",
@@ -99,6 +137,20 @@ pub const METHODS: [MethodInfo; 6] = [
         solves: COULOMB,
         source: "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
     },
+    MethodInfo {
+        method: Method::TgsSoft,
+        name: "tgs-soft",
+        summary: "substeps with soft contacts and a relaxing sweep, as game engines step",
+        solves: "nothing exactly: contacts are damped springs",
+        source: "E. Catto, Solver2D (2024)",
+    },
+    MethodInfo {
+        method: Method::Dem,
+        name: "dem",
+        summary: "smooth discrete elements: springs, dashpots and a constant attraction",
+        solves: "nothing exactly: contacts are damped springs",
+        source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
+    },
 ];
 
 /// How a solve ended.
@@ -114,14 +166,17 @@ pub struct SolveReport {
 
 /// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
 /// the rows' impulses.
+///
+/// # Errors
+/// Where the method is a scheme, which replaces the step and solves no problem.
 pub fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
-) -> SolveReport {
+) -> Result<SolveReport> {
     if problem.contact_of_row.is_empty() {
-        return SolveReport { converged: true, ..SolveReport::default() };
+        return Ok(SolveReport { converged: true, ..SolveReport::default() });
     }
-    match settings.method {
+    Ok(match settings.method {
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
         Method::NsgsParallel => nsgs_parallel::solve::<M>(problem, settings),
         Method::Newton => newton::solve::<M>(problem, settings),
@@ -133,7 +188,14 @@ pub fn solve<M: Model>(
             // The methods of this arm are among those that need no bodies.
             report.unwrap_or_default()
         }
-    }
+        Method::TgsSoft | Method::Dem => {
+            let of_problems =
+                METHODS.iter().filter(|info| info.method.kind() == MethodKind::Problem);
+            let names: Vec<_> = of_problems.map(|info| info.name).collect();
+            let allowed = format!("a method that solves a step's problem ({})", names.join(", "));
+            return Err(Error::value("solver", settings.method.name(), allowed));
+        }
+    })
 }
 
 /// Solves any contact system, from its present impulses, with the method of the settings. Gives
@@ -150,6 +212,6 @@ pub fn solve_system<S: ContactSystem>(
         Method::Nncg => Some(nncg::solve(system, settings, vectors)),
         Method::Apgd => Some(apgd::solve(system, settings, vectors)),
         Method::Jacobi => Some(jacobi::solve(system, settings, vectors)),
-        Method::Nsgs | Method::NsgsParallel | Method::Newton => None,
+        _ => None,
     }
 }

@@ -18,11 +18,13 @@ mod system;
 
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, measure, residual};
-pub use method::{METHODS, Method, MethodInfo, SolveReport, solve, solve_system};
+pub use method::{
+    METHODS, Method, MethodInfo, MethodKind, Scheme, SolveReport, solve, solve_system,
+};
 pub use model::{Model, ModelVisitor, StepModel, visit_leanest};
 pub use order::Ordering;
 pub use problem::{Problems, Row, StepProblem};
-pub use settings::{SolverSettings, StopTest};
+pub use settings::{MAX_SUBSTEPS, SolverSettings, StopTest};
 pub use system::{BodySystem, ContactSystem, Pairs, Vectors};
 
 #[doc(hidden)]

@@ -231,6 +231,16 @@ impl<K: Kinematics> StepProblem<K> {
                 Impulse { normal: mass * normal, tangential: mass * tangential };
         }
     }
+
+    /// Gives the rows the impulses of a step that was taken in another way, one a contact, N·s.
+    pub fn set_impulses(&mut self, impulses: &[Impulse]) {
+        let rows = self.fixed_rows.iter_mut().chain(&mut self.pair_rows);
+        for (row, &index) in rows.zip(&self.contact_of_row) {
+            let Impulse { normal, tangential } = impulses[index as usize];
+            row.shifted_impulse = normal / row.effective_mass + self.capture_speed;
+            row.tangential_impulse = tangential / row.effective_mass;
+        }
+    }
 }
 
 /// A problem for each kind of motion; those that a scene never uses hold no memory.

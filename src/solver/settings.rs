@@ -37,7 +37,14 @@ pub struct SolverSettings {
     pub max_sweeps: u32,
     /// Start from the impulses of the step before.
     pub warm_start: bool,
+    /// Substeps of a scheme that replaces the step; 0 leaves the number to the scheme. Methods that
+    /// solve the step's problem take none.
+    #[serde(default)]
+    pub substeps: u32,
 }
+
+/// More substeps than this are a mistake: a single step of a pile would take many seconds.
+pub const MAX_SUBSTEPS: u32 = 100_000;
 
 impl SolverSettings {
     /// Checks the numbers against their ranges.
@@ -50,6 +57,10 @@ impl SolverSettings {
         }
         if self.max_sweeps == 0 {
             return Err(Error::value("max-sweeps", 0, "at least 1"));
+        }
+        if self.substeps > MAX_SUBSTEPS {
+            let allowed = format!("at most {MAX_SUBSTEPS}; 0 leaves it to the scheme");
+            return Err(Error::value("substeps", self.substeps, allowed));
         }
         Ok(())
     }
@@ -67,6 +78,7 @@ impl Default for SolverSettings {
             tolerance: 1e-6,
             max_sweeps: 5_000,
             warm_start: true,
+            substeps: 0,
         }
     }
 }

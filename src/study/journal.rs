@@ -7,6 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
@@ -14,6 +15,11 @@ use crate::error::{Error, Result};
 
 /// Ending of a journal's name.
 const ENDING: &str = "jsonl";
+
+/// Where the journal of that name lies.
+pub(super) fn path_of(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.{ENDING}"))
+}
 
 /// One finished run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -37,7 +43,7 @@ impl Journal {
     /// # Errors
     /// Where it cannot be written, or another program is at it.
     pub fn open(folder: &Path, name: &str) -> Result<Self> {
-        let path = folder.join(format!("{name}.{ENDING}"));
+        let path = path_of(folder, name);
         let refuse = |error: std::io::Error| Error::file(&path, error);
         let file = OpenOptions::new().create(true).read(true).append(true).open(&path);
         let file = file.map_err(refuse)?;
@@ -50,8 +56,8 @@ impl Journal {
         Ok(Self { path, file: Mutex::new(file) })
     }
 
-    /// Adds a finished run.
-    pub fn add(&self, entry: &Entry) -> Result<()> {
+    /// Adds something finished.
+    pub fn add(&self, entry: &impl Serialize) -> Result<()> {
         let mut line = serde_json::to_vec(entry).map_err(|error| Error::file(&self.path, error))?;
         line.push(b'\n');
         let mut file = match self.file.lock() {
@@ -71,11 +77,7 @@ impl Journal {
 pub(super) fn read_all(folders: &[PathBuf]) -> Result<HashMap<String, Entry>> {
     let mut all: HashMap<String, Entry> = HashMap::new();
     for path in journals(folders)? {
-        let text = std::fs::read_to_string(&path).map_err(|error| Error::file(&path, error))?;
-        let whole = text.rfind('\n').map_or("", |last| &text[..=last]);
-        for (number, line) in whole.lines().enumerate() {
-            let entry: Entry = serde_json::from_str(line)
-                .map_err(|error| Error::file(&path, format!("line {}: {error}", number + 1)))?;
+        for (number, entry) in read::<Entry>(&path)?.into_iter().enumerate() {
             if let Some(known) = all.get(&entry.key)
                 && known.outcome != entry.outcome
             {
@@ -87,6 +89,20 @@ pub(super) fn read_all(folders: &[PathBuf]) -> Result<HashMap<String, Entry>> {
         }
     }
     Ok(all)
+}
+
+/// The whole lines of one journal.
+///
+/// # Errors
+/// Where it cannot be read, or a line of it is none.
+pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
+    let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
+    let whole = text.rfind('\n').map_or("", |last| &text[..=last]);
+    let entries = whole.lines().enumerate().map(|(number, line)| {
+        serde_json::from_str(line)
+            .map_err(|error| Error::file(path, format!("line {}: {error}", number + 1)))
+    });
+    entries.collect()
 }
 
 /// The journals of some folders, in the order of their names.

@@ -3,18 +3,22 @@
 
 mod axis;
 pub mod chart;
+mod collection;
 mod figures;
 mod journal;
 mod outcome;
 mod paper;
+mod performance;
 mod plan;
 mod run;
 mod shard;
+mod speed;
 mod states;
 mod statistics;
 mod sweep;
 mod table;
 
+pub use collection::{CollectedStep, CollectionPlan, collect};
 pub use figures::{figure_names, reproduce};
 pub use outcome::{Outcome, Status, run_to_end};
 pub use paper::{
@@ -23,5 +27,6 @@ pub use paper::{
 pub use plan::{PlannedRun, SeriesSettings, Study};
 pub use run::{Recorded, record};
 pub use shard::Shard;
+pub use speed::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
 pub use sweep::{SweepOptions, merge, series_path, sweep};
 pub use table::RunsTable;

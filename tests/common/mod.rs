@@ -49,6 +49,7 @@ pub fn to_residual(tolerance: f64) -> SolverSettings {
         tolerance,
         max_sweeps: 20_000,
         warm_start: true,
+        ..SolverSettings::default()
     }
 }
 

@@ -100,6 +100,7 @@ fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
         tolerance: solver.map(|solver| solver.tolerance),
         max_sweeps: solver.map(|solver| solver.max_sweeps),
         warm_start: solver.map(|solver| solver.warm_start),
+        substeps: solver.map(|solver| solver.substeps),
         ..state.config.clone()
     }
 }

@@ -5,7 +5,10 @@ use egui::{ComboBox, RichText, Ui};
 use crate::app::number::Number;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::solver::{METHODS, Ordering, SolverSettings, StopTest};
+use crate::sim::live::StartInfo;
+use crate::solver::{
+    MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest,
+};
 
 /// The stopping tests, as the panel calls them.
 const STOP_TESTS: [(StopTest, &str, &str); 3] = [
@@ -49,6 +52,26 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
             shown.response.labelled_by(label.id);
             ui.end_row();
         }
+    });
+    match before.method.kind() {
+        MethodKind::Problem => stop_controls(ui, &mut solver, &start),
+        MethodKind::Scheme(_) => substep_controls(ui, &mut solver, &start),
+    }
+    // Springs carry their stretch on whether asked to or not.
+    if before.method != Method::Dem {
+        ui.checkbox(&mut solver.warm_start, "Warm start")
+            .on_hover_text("Each step starts from the impulses of the one before.");
+    }
+    if solver != before {
+        state.set_solver(index, solver);
+    }
+    readings(ui, state);
+}
+
+/// When a method that solves the step's problem is done.
+fn stop_controls(ui: &mut Ui, solver: &mut SolverSettings, start: &StartInfo) {
+    let before = *solver;
+    egui::Grid::new("stops").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
         let label = ui.label("Stops on").on_hover_text("What the tolerance refers to.");
         let list = ComboBox::from_id_salt("stop").width(150.0);
         let shown = list.selected_text(stop_name(solver.stop)).show_ui(ui, |ui| {
@@ -69,7 +92,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
         refuse: &|value| refusal(SolverSettings { tolerance: value, ..before }),
     };
     solver.tolerance = tolerance.show(ui, before.tolerance).value.unwrap_or(solver.tolerance);
-    tolerance_buttons(ui, &mut solver);
+    tolerance_buttons(ui, solver);
     let sweeps = Number {
         label: "Sweep limit",
         unit: "",
@@ -82,12 +105,22 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     if let Some(value) = sweeps.show(ui, f64::from(before.max_sweeps)).value {
         solver.max_sweeps = value.round().clamp(1.0, f64::from(u32::MAX)) as u32;
     }
-    ui.checkbox(&mut solver.warm_start, "Warm start")
-        .on_hover_text("Each step starts from the impulses of the one before.");
-    if solver != before {
-        state.set_solver(index, solver);
+}
+
+/// How finely a scheme steps.
+fn substep_controls(ui: &mut Ui, solver: &mut SolverSettings, start: &StartInfo) {
+    let substeps = Number {
+        label: "Substeps",
+        unit: "",
+        hint: "Substeps of each step; 0 takes 4 for tgs-soft, and as many as keep dem stable.",
+        range: [0.0, 100.0],
+        logarithmic: false,
+        default: f64::from(start.solver.substeps),
+        refuse: &refuse_substeps,
+    };
+    if let Some(value) = substeps.show(ui, f64::from(solver.substeps)).value {
+        solver.substeps = value.round().clamp(0.0, f64::from(MAX_SUBSTEPS)) as u32;
     }
-    readings(ui, state);
 }
 
 /// Care and speed, one click away.
@@ -144,6 +177,12 @@ fn refuse_sweeps(value: f64) -> Option<String> {
     (!whole).then(|| format!("max-sweeps is {value}, but must be a whole number ≥ 1"))
 }
 
+fn refuse_substeps(value: f64) -> Option<String> {
+    let whole = value.fract() == 0.0 && (0.0..=f64::from(MAX_SUBSTEPS)).contains(&value);
+    let allowed = format!("a whole number, at most {MAX_SUBSTEPS}");
+    (!whole).then(|| format!("substeps is {value}, but must be {allowed}"))
+}
+
 /// What the last step needed.
 fn readings(ui: &mut Ui, state: &AppState) {
     let Some(world) = state.world() else { return };
@@ -165,7 +204,24 @@ fn readings(ui: &mut Ui, state: &AppState) {
         reading(ui, "contacts", last.contacts.to_string(), "Contacts of the last step.");
         reading(ui, "ms/step", format!("{:.2}", world.step_ms), "Mean time of a step, lately.");
         ui.end_row();
+        if let MethodKind::Scheme(_) = world.settings.solver.method.kind() {
+            let substeps = world.substeps.to_string();
+            reading(ui, "substeps", substeps, "Substeps of the next step.");
+            let substep_secs = world.settings.parameters.time_step_secs / f64::from(world.substeps);
+            reading(ui, "substep", format!("{substep_secs:.1e} s"), "Length of a substep.");
+            ui.end_row();
+        }
+        if let Some(critical_secs) = world.critical_time_step_secs {
+            let hint = "Substeps up to this length are surely stable; a little longer, and \
+                        crowded grains blow up.";
+            reading(ui, "critical", format!("{critical_secs:.1e} s"), hint);
+            ui.end_row();
+        }
     });
+    if let MethodKind::Scheme(_) = world.settings.solver.method.kind() {
+        ui.label(RichText::new("a fixed amount of work, no stopping test").weak());
+        return;
+    }
     let (mark, colour) = if last.converged {
         ("● converged".to_owned(), theme::good(dark))
     } else {

@@ -70,6 +70,10 @@ pub struct WorldFrame {
     pub unconverged_steps: u64,
     /// Mean time that a step takes lately, ms.
     pub step_ms: f64,
+    /// Substeps of its next step.
+    pub substeps: u32,
+    /// The longest substep that is surely stable, s, where the method has one.
+    pub critical_time_step_secs: Option<f64>,
     /// Why the run cannot go on from here.
     pub failure: Option<Arc<str>>,
 }

@@ -45,6 +45,8 @@ impl Engine {
             recorded_secs: track.recording.end_secs(),
             unconverged_steps: track.unconverged,
             step_ms: 1e3 * track.step_secs,
+            substeps: track.simulation.substeps(),
+            critical_time_step_secs: track.simulation.critical_time_step_secs(),
             failure: track.failure.clone(),
         }
     }

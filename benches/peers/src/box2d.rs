@@ -1,0 +1,94 @@
+//! Box2D v3, through boxdd, which brings the C source along.
+//!
+//! Box2D's slop is 0.005 of its length unit, which is one for the whole program. So it is the world
+//! that is scaled: lengths and g by the same factor, times not.
+
+use boxdd::{
+    BodyBuilder, BodyId, BodyType, Foundation, Position, ShapeDef, SurfaceMaterial, Vec2, World,
+    WorldBuilder, shapes,
+};
+
+use crate::engine::{Engine, Setting};
+use crate::pile::{AREAL_DENSITY, DIAMETER, FRICTION, GRAVITY, Pile, RESTITUTION};
+
+pub const NAME: &str = "Box2D 3.2 f32";
+
+/// Box2D's slop in its length unit.
+const SLOP: f64 = 0.005;
+
+pub struct Box2d {
+    world: World,
+    grains: Vec<BodyId>,
+    /// Box2D's units a metre.
+    scale: f64,
+    setting: Setting,
+}
+
+impl Box2d {
+    pub fn new(pile: &Pile, setting: Setting) -> boxdd::Result<Self> {
+        let scale = SLOP / (setting.slop * DIAMETER);
+        let foundation = Foundation::initialize_default()?;
+        let world_def = WorldBuilder::from(foundation.world_def())
+            .gravity(Vec2::new(0.0, (-GRAVITY * scale) as f32))
+            .contact_hertz(setting.contact_hertz)
+            .restitution_threshold(0.0)
+            // As fast as nothing here moves: no bound on how fast overlap is pushed out.
+            .contact_speed((10.0 * scale) as f32)
+            .maximum_linear_speed((100.0 * scale) as f32)
+            .enable_sleep(false)
+            .enable_continuous(false)
+            .build()?;
+        let mut world = foundation.create_world(world_def)?;
+        let material =
+            SurfaceMaterial::new().with_friction(FRICTION)?.with_restitution(RESTITUTION)?;
+        let shape = ShapeDef::builder()
+            .material(material)
+            .density((AREAL_DENSITY / (scale * scale)) as f32)
+            .build()?;
+        let place = |x: f64, y: f64| Position::new((x * scale) as f32, (y * scale) as f32);
+        let body = || BodyBuilder::from(foundation.body_def());
+        for disc in &pile.base {
+            let body =
+                body().body_type(BodyType::Static).position(place(disc.x, disc.y)).build()?;
+            let id = world.create_body(body)?;
+            let circle = shapes::circle(Vec2::ZERO, (disc.radius * scale) as f32)?;
+            world.body(id)?.create_circle(&shape, &circle)?;
+        }
+        for side in pile.walls_at.into_iter().flat_map(|x| [-x, x]) {
+            let body = body().body_type(BodyType::Static).position(place(side, 0.0)).build()?;
+            let id = world.create_body(body)?;
+            // Taller than any pile here.
+            let top = (200.0 * DIAMETER * scale) as f32;
+            let wall = shapes::segment(Vec2::new(0.0, -0.1 * top), Vec2::new(0.0, top))?;
+            world.body(id)?.create_segment(&shape, &wall)?;
+        }
+        let mut grains = Vec::with_capacity(pile.grains.len());
+        for disc in &pile.grains {
+            let body =
+                body().body_type(BodyType::Dynamic).position(place(disc.x, disc.y)).build()?;
+            let id = world.create_body(body)?;
+            let circle = shapes::circle(Vec2::ZERO, (disc.radius * scale) as f32)?;
+            world.body(id)?.create_circle(&shape, &circle)?;
+            grains.push(id);
+        }
+        Ok(Self { world, grains, scale, setting })
+    }
+}
+
+impl Engine for Box2d {
+    fn step(&mut self) {
+        let Setting { time_step_secs, substeps, .. } = self.setting;
+        // Fails only for a step that is no number, which the command line refuses.
+        let events = self.world.step(time_step_secs as f32, substeps as i32);
+        drop(events.expect("a proper step"));
+    }
+
+    fn positions(&mut self) -> Vec<[f64; 2]> {
+        let place = |id: &BodyId| {
+            // The body was made with this world and is never removed.
+            let at = self.world.body(*id).and_then(|body| body.position()).expect("a body");
+            [f64::from(at.x) / self.scale, f64::from(at.y) / self.scale]
+        };
+        self.grains.iter().map(place).collect()
+    }
+}

@@ -1,0 +1,22 @@
+//! What every engine does here.
+
+/// How an engine is set.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// Time of one call, s.
+    pub time_step_secs: f64,
+    /// Substeps of one call.
+    pub substeps: u32,
+    /// Stiffness of contacts as a frequency, Hz. Engines lower it where a substep is too long.
+    pub contact_hertz: f32,
+    /// Overlap that an engine does not push out, in diameters (its *slop*).
+    pub slop: f64,
+}
+
+/// A pile in an engine.
+pub trait Engine {
+    /// Takes one step of the setting's time.
+    fn step(&mut self);
+    /// Centres of the grains, m.
+    fn positions(&mut self) -> Vec<[f64; 2]>;
+}

@@ -1,0 +1,86 @@
+//! rapier2d in f32.
+
+use rapier2d::prelude::*;
+
+use crate::engine::{Engine, Setting};
+use crate::pile::{AREAL_DENSITY, Disc, FRICTION, GRAVITY, Pile, RESTITUTION};
+
+pub const NAME: &str = "rapier2d 0.36 f32";
+
+/// How far ahead of touching contacts are made, in diameters. Tied to the slop, as it is by default,
+/// fast grains would be met late where the slop is small.
+const PREDICTION: f64 = 0.1;
+
+pub struct Rapier {
+    world: PhysicsWorld,
+    grains: Vec<RigidBodyHandle>,
+}
+
+impl Rapier {
+    pub fn new(pile: &Pile, setting: Setting) -> Self {
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::new(0.0, -GRAVITY as f32);
+        let defaults = IntegrationParameters::default();
+        let stiff = |damping_ratio| SpringCoefficients {
+            natural_frequency: setting.contact_hertz,
+            damping_ratio,
+        };
+        // Every length of the engine scales with this unit; its slop is what is asked for.
+        let slop = (setting.slop * crate::pile::DIAMETER) as f32;
+        let length_unit = slop / defaults.normalized_allowed_linear_error;
+        world.integration_parameters = IntegrationParameters {
+            dt: setting.time_step_secs as f32,
+            num_solver_iterations: setting.substeps as usize,
+            contact_softness: stiff(defaults.contact_softness.damping_ratio),
+            static_contact_softness: stiff(defaults.static_contact_softness.damping_ratio),
+            length_unit,
+            normalized_prediction_distance: (PREDICTION / setting.slop) as f32
+                * defaults.normalized_allowed_linear_error,
+            // Without these two bounds, which would also shrink with the unit.
+            normalized_max_corrective_velocity: f32::MAX,
+            normalized_max_linear_velocity: f32::MAX,
+            ..defaults
+        };
+        let ball = |disc: &Disc| {
+            ColliderBuilder::ball(disc.radius as f32)
+                .density(AREAL_DENSITY as f32)
+                .friction(FRICTION)
+                .restitution(RESTITUTION)
+        };
+        for disc in &pile.base {
+            let place = Vector::new(disc.x as f32, disc.y as f32);
+            world.insert_collider(ball(disc).translation(place), None);
+        }
+        for side in pile.walls_at.into_iter().flat_map(|x| [-x, x]) {
+            let inward = if side < 0.0 { Vector::X } else { -Vector::X };
+            let wall = ColliderBuilder::new(SharedShape::halfspace(inward));
+            let place = Vector::new(side as f32, 0.0);
+            let wall = wall.translation(place).friction(FRICTION).restitution(RESTITUTION);
+            world.insert_collider(wall, None);
+        }
+        let grains = pile
+            .grains
+            .iter()
+            .map(|disc| {
+                let place = Vector::new(disc.x as f32, disc.y as f32);
+                let body = RigidBodyBuilder::dynamic().translation(place).can_sleep(false);
+                world.insert(body, ball(disc)).0
+            })
+            .collect();
+        Self { world, grains }
+    }
+}
+
+impl Engine for Rapier {
+    fn step(&mut self) {
+        self.world.step();
+    }
+
+    fn positions(&mut self) -> Vec<[f64; 2]> {
+        let place = |handle: &RigidBodyHandle| {
+            let place = self.world.bodies[*handle].translation();
+            [f64::from(place.x), f64::from(place.y)]
+        };
+        self.grains.iter().map(place).collect()
+    }
+}

@@ -1,0 +1,240 @@
+//! Steps of piles, collected for comparing methods: each is a simulation that stands just before the
+//! step, with the impulses that a warm start takes over.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::states::States;
+use crate::error::Result;
+use crate::headless::Progress;
+use crate::scene::{Config, Rain};
+use crate::sim::Simulation;
+use crate::solver::{Method, Ordering, SolverSettings, StopTest};
+
+/// How the piles get to the steps that are collected: far better solved than any claim about a pile
+/// needs, so that a collection does not favour the errors of the methods it is to compare.
+const ADVANCE: SolverSettings = SolverSettings {
+    method: Method::Newton,
+    ordering: Ordering::Interleaved,
+    stop: StopTest::Residual,
+    tolerance: 1e-8,
+    max_sweeps: 1000,
+    warm_start: true,
+    substeps: 0,
+};
+
+/// Which steps to collect: each time of each pile, a pile for every Bond number and time step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CollectionPlan {
+    /// Bond numbers.
+    pub bonds: Vec<f64>,
+    /// Δt, s.
+    pub time_steps_secs: Vec<f64>,
+    /// Simulated times at which the steps begin, s, rising.
+    pub times_secs: Vec<f64>,
+    /// Seeds of the initial states, dealt out to the piles in turn.
+    pub seeds: Vec<u64>,
+    /// Grains of a pile.
+    pub grains: usize,
+    /// Width of the box that the piles are rained into, in diameters.
+    pub box_width_in_diameters: f64,
+    /// Contacts slower than this many g·Δt do not bounce; 0 in the paper's scheme.
+    pub restitution_threshold: f64,
+}
+
+impl CollectionPlan {
+    /// 48 steps of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its end,
+    /// and rest.
+    pub fn piles(restitution_threshold: f64) -> Self {
+        let rain = Rain::default();
+        Self {
+            bonds: vec![0.0, 20.0, 50.0, 100.0],
+            time_steps_secs: vec![1e-4, 1e-3, 5e-3],
+            times_secs: vec![0.03, 0.1, 0.25, 0.6],
+            seeds: vec![rain.seed, 1, 2, 3],
+            grains: rain.grains,
+            box_width_in_diameters: rain.box_width_in_diameters,
+            restitution_threshold,
+        }
+    }
+
+    /// 24 of them: the first two times.
+    pub fn fewer_piles(restitution_threshold: f64) -> Self {
+        Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
+    }
+
+    /// 8 steps of piles of 2,000 grains, as steep as those of 138.
+    pub fn large_piles(restitution_threshold: f64) -> Self {
+        Self {
+            bonds: vec![0.0, 50.0],
+            time_steps_secs: vec![1e-3, 5e-3],
+            times_secs: vec![0.03, 0.1],
+            seeds: vec![1],
+            grains: 2000,
+            box_width_in_diameters: 60.0,
+            ..Self::piles(restitution_threshold)
+        }
+    }
+
+    /// Number of steps.
+    pub fn len(&self) -> usize {
+        self.bonds.len() * self.time_steps_secs.len() * self.times_secs.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A pile for every Bond number and time step. Going on by one in both, no time step and no
+    /// Bond number meets one state alone.
+    fn configs(&self) -> Vec<Config> {
+        let mut configs = Vec::new();
+        for (row, &bond) in self.bonds.iter().enumerate() {
+            for (column, &time_step_secs) in self.time_steps_secs.iter().enumerate() {
+                configs.push(Config {
+                    grains: Some(self.grains),
+                    box_width: Some(self.box_width_in_diameters),
+                    seed: Some(self.seeds[(row + column) % self.seeds.len()]),
+                    bond: Some(bond),
+                    dt: Some(time_step_secs),
+                    restitution_threshold: Some(self.restitution_threshold),
+                    ..Config::default()
+                });
+            }
+        }
+        configs
+    }
+}
+
+/// One step of a collection.
+#[derive(Clone, Debug)]
+pub struct CollectedStep {
+    /// Tells it apart from the others, in words.
+    pub name: String,
+    /// Bond number.
+    pub bond: f64,
+    /// Δt, s.
+    pub time_step_secs: f64,
+    /// Simulated time at which it begins, s.
+    pub time_secs: f64,
+    /// The simulation just before it; `next_problem` gives its problem.
+    pub simulation: Simulation,
+}
+
+/// Collects the steps of a plan, pile after pile, on all cores. Initial states are kept in
+/// `states_folder`. The same plan gives the same steps to the last bit.
+///
+/// # Errors
+/// Where the folder cannot be written, a state does not settle, or a pile is no longer finite.
+pub fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<CollectedStep>> {
+    let configs = plan.configs();
+    let states = States::of(states_folder.to_owned(), configs.iter())?;
+    let last_secs = plan.times_secs.last().copied().unwrap_or(0.0);
+    let steps_of = |time_secs: f64, config: &Config| {
+        (time_secs / config.dt.unwrap_or(f64::INFINITY)).round() as u64
+    };
+    let total = configs.iter().map(|config| steps_of(last_secs, config)).sum();
+    let progress = Progress::new("steps to collect", total);
+    let piles: Result<Vec<Vec<CollectedStep>>> = configs
+        .par_iter()
+        .with_max_len(1)
+        .map(|config| {
+            let mut scene = states.scene(config)?;
+            scene.solver = ADVANCE;
+            let mut simulation = scene.simulation()?;
+            let mut collected = Vec::with_capacity(plan.times_secs.len());
+            for &time_secs in &plan.times_secs {
+                while simulation.observables().step < steps_of(time_secs, config) {
+                    simulation.step()?;
+                    progress.advance(1);
+                }
+                let (bond, time_step_secs) =
+                    (scene.parameters.bond, scene.parameters.time_step_secs);
+                collected.push(CollectedStep {
+                    name: format!(
+                        "{} grains, Bond {bond}, dt {time_step_secs:e}, t {time_secs}, threshold {}",
+                        plan.grains, plan.restitution_threshold
+                    ),
+                    bond,
+                    time_step_secs,
+                    time_secs,
+                    simulation: simulation.clone(),
+                });
+            }
+            Ok(collected)
+        })
+        .collect();
+    progress.finish();
+    Ok(piles?.into_iter().flatten().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn small() -> CollectionPlan {
+        CollectionPlan {
+            bonds: vec![0.0, 20.0],
+            time_steps_secs: vec![1e-3, 5e-3],
+            times_secs: vec![0.01, 0.02],
+            seeds: vec![1, 2],
+            grains: 30,
+            box_width_in_diameters: 8.0,
+            restitution_threshold: 2.0,
+        }
+    }
+
+    fn bits(collected: &[CollectedStep]) -> Vec<u64> {
+        let of = |step: &CollectedStep| {
+            let grains = &step.simulation.world().grains;
+            let places = grains.positions.iter().chain(&grains.velocities);
+            let impulses = step.simulation.contacts().impulses();
+            let mut bits: Vec<u64> = places.flat_map(|v| [v.x.to_bits(), v.y.to_bits()]).collect();
+            bits.extend(impulses.iter().flat_map(|i| [i.normal.to_bits(), i.tangential.to_bits()]));
+            bits
+        };
+        collected.iter().flat_map(of).collect()
+    }
+
+    #[test]
+    fn a_collection_is_the_same_every_time_on_any_number_of_threads() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let plan = small();
+        let first = collect(&plan, folder.path()).expect("a collection");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+        let again = pool.install(|| collect(&plan, folder.path())).expect("a collection");
+        assert_eq!(first.len(), plan.len());
+        assert_eq!(bits(&first), bits(&again));
+        assert!(first.iter().all(|step| !step.simulation.contacts().impulses().is_empty()));
+    }
+
+    #[test]
+    fn steps_stand_at_their_time_in_their_pile() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let collected = collect(&small(), folder.path()).expect("a collection");
+        for step in &collected {
+            let simulation = &step.simulation;
+            assert!((simulation.time_secs() - step.time_secs).abs() < 1e-9);
+            assert_eq!(simulation.parameters().bond, step.bond);
+            assert_eq!(simulation.parameters().time_step_secs, step.time_step_secs);
+            assert_eq!(simulation.parameters().restitution_threshold, 2.0);
+        }
+        let mut names: Vec<_> = collected.iter().map(|step| &step.name).collect();
+        names.dedup();
+        assert_eq!(names.len(), collected.len(), "every step has a name of its own");
+    }
+
+    #[test]
+    fn no_bond_number_and_no_time_step_meets_one_state_alone() {
+        let plan = CollectionPlan::piles(0.0);
+        assert!(plan.len() >= 40);
+        let configs = plan.configs();
+        for bond in &plan.bonds {
+            let seeds: std::collections::HashSet<_> =
+                configs.iter().filter(|c| c.bond == Some(*bond)).map(|c| c.seed).collect();
+            assert!(seeds.len() > 1);
+        }
+    }
+}

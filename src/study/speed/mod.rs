@@ -1,0 +1,159 @@
+//! Speed charted against accuracy: of single steps, of whole simulations, and what a scene saves by
+//! computing no more than it needs. Every method of the registry is on every chart.
+//!
+//! The folder of a chart holds pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and
+//! `measured/`: journals of what was measured, by program and processor, so that the same command
+//! goes on where it was stopped and never mixes times of different programs.
+
+mod entrants;
+mod look;
+mod machine;
+mod models;
+mod peers;
+mod race;
+mod rest;
+mod runs;
+mod simulations;
+mod steps;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use self::machine::Machine;
+use super::chart::{Sheet, png, svg};
+use super::journal::{self, Journal};
+use crate::error::Result;
+use crate::headless::{check_writable, write_file};
+
+/// Something to chart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum ChartPart {
+    /// Residual against the time of a step, and performance profiles
+    Step,
+    /// Error of the slump against simulated seconds per second
+    Simulation,
+    /// What a scene's model costs
+    Model,
+    /// A step of 2,000 grains at rest against other engines
+    Rest,
+}
+
+/// What to chart, and how.
+#[derive(Clone, Debug)]
+pub struct ChartOptions {
+    /// Folder for pictures, tables and measurements.
+    pub out: PathBuf,
+    /// Coarser, in a few minutes.
+    pub quick: bool,
+    /// Also steps of 2,000 grains.
+    pub large: bool,
+    /// The parts; all where there is none.
+    pub only: Vec<ChartPart>,
+    /// Folder of tables of other engines' runs (`benches/peers`); none are drawn where it is missing.
+    pub peers: PathBuf,
+}
+
+/// A finished chart.
+struct Part {
+    /// Name of its files.
+    name: String,
+    sheet: Sheet,
+    /// Markdown; may be empty.
+    report: String,
+    /// (name, CSV) of tables beside the sheet's own.
+    tables: Vec<(String, String)>,
+}
+
+/// Where charts are made.
+struct Bench {
+    folder: PathBuf,
+    quick: bool,
+    large: bool,
+    peers: PathBuf,
+    machine: Machine,
+}
+
+/// Measures and draws into a folder.
+///
+/// # Errors
+/// Where the folder cannot be written, or a simulation fails.
+pub fn chart_speed(options: &ChartOptions) -> Result<()> {
+    check_writable(&options.out)?;
+    let bench = Bench {
+        folder: options.out.clone(),
+        quick: options.quick,
+        large: options.large,
+        peers: options.peers.clone(),
+        machine: Machine::this()?,
+    };
+    // Settling 2,000 grains takes longer than the whole quick pass.
+    let unasked = |part| options.only.is_empty() && !(options.quick && part == ChartPart::Rest);
+    let wanted = |part| unasked(part) || options.only.contains(&part);
+    let mut report = format!("# Speed against accuracy\n\n{}\n", bench.machine.words());
+    type Make = fn(&Bench) -> Result<Vec<Part>>;
+    let makers: [(ChartPart, &str, Make); 4] = [
+        (ChartPart::Step, "Single steps", steps::make),
+        (ChartPart::Simulation, "Whole simulations", simulations::make),
+        (ChartPart::Model, "What a scene's model costs", models::make),
+        (ChartPart::Rest, "A step at rest, against other engines", rest::make),
+    ];
+    for (part, title, make) in makers {
+        if !wanted(part) {
+            continue;
+        }
+        let begun = Instant::now();
+        report.push_str(&format!("\n## {title}\n"));
+        for Part { name, sheet, report: told, tables } in make(&bench)? {
+            let path = |ending: &str| options.out.join(format!("{name}.{ending}"));
+            write_file(&path("csv"), &sheet.to_csv()?)?;
+            write_file(&path("png"), &png(&sheet)?)?;
+            write_file(&path("svg"), svg(&sheet)?.as_bytes())?;
+            for (table, text) in tables {
+                write_file(&options.out.join(format!("{table}.csv")), text.as_bytes())?;
+            }
+            report.push_str(&format!("\n![{name}]({name}.png)\n\n{told}\n"));
+        }
+        eprintln!("{title}: {:.0} s", begun.elapsed().as_secs_f64());
+    }
+    let path = options.out.join("chart.md");
+    write_file(&path, report.as_bytes())?;
+    print!("{report}");
+    println!("\n{}", path.display());
+    Ok(())
+}
+
+impl Bench {
+    fn states_folder(&self) -> PathBuf {
+        self.folder.join("states")
+    }
+
+    /// A journal for the measurements of this program on this machine, and what it holds.
+    fn journal<T: Serialize + DeserializeOwned>(&self, name: &str) -> Result<(Journal, Vec<T>)> {
+        let pass = if self.quick { "quick" } else { "full" };
+        let folder = self.folder.join("measured").join(&self.machine.fingerprint).join(pass);
+        check_writable(&folder)?;
+        // Opening cuts off a half line, so it comes first.
+        let journal = Journal::open(&folder, name)?;
+        let done: Vec<T> = journal::read(&journal::path_of(&folder, name))?;
+        if !done.is_empty() {
+            eprintln!("{name}: {} measurements were there", done.len());
+        }
+        Ok((journal, done))
+    }
+
+    /// Lines below a chart: what it shows, then where it was measured.
+    fn caption(&self, lines: &[&str]) -> Vec<String> {
+        let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
+        let quick = if self.quick { "Quick pass. " } else { "" };
+        caption.push(format!("{quick}{}", self.machine.words()));
+        caption
+    }
+}
+
+/// Where the tables of other engines lie in the source tree.
+pub fn default_peers_folder() -> &'static Path {
+    Path::new("benches/peers/results")
+}

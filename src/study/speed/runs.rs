@@ -1,0 +1,97 @@
+//! Whole runs of piles against the clock.
+
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+
+/// Steps between two looks at the clock.
+const STEPS_PER_LOOK: u64 = 16;
+
+/// How a timed run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Ending {
+    /// At its full duration.
+    Done,
+    /// It took longer than it was given.
+    TooSlow,
+    /// Its state was no longer finite.
+    NotFinite,
+}
+
+/// One timed run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct TimedRun {
+    /// Tells it apart from the others.
+    pub key: String,
+    pub ending: Ending,
+    /// Least of its repeats, s.
+    pub wall_secs: f64,
+    pub simulated_secs: f64,
+    pub steps: u64,
+    pub unconverged_steps: u64,
+    /// Δy_G at the end.
+    pub slump: f64,
+    /// Mean over the steps, in diameters.
+    pub mean_overlap: f64,
+}
+
+/// Runs a scene to its end, `repeats` times for the least time, unless it takes more than
+/// `limit_secs` of the wall's time.
+///
+/// # Errors
+/// Where the scene is not sound.
+pub(super) fn timed_run(
+    key: String,
+    scene: &Scene,
+    repeats: u32,
+    limit_secs: f64,
+) -> Result<TimedRun> {
+    let mut run = once(key, scene, limit_secs)?;
+    for _ in 1..repeats {
+        if run.ending != Ending::Done {
+            break;
+        }
+        let again = once(String::new(), scene, limit_secs)?;
+        run.wall_secs = run.wall_secs.min(again.wall_secs);
+    }
+    Ok(run)
+}
+
+fn once(key: String, scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
+    let mut simulation = scene.simulation()?;
+    let steps = (scene.duration_secs / scene.parameters.time_step_secs).round() as u64;
+    let mut tally = crate::sim::Tally::default();
+    let mut ending = Ending::Done;
+    let started = Instant::now();
+    for step in 0..steps {
+        if step % STEPS_PER_LOOK == 0 && started.elapsed().as_secs_f64() > limit_secs {
+            ending = Ending::TooSlow;
+            break;
+        }
+        match simulation.step() {
+            Ok(observables) => tally.add(observables),
+            Err(Error::NonFinite { .. }) => {
+                ending = Ending::NotFinite;
+                break;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    let wall_secs = started.elapsed().as_secs_f64();
+    // What is not finite has no place in a journal of numbers.
+    let finite = |number: f64| if number.is_finite() { number } else { 0.0 };
+    Ok(TimedRun {
+        key,
+        ending,
+        wall_secs,
+        simulated_secs: simulation.time_secs(),
+        steps: tally.steps,
+        unconverged_steps: tally.unconverged_steps,
+        slump: finite(simulation.observables().slump),
+        mean_overlap: finite(tally.mean_overlap),
+    })
+}
