@@ -439,8 +439,8 @@ fn mean(values: &[f64]) -> (f64, f64) {
 
 #[test]
 fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
-    // Contact Dynamics solved to 1e-7 slumps 0.46 at every Δt, within 0.05 of it with every state.
-    let states: Vec<Scene> = (1..=4)
+    // Gauss-Seidel to 1e-6 with Δt = 1e-3 s slumps 0.465 ± 0.012 from the same eight states.
+    let states: Vec<Scene> = (1..=8)
         .into_par_iter()
         .map(|seed| {
             let rain = Rain { seed, ..Rain::default() };
@@ -460,6 +460,6 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
         let (mean, error) = mean(&slumps);
         println!("{method:?}: {mean:.3} ± {error:.3} {slumps:.3?}");
         assert!(error < 0.02, "± {error} tells nothing");
-        assert!((mean - 0.46).abs() < 0.05 - error, "{method:?}: {mean} ± {error}");
+        assert!((mean - 0.465).abs() < 0.05 - error, "{method:?}: {mean} ± {error}");
     }
 }
