@@ -1,5 +1,6 @@
 //! One step's contact problem, the methods that solve it, and the residual that judges them all.
 
+mod delassus;
 mod kinematics;
 mod measure;
 mod method;
@@ -9,10 +10,11 @@ mod nsgs;
 mod problem;
 mod settings;
 
+pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, measure, residual};
 pub use method::{METHODS, Method, MethodInfo, SolveReport, solve};
-pub use model::{Model, ModelVisitor, StepModel, visit_leanest};
+pub use model::{Model, ModelParts, ModelVisitor, StepModel, visit_leanest, visit_model};
 pub use problem::{Problems, Row, StepProblem};
 pub use settings::{SolverSettings, StopTest};
 

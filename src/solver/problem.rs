@@ -192,7 +192,7 @@ impl<K: Kinematics> StepProblem<K> {
     }
 
     /// Moves the bodies from their free velocities by the rows' impulses.
-    pub(super) fn form_velocities(&mut self) {
+    pub fn form_velocities(&mut self) {
         self.bodies.clone_from(&self.free);
         for row in &self.fixed_rows {
             let impulse = self.reduced_impulse(row);
