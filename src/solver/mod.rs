@@ -9,6 +9,7 @@ mod newton;
 mod nsgs;
 mod problem;
 mod settings;
+mod system;
 
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
@@ -17,6 +18,7 @@ pub use method::{METHODS, Method, MethodInfo, SolveReport, solve};
 pub use model::{Model, ModelParts, ModelVisitor, StepModel, visit_leanest, visit_model};
 pub use problem::{Problems, Row, StepProblem};
 pub use settings::{SolverSettings, StopTest};
+pub use system::{BodySystem, ContactSystem, Pairs, Vectors};
 
 #[doc(hidden)]
 pub use nsgs::sweep;

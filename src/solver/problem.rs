@@ -1,6 +1,7 @@
 //! The problem of one step: packed bodies and one row a contact, in the order of the sweep.
 
 use super::newton::Workspaces;
+use super::system::Vectors;
 use super::{Kinematics, Line, Model, Plane, SpinningPlane};
 use crate::contact::{Contact, ContactList, Impulse, law};
 use crate::world::{Parameters, World};
@@ -61,6 +62,9 @@ pub struct StepProblem<K: Kinematics> {
     /// Mean mass of the grains, kg.
     pub mean_mass: f64,
     pub(super) newton: Workspaces,
+    pub(super) vectors: Vectors,
+    /// √m_n of the rows, kg^½; filled where a method asks for it.
+    pub(super) root_masses: Vec<f64>,
     in_detection_order: Vec<u32>,
 }
 
@@ -78,6 +82,8 @@ impl<K: Kinematics> Default for StepProblem<K> {
             masses: Vec::new(),
             mean_mass: 0.0,
             newton: Workspaces::default(),
+            vectors: Vectors::default(),
+            root_masses: Vec::new(),
             in_detection_order: Vec::new(),
         }
     }
