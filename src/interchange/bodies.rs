@@ -118,24 +118,19 @@ impl BodyForm {
     }
 
     /// The step's problem, its rows in the order of the file, those with fixed bodies first.
-    pub(super) fn step_problem<M: Model>(
-        &self,
-        file: &ProblemFile,
-    ) -> StepProblem<M::Kinematics> {
+    pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M::Kinematics> {
         let coordinates = |body: usize| {
             let [x, y, spin] = self.free_velocity[body];
             M::Kinematics::from_coordinates([x, y, self.radius[body] * spin])
         };
         let free: Vec<_> = (0..self.mass.len()).map(coordinates).collect();
-        let mut problem = StepProblem::<M::Kinematics> {
-            before: free.clone(),
-            free,
-            friction: file.friction()[0],
-            capture_speed: self.capture_speed,
-            masses: self.mass.clone(),
-            mean_mass: self.mass.iter().sum::<f64>() / self.mass.len() as f64,
-            ..StepProblem::default()
-        };
+        let mut problem = StepProblem::<M::Kinematics>::default();
+        problem.before.clone_from(&free);
+        problem.free = free;
+        problem.friction = file.friction()[0];
+        problem.capture_speed = self.capture_speed;
+        problem.masses.clone_from(&self.mass);
+        problem.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
         let starts: Vec<[f64; 2]> = match &file.start {
             Some(start) => pairs(start).collect(),
             None => vec![[0.0; 2]; file.nc],
@@ -146,9 +141,8 @@ impl BodyForm {
                     continue;
                 }
                 let mass = self.mass[i as usize];
-                let share = j.map_or(1.0, |j| {
-                    self.mass[j as usize] / (mass + self.mass[j as usize])
-                });
+                let share =
+                    j.map_or(1.0, |j| self.mass[j as usize] / (mass + self.mass[j as usize]));
                 let effective_mass = mass * share;
                 let [normal, tangential] = starts[contact];
                 let row = Row {
@@ -162,8 +156,7 @@ impl BodyForm {
                     effective_mass,
                 };
                 problem.contact_of_row.push(contact as u32);
-                let rows =
-                    if pass { &mut problem.pair_rows } else { &mut problem.fixed_rows };
+                let rows = if pass { &mut problem.pair_rows } else { &mut problem.fixed_rows };
                 rows.push(row);
             }
         }
@@ -185,9 +178,7 @@ impl ModelVisitor for Check<'_> {
         let Self { bodies, file } = self;
         let problem = bodies.step_problem::<M>(file);
         let assembled = Assembled::of(&problem);
-        let place = |index: u32| {
-            2 * problem.contact_of_row[index as usize / 2] + index % 2
-        };
+        let place = |index: u32| 2 * problem.contact_of_row[index as usize / 2] + index % 2;
         let counts = |index: u32| M::FRICTION || index % 2 == 0;
         let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         let mut diagonal = vec![0.0; 2 * file.nc];

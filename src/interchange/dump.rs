@@ -13,11 +13,7 @@ use crate::world::{FrictionCone, Grains};
 ///
 /// # Errors
 /// Where the time is before the start, there is no contact at it, or the state is not finite.
-pub fn problem_file_at(
-    scene: &Scene,
-    at_secs: f64,
-    progress: impl Fn(f64),
-) -> Result<ProblemFile> {
+pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> Result<ProblemFile> {
     if !(at_secs >= 0.0 && at_secs.is_finite()) {
         return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
     }
@@ -69,7 +65,10 @@ impl ProblemVisitor for Dump<'_> {
             inertia: (0..grains.len()).map(|body| grains.inertia(body)).collect(),
             radius: grains.radii.clone(),
             free_velocity: problem.free.iter().zip(&grains.radii).map(free_velocity).collect(),
-            pair: (0..).zip(rows()).map(|(at, row)| (row.i, (at >= fixed).then_some(row.j))).collect(),
+            pair: (0..)
+                .zip(rows())
+                .map(|(at, row)| (row.i, (at >= fixed).then_some(row.j)))
+                .collect(),
             normal: rows()
                 .map(|row| {
                     let [[[x, y, _], _], _] = M::Kinematics::gradients(row.normal);
@@ -92,8 +91,7 @@ impl ProblemVisitor for Dump<'_> {
                 FrictionCone::Shifted
             },
             q: free_velocities,
-            c0: (cohesion > 0.0)
-                .then(|| rows().map(|row| row.effective_mass * cohesion).collect()),
+            c0: (cohesion > 0.0).then(|| rows().map(|row| row.effective_mass * cohesion).collect()),
             start: Some(starts.collect()),
             bodies: Some(bodies),
             matrix,

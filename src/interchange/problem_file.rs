@@ -66,8 +66,13 @@ impl ProblemFile {
     /// In one sentence that names what is wrong.
     pub fn parse(text: &str) -> Result<Self> {
         let file: Self = if text.trim_start().starts_with('{') {
-            serde_json::from_str(text)
-                .map_err(|error| Error::value("the problem", format!("not readable ({error})"), "JSON as the manual says"))?
+            serde_json::from_str(text).map_err(|error| {
+                Error::value(
+                    "the problem",
+                    format!("not readable ({error})"),
+                    "JSON as the manual says",
+                )
+            })?
         } else {
             siconos::parse(text)?
         };

@@ -80,7 +80,8 @@ fn entry<K: Kinematics>(problem: &StepProblem<K>, places: [Place<'_, K>; 2]) -> 
             let Some(body) = body.filter(|_| body == other_body) else { continue };
             let mass = problem.masses[body as usize];
             for degree in 0..K::DEGREES {
-                sum += gradients[0][side][axis][degree] * gradients[1][other_side][other_axis][degree]
+                sum += gradients[0][side][axis][degree]
+                    * gradients[1][other_side][other_axis][degree]
                     / (mass * K::INERTIA_OVER_MASS[degree]);
             }
         }

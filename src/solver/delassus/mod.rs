@@ -14,9 +14,10 @@
 mod assembly;
 mod local;
 mod sweeps;
+mod system;
 
-use self::local::LocalBlock;
 pub use self::assembly::Assembled;
+use self::local::LocalBlock;
 pub use self::sweeps::solve_delassus;
 use crate::error::{Error, Result};
 use crate::world::FrictionCone;
@@ -186,13 +187,19 @@ impl DelassusProblem {
         velocity
     }
 
+    #[inline(always)]
+    fn neighbours_of(&self, contact: usize) -> &[Neighbour] {
+        let start = self.rows[contact].start as usize;
+        let end =
+            self.rows.get(contact + 1).map_or(self.neighbours.len(), |row| row.start as usize);
+        &self.neighbours[start..end]
+    }
+
     /// The velocity that a contact would have without its own impulse, m/s.
     #[inline(always)]
     fn velocity_of_others(&self, contact: usize) -> [f64; 2] {
-        let row = &self.rows[contact];
-        let end = self.rows.get(contact + 1).map_or(self.neighbours.len(), |row| row.start as usize);
-        let mut velocity = row.free;
-        for Neighbour { block, contact: other } in &self.neighbours[row.start as usize..end] {
+        let mut velocity = self.rows[contact].free;
+        for Neighbour { block, contact: other } in self.neighbours_of(contact) {
             let [normal, tangential] = self.impulses[*other as usize];
             velocity[0] += block[0][0] * normal + block[0][1] * tangential;
             velocity[1] += block[1][0] * normal + block[1][1] * tangential;

@@ -22,7 +22,8 @@ pub fn solve_delassus(
     match settings.method {
         Method::Nsgs => Ok(sweeps(problem, settings)),
         Method::Newton => {
-            let allowed = "one that works on W alone (nsgs): the problem says nothing of its bodies";
+            let allowed =
+                "one that works on W alone (nsgs): the problem says nothing of its bodies";
             Err(Error::value("method", "newton", allowed))
         }
     }
@@ -31,7 +32,7 @@ pub fn solve_delassus(
 fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveReport {
     for sweeps in 1..=settings.max_sweeps {
         problem.sweep();
-        if problem.residual() <= settings.tolerance {
+        if problem.is_solved(settings) {
             return SolveReport { sweeps, converged: true, ..SolveReport::default() };
         }
     }
