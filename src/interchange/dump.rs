@@ -4,7 +4,7 @@ use super::{BodyForm, Friction, ProblemFile};
 use crate::contact::ContactList;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::sim::{ProblemVisitor, Simulation};
+use crate::sim::ProblemVisitor;
 use crate::solver::{Assembled, Kinematics, Model, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
@@ -23,18 +23,15 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
         simulation.step()?;
         progress(simulation.time_secs());
     }
-    problem_file(&simulation)
-}
-
-/// The problem of a simulation's next step.
-fn problem_file(simulation: &Simulation) -> Result<ProblemFile> {
     let grains = &simulation.world().grains;
     let file = simulation.next_problem(Dump { grains });
     if file.nc == 0 {
-        let at = simulation.time_secs();
-        return Err(Error::value("at", at, "a time at which there are contacts"));
+        return Err(Error::value("at", at_secs, "a time at which there are contacts"));
     }
-    Ok(file)
+    Ok(ProblemFile {
+        comment: Some(format!("{}: the step that begins at t = {at_secs} s", scene.name)),
+        ..file
+    })
 }
 
 struct Dump<'a> {

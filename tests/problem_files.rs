@@ -1,0 +1,403 @@
+//! Contact problems as files: written from a scene, read back, checked, and solved alone.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use assert_cmd::Command;
+use common::{LINE, SMOOTH, UNTURNING, assert_close, pressed_pile, random};
+use glam::DVec2;
+use rand::RngExt;
+use slump::contact::ContactList;
+use slump::interchange::{Friction, ProblemFile, Solution, problem_file_at, solve_file};
+use slump::scene::{Scene, cradle};
+use slump::sim::ProblemVisitor;
+use slump::solver::{
+    DelassusProblem, METHODS, Method, Model, SolverSettings, StepProblem, StopTest, Triplets,
+    residual, solve,
+};
+use slump::world::{FrictionCone, Physics};
+
+const SICONOS: &str = "fc2d_granularflowonwall_00667_00000.dat";
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/problems")
+}
+
+fn read(name: &str) -> ProblemFile {
+    ProblemFile::read(&folder().join(name)).expect("a proper problem file")
+}
+
+/// The names of the problems kept here: ours, then the published one.
+fn kept() -> Vec<String> {
+    let entries = std::fs::read_dir(folder()).expect("the folder of problems");
+    let names = entries.map(|entry| entry.expect("an entry").file_name().into_string());
+    let mut names: Vec<_> = names.map(|name| name.expect("UTF-8")).collect();
+    names.retain(|name| name.ends_with(".json"));
+    names.sort();
+    assert_eq!(names.len(), 10);
+    names.push(SICONOS.into());
+    names
+}
+
+fn settings(method: Method, tolerance: f64) -> SolverSettings {
+    let stop = StopTest::Residual;
+    SolverSettings { method, tolerance, max_sweeps: 1_000_000, stop, ..SolverSettings::default() }
+}
+
+/// Scenes of every model, a few steps into their motion.
+fn scenes() -> Vec<(&'static str, Scene, f64)> {
+    let pile = |physics: Physics, bond: f64, cone: FrictionCone| {
+        let parameters = common::parameters(bond, 1e-3, 0.1, 0.5);
+        let mut scene = pressed_pile(40, 0.2, 3, parameters);
+        scene.physics = physics;
+        scene.parameters.cone = cone;
+        if !physics.friction {
+            scene.parameters.friction = 0.0;
+        }
+        if !physics.rotation {
+            for grain in &mut scene.grains {
+                grain.angular_velocity = 0.0;
+            }
+        }
+        scene
+    };
+    let mut line = cradle();
+    line.physics = LINE;
+    for grain in &mut line.grains {
+        // Pressed together, so that there are contacts from the start.
+        grain.position.x *= 0.999;
+        grain.velocity = DVec2::new(-0.3 * grain.position.x.signum(), 0.0);
+    }
+    let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
+    vec![
+        ("full", pile(Physics::FULL, 20.0, shifted), 3e-3),
+        ("compressive", pile(Physics::FULL, 20.0, compressive), 3e-3),
+        ("without cohesion", pile(Physics::FULL, 0.0, shifted), 3e-3),
+        ("unturning", pile(UNTURNING, 20.0, shifted), 3e-3),
+        ("smooth", pile(SMOOTH, 20.0, shifted), 3e-3),
+        ("line", line, 0.0),
+    ]
+}
+
+/// Solves a step's problem by a few sweeps, and says what the residual and the impulses then are.
+struct Swept(u32);
+
+impl ProblemVisitor for Swept {
+    type Output = (f64, Vec<[f64; 2]>);
+
+    fn visit<M: Model>(
+        self,
+        problem: &mut StepProblem<M::Kinematics>,
+        _: &ContactList,
+    ) -> Self::Output {
+        if self.0 > 0 {
+            let never = SolverSettings { max_sweeps: self.0, ..settings(Method::Nsgs, 1e-300) };
+            solve::<M>(problem, &never);
+        }
+        let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
+        let impulses = rows.map(|row| problem.reduced_impulse(row).map(|p| row.effective_mass * p));
+        (residual::<M>(problem), impulses.collect())
+    }
+}
+
+#[test]
+fn the_residual_from_w_is_the_residual_of_the_bodies() {
+    for (name, scene, at_secs) in scenes() {
+        let file = problem_file_at(&scene, at_secs, |_| ()).expect("a problem");
+        let mut delassus = file.delassus().expect("a proper problem");
+        let mut simulation = scene.simulation().expect("a proper scene");
+        while simulation.time_secs() < at_secs - 1e-9 {
+            simulation.step().expect("a finite state");
+        }
+        let mut residuals = Vec::new();
+        for sweeps in [0, 1, 5] {
+            let (of_bodies, impulses) = simulation.next_problem(Swept(sweeps));
+            if sweeps > 0 {
+                delassus.set_impulses(impulses);
+            }
+            assert_close(delassus.residual(), of_bodies, 1e-9, &format!("{name}, {sweeps} sweeps"));
+            residuals.push(of_bodies);
+        }
+        assert!(residuals[0] > 1e-3, "{name}: something was left to do, {residuals:?}");
+    }
+}
+
+#[test]
+fn a_file_reads_back_bit_for_bit_and_solves_as_the_simulation_does() {
+    for (name, mut scene, at_secs) in scenes() {
+        let file = problem_file_at(&scene, at_secs, |_| ()).expect("a problem");
+        let again = ProblemFile::parse(&file.text()).expect("a proper problem");
+        assert_eq!(file, again, "{name}");
+
+        let mut simulation = scene.simulation().expect("a proper scene");
+        while simulation.time_secs() < at_secs - 1e-9 {
+            simulation.step().expect("a finite state");
+        }
+        let few = SolverSettings { max_sweeps: 30, ..settings(Method::Nsgs, 1e-300) };
+        scene.solver = few;
+        simulation.set_solver(few).expect("proper settings");
+        simulation.step().expect("a finite state");
+        let solution = solve_file(&again, &few, 1).expect("a solution");
+        assert!(solution.on_bodies);
+        let velocities = solution.velocities.expect("velocities of bodies");
+        for (at, [x, y, _]) in velocities.into_iter().enumerate() {
+            let found = simulation.world().grains.velocities[at];
+            let expected = DVec2::new(x, if name == "line" { found.y } else { y });
+            assert!((found - expected).length() < 1e-9, "{name}: {found} against {expected}");
+        }
+    }
+}
+
+/// Methods that need bodies say so of a problem in W alone; every other one takes both forms.
+#[test]
+fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
+    let mut on_matrix = 0;
+    for name in kept() {
+        let file = read(&name);
+        let in_matrix = ProblemFile { bodies: None, ..file.clone() };
+        for info in &METHODS {
+            let settings = settings(info.method, 1e-6);
+            let judge = |solution: Solution| {
+                let Solution { residual, sweeps, .. } = solution;
+                assert!(solution.converged, "{name} by {}: {residual:e}", info.name);
+                assert!(residual <= 1.000_001e-6, "{name} by {}: {residual:e}", info.name);
+                assert!(sweeps > 0);
+            };
+            if file.bodies.is_some() {
+                judge(solve_file(&file, &settings, 1).expect("bodies are for every method"));
+            }
+            match solve_file(&in_matrix, &settings, 1) {
+                Ok(solution) => {
+                    on_matrix += 1;
+                    judge(solution);
+                }
+                Err(error) => {
+                    let said = error.to_string();
+                    assert!(said.contains(info.name) && said.contains("works on W"), "{said}");
+                }
+            }
+        }
+    }
+    assert!(on_matrix >= kept().len());
+}
+
+/// What Siconos found, written by `tests/problems/make_reference.py`.
+#[derive(serde::Deserialize)]
+struct Reference {
+    residual: f64,
+    u: Vec<f64>,
+}
+
+/// Velocities are unique without friction, and with friction where bounds matter little; these
+/// five agree in theirs, at two tight tolerances, to the given part of the largest one.
+#[test]
+fn velocities_are_those_that_siconos_finds() {
+    let cases = [
+        (SICONOS, 1e-9),
+        ("bond_0_smooth.json", 1e-9),
+        ("bond_5_smooth.json", 1e-9),
+        ("bond_0.json", 1e-9),
+        ("bond_20.json", 1e-9),
+    ];
+    for (name, tolerance) in cases {
+        let path = folder().join("reference").join(name).with_extension("json");
+        let text = std::fs::read_to_string(&path).expect("a reference");
+        let reference: Reference = serde_json::from_str(&text).expect("a proper reference");
+        assert!(reference.residual < 1e-11, "{name}: {}", reference.residual);
+        let file = read(name);
+        let bodiless = ProblemFile { bodies: None, ..file.clone() };
+        for file in [&file, &bodiless] {
+            let solution = solve_file(file, &settings(Method::Nsgs, 1e-12), 1).expect("a solution");
+            assert!(solution.converged && solution.residual <= 2e-12, "{}", solution.residual);
+            let largest = reference.u.iter().fold(0f64, |most, u| most.max(u.abs()));
+            let differences = solution.u.iter().zip(&reference.u).map(|(u, v)| (u - v).abs());
+            let difference = differences.fold(0.0, f64::max) / largest;
+            println!("{name} {difference:e}");
+            assert!(difference < tolerance, "{name}: velocities differ by {difference:e}");
+        }
+    }
+}
+
+/// Irregular grains: every contact's own block couples normal and tangent.
+#[test]
+fn sweeps_on_w_solve_contacts_that_couple_normal_and_tangent() {
+    let mut random = random(5);
+    for cone in [FrictionCone::Shifted, FrictionCone::Compressive] {
+        for _ in 0..20 {
+            let contacts = 12;
+            let size = 2 * contacts;
+            let degrees = 30;
+            let gradients: Vec<f64> =
+                (0..size * degrees).map(|_| random.random_range(-1.0..1.0)).collect();
+            let mut matrix = Triplets::default();
+            for row in 0..size {
+                for col in 0..size {
+                    let pick = |index: usize| &gradients[index * degrees..(index + 1) * degrees];
+                    let value = pick(row).iter().zip(pick(col)).map(|(a, b)| a * b).sum();
+                    matrix.row.push(row as u32);
+                    matrix.col.push(col as u32);
+                    matrix.val.push(value);
+                }
+            }
+            let mut list = |count: usize, from: f64, to: f64| -> Vec<f64> {
+                (0..count).map(|_| random.random_range(from..to)).collect()
+            };
+            let q = list(size, -1.0, 1.0);
+            let friction = list(contacts, 0.0, 0.6);
+            let cohesion = list(contacts, 0.0, 0.1);
+            let mut problem =
+                DelassusProblem::new(&matrix, &q, &friction, &cohesion, cone).expect("a problem");
+            for _ in 0..5_000 {
+                problem.sweep();
+            }
+            let left = problem.residual();
+            assert!(left < 1e-12, "{cone:?}: {left:e}");
+        }
+    }
+}
+
+/// A sound problem of two contacts, to be spoilt.
+fn sound() -> serde_json::Value {
+    serde_json::json!({
+        "nc": 2,
+        "W": {
+            "row": [0, 1, 2, 3, 0, 2],
+            "col": [0, 1, 2, 3, 2, 0],
+            "val": [2.0, 6.0, 2.0, 6.0, -0.5, -0.5],
+        },
+        "q": [-1.0, 0.1, -0.5, 0.0],
+        "mu": 0.5,
+    })
+}
+
+fn slump(arguments: &[&str]) -> std::process::Output {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
+    command.args(arguments).output().expect("the program starts")
+}
+
+/// Has the program solve a file of this text, and gives its exit code and what it said.
+fn solved(text: &str) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("problem.json");
+    std::fs::write(&path, text).expect("a file");
+    let output = slump(&["problem", "solve", path.to_str().expect("UTF-8")]);
+    (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
+}
+
+#[test]
+fn a_faulty_file_is_refused_in_one_sentence() {
+    let json = |change: fn(&mut serde_json::Value)| {
+        let mut value = sound();
+        change(&mut value);
+        value.to_string()
+    };
+    let whole = std::fs::read_to_string(folder().join("bond_0_smooth.json")).expect("a problem");
+    let bodies = |change: fn(&mut serde_json::Value)| {
+        let mut value: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
+        change(&mut value);
+        value.to_string()
+    };
+    let siconos = std::fs::read_to_string(folder().join(SICONOS)).expect("a problem");
+    let siconos_with = |from: &str, to: &str| siconos.replacen(from, to, 1);
+    let cases: Vec<(String, &str)> = vec![
+        (json(|p| p["nc"] = 0.into()), "nc is 0"),
+        (json(|p| p["nc"] = 3.into()), "the length of q is 4, but must be 6"),
+        (json(|p| p["q"] = serde_json::json!([1.0])), "the length of q is 1"),
+        (json(|p| p["q"][1] = serde_json::Value::Null), "null"),
+        (sound().to_string().replace("0.1", "NaN"), "line 1"),
+        (sound().to_string().replace("0.1", "1e999"), "out of range"),
+        (json(|p| p["mu"] = (-0.5).into()), "mu[0] is -0.5, but must be a finite number ≥ 0"),
+        (json(|p| p["mu"] = serde_json::json!([0.5])), "the length of mu is 1"),
+        (json(|p| p["mu"] = "much".into()), "mu must be a number or a list of numbers"),
+        (json(|p| p["c0"] = serde_json::json!([0.1, -0.1])), "c0[1] is -0.1"),
+        (json(|p| p["c0"] = serde_json::json!([0.1])), "the length of c0 is 1"),
+        (json(|p| p["cone"] = "round".into()), "unknown variant `round`"),
+        (json(|p| p["start"] = serde_json::json!([1.0])), "the length of start is 1"),
+        (json(|p| p["colour"] = "red".into()), "unknown field `colour`"),
+        (json(|p| p["W"]["row"][0] = 4.into()), "W.row[0] is 4, but must be below 4"),
+        (json(|p| p["W"]["col"][5] = 9.into()), "W.col[5] is 9"),
+        (json(|p| p["W"]["row"][0] = (-1).into()), "-1"),
+        (json(|p| p["W"]["val"][4] = 0.5.into()), "W is symmetric"),
+        (json(|p| p["W"]["val"][0] = 0.0.into()), "W[0, 0] is 0, but must be > 0"),
+        (json(|p| p["W"]["val"] = serde_json::json!([])), "W is empty"),
+        (json(|p| p["W"]["row"] = serde_json::json!([0])), "the length of W.row is 1"),
+        (
+            json(|p| {
+                p["W"]["col"] = serde_json::json!([0, 1, 2, 3, 1, 0]);
+                p["W"]["row"] = serde_json::json!([0, 1, 2, 3, 0, 1]);
+                p["W"]["val"][4] = 4.into();
+                p["W"]["val"][5] = 4.into();
+            }),
+            "the determinant of contact 0's block of W is -4",
+        ),
+        (json(|p| drop(p.as_object_mut().map(|p| p.remove("q")))), "missing field `q`"),
+        (sound().to_string()[..60].to_owned(), "EOF"),
+        (String::new(), "the dimension is missing"),
+        ("[1, 2]".into(), "the dimension is \"[1, 2]\""),
+        (siconos_with("2\n667", "3\n667"), "the dimension is 3, but must be 2"),
+        (siconos_with("667\n2\n", "667\n0\n"), "the kind of storage is 0"),
+        (siconos_with("\n1334\n", "\n1333\n"), "the number of rows is 1333"),
+        (siconos_with("0 : 856.713", "0 : nan"), "W.val[0] is NaN"),
+        (siconos_with("0 : 856.713", "2000 : 856.713"), "W.row[0] is 2000"),
+        (siconos_with("649 : -454.43", "648 : -454.43"), "W is symmetric"),
+        (siconos[..20_000].to_owned(), "of W"),
+        (siconos[..siconos.len() - 100].to_owned(), "mu["),
+        (bodies(|p| p["bodies"]["mass"][0] = 1.0.into()), "bodies.inertia[0]"),
+        (bodies(|p| p["bodies"]["pair"][0][0] = 900.into()), "bodies.pair[0]"),
+        (
+            bodies(|p| p["bodies"]["normal"][0] = serde_json::json!([0.6, 0.8])),
+            "the bodies make it",
+        ),
+        (bodies(|p| p["bodies"]["radius"] = serde_json::json!([])), "bodies.radius"),
+        (bodies(|p| p["q"][2] = 1.0.into()), "the bodies'"),
+        (bodies(|p| p["c0"] = serde_json::json!(vec![1.0; 77])), "the bodies'"),
+        (bodies(|p| p["bodies"]["axes"] = 3.into()), "bodies.axes is 3"),
+    ];
+    assert_eq!(solved(&sound().to_string()).0, Some(0), "the sound problem is solved");
+    for (text, expected) in cases {
+        let (code, said) = solved(&text);
+        assert_eq!(code, Some(2), "{expected}: {said}");
+        assert_eq!(said.trim_end().lines().count(), 1, "more than a sentence: {said}");
+        assert!(said.contains(expected), "\"{expected}\" is not in: {said}");
+        assert!(said.contains("problem.json"), "{said}");
+    }
+}
+
+#[test]
+fn the_command_writes_a_problem_and_a_solution() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
+    let (problem, solution) = (file("problem.json"), file("solution.json"));
+    let dump = ["problem", "dump", "--bond", "20", "--restitution-threshold", "2", "--at", "0.01"];
+    let output = slump(&[&dump[..], &["--out", &problem]].concat());
+    assert!(output.status.success(), "{output:?}");
+    let read = ProblemFile::read(Path::new(&problem)).expect("a problem");
+    assert!(read.nc > 100 && read.start.is_some() && read.c0.is_some());
+    assert_eq!(read.mu, Friction::Same(0.5));
+
+    let solve = ["problem", "solve", &problem, "--method", "newton", "--tolerance", "1e-8"];
+    let output = slump(&[&solve[..], &["--out", &solution]].concat());
+    let said = String::from_utf8(output.stdout).expect("UTF-8");
+    for word in ["contacts", "newton", "sweeps", "seconds", "residual", "converged"] {
+        assert!(said.contains(word), "{said}");
+    }
+    let text = std::fs::read_to_string(&solution).expect("a solution");
+    let solution: Solution = serde_json::from_str(&text).expect("a proper solution");
+    assert!(solution.converged && solution.residual <= 1e-8);
+
+    // The residual is that of the written impulses, whatever the method made of them.
+    let mut judge = read.delassus().expect("a proper problem");
+    judge.set_impulses(solution.r.chunks_exact(2).map(|pair| [pair[0], pair[1]]));
+    assert_eq!(judge.residual(), solution.residual);
+    let velocities: Vec<f64> = judge.velocities().flatten().collect();
+    assert_eq!(velocities, solution.u);
+
+    for (at, expected) in [("-1", "at is -1"), ("nan", "at is NaN"), ("1e-9", "scene is none")] {
+        let scene = if at == "1e-9" { "none" } else { "pile" };
+        let output = slump(&["problem", "dump", "--scene", scene, "--at", at, "--out", &problem]);
+        let said = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(expected), "{said}");
+    }
+}
