@@ -5,7 +5,7 @@ mod common;
 use std::hint::black_box;
 
 use common::timing::{criterion, least_secs};
-use slump::solver::{SpinningPlane, StepModel, StepProblem, StopTest, sweep};
+use slump::solver::{SolverSettings, SpinningPlane, StepModel, StepProblem, StopTest, sweep};
 
 type Full = StepModel<SpinningPlane, true, false>;
 
@@ -25,8 +25,9 @@ fn main() {
         simulation.step().expect("a finite state");
 
         let (world, contacts) = (simulation.world(), simulation.contacts());
+        let warm = SolverSettings::default();
         let mut problem = StepProblem::<SpinningPlane>::default();
-        problem.prepare::<Full>(world, contacts, simulation.parameters(), true, true);
+        problem.prepare::<Full>(world, contacts, simulation.parameters(), true, &warm);
         let updates = problem.contact_of_row.len();
         let of_sweep = least_secs(&mut criterion, &format!("sweep/{count} discs"), || {
             black_box(sweep::<Full, false>(&mut problem));

@@ -142,7 +142,8 @@ fn list() {
     }
     println!("Methods:");
     for method in METHODS {
-        println!("  {:10} {} ({})", method.name, method.summary, method.source);
+        println!("  {:14} {}", method.name, method.summary);
+        println!("  {:14} solves {} ({})", "", method.solves, method.source);
     }
 }
 

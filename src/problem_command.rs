@@ -69,8 +69,13 @@ impl ProblemCommand {
                     problem.bodies = None;
                 }
                 let stop = StopTest::Residual;
-                let settings =
-                    SolverSettings { method, stop, tolerance, max_sweeps, warm_start: true };
+                let settings = SolverSettings {
+                    method,
+                    stop,
+                    tolerance,
+                    max_sweeps,
+                    ..SolverSettings::default()
+                };
                 let solution = solve_file(&problem, &settings, repeat)?;
                 tell(&solution);
                 match out {

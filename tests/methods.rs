@@ -16,7 +16,13 @@ fn falling_pile(seed: u64) -> Scene {
 
 fn with(scene: &Scene, method: Method, tolerance: f64) -> Simulation {
     let stop = StopTest::Residual;
-    let solver = SolverSettings { method, stop, tolerance, max_sweeps: 200_000, warm_start: true };
+    let solver = SolverSettings {
+        method,
+        stop,
+        tolerance,
+        max_sweeps: 200_000,
+        ..SolverSettings::default()
+    };
     Scene { solver, ..scene.clone() }.simulation().expect("a proper scene")
 }
 

@@ -67,7 +67,7 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
     for grain in &mut line.grains {
         // Pressed together, so that there are contacts from the start.
         grain.position.x *= 0.999;
-        grain.velocity = DVec2::new(-0.3 * grain.position.x.signum(), 0.0);
+        grain.velocity = DVec2::new(-2.0 * grain.position.x, 0.0);
     }
     let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
     vec![
@@ -189,32 +189,28 @@ struct Reference {
     u: Vec<f64>,
 }
 
-/// Velocities are unique without friction, and with friction where bounds matter little; these
-/// five agree in theirs, at two tight tolerances, to the given part of the largest one.
+/// Velocities are unique without friction, and happen to be in these problems with it: cold and
+/// warm starts and both solvers end at the same ones. To 1e-9 of the fastest free velocity.
 #[test]
 fn velocities_are_those_that_siconos_finds() {
-    let cases = [
-        (SICONOS, 1e-9),
-        ("bond_0_smooth.json", 1e-9),
-        ("bond_5_smooth.json", 1e-9),
-        ("bond_0.json", 1e-9),
-        ("bond_20.json", 1e-9),
-    ];
-    for (name, tolerance) in cases {
+    let with_friction = [SICONOS, "bond_0.json", "bond_20.json", "pile_138_bond_50.json"];
+    for name in with_friction.into_iter().chain(["bond_0_smooth.json", "bond_5_smooth.json"]) {
         let path = folder().join("reference").join(name).with_extension("json");
         let text = std::fs::read_to_string(&path).expect("a reference");
         let reference: Reference = serde_json::from_str(&text).expect("a proper reference");
         assert!(reference.residual < 1e-11, "{name}: {}", reference.residual);
         let file = read(name);
+        let fastest = |list: &[f64]| list.iter().fold(0f64, |most, u| most.max(u.abs()));
+        let free = fastest(&file.q);
+        assert!(fastest(&reference.u) > 0.05 * free, "{name}: the grains move");
         let bodiless = ProblemFile { bodies: None, ..file.clone() };
-        for file in [&file, &bodiless] {
-            let solution = solve_file(file, &settings(Method::Nsgs, 1e-12), 1).expect("a solution");
-            assert!(solution.converged && solution.residual <= 2e-12, "{}", solution.residual);
-            let largest = reference.u.iter().fold(0f64, |most, u| most.max(u.abs()));
+        let cold = ProblemFile { start: None, ..file.clone() };
+        for file in [&file, &bodiless, &cold] {
+            let solution = solve_file(file, &settings(Method::Nsgs, 2e-12), 1).expect("a solution");
+            assert!(solution.converged && solution.residual <= 4e-12, "{}", solution.residual);
             let differences = solution.u.iter().zip(&reference.u).map(|(u, v)| (u - v).abs());
-            let difference = differences.fold(0.0, f64::max) / largest;
-            println!("{name} {difference:e}");
-            assert!(difference < tolerance, "{name}: velocities differ by {difference:e}");
+            let difference = differences.fold(0.0, f64::max) / free;
+            assert!(difference < 1e-9, "{name}: velocities differ by {difference:e}");
         }
     }
 }

@@ -154,10 +154,12 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
         let (world, contacts) = (simulation.world(), simulation.contacts());
         let mut full = StepProblem::<SpinningPlane>::default();
         let mut lean = StepProblem::<Plane>::default();
-        let (numbers, warm) = (&scene.parameters, scene.solver.warm_start);
-        full.prepare::<StepModel<SpinningPlane, true, false>>(world, contacts, numbers, true, warm);
-        lean.prepare::<StepModel<Plane, false, false>>(world, contacts, numbers, true, warm);
+        let numbers = &scene.parameters;
         let settings = SolverSettings { tolerance: 1e-6, max_sweeps: 50, ..scene.solver };
+        full.prepare::<StepModel<SpinningPlane, true, false>>(
+            world, contacts, numbers, true, &settings,
+        );
+        lean.prepare::<StepModel<Plane, false, false>>(world, contacts, numbers, true, &settings);
         solve::<StepModel<SpinningPlane, true, false>>(&mut full, &settings);
         solve::<StepModel<Plane, false, false>>(&mut lean, &settings);
         for (a, b) in full.bodies.iter().zip(&lean.bodies) {

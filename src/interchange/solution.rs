@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::{BodyForm, ProblemFile};
 use crate::error::Result;
 use crate::solver::{
-    Kinematics, METHODS, Model, ModelVisitor, SolveReport, SolverSettings, solve, solve_delassus,
-    visit_model,
+    Kinematics, METHODS, Method, Model, ModelVisitor, SolveReport, SolverSettings, solve,
+    solve_delassus, visit_model,
 };
 
 /// What a method made of a problem.
@@ -129,7 +129,10 @@ impl ModelVisitor for OnBodies<'_> {
 
     fn visit<M: Model>(self) -> Solved {
         let Self { bodies, file, settings, repeats } = self;
-        let start = bodies.step_problem::<M>(file);
+        let mut start = bodies.step_problem::<M>(file);
+        if settings.method == Method::NsgsParallel {
+            start.sort_by_colours();
+        }
         let ((seconds, report), problem) =
             least_time(repeats, &start, |problem| solve::<M>(problem, settings));
         let mut impulses = vec![[0.0; 2]; file.nc];

@@ -9,7 +9,7 @@ use super::{
     Rain, Scene, Settling, built_in, cradle_from, pile_of, read_discs, read_scene, settle,
 };
 use crate::error::{Error, Result};
-use crate::solver::{Method, StopTest};
+use crate::solver::{Method, Ordering, StopTest};
 use crate::world::{FrictionCone, Grain, Parameters};
 
 /// A scene and changes to it. What is left out stays as the scene says.
@@ -72,6 +72,10 @@ pub struct Config {
     #[arg(long, value_name = "NAME", help_heading = "Solver")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solver: Option<Method>,
+    /// In which order a sweep visits the contacts
+    #[arg(long, value_name = "ORDER", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ordering: Option<Ordering>,
     /// What the tolerance refers to
     #[arg(long, value_name = "TEST", help_heading = "Solver")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -172,6 +176,7 @@ impl Config {
             restitution_threshold: Some(restitution_threshold),
             duration: Some(scene.duration_secs),
             solver: Some(scene.solver.method),
+            ordering: Some(scene.solver.ordering),
             stop: Some(scene.solver.stop),
             tolerance: Some(scene.solver.tolerance),
             max_sweeps: Some(scene.solver.max_sweeps),
@@ -209,6 +214,7 @@ impl Config {
         set(&mut scene.parameters.restitution_threshold, self.restitution_threshold);
         set(&mut scene.duration_secs, self.duration);
         set(&mut scene.solver.method, self.solver);
+        set(&mut scene.solver.ordering, self.ordering);
         set(&mut scene.solver.stop, self.stop);
         set(&mut scene.solver.tolerance, self.tolerance);
         set(&mut scene.solver.max_sweeps, self.max_sweeps);

@@ -7,7 +7,7 @@
 use glam::DVec2;
 
 use super::{Scene, View};
-use crate::solver::{Method, SolverSettings, StopTest};
+use crate::solver::{Method, Ordering, SolverSettings, StopTest};
 use crate::world::{FrictionCone, Grain, Gravity, Parameters, Physics};
 
 /// d, m.
@@ -48,6 +48,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
         },
         solver: SolverSettings {
             method: Method::Nsgs,
+            ordering: Ordering::Interleaved,
             stop: StopTest::ImpulsePerMass,
             tolerance: 2.2e-3,
             max_sweeps: 20_000,

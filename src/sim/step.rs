@@ -65,7 +65,7 @@ fn prepare<M: Model>(simulation: &mut Simulation) {
     let push = simulation.push_of_pull(M::Kinematics::AXES);
     let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
     let problem = M::Kinematics::problem(problems);
-    problem.prepare::<M>(world, contacts, parameters, physics.cohesion, solver.warm_start);
+    problem.prepare::<M>(world, contacts, parameters, physics.cohesion, solver);
     if let Some(push) = push {
         pull::apply(problem, push);
     }

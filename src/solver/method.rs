@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Model, SolverSettings, StepProblem, newton, nsgs};
+use super::system::{BodySystem, ContactSystem, Vectors};
+use super::{
+    Model, Ordering, SolverSettings, StepProblem, apgd, jacobi, newton, nncg, nsgs, nsgs_parallel,
+};
 
 /// A method, by the name that command line, scene files and panels use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -10,8 +13,23 @@ use super::{Model, SolverSettings, StepProblem, newton, nsgs};
 pub enum Method {
     /// Non-linear Gauss–Seidel.
     Nsgs,
+    /// Non-linear Gauss–Seidel by colours, on several threads.
+    NsgsParallel,
     /// Semi-smooth Newton with a sparse factorisation.
     Newton,
+    /// Non-smooth non-linear conjugate gradients over Gauss–Seidel sweeps.
+    Nncg,
+    /// Accelerated projected gradients with adaptive restart.
+    Apgd,
+    /// Jacobi with mass splitting.
+    Jacobi,
+}
+
+impl Method {
+    /// The order of the rows that the method needs where the settings ask for `asked`.
+    pub(super) fn ordering(self, asked: Ordering) -> Ordering {
+        if self == Self::NsgsParallel { Ordering::Coloured } else { asked }
+    }
 }
 
 /// What there is to know of a method.
@@ -21,32 +39,67 @@ pub struct MethodInfo {
     pub method: Method,
     /// Its name on the command line.
     pub name: &'static str,
-    /// One line.
+    /// How it works, one line.
     pub summary: &'static str,
+    /// What its result solves exactly, one line.
+    pub solves: &'static str,
     /// Where it comes from.
     pub source: &'static str,
 }
 
+/// What is solved by every method that rests at a zero of the common natural map.
+const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
+
 /// All methods.
-pub const METHODS: [MethodInfo; 2] = [
+pub const METHODS: [MethodInfo; 6] = [
     MethodInfo {
         method: Method::Nsgs,
         name: "nsgs",
         summary: "non-linear Gauss-Seidel: one contact after the other, exact for each",
+        solves: COULOMB,
         source: "M. Jean, The non-smooth contact dynamics method (1999)",
+    },
+    MethodInfo {
+        method: Method::NsgsParallel,
+        name: "nsgs-parallel",
+        summary: "Gauss-Seidel by colours on several threads: for piles of tens of thousands",
+        solves: COULOMB,
+        source: "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
     },
     MethodInfo {
         method: Method::Newton,
         name: "newton",
         summary: "semi-smooth Newton, sparse direct: all contacts together, for tight tolerances",
+        solves: COULOMB,
         source: "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)",
+    },
+    MethodInfo {
+        method: Method::Nncg,
+        name: "nncg",
+        summary: "conjugate gradients over Gauss-Seidel sweeps: fewer sweeps to tight tolerances",
+        solves: COULOMB,
+        source: "M. Silcowitz, S. Niebe, K. Erleben, non-smooth non-linear conjugate gradients (2010)",
+    },
+    MethodInfo {
+        method: Method::Apgd,
+        name: "apgd",
+        summary: "accelerated projected gradients with restart: all contacts at once, no order",
+        solves: "the same, the bound of friction taken anew every iteration",
+        source: "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
+    },
+    MethodInfo {
+        method: Method::Jacobi,
+        name: "jacobi",
+        summary: "Jacobi with mass splitting: all contacts at once, each with its part of the mass",
+        solves: COULOMB,
+        source: "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
     },
 ];
 
 /// How a solve ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolveReport {
-    /// Sweeps done.
+    /// Sweeps done; iterations where the method has no sweeps.
     pub sweeps: u32,
     /// Matrices factorised.
     pub factorisations: u32,
@@ -65,6 +118,33 @@ pub fn solve<M: Model>(
     }
     match settings.method {
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
+        Method::NsgsParallel => nsgs_parallel::solve::<M>(problem, settings),
         Method::Newton => newton::solve::<M>(problem, settings),
+        Method::Nncg | Method::Apgd | Method::Jacobi => {
+            let mut vectors = std::mem::take(&mut problem.vectors);
+            let system = &mut BodySystem::<M>::new(problem);
+            let report = solve_system(system, settings, &mut vectors);
+            problem.vectors = vectors;
+            // The methods of this arm are among those that need no bodies.
+            report.unwrap_or_default()
+        }
+    }
+}
+
+/// Solves any contact system, from its present impulses, with the method of the settings. Gives
+/// nothing where that method needs bodies.
+pub fn solve_system<S: ContactSystem>(
+    system: &mut S,
+    settings: &SolverSettings,
+    vectors: &mut Vectors,
+) -> Option<SolveReport> {
+    if system.is_empty() {
+        return Some(SolveReport { converged: true, ..SolveReport::default() });
+    }
+    match settings.method {
+        Method::Nncg => Some(nncg::solve(system, settings, vectors)),
+        Method::Apgd => Some(apgd::solve(system, settings, vectors)),
+        Method::Jacobi => Some(jacobi::solve(system, settings, vectors)),
+        Method::Nsgs | Method::NsgsParallel | Method::Newton => None,
     }
 }

@@ -1,12 +1,18 @@
 //! One step's contact problem, the methods that solve it, and the residual that judges them all.
 
+mod apgd;
 mod delassus;
+mod iterate;
+mod jacobi;
 mod kinematics;
 mod measure;
 mod method;
 mod model;
 mod newton;
+mod nncg;
 mod nsgs;
+mod nsgs_parallel;
+mod order;
 mod problem;
 mod settings;
 mod system;
@@ -14,8 +20,9 @@ mod system;
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, measure, residual};
-pub use method::{METHODS, Method, MethodInfo, SolveReport, solve};
+pub use method::{METHODS, Method, MethodInfo, SolveReport, solve, solve_system};
 pub use model::{Model, ModelParts, ModelVisitor, StepModel, visit_leanest, visit_model};
+pub use order::Ordering;
 pub use problem::{Problems, Row, StepProblem};
 pub use settings::{SolverSettings, StopTest};
 pub use system::{BodySystem, ContactSystem, Pairs, Vectors};

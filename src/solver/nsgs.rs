@@ -8,15 +8,10 @@
 //!
 //! The normal impulse does not change v_t, so both velocities are read once.
 
+use super::iterate::is_tested;
 use super::measure::residual;
-use super::{Kinematics, Model, Row, SolveReport, SolverSettings, StepProblem, StopTest};
+use super::{Kinematics, Model, Ordering, Row, SolveReport, SolverSettings, StepProblem, StopTest};
 use crate::contact::law;
-
-/// After this many sweeps the stopping test is made only after every [`TEST_INTERVAL`]th: a sweep
-/// that also measures itself costs more. A smaller number makes well-started steps dearer.
-const SWEEPS_TESTED_EACH: u32 = 16;
-/// Sweeps between two tests of a long solve; the most that are done in vain.
-const TEST_INTERVAL: u32 = 8;
 
 /// Solves a prepared problem by sweeps.
 pub(super) fn solve<M: Model>(
@@ -24,15 +19,19 @@ pub(super) fn solve<M: Model>(
     settings: &SolverSettings,
 ) -> SolveReport {
     for sweeps in 1..=settings.max_sweeps {
-        let tested = sweeps <= SWEEPS_TESTED_EACH
-            || sweeps % TEST_INTERVAL == 0
-            || sweeps == settings.max_sweeps
-            || settings.stop == StopTest::ImpulsePerMass;
-        if !tested {
-            sweep::<M, false>(problem);
-            continue;
-        }
-        let converged = tested_sweep::<M>(problem, settings);
+        let backward = settings.ordering == Ordering::Symmetric && sweeps % 2 == 0;
+        let converged = match (is_tested(sweeps, settings), backward) {
+            (true, false) => tested::<M, false>(problem, settings),
+            (true, true) => tested::<M, true>(problem, settings),
+            (false, _) => {
+                if backward {
+                    directed_sweep::<M, false, true>(problem);
+                } else {
+                    sweep::<M, false>(problem);
+                }
+                false
+            }
+        };
         if converged {
             return SolveReport { sweeps, converged, ..SolveReport::default() };
         }
@@ -45,19 +44,34 @@ pub(super) fn tested_sweep<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> bool {
+    tested::<M, false>(problem, settings)
+}
+
+fn tested<M: Model, const BACKWARD: bool>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+) -> bool {
+    let change = if settings.stop == StopTest::Residual {
+        directed_sweep::<M, false, BACKWARD>(problem)
+    } else {
+        directed_sweep::<M, true, BACKWARD>(problem)
+    };
+    is_settled::<M>(problem, change, settings)
+}
+
+/// Whether the stopping test is met after a sweep that made this change.
+pub(super) fn is_settled<M: Model>(
+    problem: &StepProblem<M::Kinematics>,
+    change: Change,
+    settings: &SolverSettings,
+) -> bool {
     let tolerance = settings.tolerance;
     match settings.stop {
         StopTest::RelativeChange => {
-            let change = sweep::<M, true>(problem);
             change.squared <= tolerance * tolerance * squared_impulses(problem)
         }
-        StopTest::ImpulsePerMass => {
-            sweep::<M, true>(problem).absolute <= tolerance * problem.mean_mass
-        }
-        StopTest::Residual => {
-            sweep::<M, false>(problem);
-            residual::<M>(problem) <= tolerance
-        }
+        StopTest::ImpulsePerMass => change.absolute <= tolerance * problem.mean_mass,
+        StopTest::Residual => residual::<M>(problem) <= tolerance,
     }
 }
 
@@ -72,55 +86,113 @@ pub struct Change {
 
 /// One pass over all contacts.
 pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M::Kinematics>) -> Change {
+    directed_sweep::<M, MEASURE, false>(problem)
+}
+
+fn directed_sweep<M: Model, const MEASURE: bool, const BACKWARD: bool>(
+    problem: &mut StepProblem<M::Kinematics>,
+) -> Change {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx") {
         // SAFETY: the processor has just been asked.
-        return unsafe { sweep_with_avx::<M, MEASURE>(problem) };
+        return unsafe { sweep_with_avx::<M, MEASURE, BACKWARD>(problem) };
     }
-    pass::<M, MEASURE>(problem)
+    pass::<M, MEASURE, BACKWARD>(problem)
 }
 
 /// The same operations in the same order, and so bitwise the same result, in the three-operand
 /// encoding, which saves the copies that the older one needs.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx")]
-fn sweep_with_avx<M: Model, const MEASURE: bool>(
+fn sweep_with_avx<M: Model, const MEASURE: bool, const BACKWARD: bool>(
     problem: &mut StepProblem<M::Kinematics>,
 ) -> Change {
-    pass::<M, MEASURE>(problem)
+    pass::<M, MEASURE, BACKWARD>(problem)
 }
 
 #[inline(always)]
-fn pass<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M::Kinematics>) -> Change {
-    let StepProblem { bodies, fixed_rows, pair_rows, friction, capture_speed, .. } = problem;
-    let law = Law { friction: *friction, capture_speed: *capture_speed };
+fn pass<M: Model, const MEASURE: bool, const BACKWARD: bool>(
+    problem: &mut StepProblem<M::Kinematics>,
+) -> Change {
+    let law = Law::of(problem);
+    let StepProblem { bodies, fixed_rows, pair_rows, .. } = problem;
     let mut change = Change::default();
+    if BACKWARD {
+        for row in pair_rows.iter_mut().rev() {
+            law.solve_pair_of::<M, MEASURE>(row, bodies, &mut change);
+        }
+        for row in fixed_rows.iter_mut().rev() {
+            law.solve_single::<M, MEASURE>(row, &mut bodies[row.i as usize], &mut change);
+        }
+        return change;
+    }
     for row in fixed_rows {
-        let i = &mut bodies[row.i as usize];
-        let velocity = M::Kinematics::velocity(row.normal, i);
-        let impulse = law.update::<M>(row, velocity);
-        M::Kinematics::push_single(i, row.normal, impulse);
-        change.add::<M, MEASURE>(row.effective_mass, impulse);
+        law.solve_single::<M, MEASURE>(row, &mut bodies[row.i as usize], &mut change);
     }
     for row in pair_rows {
-        let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
-        let velocity = M::Kinematics::relative_velocity(row.normal, &i, &j);
-        let impulse = law.update::<M>(row, velocity);
-        M::Kinematics::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
-        bodies[row.i as usize] = i;
-        bodies[row.j as usize] = j;
-        change.add::<M, MEASURE>(row.effective_mass, impulse);
+        law.solve_pair_of::<M, MEASURE>(row, bodies, &mut change);
     }
     change
 }
 
+/// A body of a model.
+type Body<M> = <<M as Model>::Kinematics as Kinematics>::Body;
+
 /// The numbers of the contact law that all rows share.
-struct Law {
+pub(super) struct Law {
     friction: f64,
     capture_speed: f64,
 }
 
 impl Law {
+    /// Those of a problem.
+    pub fn of<K: Kinematics>(problem: &StepProblem<K>) -> Self {
+        Self { friction: problem.friction, capture_speed: problem.capture_speed }
+    }
+
+    /// Solves a contact of grain i with a fixed body.
+    #[inline(always)]
+    pub fn solve_single<M: Model, const MEASURE: bool>(
+        &self,
+        row: &mut Row<M::Kinematics>,
+        i: &mut Body<M>,
+        change: &mut Change,
+    ) {
+        let velocity = M::Kinematics::velocity(row.normal, i);
+        let impulse = self.update::<M>(row, velocity);
+        M::Kinematics::push_single(i, row.normal, impulse);
+        change.add::<M, MEASURE>(row.effective_mass, impulse);
+    }
+
+    /// Solves a contact between grains i and j.
+    #[inline(always)]
+    pub fn solve_pair<M: Model, const MEASURE: bool>(
+        &self,
+        row: &mut Row<M::Kinematics>,
+        i: &mut Body<M>,
+        j: &mut Body<M>,
+        change: &mut Change,
+    ) {
+        let velocity = M::Kinematics::relative_velocity(row.normal, i, j);
+        let impulse = self.update::<M>(row, velocity);
+        M::Kinematics::push_pair(i, j, row.normal, impulse, row.share);
+        change.add::<M, MEASURE>(row.effective_mass, impulse);
+    }
+
+    /// Solves a contact between two of the bodies.
+    #[inline(always)]
+    fn solve_pair_of<M: Model, const MEASURE: bool>(
+        &self,
+        row: &mut Row<M::Kinematics>,
+        bodies: &mut [Body<M>],
+        change: &mut Change,
+    ) {
+        let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
+        self.solve_pair::<M, MEASURE>(row, &mut i, &mut j, change);
+        bodies[row.i as usize] = i;
+        bodies[row.j as usize] = j;
+    }
+
     /// Solves one contact at the given (v_n, v_t) and returns the change of (λ_n, λ_t).
     #[inline(always)]
     fn update<M: Model>(
@@ -150,6 +222,12 @@ impl Law {
 }
 
 impl Change {
+    /// Adds the change of other contacts.
+    pub fn add_all(&mut self, other: Self) {
+        self.squared += other.squared;
+        self.absolute += other.absolute;
+    }
+
     #[inline(always)]
     fn add<M: Model, const MEASURE: bool>(&mut self, mass: f64, [normal, tangential]: [f64; 2]) {
         if MEASURE {

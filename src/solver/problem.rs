@@ -1,8 +1,12 @@
 //! The problem of one step: packed bodies and one row a contact, in the order of the sweep.
 
+use glam::DVec2;
+
 use super::newton::Workspaces;
+use super::nsgs_parallel::Colouring;
+use super::order::Sorter;
 use super::system::Vectors;
-use super::{Kinematics, Line, Model, Plane, SpinningPlane};
+use super::{Kinematics, Line, Model, Plane, SolverSettings, SpinningPlane};
 use crate::contact::{Contact, ContactList, Impulse, law};
 use crate::world::{Parameters, World};
 
@@ -34,11 +38,8 @@ pub struct Row<K: Kinematics> {
 
 /// All contacts of one step. Memory is kept between steps.
 ///
-/// The sweep's order is fixed: first the contacts with fixed bodies, then those between grains, each
-/// kind interleaved from [`StepProblem::STREAMS`] stretches of the order of detection (sorted by
-/// grain i, then by j). Neighbours in the order of detection share a grain, so each update would
-/// wait for the one before it to finish; interleaved, updates in flight touch different grains. Up
-/// to [`StepProblem::STREAMS`] contacts of a kind the two orders are the same.
+/// Rows are in the order of the sweep (`solver::order`): first the contacts with fixed bodies, then
+/// those between grains.
 #[derive(Clone, Debug)]
 pub struct StepProblem<K: Kinematics> {
     /// Bodies as the sweep moves them.
@@ -65,7 +66,8 @@ pub struct StepProblem<K: Kinematics> {
     pub(super) vectors: Vectors,
     /// √m_n of the rows, kg^½; filled where a method asks for it.
     pub(super) root_masses: Vec<f64>,
-    in_detection_order: Vec<u32>,
+    pub(super) colouring: Colouring,
+    sorter: Sorter,
 }
 
 impl<K: Kinematics> Default for StepProblem<K> {
@@ -84,25 +86,22 @@ impl<K: Kinematics> Default for StepProblem<K> {
             newton: Workspaces::default(),
             vectors: Vectors::default(),
             root_masses: Vec::new(),
-            in_detection_order: Vec::new(),
+            colouring: Colouring::default(),
+            sorter: Sorter::default(),
         }
     }
 }
 
 impl<K: Kinematics> StepProblem<K> {
-    /// Stretches that the order of detection is cut into. With fewer, updates wait for each other;
-    /// with many more, a sweep over a large pile loses its locality in the cache.
-    pub const STREAMS: usize = 8;
-
-    /// Sets up the step: free velocities, and rows that carry the impulses of `contacts`
-    /// (`warm_start`) or none. `cohesion` tells whether the scene has any.
+    /// Sets up the step: free velocities, and rows in the settings' order that carry the impulses of
+    /// `contacts` (warm start) or none. `cohesion` tells whether the scene has any.
     pub fn prepare<M: Model<Kinematics = K>>(
         &mut self,
         world: &World,
         contacts: &ContactList,
         parameters: &Parameters,
         cohesion: bool,
-        warm_start: bool,
+        settings: &SolverSettings,
     ) {
         let grains = &world.grains;
         let gravity_magnitude = world.gravity.magnitude();
@@ -124,14 +123,19 @@ impl<K: Kinematics> StepProblem<K> {
         }
         let list = contacts.contacts();
         let against_grain = |index: &u32| (list[*index as usize].other as usize) < grains.len();
-        self.contact_of_row.clear();
         let all = 0..list.len() as u32;
-        self.interleave(all.clone().filter(|index| !against_grain(index)));
-        let fixed_count = self.contact_of_row.len();
-        self.interleave(all.filter(against_grain));
+        let fixed = all.clone().filter(|index| !against_grain(index));
+        let pairs = all.filter(against_grain);
+        let ordering = settings.method.ordering(settings.ordering);
+        let [fixed_ends, pair_ends] = &mut self.colouring.ends;
+        let rows = &mut self.contact_of_row;
+        rows.clear();
+        self.sorter.append(ordering, (world, list), fixed, rows, fixed_ends);
+        let fixed_count = rows.len();
+        self.sorter.append(ordering, (world, list), pairs, rows, pair_ends);
 
         let rebound = |velocity| parameters.restitution_velocity(velocity, gravity_magnitude);
-        let start = |index: u32| warm_start.then(|| contacts.impulses()[index as usize]);
+        let start = |index: u32| settings.warm_start.then(|| contacts.impulses()[index as usize]);
         self.fixed_rows.clear();
         for at in 0..fixed_count {
             let index = self.contact_of_row[at];
@@ -155,17 +159,6 @@ impl<K: Kinematics> StepProblem<K> {
             self.pair_rows.push(row);
         }
         self.form_velocities();
-    }
-
-    /// Appends contacts, given in the order of detection, to the order of the sweep.
-    fn interleave(&mut self, contacts: impl Iterator<Item = u32>) {
-        self.in_detection_order.clear();
-        self.in_detection_order.extend(contacts);
-        let stretch = self.in_detection_order.len().div_ceil(Self::STREAMS);
-        for offset in 0..stretch {
-            let across_stretches = self.in_detection_order[offset..].iter().step_by(stretch);
-            self.contact_of_row.extend(across_stretches);
-        }
     }
 
     /// One row, with the impulses of `start` (N·s) projected on what the contact law allows now.
@@ -211,6 +204,33 @@ impl<K: Kinematics> StepProblem<K> {
             self.bodies[row.i as usize] = i;
             self.bodies[row.j as usize] = j;
         }
+    }
+
+    /// Puts rows that were not made by [`StepProblem::prepare`] in the order of colours, for the
+    /// method that needs it.
+    pub fn sort_by_colours(&mut self) {
+        let Self { fixed_rows, pair_rows, contact_of_row, colouring, sorter, .. } = self;
+        let contact = |row: &Row<K>, other: u32| Contact {
+            grain: row.i,
+            other,
+            normal: DVec2::ZERO,
+            gap: 0.0,
+        };
+        let contacts: Vec<Contact> = fixed_rows
+            .iter()
+            .map(|row| contact(row, u32::MAX))
+            .chain(pair_rows.iter().map(|row| contact(row, row.j)))
+            .collect();
+        let [fixed_ends, pair_ends] = &mut colouring.ends;
+        let (fixed, all) = (fixed_rows.len() as u32, contacts.len() as u32);
+        let mut order = Vec::with_capacity(contacts.len());
+        let list = (self.masses.len(), &contacts[..]);
+        sorter.append_coloured(list, 0..fixed, &mut order, fixed_ends);
+        sorter.append_coloured(list, fixed..all, &mut order, pair_ends);
+        let (of_fixed, of_pairs) = order.split_at(fixed as usize);
+        *fixed_rows = of_fixed.iter().map(|&row| fixed_rows[row as usize]).collect();
+        *pair_rows = of_pairs.iter().map(|&row| pair_rows[(row - fixed) as usize]).collect();
+        *contact_of_row = order.iter().map(|&row| contact_of_row[row as usize]).collect();
     }
 
     /// (λ_n, λ_t) of a row, m/s.

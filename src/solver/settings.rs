@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Method;
+use super::{Method, Ordering};
 use crate::error::{Error, Result};
 
 /// What the tolerance of a solver refers to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum StopTest {
-    /// ‖ΔP‖₂ of a sweep ≤ tolerance · ‖P‖₂, over normal and tangential impulses; dimensionless.
+    /// ‖ΔP‖₂ of a sweep (of an iteration, for methods without sweeps) ≤ tolerance · ‖P‖₂, over normal and tangential impulses; dimensionless.
     #[default]
     RelativeChange,
     /// Σ|ΔP| of a sweep ≤ tolerance · mean grain mass; m/s. Tested after every sweep.
@@ -24,12 +24,16 @@ pub enum StopTest {
 pub struct SolverSettings {
     /// The method.
     pub method: Method,
+    /// The order of a sweep.
+    #[serde(default)]
+    pub ordering: Ordering,
     /// What `tolerance` refers to.
     #[serde(default)]
     pub stop: StopTest,
     /// In the unit of `stop`.
     pub tolerance: f64,
-    /// A step that needs more sweeps is reported as not converged.
+    /// A step that needs more sweeps, or iterations of a method without sweeps, is reported as not
+    /// converged.
     pub max_sweeps: u32,
     /// Start from the impulses of the step before.
     pub warm_start: bool,
@@ -58,6 +62,7 @@ impl Default for SolverSettings {
     fn default() -> Self {
         Self {
             method: Method::Nsgs,
+            ordering: Ordering::Interleaved,
             stop: StopTest::RelativeChange,
             tolerance: 1e-6,
             max_sweeps: 5_000,

@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use slump::scene::{Scene, rough_base};
 use slump::sim::Simulation;
-use slump::solver::{Method, SolverSettings, StopTest};
+use slump::solver::{Method, Ordering, SolverSettings, StopTest};
 use slump::world::{Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
 
 /// g of the scenes made here, m/s².
@@ -44,6 +44,7 @@ pub fn tight() -> SolverSettings {
 pub fn to_residual(tolerance: f64) -> SolverSettings {
     SolverSettings {
         method: Method::Nsgs,
+        ordering: Ordering::default(),
         stop: StopTest::Residual,
         tolerance,
         max_sweeps: 20_000,

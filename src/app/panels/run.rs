@@ -95,6 +95,7 @@ fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
         mu: parameters.map(|parameters| parameters.friction),
         cone: parameters.map(|parameters| parameters.cone),
         solver: solver.map(|solver| solver.method),
+        ordering: solver.map(|solver| solver.ordering),
         stop: solver.map(|solver| solver.stop),
         tolerance: solver.map(|solver| solver.tolerance),
         max_sweeps: solver.map(|solver| solver.max_sweeps),

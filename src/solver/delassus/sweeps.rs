@@ -3,7 +3,10 @@
 
 use super::DelassusProblem;
 use crate::error::{Error, Result};
-use crate::solver::{Method, SolveReport, SolverSettings, StopTest};
+use crate::solver::iterate::is_tested;
+use crate::solver::{
+    METHODS, Method, SolveReport, SolverSettings, StopTest, Vectors, solve_system,
+};
 
 /// Solves a problem from its present impulses with the method of the settings, to a residual of
 /// their tolerance.
@@ -19,20 +22,20 @@ pub fn solve_delassus(
         let allowed = "residual where there are no bodies";
         return Err(Error::value("stop", format!("{:?}", settings.stop), allowed));
     }
-    match settings.method {
-        Method::Nsgs => Ok(sweeps(problem, settings)),
-        Method::Newton => {
-            let allowed =
-                "one that works on W alone (nsgs): the problem says nothing of its bodies";
-            Err(Error::value("method", "newton", allowed))
-        }
+    if settings.method == Method::Nsgs {
+        return Ok(sweeps(problem, settings));
     }
+    solve_system(problem, settings, &mut Vectors::default()).ok_or_else(|| {
+        let info = METHODS.iter().find(|info| info.method == settings.method);
+        let allowed = "one that works on W alone, for the problem says nothing of its bodies";
+        Error::value("method", info.map_or("unknown", |info| info.name), allowed)
+    })
 }
 
 fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveReport {
     for sweeps in 1..=settings.max_sweeps {
         problem.sweep();
-        if problem.is_solved(settings) {
+        if is_tested(sweeps, settings) && problem.is_solved(settings) {
             return SolveReport { sweeps, converged: true, ..SolveReport::default() };
         }
     }
