@@ -80,7 +80,7 @@ impl BodyForm {
                 }
             }
             let (inertia, solid) = (self.inertia[body], 0.5 * mass * radius * radius);
-            if !((inertia - solid).abs() <= DISAGREEMENT * solid) {
+            if !agree(inertia, solid, solid) {
                 let allowed = format!("{solid}, that of a solid disc");
                 return Err(Error::value(format!("bodies.inertia[{body}]"), inertia, allowed));
             }
@@ -165,6 +165,11 @@ impl BodyForm {
     }
 }
 
+/// Whether two forms of one number are as near as rounding leaves them; not where one is NaN.
+fn agree(found: f64, expected: f64, scale: f64) -> bool {
+    (found - expected).abs() <= DISAGREEMENT * scale
+}
+
 struct Check<'a> {
     bodies: &'a BodyForm,
     file: &'a ProblemFile,
@@ -179,7 +184,7 @@ impl ModelVisitor for Check<'_> {
         let problem = bodies.step_problem::<M>(file);
         let assembled = Assembled::of(&problem);
         let place = |index: u32| 2 * problem.contact_of_row[index as usize / 2] + index % 2;
-        let counts = |index: u32| M::FRICTION || index % 2 == 0;
+        let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
         let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         let mut diagonal = vec![0.0; 2 * file.nc];
         for (row, column, value) in assembled.matrix.entries() {
@@ -194,7 +199,7 @@ impl ModelVisitor for Check<'_> {
         }
         for (&(row, column), &off) in &difference {
             let scale = (diagonal[row as usize] * diagonal[column as usize]).sqrt();
-            if counts(row) && counts(column) && !(off.abs() <= DISAGREEMENT * scale) {
+            if counts(row) && counts(column) && !agree(off, 0.0, scale) {
                 let found = format!("{} off what the bodies make it", off.abs());
                 return Err(Error::value(format!("W[{row}, {column}]"), found, "theirs"));
             }
@@ -203,7 +208,7 @@ impl ModelVisitor for Check<'_> {
         for (index, &q) in (0..).zip(&assembled.free_velocities) {
             let at = place(index);
             let found = file.q[at as usize];
-            if counts(index) && !((found - q).abs() <= DISAGREEMENT * fastest) {
+            if counts(index) && !agree(found, q, fastest) {
                 return Err(Error::value(format!("q[{at}]"), found, format!("{q}, the bodies'")));
             }
         }
@@ -212,7 +217,7 @@ impl ModelVisitor for Check<'_> {
         for (row, &contact) in rows.zip(&problem.contact_of_row) {
             let expected = row.effective_mass * bodies.capture_speed;
             let found = cohesion[contact as usize];
-            if !((found - expected).abs() <= DISAGREEMENT * expected) {
+            if !agree(found, expected, expected) {
                 let allowed = format!("{expected}, the bodies'");
                 return Err(Error::value(format!("c0[{contact}]"), found, allowed));
             }

@@ -1,5 +1,4 @@
-//! Reads plane problems of contact with friction in Siconos' text format (that of FCLIB's collection
-//! before it took to HDF5): dimension, number of contacts, kind of storage, the matrix's two sizes,
+//! Reads plane problems of contact with friction in Siconos' text format: dimension, number of contacts, kind of storage, the matrix's two sizes,
 //! kind of sparse storage, the matrix as CSparse prints its compressed columns, then q, then μ.
 
 use std::str::{FromStr, Lines};

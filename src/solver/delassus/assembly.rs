@@ -79,10 +79,10 @@ fn entry<K: Kinematics>(problem: &StepProblem<K>, places: [Place<'_, K>; 2]) -> 
         for (other_side, other_body) in bodies(other, other_pair).into_iter().enumerate() {
             let Some(body) = body.filter(|_| body == other_body) else { continue };
             let mass = problem.masses[body as usize];
-            for degree in 0..K::DEGREES {
-                sum += gradients[0][side][axis][degree]
-                    * gradients[1][other_side][other_axis][degree]
-                    / (mass * K::INERTIA_OVER_MASS[degree]);
+            let (one, two) = (gradients[0][side][axis], gradients[1][other_side][other_axis]);
+            let inertias = K::INERTIA_OVER_MASS.iter().take(K::DEGREES);
+            for ((a, b), inertia) in one.iter().zip(two).zip(inertias) {
+                sum += a * b / (mass * inertia);
             }
         }
     }
