@@ -14,7 +14,7 @@ pub enum ProblemCommand {
     /// Run a scene up to a time and write the problem of the step that begins there
     Dump {
         #[command(flatten)]
-        config: Config,
+        config: Box<Config>,
         /// Simulated time, seconds
         #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
         at: f64,

@@ -70,7 +70,7 @@ impl ProblemFile {
                 Error::value(
                     "the problem",
                     format!("not readable ({error})"),
-                    "JSON as the manual says",
+                    "the JSON of a contact problem",
                 )
             })?
         } else {
