@@ -95,5 +95,10 @@ fn tell(solution: &Solution) {
     println!("factorisations  {factorisations}");
     println!("seconds         {seconds:.3e}");
     println!("residual        {residual:.3e}");
-    println!("converged       {}", if solution.converged { "yes" } else { "no" });
+    let converged = match (solution.converged, solution.stalled) {
+        (true, _) => "yes",
+        (false, true) => "no: stalled, more sweeps are of no use",
+        (false, false) => "no: stopped too early",
+    };
+    println!("converged       {converged}");
 }

@@ -87,7 +87,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &crate::sim::Tally
     if tally.unconverged_steps > 0 {
         eprintln!(
             "{} (Bond {}, time step {} s): {} of {} steps did not reach tolerance {:e} within {} \
-             sweeps; largest residual {:.1e}",
+             sweeps, {} of them stalled (more sweeps would be of no use); largest residual {:.1e}",
             scene.name,
             scene.parameters.bond,
             scene.parameters.time_step_secs,
@@ -95,6 +95,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &crate::sim::Tally
             tally.steps,
             scene.solver.tolerance,
             scene.solver.max_sweeps,
+            tally.stalled_steps,
             tally.largest_residual
         );
     }

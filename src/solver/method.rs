@@ -162,6 +162,8 @@ pub struct SolveReport {
     pub factorisations: u32,
     /// Whether the stopping test was met.
     pub converged: bool,
+    /// Whether a solve that did not converge had stalled, rather than being stopped too early.
+    pub stalled: bool,
 }
 
 /// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in

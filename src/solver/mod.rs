@@ -15,6 +15,7 @@ mod nsgs_parallel;
 mod order;
 mod problem;
 mod settings;
+mod stall;
 mod system;
 
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};

@@ -224,6 +224,11 @@ fn readings(ui: &mut Ui, state: &AppState) {
     }
     let (mark, colour) = if last.converged {
         ("● converged".to_owned(), theme::good(dark))
+    } else if last.stalled {
+        (
+            format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual),
+            theme::warning(dark),
+        )
     } else {
         (format!("▲ not converged within {} sweeps", last.sweeps), theme::warning(dark))
     };
