@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::system::{BodySystem, ContactSystem, Vectors};
 use super::{
-    Model, Ordering, SolverSettings, StepProblem, apgd, jacobi, newton, nncg, nsgs, nsgs_parallel,
+    Model, Ordering, SolverSettings, StepProblem, admm, apgd, jacobi, newton, nncg, nsgs,
+    nsgs_parallel,
 };
 
 /// A method, by the name that command line, scene files and panels use.
@@ -21,6 +22,8 @@ pub enum Method {
     Nncg,
     /// Accelerated projected gradients with adaptive restart.
     Apgd,
+    /// Alternating directions of multipliers with a cached factorisation.
+    Admm,
     /// Jacobi with mass splitting.
     Jacobi,
 }
@@ -56,7 +59,7 @@ pub struct MethodInfo {
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 
 /// All methods.
-pub const METHODS: [MethodInfo; 6] = [
+pub const METHODS: [MethodInfo; 7] = [
     MethodInfo {
         method: Method::Nsgs,
         name: "nsgs",
@@ -93,6 +96,13 @@ pub const METHODS: [MethodInfo; 6] = [
         source: "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
     },
     MethodInfo {
+        method: Method::Admm,
+        name: "admm",
+        summary: "alternating directions of multipliers: one cached factorisation, many solves",
+        solves: "the same, the bound of friction taken anew every iteration",
+        source: "S. Boyd and others (2011); for contact V. Acary, M. Bremond, O. Huber (2018)",
+    },
+    MethodInfo {
         method: Method::Jacobi,
         name: "jacobi",
         summary: "Jacobi with mass splitting: all contacts at once, each with its part of the mass",
@@ -125,6 +135,7 @@ pub fn solve<M: Model>(
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
         Method::NsgsParallel => nsgs_parallel::solve::<M>(problem, settings),
         Method::Newton => newton::solve::<M>(problem, settings),
+        Method::Admm => admm::solve::<M>(problem, settings),
         Method::Nncg | Method::Apgd | Method::Jacobi => {
             let mut vectors = std::mem::take(&mut problem.vectors);
             let system = &mut BodySystem::<M>::new(problem);
@@ -150,6 +161,6 @@ pub fn solve_system<S: ContactSystem>(
         Method::Nncg => Some(nncg::solve(system, settings, vectors)),
         Method::Apgd => Some(apgd::solve(system, settings, vectors)),
         Method::Jacobi => Some(jacobi::solve(system, settings, vectors)),
-        Method::Nsgs | Method::NsgsParallel | Method::Newton => None,
+        Method::Nsgs | Method::NsgsParallel | Method::Newton | Method::Admm => None,
     }
 }

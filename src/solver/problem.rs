@@ -1,5 +1,6 @@
 //! The problem of one step: packed bodies and one row a contact, in the order of the sweep.
 
+use super::admm;
 use super::newton::Workspaces;
 use super::nsgs_parallel::Colouring;
 use super::order::Sorter;
@@ -61,6 +62,7 @@ pub struct StepProblem<K: Kinematics> {
     /// Mean mass of the grains, kg.
     pub mean_mass: f64,
     pub(super) newton: Workspaces,
+    pub(super) admm: admm::Workspaces,
     pub(super) vectors: Vectors,
     /// √m_n of the rows, kg^½; filled where a method asks for it.
     pub(super) root_masses: Vec<f64>,
@@ -82,6 +84,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             masses: Vec::new(),
             mean_mass: 0.0,
             newton: Workspaces::default(),
+            admm: admm::Workspaces::default(),
             vectors: Vectors::default(),
             root_masses: Vec::new(),
             colouring: Colouring::default(),
