@@ -136,8 +136,8 @@ impl<const D: usize> Workspace<D> {
         matrix.clear(elimination);
         for (body, &mass) in problem.masses.iter().enumerate() {
             let block = matrix.diagonal_mut(elimination.place_of[body]);
-            for axis in 0..D {
-                block[axis][axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+            for (axis, entries) in block.iter_mut().enumerate() {
+                entries[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
             }
         }
         let tangential = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;

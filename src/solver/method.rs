@@ -70,7 +70,7 @@ pub const METHODS: [MethodInfo; 7] = [
     MethodInfo {
         method: Method::NsgsParallel,
         name: "nsgs-parallel",
-        summary: "Gauss-Seidel by colours on several threads: for piles of tens of thousands",
+        summary: "Gauss-Seidel by colours on several threads: for large piles on idle cores",
         solves: COULOMB,
         source: "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
     },
