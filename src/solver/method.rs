@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::system::{BodySystem, ContactSystem, Vectors};
 use super::{
-    Model, Ordering, SolverSettings, StepProblem, apgd, jacobi, newton, nncg, nsgs, nsgs_parallel,
+    Model, Ordering, SolverSettings, StepProblem, admm, apgd, jacobi, newton, nncg, nsgs,
+    nsgs_parallel,
 };
 use crate::error::{Error, Result};
 
@@ -22,6 +23,8 @@ pub enum Method {
     Nncg,
     /// Accelerated projected gradients with adaptive restart.
     Apgd,
+    /// Alternating directions of multipliers with a cached factorisation.
+    Admm,
     /// Jacobi with mass splitting.
     Jacobi,
     /// Substeps with soft contacts.
@@ -94,7 +97,7 @@ pub struct MethodInfo {
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 
 /// All methods.
-pub const METHODS: [MethodInfo; 8] = [
+pub const METHODS: [MethodInfo; 9] = [
     MethodInfo {
         method: Method::Nsgs,
         name: "nsgs",
@@ -105,7 +108,7 @@ pub const METHODS: [MethodInfo; 8] = [
     MethodInfo {
         method: Method::NsgsParallel,
         name: "nsgs-parallel",
-        summary: "Gauss-Seidel by colours on several threads: for piles of tens of thousands",
+        summary: "Gauss-Seidel by colours on several threads: for large piles on idle cores",
         solves: COULOMB,
         source: "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
     },
@@ -129,6 +132,13 @@ pub const METHODS: [MethodInfo; 8] = [
         summary: "accelerated projected gradients with restart: all contacts at once, no order",
         solves: "the same, the bound of friction taken anew every iteration",
         source: "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
+    },
+    MethodInfo {
+        method: Method::Admm,
+        name: "admm",
+        summary: "alternating directions of multipliers: one cached factorisation, many solves",
+        solves: "the same, the bound of friction taken anew every iteration",
+        source: "S. Boyd and others (2011); for contact V. Acary, M. Bremond, O. Huber (2018)",
     },
     MethodInfo {
         method: Method::Jacobi,
@@ -182,6 +192,7 @@ pub fn solve<M: Model>(
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
         Method::NsgsParallel => nsgs_parallel::solve::<M>(problem, settings),
         Method::Newton => newton::solve::<M>(problem, settings),
+        Method::Admm => admm::solve::<M>(problem, settings),
         Method::Nncg | Method::Apgd | Method::Jacobi => {
             let mut vectors = std::mem::take(&mut problem.vectors);
             let system = &mut BodySystem::<M>::new(problem);

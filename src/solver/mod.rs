@@ -1,5 +1,6 @@
 //! One step's contact problem, the methods that solve it, and the residual that judges them all.
 
+mod admm;
 mod apgd;
 mod delassus;
 mod iterate;

@@ -151,7 +151,7 @@ pub fn method_box(
 ) {
     let name =
         |method| METHODS.iter().find(|info| info.method == method).map_or("", |info| info.name);
-    let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(110.0);
+    let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(100.0);
     let shown = list.selected_text(name(solver.method)).show_ui(ui, |ui| {
         for info in &METHODS {
             ui.selectable_value(&mut solver.method, info.method, info.name).on_hover_text(format!(

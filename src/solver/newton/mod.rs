@@ -25,8 +25,8 @@
 //! A. Curnier 1991), with ε adapted as in a trust region.
 
 mod assembly;
-mod block_lu;
-mod ordering;
+pub(super) mod block_lu;
+pub(super) mod ordering;
 
 use self::assembly::{Guess, assemble};
 use self::block_lu::BlockMatrix;
