@@ -324,7 +324,7 @@ fn draw(
             let line = [0.7 * slowest, 1.5 * fastest].map(|x| (x, floor.max(LEAST_ERROR)));
             let grey = (130, 130, 130);
             chart.layers.push(Layer::curve(
-                "difference of two references",
+                "two references\nfrom each other",
                 points(line),
                 grey,
                 Look::Dashes(2),
