@@ -6,7 +6,7 @@ mod common;
 use std::hint::black_box;
 
 use common::timing::{criterion, least_secs};
-use slump::solver::{PlaneBody, SpinningPlane, StepModel, StepProblem, sweep};
+use slump::solver::{PlaneBody, SolverSettings, SpinningPlane, StepModel, StepProblem, sweep};
 
 type Full = StepModel<SpinningPlane, true, false>;
 

@@ -2,13 +2,14 @@
 //!
 //! The source is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics
 //! Algorithm* (2020, hal-02570097), "the paper" throughout. Modules depend downward only: [`world`] ←
-//! [`contact`] ← [`solver`] ← [`sim`] ← [`scene`] ← [`study`]; [`render`] sees `world` and the
+//! [`contact`] ← [`solver`] ← [`sim`] ← [`scene`] ← [`study`], [`interchange`]; [`render`] sees `world` and the
 //! snapshots of `sim`; [`headless`] sees all. The physics knows no screen.
 
 pub mod app;
 pub mod contact;
 pub mod error;
 pub mod headless;
+pub mod interchange;
 pub mod render;
 pub mod scene;
 pub mod sim;

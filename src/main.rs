@@ -1,5 +1,6 @@
 //! The command line.
 
+mod problem_command;
 mod sweep_command;
 
 use std::path::PathBuf;
@@ -49,6 +50,11 @@ enum Command {
     },
     /// List the built-in scenes and the methods
     List,
+    /// Write the contact problem of one step to a file, or solve such a file alone
+    Problem {
+        #[command(subcommand)]
+        command: problem_command::ProblemCommand,
+    },
     /// Run a study: all combinations of lists and ranges of parameters, on all cores
     Sweep(sweep_command::SweepCommand),
     /// Make the paper's figures, and those its conclusion asks for, from simulation alone
@@ -117,6 +123,7 @@ fn run(cli: Cli) -> Result<()> {
             list();
             Ok(())
         }
+        Some(Command::Problem { command }) => command.run(),
         Some(Command::Sweep(command)) => command.run(),
         Some(Command::Reproduce { figures, out, quick }) => reproduce(&figures, &out, quick),
         Some(Command::Chart { out, quick, large, only, peers }) => {

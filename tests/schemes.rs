@@ -439,7 +439,8 @@ fn mean(values: &[f64]) -> (f64, f64) {
 
 #[test]
 fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
-    // Contact Dynamics solved to 1e-7 slumps 0.46 at every Δt, within 0.05 of it with every state.
+    // By Gauss-Seidel to a relative change of 1e-6, Δt = 1e-3 s, from seeds 1 to 4 of the rain.
+    let contact_dynamics = [0.454, 0.484, 0.532, 0.475];
     let states: Vec<Scene> = (1..=4)
         .into_par_iter()
         .map(|seed| {
@@ -457,9 +458,10 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
             simulation.observables().slump
         };
         let slumps: Vec<f64> = states.par_iter().map(slump).collect();
-        let (mean, error) = mean(&slumps);
-        println!("{method:?}: {mean:.3} ± {error:.3} {slumps:.3?}");
+        let pairs = slumps.iter().zip(contact_dynamics);
+        let (change, error) = mean(&pairs.map(|(slump, other)| slump - other).collect::<Vec<_>>());
+        println!("{method:?}: {slumps:.3?}, more by {change:.3} ± {error:.3}");
         assert!(error < 0.02, "± {error} tells nothing");
-        assert!((mean - 0.46).abs() < 0.05 - error, "{method:?}: {mean} ± {error}");
+        assert!(change.abs() + error < 0.05, "{method:?}: more by {change} ± {error}");
     }
 }

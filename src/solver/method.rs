@@ -50,6 +50,11 @@ pub enum Scheme {
 }
 
 impl Method {
+    /// Whether the order of the settings tells the method in which order to sweep.
+    pub fn sweeps_in_order(self) -> bool {
+        matches!(self, Self::Nsgs | Self::Newton | Self::Nncg)
+    }
+
     /// The order of the rows that the method needs where the settings ask for `asked`.
     pub(super) fn ordering(self, asked: Ordering) -> Ordering {
         if self == Self::NsgsParallel { Ordering::Coloured } else { asked }

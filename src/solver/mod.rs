@@ -1,6 +1,7 @@
 //! One step's contact problem, the methods that solve it, and the residual that judges them all.
 
 mod apgd;
+mod delassus;
 mod iterate;
 mod jacobi;
 mod kinematics;
@@ -16,12 +17,13 @@ mod problem;
 mod settings;
 mod system;
 
+pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, measure, residual};
 pub use method::{
     METHODS, Method, MethodInfo, MethodKind, Scheme, SolveReport, solve, solve_system,
 };
-pub use model::{Model, ModelVisitor, StepModel, visit_leanest};
+pub use model::{Model, ModelParts, ModelVisitor, StepModel, visit_leanest, visit_model};
 pub use order::Ordering;
 pub use problem::{Problems, Row, StepProblem};
 pub use settings::{MAX_SUBSTEPS, SolverSettings, StopTest};

@@ -46,10 +46,33 @@ pub fn visit_leanest<V: ModelVisitor>(
     parameters: &Parameters,
     visitor: V,
 ) -> V::Output {
-    let friction = physics.friction && parameters.friction > 0.0;
     let cohesion = physics.cohesion && parameters.bond > 0.0;
-    let compressive = cohesion && parameters.cone == FrictionCone::Compressive;
-    match (physics.axes, friction, physics.rotation, compressive) {
+    let parts = ModelParts {
+        axes: physics.axes,
+        friction: physics.friction && parameters.friction > 0.0,
+        rotation: physics.rotation,
+        compressive_cone: cohesion && parameters.cone == FrictionCone::Compressive,
+    };
+    visit_model(parts, visitor)
+}
+
+/// What a model computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ModelParts {
+    /// 1 or 2.
+    pub axes: u8,
+    /// Whether contacts carry tangential impulses.
+    pub friction: bool,
+    /// Whether grains turn; without friction nothing turns them.
+    pub rotation: bool,
+    /// Whether only the compressive part of the normal force rubs.
+    pub compressive_cone: bool,
+}
+
+/// Calls `visitor` with the model that computes just these parts.
+pub fn visit_model<V: ModelVisitor>(parts: ModelParts, visitor: V) -> V::Output {
+    let ModelParts { axes, friction, rotation, compressive_cone } = parts;
+    match (axes, friction, rotation, compressive_cone) {
         (1, ..) => visitor.visit::<StepModel<Line, false, false>>(),
         (_, false, ..) => visitor.visit::<StepModel<Plane, false, false>>(),
         (_, true, false, false) => visitor.visit::<StepModel<Plane, true, false>>(),

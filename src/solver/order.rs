@@ -70,6 +70,21 @@ impl Sorter {
         }
     }
 
+    /// Appends contacts of one kind by colours, as [`Sorter::append`] does, where nothing is known
+    /// of them but their grains.
+    pub fn append_coloured(
+        &mut self,
+        (grains, contacts): (usize, &[Contact]),
+        numbers: impl Iterator<Item = u32>,
+        rows: &mut Vec<u32>,
+        ends: &mut Vec<usize>,
+    ) {
+        self.detected.clear();
+        self.detected.extend(numbers);
+        ends.clear();
+        self.colour(grains, contacts, rows, ends);
+    }
+
     fn interleave(&self, rows: &mut Vec<u32>) {
         let stretch = self.detected.len().div_ceil(STREAMS);
         for offset in 0..stretch {

@@ -1,5 +1,7 @@
 //! The problem of one step: packed bodies and one row a contact, in the order of the sweep.
 
+use glam::DVec2;
+
 use super::newton::Workspaces;
 use super::nsgs_parallel::Colouring;
 use super::order::Sorter;
@@ -189,7 +191,7 @@ impl<K: Kinematics> StepProblem<K> {
     }
 
     /// Moves the bodies from their free velocities by the rows' impulses.
-    pub(super) fn form_velocities(&mut self) {
+    pub fn form_velocities(&mut self) {
         self.bodies.clone_from(&self.free);
         for row in &self.fixed_rows {
             let impulse = self.reduced_impulse(row);
@@ -202,6 +204,33 @@ impl<K: Kinematics> StepProblem<K> {
             self.bodies[row.i as usize] = i;
             self.bodies[row.j as usize] = j;
         }
+    }
+
+    /// Puts rows that were not made by [`StepProblem::prepare`] in the order of colours, for the
+    /// method that needs it.
+    pub fn sort_by_colours(&mut self) {
+        let Self { fixed_rows, pair_rows, contact_of_row, colouring, sorter, .. } = self;
+        let contact = |row: &Row<K>, other: u32| Contact {
+            grain: row.i,
+            other,
+            normal: DVec2::ZERO,
+            gap: 0.0,
+        };
+        let contacts: Vec<Contact> = fixed_rows
+            .iter()
+            .map(|row| contact(row, u32::MAX))
+            .chain(pair_rows.iter().map(|row| contact(row, row.j)))
+            .collect();
+        let [fixed_ends, pair_ends] = &mut colouring.ends;
+        let (fixed, all) = (fixed_rows.len() as u32, contacts.len() as u32);
+        let mut order = Vec::with_capacity(contacts.len());
+        let list = (self.masses.len(), &contacts[..]);
+        sorter.append_coloured(list, 0..fixed, &mut order, fixed_ends);
+        sorter.append_coloured(list, fixed..all, &mut order, pair_ends);
+        let (of_fixed, of_pairs) = order.split_at(fixed as usize);
+        *fixed_rows = of_fixed.iter().map(|&row| fixed_rows[row as usize]).collect();
+        *pair_rows = of_pairs.iter().map(|&row| pair_rows[(row - fixed) as usize]).collect();
+        *contact_of_row = order.iter().map(|&row| contact_of_row[row as usize]).collect();
     }
 
     /// (λ_n, λ_t) of a row, m/s.

@@ -1,7 +1,9 @@
 //! The recording gives back what was computed, bit for bit.
 
 use egui_kittest::kittest::Queryable;
+use slump::sim::Pull;
 use slump::sim::live::{Command, Live, LiveOptions, Start};
+use slump::solver::{Method, SolverSettings};
 
 use crate::robot::{Robot, bits, pile};
 
@@ -106,5 +108,30 @@ fn little_memory_is_enough_to_get_anywhere() {
             assert!(start.elapsed().as_secs() < 30, "waited in vain for step {step}");
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
+    }
+}
+
+#[test]
+fn stepping_schemes_and_a_pull_are_played_back_bitwise() {
+    let mut robot = Robot::open(pile());
+    let solver = robot.world().settings.solver;
+    let pull = Pull { grain: 100, target: glam::DVec2::new(0.0, 0.1) };
+    for (method, steps) in [(Method::Dem, 40), (Method::TgsSoft, 20), (Method::Dem, 20)] {
+        let settings = SolverSettings { method, ..solver };
+        robot.state_mut().live.send(Command::SetSolver(0, settings));
+        robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
+        for _ in 0..steps {
+            robot.state_mut().step();
+        }
+    }
+    robot.settle();
+    let (uninterrupted, end_secs) = (bits(robot.world()), robot.state().frame.time_secs());
+    for time_secs in [0.015, 0.05] {
+        robot.state_mut().live.send(Command::Seek(time_secs));
+        robot.settle();
+        assert_ne!(bits(robot.world()), uninterrupted);
+        robot.state_mut().live.send(Command::Seek(end_secs));
+        robot.settle();
+        assert_eq!(bits(robot.world()), uninterrupted, "from {time_secs} s on");
     }
 }

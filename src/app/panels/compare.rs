@@ -94,7 +94,9 @@ fn presets(ui: &mut Ui, state: &mut AppState) {
             state.live.send(Command::Compare(all.to_vec()));
         }
         if METHODS.len() > 1 {
-            let methods = ui.button("Methods").on_hover_text("All methods on the same problem.");
+            let methods = ui
+                .button("Methods")
+                .on_hover_text("As many methods as there is room for, on the same problem.");
             if methods.clicked() {
                 let all = METHODS.iter().take(MOST_WORLDS).map(|info| {
                     let mut variant = base;

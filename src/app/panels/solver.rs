@@ -6,13 +6,24 @@ use crate::app::number::Number;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::sim::live::StartInfo;
-use crate::solver::{MAX_SUBSTEPS, METHODS, Method, MethodKind, SolverSettings, StopTest};
+use crate::solver::{
+    MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest,
+};
 
 /// The stopping tests, as the panel calls them.
 const STOP_TESTS: [(StopTest, &str, &str); 3] = [
     (StopTest::RelativeChange, "relative change", "‖ΔP‖ of a sweep over ‖P‖"),
     (StopTest::ImpulsePerMass, "Σ|ΔP|/m", "sum of |ΔP| of a sweep over the mean mass, m/s"),
     (StopTest::Residual, "residual", "the residual that judges all methods"),
+];
+
+/// The orders of a sweep, as the panel calls them.
+const ORDERINGS: [(Ordering, &str, &str); 5] = [
+    (Ordering::Interleaved, "interleaved", "distant contacts in turn: the fastest sweep"),
+    (Ordering::Detected, "as detected", "sorted by grain"),
+    (Ordering::BottomUp, "bottom up", "from the lowest contact to the highest"),
+    (Ordering::Symmetric, "symmetric", "interleaved, every second sweep backward"),
+    (Ordering::Coloured, "coloured", "contacts that share no grain follow each other"),
 ];
 
 /// Shows the panel.
@@ -27,6 +38,20 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
         ui.label("Method").on_hover_text("How the impulses of a step are found.");
         method_box(ui, "method", &mut solver);
         ui.end_row();
+        if solver.method.sweeps_in_order() {
+            let label = ui.label("Order").on_hover_text("In which order a sweep visits contacts.");
+            let list = ComboBox::from_id_salt("ordering").width(150.0);
+            let named = ORDERINGS.iter().find(|(ordering, ..)| *ordering == solver.ordering);
+            let shown = list.selected_text(named.map_or("", |(_, name, _)| name));
+            let shown = shown.show_ui(ui, |ui| {
+                for (ordering, name, hint) in ORDERINGS {
+                    let choice = ui.selectable_value(&mut solver.ordering, ordering, name);
+                    choice.on_hover_text(hint);
+                }
+            });
+            shown.response.labelled_by(label.id);
+            ui.end_row();
+        }
     });
     match before.method.kind() {
         MethodKind::Problem => stop_controls(ui, &mut solver, &start),
@@ -71,7 +96,7 @@ fn stop_controls(ui: &mut Ui, solver: &mut SolverSettings, start: &StartInfo) {
     let sweeps = Number {
         label: "Sweep limit",
         unit: "",
-        hint: "A step that needs more sweeps is reported as not converged.",
+        hint: "A step that needs more sweeps (or iterations) is reported as not converged.",
         range: [1.0, 100_000.0],
         logarithmic: true,
         default: f64::from(start.solver.max_sweeps),
@@ -126,11 +151,13 @@ pub fn method_box(
 ) {
     let name =
         |method| METHODS.iter().find(|info| info.method == method).map_or("", |info| info.name);
-    let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(100.0);
+    let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(110.0);
     let shown = list.selected_text(name(solver.method)).show_ui(ui, |ui| {
         for info in &METHODS {
-            ui.selectable_value(&mut solver.method, info.method, info.name)
-                .on_hover_text(format!("{} ({})", info.summary, info.source));
+            ui.selectable_value(&mut solver.method, info.method, info.name).on_hover_text(format!(
+                "{}. Solves {} ({}).",
+                info.summary, info.solves, info.source
+            ));
         }
     });
     let about = || egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Method");

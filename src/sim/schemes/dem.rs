@@ -117,7 +117,8 @@ fn restitution_of(damping_ratio: f64) -> f64 {
     if root == 0.0 {
         return (-2f64).exp();
     }
-    let angle = if damping_ratio < 1.0 { damping_ratio.acos() } else { damping_ratio.acosh() };
+    // arccos ζ and arcosh ζ, from the root for the same reason.
+    let angle = if damping_ratio < 1.0 { root.atan2(damping_ratio) } else { root.asinh() };
     (-2.0 * damping_ratio * angle / root).exp()
 }
 

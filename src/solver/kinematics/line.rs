@@ -30,6 +30,10 @@ impl Kinematics for Line {
         [body.velocity, 0.0, 0.0]
     }
 
+    fn from_coordinates([velocity, ..]: [f64; 3]) -> LineBody {
+        LineBody { velocity }
+    }
+
     fn gradients(normal: f64) -> [[[f64; 3]; 2]; 2] {
         [[[normal, 0.0, 0.0], [0.0; 3]], [[-normal, 0.0, 0.0], [0.0; 3]]]
     }

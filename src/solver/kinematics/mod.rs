@@ -72,6 +72,8 @@ pub trait Kinematics: Copy + Send + Sync + 'static {
     fn kinetic_energy(body: &Self::Body, mass: f64) -> f64;
     /// A body's velocity, an entry a degree of freedom; the rest is 0.
     fn coordinates(body: &Self::Body) -> [f64; 3];
+    /// The body of which these are the coordinates.
+    fn from_coordinates(coordinates: [f64; 3]) -> Self::Body;
     /// How the coordinates of i, then of j, enter (v_n, v_t): v_n = Σ \[body\]\[0\]·coordinates,
     /// v_t = Σ \[body\]\[1\]·coordinates.
     fn gradients(normal: Self::Normal) -> [[[f64; 3]; 2]; 2];

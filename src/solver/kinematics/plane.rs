@@ -40,6 +40,10 @@ macro_rules! plane_kinematics {
                 [body.velocity[0], body.velocity[1], body.spin]
             }
 
+            fn from_coordinates([x, y, spin]: [f64; 3]) -> PlaneBody {
+                PlaneBody { velocity: [x, y], spin }
+            }
+
             #[inline(always)]
             fn gradients([nx, ny]: [f64; 2]) -> [[[f64; 3]; 2]; 2] {
                 let normal = [nx, ny, 0.0];

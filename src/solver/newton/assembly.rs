@@ -18,18 +18,15 @@ pub(super) fn assemble<M: Model, const D: usize>(
     workspace: &mut Workspace<D>,
     compliance: f64,
 ) {
-    let Workspace { elimination, matrix, vector, guesses, .. } = workspace;
+    let Workspace { elimination, matrix, vector, guesses, pair_blocks, .. } = workspace;
     matrix.clear(elimination);
     vector.clear();
     vector.resize(problem.bodies.len(), [0.0; D]);
     for (body, &mass) in problem.masses.iter().enumerate() {
         let place = elimination.place_of[body];
-        let free = M::Kinematics::coordinates(&problem.free[body]);
         let block = matrix.diagonal_mut(place);
-        for axis in 0..D {
-            let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
-            block[axis][axis] = inertia;
-            vector[place as usize][axis] = inertia * free[axis];
+        for (axis, row) in block.iter_mut().enumerate() {
+            row[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
         }
     }
     guesses.clear();
@@ -38,19 +35,19 @@ pub(super) fn assemble<M: Model, const D: usize>(
         let guess = guess::<M>(problem, row, velocity);
         guesses.push(guess);
         let gradients = M::Kinematics::gradients(row.normal);
-        let terms = Terms::<D>::new::<M>(problem, row, guess, compliance, &gradients[0]);
+        let terms = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[0]);
         let place = elimination.place_of[row.i as usize];
         terms.add(matrix.diagonal_mut(place), &terms);
         terms.add_load(&mut vector[place as usize]);
     }
-    for row in &problem.pair_rows {
+    for (row, &block) in problem.pair_rows.iter().zip(&*pair_blocks) {
         let (body_i, body_j) = (&problem.bodies[row.i as usize], &problem.bodies[row.j as usize]);
         let velocity = M::Kinematics::relative_velocity(row.normal, body_i, body_j);
         let guess = guess::<M>(problem, row, velocity);
         guesses.push(guess);
         let gradients = M::Kinematics::gradients(row.normal);
-        let on_i = Terms::<D>::new::<M>(problem, row, guess, compliance, &gradients[0]);
-        let on_j = Terms::<D>::new::<M>(problem, row, guess, compliance, &gradients[1]);
+        let on_i = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[0]);
+        let on_j = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[1]);
         let i = elimination.place_of[row.i as usize];
         let j = elimination.place_of[row.j as usize];
         on_i.add_load(&mut vector[i as usize]);
@@ -58,8 +55,9 @@ pub(super) fn assemble<M: Model, const D: usize>(
         if guess != Guess::Open {
             on_i.add(matrix.diagonal_mut(i), &on_i);
             on_j.add(matrix.diagonal_mut(j), &on_j);
-            on_i.add(matrix.block_mut(elimination, i, j), &on_j);
-            on_j.add(matrix.block_mut(elimination, j, i), &on_i);
+            let (i_to_j, j_to_i) = matrix.off_diagonal_mut(block, i < j);
+            on_i.add(i_to_j, &on_j);
+            on_j.add(j_to_i, &on_i);
         }
     }
 }
@@ -93,7 +91,7 @@ struct Terms<const D: usize> {
     /// Stiffnesses against v_n and v_t, kg.
     normal_stiffness: f64,
     tangential_stiffness: f64,
-    /// The impulse at V = 0, kg·m/s.
+    /// What the impulse changes by at the present velocities, kg·m/s.
     load: [f64; D],
 }
 
@@ -102,6 +100,7 @@ impl<const D: usize> Terms<D> {
     fn new<M: Model>(
         problem: &StepProblem<M::Kinematics>,
         row: &Row<M::Kinematics>,
+        [normal_velocity, tangential_velocity]: [f64; 2],
         guess: Guess,
         compliance: f64,
         gradients: &[[f64; 3]; 2],
@@ -109,24 +108,24 @@ impl<const D: usize> Terms<D> {
         let part = |vector: &[f64; 3]| std::array::from_fn::<f64, D, _>(|axis| vector[axis]);
         let (normal, tangent) = (part(&gradients[0]), part(&gradients[1]));
         let mass = row.effective_mass;
-        let capture_speed = problem.capture_speed;
         let stiffness = mass / compliance;
-        // σ' at V = 0.
-        let at_rest = row.shifted_impulse - row.restitution_velocity / compliance;
-        let (slope, normal_stiffness, tangential_stiffness, tangential_load) = match guess {
-            Guess::Open => (0.0, 0.0, 0.0, 0.0),
+        let (shifted, tangential) = (row.shifted_impulse, row.tangential_impulse);
+        let normal_change = -(normal_velocity + row.restitution_velocity) / compliance;
+        let (slope, normal_stiffness, tangential_stiffness, changes) = match guess {
+            Guess::Open => (0.0, 0.0, 0.0, [-shifted, -tangential]),
             Guess::Stick => {
                 let softness = M::Kinematics::TANGENTIAL_COMPLIANCE;
-                (0.0, stiffness, stiffness / softness, mass * row.tangential_impulse)
+                let tangential_change = -tangential_velocity / (softness * compliance);
+                (0.0, stiffness, stiffness / softness, [normal_change, tangential_change])
             }
             Guess::Slip(sign) => {
                 let slope = sign * problem.friction;
-                let rubbing = if M::COMPRESSIVE_CONE { at_rest - capture_speed } else { at_rest };
-                (slope, stiffness, 0.0, mass * slope * rubbing)
+                let all = shifted + normal_change;
+                let rubbing = if M::COMPRESSIVE_CONE { all - problem.capture_speed } else { all };
+                (slope, stiffness, 0.0, [normal_change, slope * rubbing - tangential])
             }
         };
-        let shifted_load = if guess == Guess::Open { 0.0 } else { at_rest };
-        let normal_load = mass * (shifted_load - capture_speed);
+        let [normal_load, tangential_load] = changes.map(|change| mass * change);
         Self {
             normal,
             tangent,

@@ -40,13 +40,16 @@ impl<const D: usize> BlockMatrix<D> {
         &mut self.diagonal[place as usize]
     }
 
-    /// The block in row `row` and column `column`, different places that are neighbours.
-    pub fn block_mut(&mut self, elimination: &Elimination, row: u32, column: u32) -> &mut Block<D> {
-        if row < column {
-            &mut self.upper[elimination.block(row, column)]
-        } else {
-            &mut self.lower[elimination.block(column, row)]
-        }
+    /// Blocks (i, j) and (j, i) of two places that are neighbours, `number` being the index of the
+    /// later one among [`Elimination::later`].
+    #[inline(always)]
+    pub fn off_diagonal_mut(
+        &mut self,
+        number: u32,
+        i_is_earlier: bool,
+    ) -> (&mut Block<D>, &mut Block<D>) {
+        let (upper, lower) = (&mut self.upper[number as usize], &mut self.lower[number as usize]);
+        if i_is_earlier { (upper, lower) } else { (lower, upper) }
     }
 
     /// Factorises in place: L with unit diagonal below, U above, inverses of U's diagonal blocks.
@@ -210,11 +213,11 @@ mod tests {
         }
         for &(i, j) in &pairs {
             let (a, b) = (elimination.place_of[i as usize], elimination.place_of[j as usize]);
-            for (row, column) in [(a, b), (b, a)] {
-                let there = block();
-                *matrix.block_mut(&elimination, row, column) = there;
-                entries.push((row, column, there));
-            }
+            let number = elimination.block(a.min(b), a.max(b)) as u32;
+            let (there, back) = (block(), block());
+            let (upper, lower) = matrix.off_diagonal_mut(number, a < b);
+            (*upper, *lower) = (there, back);
+            entries.extend([(a, b, there), (b, a, back)]);
         }
         let solution: Vec<[f64; 3]> = (0..bodies).map(|k| [1.0, k as f64, -2.0]).collect();
         let mut vector = vec![[0.0; 3]; bodies];

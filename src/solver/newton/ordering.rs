@@ -4,6 +4,12 @@
 //! first, and its neighbours become neighbours of each other. Contact graphs are nearly planar, so
 //! the neighbourhoods stay small.
 
+use smallvec::SmallVec;
+
+/// Neighbours of a body. A disc has seldom more than six at first, and elimination seldom doubles
+/// them; more go to the heap.
+type Neighbours = SmallVec<[u32; 12]>;
+
 /// An order of elimination and the structure of the factors. Bodies are called by their place in the
 /// order from here on.
 #[derive(Clone, Debug, Default)]
@@ -20,8 +26,8 @@ pub struct Elimination {
     /// For each place, for each pair a < b of its later neighbours in lexicographic order: the block
     /// of (a, b).
     pub targets: Vec<u32>,
-    neighbours: Vec<Vec<u32>>,
-    merged: Vec<u32>,
+    neighbours: Vec<Neighbours>,
+    merged: Neighbours,
     by_degree: Vec<Vec<u32>>,
 }
 
@@ -30,7 +36,7 @@ const NOT_YET: u32 = u32::MAX;
 impl Elimination {
     /// Orders `bodies` bodies with the given pairs of neighbours (in any order, repeats allowed).
     pub fn analyse(&mut self, bodies: usize, pairs: impl Iterator<Item = (u32, u32)>) {
-        self.neighbours.resize_with(bodies.max(self.neighbours.len()), Vec::new);
+        self.neighbours.resize_with(bodies.max(self.neighbours.len()), Neighbours::new);
         for list in &mut self.neighbours {
             list.clear();
         }
@@ -91,9 +97,21 @@ impl Elimination {
     fn join(&mut self, body: u32, eliminated: u32, clique: &[u32]) {
         let own = &mut self.neighbours[body as usize];
         self.merged.clear();
-        self.merged.extend(own.iter().chain(clique).filter(|&&n| n != body && n != eliminated));
-        self.merged.sort_unstable();
-        self.merged.dedup();
+        // Both are sorted, so a merge keeps them so.
+        let (mut a, mut b) = (own.iter().copied().peekable(), clique.iter().copied().peekable());
+        loop {
+            let next = match (a.peek(), b.peek()) {
+                (Some(x), Some(y)) if x < y => a.next(),
+                (Some(x), Some(y)) if x == y => {
+                    a.next();
+                    b.next()
+                }
+                (Some(_), None) => a.next(),
+                (_, Some(_)) => b.next(),
+                (None, None) => break,
+            };
+            self.merged.extend(next.filter(|&other| other != body && other != eliminated));
+        }
         std::mem::swap(own, &mut self.merged);
     }
 

@@ -1,0 +1,227 @@
+//! The bodies behind a problem's W and q, for methods that work on bodies.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::ProblemFile;
+use super::problem_file::pairs;
+use crate::error::{Error, Result};
+use crate::solver::{
+    Assembled, Kinematics, Model, ModelParts, ModelVisitor, Row, StepProblem, visit_model,
+};
+use crate::world::FrictionCone;
+
+/// Two forms of one problem may differ by this part: rounding, with room for a file whose numbers
+/// were cut to ten digits.
+const DISAGREEMENT: f64 = 1e-9;
+
+/// Discs and their contacts: what W, q and c₀ were made of. Lists have an entry a body or an entry a
+/// contact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyForm {
+    /// 1 (all on the x axis) or 2.
+    pub axes: u8,
+    /// Whether bodies turn.
+    pub rotation: bool,
+    /// Bond·g·Δt, m/s: c₀ = m_n times this.
+    pub capture_speed: f64,
+    /// Of each body, kg.
+    pub mass: Vec<f64>,
+    /// Of each body, kg·m²: that of a solid disc, ½mr².
+    pub inertia: Vec<f64>,
+    /// Of each body, m: the lever arm of all its contacts.
+    pub radius: Vec<f64>,
+    /// (v_x, v_y, ω) of each body without contact impulses, m/s and rad/s.
+    pub free_velocity: Vec<[f64; 3]>,
+    /// Bodies i and j of each contact; j is null for a fixed body.
+    pub pair: Vec<(u32, Option<u32>)>,
+    /// n of each contact, from j to i.
+    pub normal: Vec<[f64; 2]>,
+    /// Restitution's term in q of each contact, m/s.
+    pub restitution_velocity: Vec<f64>,
+}
+
+impl BodyForm {
+    /// Checks the bodies, and that the file's W, q and c₀ are theirs.
+    ///
+    /// # Errors
+    /// Names what does not fit.
+    pub(super) fn check(&self, file: &ProblemFile) -> Result<()> {
+        let (bodies, contacts) = (self.mass.len(), file.nc);
+        let lengths = [
+            ("inertia", self.inertia.len(), bodies),
+            ("radius", self.radius.len(), bodies),
+            ("free_velocity", self.free_velocity.len(), bodies),
+            ("pair", self.pair.len(), contacts),
+            ("normal", self.normal.len(), contacts),
+            ("restitution_velocity", self.restitution_velocity.len(), contacts),
+        ];
+        for (field, found, wanted) in lengths {
+            if found != wanted {
+                let field = format!("the length of bodies.{field}");
+                return Err(Error::value(field, found, wanted.to_string()));
+            }
+        }
+        if !matches!((self.axes, self.rotation), (1, false) | (2, _)) {
+            return Err(Error::value("bodies.axes", self.axes, "2, or 1 without rotation"));
+        }
+        if !(self.capture_speed >= 0.0 && self.capture_speed.is_finite()) {
+            let allowed = "a finite number ≥ 0";
+            return Err(Error::value("bodies.capture_speed", self.capture_speed, allowed));
+        }
+        for (body, (&mass, &radius)) in self.mass.iter().zip(&self.radius).enumerate() {
+            for (field, value) in [("mass", mass), ("radius", radius)] {
+                if !(value > 0.0 && value.is_finite()) {
+                    let field = format!("bodies.{field}[{body}]");
+                    return Err(Error::value(field, value, "a finite number > 0"));
+                }
+            }
+            let (inertia, solid) = (self.inertia[body], 0.5 * mass * radius * radius);
+            if !agree(inertia, solid, solid) {
+                let allowed = format!("{solid}, that of a solid disc");
+                return Err(Error::value(format!("bodies.inertia[{body}]"), inertia, allowed));
+            }
+        }
+        for (contact, &(i, j)) in self.pair.iter().enumerate() {
+            if i as usize >= bodies || j.is_some_and(|j| j as usize >= bodies || i == j) {
+                let found = format!("({i}, {})", j.map_or("null".into(), |j| j.to_string()));
+                let allowed = format!("two bodies below {bodies}, the second one null if fixed");
+                return Err(Error::value(format!("bodies.pair[{contact}]"), found, allowed));
+            }
+        }
+        visit_model(self.parts(file)?, Check { bodies: self, file })
+    }
+
+    /// The model that solves this problem on its bodies.
+    ///
+    /// # Errors
+    /// Where contacts differ in their μ.
+    pub(super) fn parts(&self, file: &ProblemFile) -> Result<ModelParts> {
+        let friction = self.friction(file)?;
+        Ok(ModelParts {
+            axes: self.axes,
+            friction: self.axes == 2 && friction > 0.0,
+            rotation: self.rotation,
+            compressive_cone: file.cone == FrictionCone::Compressive && self.capture_speed > 0.0,
+        })
+    }
+
+    fn friction(&self, file: &ProblemFile) -> Result<f64> {
+        let friction = file.friction();
+        match friction.iter().find(|&mu| *mu != friction[0]) {
+            Some(mu) => Err(Error::value("mu", mu, "the same for all contacts of bodies")),
+            None => Ok(friction[0]),
+        }
+    }
+
+    /// The step's problem, its rows in the order of the file, those with fixed bodies first.
+    pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M::Kinematics> {
+        let coordinates = |body: usize| {
+            let [x, y, spin] = self.free_velocity[body];
+            M::Kinematics::from_coordinates([x, y, self.radius[body] * spin])
+        };
+        let free: Vec<_> = (0..self.mass.len()).map(coordinates).collect();
+        let mut problem = StepProblem::<M::Kinematics>::default();
+        problem.before.clone_from(&free);
+        problem.free = free;
+        problem.friction = file.friction()[0];
+        problem.capture_speed = self.capture_speed;
+        problem.masses.clone_from(&self.mass);
+        problem.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
+        let starts: Vec<[f64; 2]> = match &file.start {
+            Some(start) => pairs(start).collect(),
+            None => vec![[0.0; 2]; file.nc],
+        };
+        for pass in [false, true] {
+            for (contact, &(i, j)) in self.pair.iter().enumerate() {
+                if j.is_some() != pass {
+                    continue;
+                }
+                let mass = self.mass[i as usize];
+                let share =
+                    j.map_or(1.0, |j| self.mass[j as usize] / (mass + self.mass[j as usize]));
+                let effective_mass = mass * share;
+                let [normal, tangential] = starts[contact];
+                let row = Row {
+                    i,
+                    j: j.unwrap_or(0),
+                    normal: M::Kinematics::normal(DVec2::from_array(self.normal[contact])),
+                    share,
+                    restitution_velocity: self.restitution_velocity[contact],
+                    shifted_impulse: normal / effective_mass + self.capture_speed,
+                    tangential_impulse: tangential / effective_mass,
+                    effective_mass,
+                };
+                problem.contact_of_row.push(contact as u32);
+                let rows = if pass { &mut problem.pair_rows } else { &mut problem.fixed_rows };
+                rows.push(row);
+            }
+        }
+        problem.form_velocities();
+        problem
+    }
+}
+
+/// Whether two forms of one number are as near as rounding leaves them; not where one is NaN.
+fn agree(found: f64, expected: f64, scale: f64) -> bool {
+    (found - expected).abs() <= DISAGREEMENT * scale
+}
+
+struct Check<'a> {
+    bodies: &'a BodyForm,
+    file: &'a ProblemFile,
+}
+
+impl ModelVisitor for Check<'_> {
+    type Output = Result<()>;
+
+    /// Without friction tangential rows play no part, and need not agree.
+    fn visit<M: Model>(self) -> Result<()> {
+        let Self { bodies, file } = self;
+        let problem = bodies.step_problem::<M>(file);
+        let assembled = Assembled::of(&problem);
+        let place = |index: u32| 2 * problem.contact_of_row[index as usize / 2] + index % 2;
+        let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
+        let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();
+        let mut diagonal = vec![0.0; 2 * file.nc];
+        for (row, column, value) in assembled.matrix.entries() {
+            let (row, column) = (place(row), place(column));
+            *difference.entry((row, column)).or_default() += value;
+            if row == column {
+                diagonal[row as usize] = value;
+            }
+        }
+        for (row, column, value) in file.matrix.entries() {
+            *difference.entry((row, column)).or_default() -= value;
+        }
+        for (&(row, column), &off) in &difference {
+            let scale = (diagonal[row as usize] * diagonal[column as usize]).sqrt();
+            if counts(row) && counts(column) && !agree(off, 0.0, scale) {
+                let found = format!("{} off what the bodies make it", off.abs());
+                return Err(Error::value(format!("W[{row}, {column}]"), found, "theirs"));
+            }
+        }
+        let fastest = file.q.iter().fold(0f64, |most, q| most.max(q.abs()));
+        for (index, &q) in (0..).zip(&assembled.free_velocities) {
+            let at = place(index);
+            let found = file.q[at as usize];
+            if counts(index) && !agree(found, q, fastest) {
+                return Err(Error::value(format!("q[{at}]"), found, format!("{q}, the bodies'")));
+            }
+        }
+        let cohesion = file.cohesion_impulses();
+        let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
+        for (row, &contact) in rows.zip(&problem.contact_of_row) {
+            let expected = row.effective_mass * bodies.capture_speed;
+            let found = cohesion[contact as usize];
+            if !agree(found, expected, expected) {
+                let allowed = format!("{expected}, the bodies'");
+                return Err(Error::value(format!("c0[{contact}]"), found, allowed));
+            }
+        }
+        Ok(())
+    }
+}

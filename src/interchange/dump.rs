@@ -1,0 +1,97 @@
+//! A problem file from a running simulation.
+
+use super::{BodyForm, Friction, ProblemFile};
+use crate::contact::ContactList;
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::sim::ProblemVisitor;
+use crate::solver::{Assembled, Kinematics, Model, StepProblem};
+use crate::world::{FrictionCone, Grains};
+
+/// The problem of the step that begins at `at_secs`, the simulation of `scene` having got there by
+/// itself. `progress` is told the simulated time, s.
+///
+/// # Errors
+/// Where the time is before the start, there is no contact at it, or the state is not finite.
+pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> Result<ProblemFile> {
+    if !(at_secs >= 0.0 && at_secs.is_finite()) {
+        return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
+    }
+    let mut simulation = scene.simulation()?;
+    let steps = (at_secs / scene.parameters.time_step_secs).round() as u64;
+    for _ in 0..steps {
+        simulation.step()?;
+        progress(simulation.time_secs());
+    }
+    let grains = &simulation.world().grains;
+    let file = simulation.next_problem(Dump { grains });
+    if file.nc == 0 {
+        return Err(Error::value("at", at_secs, "a time at which there are contacts"));
+    }
+    Ok(ProblemFile {
+        comment: Some(format!("{}: the step that begins at t = {at_secs} s", scene.name)),
+        ..file
+    })
+}
+
+struct Dump<'a> {
+    grains: &'a Grains,
+}
+
+impl ProblemVisitor for Dump<'_> {
+    type Output = ProblemFile;
+
+    fn visit<M: Model>(
+        self,
+        problem: &mut StepProblem<M::Kinematics>,
+        _: &ContactList,
+    ) -> ProblemFile {
+        let Assembled { matrix, free_velocities } = Assembled::of(problem);
+        let grains = self.grains;
+        let rows = || problem.fixed_rows.iter().chain(&problem.pair_rows);
+        let fixed = problem.fixed_rows.len();
+        let free_velocity = |(body, radius): (_, &f64)| {
+            let [x, y, spin] = M::Kinematics::coordinates(body);
+            [x, y, spin / radius]
+        };
+        let bodies = BodyForm {
+            axes: M::Kinematics::AXES as u8,
+            rotation: M::Kinematics::ROTATION,
+            capture_speed: problem.capture_speed,
+            mass: grains.masses.clone(),
+            inertia: (0..grains.len()).map(|body| grains.inertia(body)).collect(),
+            radius: grains.radii.clone(),
+            free_velocity: problem.free.iter().zip(&grains.radii).map(free_velocity).collect(),
+            pair: (0..)
+                .zip(rows())
+                .map(|(at, row)| (row.i, (at >= fixed).then_some(row.j)))
+                .collect(),
+            normal: rows()
+                .map(|row| {
+                    let [[[x, y, _], _], _] = M::Kinematics::gradients(row.normal);
+                    [x, y]
+                })
+                .collect(),
+            restitution_velocity: rows().map(|row| row.restitution_velocity).collect(),
+        };
+        let cohesion = problem.capture_speed;
+        let starts = rows().flat_map(|row| {
+            problem.reduced_impulse(row).map(|impulse| row.effective_mass * impulse)
+        });
+        ProblemFile {
+            comment: None,
+            nc: problem.contact_of_row.len(),
+            mu: Friction::Same(if M::FRICTION { problem.friction } else { 0.0 }),
+            cone: if M::COMPRESSIVE_CONE {
+                FrictionCone::Compressive
+            } else {
+                FrictionCone::Shifted
+            },
+            q: free_velocities,
+            c0: (cohesion > 0.0).then(|| rows().map(|row| row.effective_mass * cohesion).collect()),
+            start: Some(starts.collect()),
+            bodies: Some(bodies),
+            matrix,
+        }
+    }
+}

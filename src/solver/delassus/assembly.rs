@@ -1,0 +1,90 @@
+//! W and q of a step's problem.
+//!
+//! With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates and M the inertias in
+//! them, W = G M⁻¹ Gᵀ and q = G v^free, plus restitution's term in the normal rows. A contact
+//! meets those that share one of its grains, and no others.
+
+use super::Triplets;
+use crate::solver::{Kinematics, Row, StepProblem};
+
+/// W and q of a step's problem, its contacts in the order of its rows.
+pub struct Assembled {
+    /// W, 1/kg, exactly symmetric, sorted by row and column, without zeros.
+    pub matrix: Triplets,
+    /// q, m/s.
+    pub free_velocities: Vec<f64>,
+}
+
+impl Assembled {
+    /// Works W and q out. On a line, where there is no tangent, a tangential row has W_tt = W_nn and
+    /// meets nothing.
+    pub fn of<K: Kinematics>(problem: &StepProblem<K>) -> Self {
+        let rows = || problem.fixed_rows.iter().map(|row| (row, false));
+        let rows = rows().chain(problem.pair_rows.iter().map(|row| (row, true)));
+        let contacts: Vec<_> = rows.collect();
+        let mut contacts_of_body = vec![Vec::new(); problem.masses.len()];
+        for (number, (row, pair)) in contacts.iter().enumerate() {
+            contacts_of_body[row.i as usize].push(number);
+            if *pair {
+                contacts_of_body[row.j as usize].push(number);
+            }
+        }
+        let mut matrix = Triplets::default();
+        let mut free_velocities = Vec::with_capacity(2 * contacts.len());
+        for (number, &(row, pair)) in contacts.iter().enumerate() {
+            let mut others = contacts_of_body[row.i as usize].clone();
+            if pair {
+                others.extend(&contacts_of_body[row.j as usize]);
+            }
+            others.sort_unstable();
+            others.dedup();
+            for axis in 0..2 {
+                for &other in &others {
+                    for other_axis in 0..2 {
+                        let places = [(contacts[number], axis), (contacts[other], other_axis)];
+                        let value = entry(problem, places);
+                        if value != 0.0 {
+                            matrix.row.push((2 * number + axis) as u32);
+                            matrix.col.push((2 * other + other_axis) as u32);
+                            matrix.val.push(value);
+                        }
+                    }
+                }
+            }
+            let free = |body: u32| &problem.free[body as usize];
+            let [normal, tangential] = if pair {
+                K::relative_velocity(row.normal, free(row.i), free(row.j))
+            } else {
+                K::velocity(row.normal, free(row.i))
+            };
+            free_velocities.extend([normal + row.restitution_velocity, tangential]);
+        }
+        Self { matrix, free_velocities }
+    }
+}
+
+/// A contact, whether it is one between two grains, and the axis: 0 normal, 1 tangential.
+type Place<'a, K> = ((&'a Row<K>, bool), usize);
+
+fn entry<K: Kinematics>(problem: &StepProblem<K>, places: [Place<'_, K>; 2]) -> f64 {
+    let [((row, pair), axis), ((other, other_pair), other_axis)] = places;
+    if K::AXES == 1 && (axis, other_axis) != (0, 0) {
+        let same = std::ptr::eq(row, other) && axis == other_axis;
+        return if same { 1.0 / row.effective_mass } else { 0.0 };
+    }
+    let bodies = |row: &Row<K>, pair: bool| [Some(row.i), pair.then_some(row.j)];
+    let gradients = [K::gradients(row.normal), K::gradients(other.normal)];
+    let mut sum = 0.0;
+    for (side, body) in bodies(row, pair).into_iter().enumerate() {
+        for (other_side, other_body) in bodies(other, other_pair).into_iter().enumerate() {
+            let Some(body) = body.filter(|_| body == other_body) else { continue };
+            let mass = problem.masses[body as usize];
+            let (one, two) = (gradients[0][side][axis], gradients[1][other_side][other_axis]);
+            let inertias = K::INERTIA_OVER_MASS.iter().take(K::DEGREES);
+            for ((a, b), inertia) in one.iter().zip(two).zip(inertias) {
+                sum += a * b / (mass * inertia);
+            }
+        }
+    }
+    sum
+}

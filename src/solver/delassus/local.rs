@@ -1,0 +1,155 @@
+//! One contact of a problem in W alone, solved exactly.
+//!
+//! A grain of any shape couples its normal to its tangent (W_nt ≠ 0), so the two projections of a
+//! disc's contact become an enumeration. With p = P_n + c₀ and b the velocity that the other contacts
+//! leave, both in the shifted cone,
+//!
+//! > u = W_kk (p, P_t) + b,  0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp, sliding opposes u_t,
+//!
+//! > open: p = P_t = 0 where b_n ≥ 0;
+//! > stick: (p, P_t) = −W_kk⁻¹ b where that lies in the cone;
+//! > slip: P_t = sμp with s = ±1, so that p = −b_n / (W_nn + sμW_nt), where s·u_t ≤ 0.
+//!
+//! Where μ|W_nt| < W_nn there is just one; else the first that fits is taken. In the compressive cone
+//! a contact with p ≤ c₀ does not rub, and one with more is a contact in a shifted cone whose p is
+//! p − c₀ and whose b is b + c₀(W_nn, W_nt).
+
+/// What the solution of one contact needs, worked out once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LocalBlock {
+    /// W_nn, W_nt, W_tt, 1/kg.
+    pub normal: f64,
+    pub mixed: f64,
+    pub tangential: f64,
+    /// W_kk⁻¹ in the same order, kg.
+    inverse: [f64; 3],
+    /// 1/(W_nn + sμW_nt) for s = −1, +1, kg; not positive where no slip that way can bear a load.
+    slip_masses: [f64; 2],
+    /// μ.
+    pub friction: f64,
+    /// c₀, N·s.
+    pub cohesion_impulse: f64,
+}
+
+impl LocalBlock {
+    /// `block` is W_kk, positive definite.
+    pub fn new(block: [[f64; 2]; 2], friction: f64, cohesion_impulse: f64) -> Self {
+        let [[normal, mixed], [_, tangential]] = block;
+        let determinant = normal * tangential - mixed * mixed;
+        Self {
+            normal,
+            mixed,
+            tangential,
+            inverse: [tangential / determinant, -mixed / determinant, normal / determinant],
+            slip_masses: [-1.0, 1.0].map(|side| 1.0 / (normal + side * friction * mixed)),
+            friction,
+            cohesion_impulse,
+        }
+    }
+
+    /// (p, P_t), N·s, that solves the contact where the others leave it the velocity `free` (m/s).
+    #[inline(always)]
+    pub fn solve<const COMPRESSIVE_CONE: bool>(&self, [normal, tangential]: [f64; 2]) -> [f64; 2] {
+        if normal >= 0.0 {
+            return [0.0, 0.0];
+        }
+        if !COMPRESSIVE_CONE {
+            return self.pressed([normal, tangential]);
+        }
+        let cohesion = self.cohesion_impulse;
+        let rest = normal + cohesion * self.normal;
+        if rest >= 0.0 {
+            return [-normal / self.normal, 0.0];
+        }
+        let [pressure, rubbing] = self.pressed([rest, tangential + cohesion * self.mixed]);
+        [pressure + cohesion, rubbing]
+    }
+
+    /// Stick or slip of a contact that would close.
+    #[inline(always)]
+    fn pressed(&self, free @ [normal, tangential]: [f64; 2]) -> [f64; 2] {
+        let [inverse_normal, inverse_mixed, inverse_tangential] = self.inverse;
+        let stuck = [
+            -(inverse_normal * normal + inverse_mixed * tangential),
+            -(inverse_mixed * normal + inverse_tangential * tangential),
+        ];
+        if stuck[1].abs() <= self.friction * stuck[0] {
+            return stuck;
+        }
+        let (impulse, pushed_along) = self.slip(free, stuck[1] > 0.0);
+        if pushed_along <= 0.0 {
+            return impulse;
+        }
+        let (other, pushed_along_other) = self.slip(free, stuck[1] <= 0.0);
+        // By rounding neither may fit.
+        if pushed_along_other < pushed_along { other } else { impulse }
+    }
+
+    /// The impulses of slip with P_t = ±μp, and s·u_t, which fits where it is not positive.
+    #[inline(always)]
+    fn slip(&self, [normal, tangential]: [f64; 2], positive: bool) -> ([f64; 2], f64) {
+        let side = if positive { 1.0 } else { -1.0 };
+        let pressure = -normal * self.slip_masses[usize::from(positive)];
+        let rubbing = side * self.friction * pressure;
+        let velocity = tangential + self.mixed * pressure + self.tangential * rubbing;
+        ([pressure, rubbing], if pressure > 0.0 { side * velocity } else { f64::INFINITY })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How far (p, P_t) is from the contact's law, over the size of what is compared.
+    fn fault(block: &LocalBlock, compressive: bool, free: [f64; 2]) -> f64 {
+        let [p, t] =
+            if compressive { block.solve::<true>(free) } else { block.solve::<false>(free) };
+        let u = [
+            block.normal * p + block.mixed * t + free[0],
+            block.mixed * p + block.tangential * t + free[1],
+        ];
+        let cohesion = if compressive { block.cohesion_impulse } else { 0.0 };
+        let bound = block.friction * (p - cohesion).max(0.0);
+        let scale = free[0].abs() + free[1].abs() + block.normal * cohesion;
+        let normal = p - (p - u[0] / block.normal).max(0.0);
+        let tangential = t - (t - u[1] / block.tangential).clamp(-bound, bound);
+        (normal.abs() * block.normal).max(tangential.abs() * block.tangential) / scale
+    }
+
+    #[test]
+    fn the_enumeration_solves_every_coupled_contact() {
+        let mut kinds = [0; 4];
+        for mixed in [-1.2, -0.4, 0.0, 0.7, 1.3] {
+            for friction in [0.0, 0.3, 0.7] {
+                for cohesion in [0.0, 0.5] {
+                    let block = LocalBlock::new([[1.0, mixed], [mixed, 3.0]], friction, cohesion);
+                    for turn in 0..48 {
+                        let angle = f64::from(turn) * std::f64::consts::TAU / 48.0;
+                        let free = [angle.cos(), angle.sin()];
+                        for compressive in [false, true] {
+                            let fault = fault(&block, compressive, free);
+                            assert!(fault < 1e-14, "{block:?} at {free:?} errs by {fault:e}");
+                        }
+                        let [p, t] = block.solve::<false>(free);
+                        let kind = match () {
+                            () if p == 0.0 => 0,
+                            () if t.abs() < 0.999 * friction * p => 1,
+                            () if t < 0.0 => 2,
+                            () => 3,
+                        };
+                        kinds[kind] += 1;
+                    }
+                }
+            }
+        }
+        assert!(kinds.iter().all(|&count| count > 50), "each kind arose: {kinds:?}");
+    }
+
+    /// The two cones differ where cohesion alone holds a sliding contact.
+    #[test]
+    fn a_pulling_contact_rubs_in_the_shifted_cone_alone() {
+        let block = LocalBlock::new([[2.0, 0.0], [0.0, 6.0]], 0.5, 1.0);
+        assert_eq!(block.solve::<false>([-1.0, -9.0]), [0.5, 0.25]);
+        assert_eq!(block.solve::<true>([-1.0, -9.0]), [0.5, 0.0]);
+    }
+}

@@ -1,0 +1,72 @@
+//! Non-linear Gauss–Seidel on W (M. Jean, 1999): one contact after the other, each solved exactly
+//! with the impulses that the ones before it left.
+
+use super::DelassusProblem;
+use crate::error::{Error, Result};
+use crate::solver::{
+    METHODS, Method, SolveReport, SolverSettings, StopTest, Vectors, solve_system,
+};
+
+/// The residual, which costs as much as a sweep, is looked at where ‖ΔP‖₂ of a sweep is at most this
+/// many times the error allowed: what a sweep changes is about the error before it. A smaller number
+/// risks a sweep in vain, a larger one a look in vain.
+const NEAR: f64 = 2.0;
+/// It is looked at after every so many sweeps in any case.
+const TEST_INTERVAL: u32 = 16;
+
+/// Solves a problem from its present impulses with the method of the settings, to a residual of
+/// their tolerance.
+///
+/// # Errors
+/// Where the method needs bodies, or the settings another stopping test.
+pub fn solve_delassus(
+    problem: &mut DelassusProblem,
+    settings: &SolverSettings,
+) -> Result<SolveReport> {
+    settings.validate()?;
+    if settings.stop != StopTest::Residual {
+        let allowed = "residual where there are no bodies";
+        return Err(Error::value("stop", format!("{:?}", settings.stop), allowed));
+    }
+    if settings.method == Method::Nsgs {
+        return Ok(sweeps(problem, settings));
+    }
+    solve_system(problem, settings, &mut Vectors::default()).ok_or_else(|| {
+        let info = METHODS.iter().find(|info| info.method == settings.method);
+        let allowed = "one that works on W alone, for the problem says nothing of its bodies";
+        Error::value("method", info.map_or("unknown", |info| info.name), allowed)
+    })
+}
+
+fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveReport {
+    let near = NEAR * settings.tolerance * problem.scale;
+    for sweeps in 1..=settings.max_sweeps {
+        let squared_change = problem.sweep();
+        let is_tested = squared_change <= near * near
+            || sweeps.is_multiple_of(TEST_INTERVAL)
+            || sweeps == settings.max_sweeps;
+        if is_tested && problem.is_solved(settings) {
+            return SolveReport { sweeps, converged: true, ..SolveReport::default() };
+        }
+    }
+    SolveReport { sweeps: settings.max_sweeps, ..SolveReport::default() }
+}
+
+impl DelassusProblem {
+    /// One pass over all contacts; gives Σ‖ΔP‖², (N·s)².
+    pub fn sweep(&mut self) -> f64 {
+        if self.compressive_cone { self.pass::<true>() } else { self.pass::<false>() }
+    }
+
+    fn pass<const COMPRESSIVE_CONE: bool>(&mut self) -> f64 {
+        let mut squared_change = 0.0;
+        for contact in 0..self.len() {
+            let free = self.velocity_of_others(contact);
+            let now = self.rows[contact].local.solve::<COMPRESSIVE_CONE>(free);
+            let before = std::mem::replace(&mut self.impulses[contact], now);
+            let change = [now[0] - before[0], now[1] - before[1]];
+            squared_change += change[0] * change[0] + change[1] * change[1];
+        }
+        squared_change
+    }
+}
