@@ -14,3 +14,4 @@ mod mouse;
 mod pictures;
 mod recording;
 mod robot;
+mod speed;

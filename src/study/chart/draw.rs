@@ -77,9 +77,54 @@ fn draw<DB: DrawingBackend>(sheet: &Sheet, area: DrawingArea<DB, Shift>) -> Resu
     let no_rows: Vec<i32> = Vec::new();
     let panels = charts.split_by_breakpoints(inner, no_rows);
     for (chart, panel) in sheet.charts.iter().zip(&panels) {
-        draw_chart(chart, panel)?;
+        if chart.only_legend {
+            draw_legend(chart, panel)?;
+        } else {
+            draw_chart(chart, panel)?;
+        }
     }
     area.present().map_err(failed)
+}
+
+/// The names of a chart's curves, one below the other.
+fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
+    let style = (FONT, CAPTION + 2).into_font().color(&rgb(super::INK));
+    let mut y = 70;
+    for layer in &chart.layers {
+        let Layer::Curve { name, colour, look, .. } = layer else { continue };
+        let colour = rgb(*colour);
+        let line = vec![(10, y), (46, y)];
+        match look {
+            Look::Line(width) => {
+                area.draw(&PathElement::new(line, colour.stroke_width(*width))).map_err(failed)?;
+            }
+            Look::Dashes(width) => {
+                for from in [10, 24, 38] {
+                    let dash = vec![(from, y), (from + 8, y)];
+                    let dash = PathElement::new(dash, colour.stroke_width(*width));
+                    area.draw(&dash).map_err(failed)?;
+                }
+            }
+            Look::LineAndDots => {
+                area.draw(&PathElement::new(line, colour.stroke_width(3))).map_err(failed)?;
+                area.draw(&Circle::new((28, y), 5, colour.filled())).map_err(failed)?;
+            }
+            Look::Dots(radius) => {
+                let dot = Circle::new((28, y), (*radius).max(6), colour.filled());
+                area.draw(&dot).map_err(failed)?;
+            }
+            Look::Rings(radius) => {
+                let ring = Circle::new((28, y), *radius, colour.stroke_width(2));
+                area.draw(&ring).map_err(failed)?;
+            }
+        }
+        for part in name.split('\n') {
+            area.draw_text(part, &style, (58, y - 11)).map_err(failed)?;
+            y += CAPTION_LINE as i32;
+        }
+        y += 8;
+    }
+    Ok(())
 }
 
 fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
