@@ -17,7 +17,7 @@ use crate::headless::Progress;
 use crate::scene::{Config, Rain, Scene, walls};
 use crate::sim::Simulation;
 use crate::solver::{MethodKind, SolverSettings, StopTest};
-use crate::study::chart::{Axis, Chart, Corner, Layer, Look, Sheet, points};
+use crate::study::chart::{Axis, Chart, Layer, Look, Sheet, points};
 use crate::study::states::States;
 use crate::world::Parameters;
 
@@ -144,13 +144,13 @@ fn draw(bench: &Bench, entries: &[Entry], peers: &[PeerRun]) -> Part {
         Axis::log("mean overlap (d)", 1e-5, 0.1),
     );
     let line = points([from, to].map(|x| (x, OVERLAP)));
-    chart.layers.push(Layer::curve("compared below", line, (130, 130, 130), Look::Dashes(2)));
+    chart.layers.push(Layer::curve("5·10⁻⁴ d", line, (130, 130, 130), Look::Dashes(2)));
     for entrant in entrants::all() {
         let of_method = || entries.iter().filter(|entry| entry.entrant.method == entrant.method);
         let failed = of_method().filter(|entry| !entry.is_done()).count();
         let name = match failed {
             0 => entrant.name.clone(),
-            failed => format!("{} ({failed} of {} failed)", entrant.name, of_method().count()),
+            failed => format!("{}\n{failed} of {} failed", entrant.name, of_method().count()),
         };
         let places = of_method()
             .filter(|entry| entry.is_done())
@@ -166,9 +166,11 @@ fn draw(bench: &Bench, entries: &[Entry], peers: &[PeerRun]) -> Part {
         let places = points(runs.iter().map(|run| (run.ms_per_step, run.mean_overlap)));
         chart.layers.push(Layer::curve(*engine, places, peers::colour(index), Look::Rings(9)));
     }
-    chart.legend = Corner::UpperRight;
-    let mut sheet = Sheet::of(chart);
-    sheet.caption = bench.caption(&["Bond 0; other engines with 16 substeps."]);
+    let mut charts = vec![chart];
+    let legend = Chart::legend_of(&mut charts, 0.3);
+    charts.push(legend);
+    let caption = bench.caption(&["Bond 0; other engines with 16 substeps."]);
+    let sheet = Sheet { size: (1400, 820), charts, caption };
     let report = told(entries, &by_engine);
     let tables = vec![("chart-rest-points".into(), table(entries))];
     Part { name: "chart-rest".into(), sheet, report, tables }
