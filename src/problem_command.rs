@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use slump::error::Result;
-use slump::headless::{Progress, settled, write_file};
+use slump::headless::settled;
 use slump::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
+use slump::output::{Progress, write_file};
 use slump::scene::Config;
 use slump::solver::{Method, SolverSettings, StopTest};
 

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use image::RgbaImage;
 
+use super::HeadlessOptions;
 use super::gif::Animation;
 use super::manifest::{Manifest, Moment, PictureEntry, RunEntry};
-use super::output::{check_writable, finish_file, start_file, write_png};
-use super::{HeadlessOptions, Progress};
 use crate::error::{Error, Result};
+use crate::output::{Progress, check_writable, finish_file, start_file, write_png};
 use crate::render::{
     Camera, ColourBy, Renderer, Style, automatic_range, draw_scene, force_reference,
 };

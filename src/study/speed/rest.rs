@@ -13,7 +13,7 @@ use super::peers::{self, PeerRun};
 use super::runs::{Ending, TimedRun, timed_steps};
 use super::{Bench, Part};
 use crate::error::Result;
-use crate::headless::Progress;
+use crate::output::Progress;
 use crate::scene::{Config, Rain, Scene, walls};
 use crate::sim::Simulation;
 use crate::solver::{MethodKind, SolverSettings, StopTest};

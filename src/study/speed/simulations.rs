@@ -18,7 +18,7 @@ use super::peers::{self, PeerRun};
 use super::runs::{Ending, TimedRun, timed_run};
 use super::{Bench, Part};
 use crate::error::Result;
-use crate::headless::Progress;
+use crate::output::Progress;
 use crate::scene::{Config, Rain};
 use crate::solver::{Method, MethodKind, SolverSettings, StopTest};
 use crate::study::chart::{Axis, Chart, INK, Layer, Look, Sheet, points};

@@ -7,7 +7,7 @@ use super::look::{colour, line_layers, staircase, stroke};
 use super::race::{Course, Race, Runner};
 use super::{Bench, Part};
 use crate::error::Result;
-use crate::headless::Progress;
+use crate::output::Progress;
 use crate::solver::{Method, Ordering};
 use crate::study::chart::{Axis, Chart, Corner, Layer, Sheet};
 use crate::study::collection::{CollectedStep, CollectionPlan, collect};
