@@ -14,6 +14,7 @@ use crate::render::{
 };
 use crate::scene::{Config, Scene, Settling, View};
 use crate::sim::{Observables, Snapshot};
+use crate::solver::{Method, picked};
 use crate::study::record;
 
 /// Name of the run in the manifest.
@@ -79,6 +80,10 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions) -> Result<()> {
     studio.manifest.runs.push(RunEntry::new(RUN, &scene, recorded.tally)?);
     studio.finish()?;
     tell_of_unconverged_steps(&scene, &recorded.tally);
+    if scene.solver.method == Method::Auto {
+        let contacts = recorded.simulation.contacts().contacts().len();
+        eprintln!("auto took {} for {contacts} contacts", picked(&scene.solver, contacts).name());
+    }
     Ok(())
 }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::system::{BodySystem, ContactSystem, Vectors};
 use super::{
     Model, Ordering, SolverSettings, StepProblem, admm, apgd, jacobi, newton, nncg, nsgs,
-    nsgs_parallel,
+    nsgs_parallel, picked,
 };
 use crate::error::{Error, Result};
 
@@ -27,6 +27,8 @@ pub enum Method {
     Admm,
     /// Jacobi with mass splitting.
     Jacobi,
+    /// One of the above, by the size of the problem.
+    Auto,
     /// Substeps with soft contacts.
     TgsSoft,
     /// Discrete elements with springs and dashpots.
@@ -55,7 +57,7 @@ pub enum Scheme {
 impl Method {
     /// Whether the order of the settings tells the method in which order to sweep.
     pub fn sweeps_in_order(self) -> bool {
-        matches!(self, Self::Nsgs | Self::Newton | Self::Nncg)
+        matches!(self, Self::Nsgs | Self::Newton | Self::Nncg | Self::Auto)
     }
 
     /// The order of the rows that the method needs where the settings ask for `asked`.
@@ -97,7 +99,7 @@ pub struct MethodInfo {
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 
 /// All methods.
-pub const METHODS: [MethodInfo; 9] = [
+pub const METHODS: [MethodInfo; 10] = [
     MethodInfo {
         method: Method::Nsgs,
         name: "nsgs",
@@ -148,6 +150,13 @@ pub const METHODS: [MethodInfo; 9] = [
         source: "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
     },
     MethodInfo {
+        method: Method::Auto,
+        name: "auto",
+        summary: "newton up to 1,000 contacts, nncg above, nsgs where sweeps are what is studied",
+        solves: COULOMB,
+        source: "the charts of speed against accuracy",
+    },
+    MethodInfo {
         method: Method::TgsSoft,
         name: "tgs-soft",
         summary: "substeps with soft contacts and a relaxing sweep, as game engines step",
@@ -188,7 +197,7 @@ pub fn solve<M: Model>(
     if problem.contact_of_row.is_empty() {
         return Ok(SolveReport { converged: true, ..SolveReport::default() });
     }
-    Ok(match settings.method {
+    Ok(match picked(settings, problem.contact_of_row.len()) {
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
         Method::NsgsParallel => nsgs_parallel::solve::<M>(problem, settings),
         Method::Newton => newton::solve::<M>(problem, settings),
@@ -201,7 +210,7 @@ pub fn solve<M: Model>(
             // The methods of this arm are among those that need no bodies.
             report.unwrap_or_default()
         }
-        Method::TgsSoft | Method::Dem => {
+        Method::Auto | Method::TgsSoft | Method::Dem => {
             let of_problems =
                 METHODS.iter().filter(|info| info.method.kind() == MethodKind::Problem);
             let names: Vec<_> = of_problems.map(|info| info.name).collect();
@@ -221,7 +230,7 @@ pub fn solve_system<S: ContactSystem>(
     if system.is_empty() {
         return Some(SolveReport { converged: true, ..SolveReport::default() });
     }
-    match settings.method {
+    match picked(settings, system.len()) {
         Method::Nncg => Some(nncg::solve(system, settings, vectors)),
         Method::Apgd => Some(apgd::solve(system, settings, vectors)),
         Method::Jacobi => Some(jacobi::solve(system, settings, vectors)),

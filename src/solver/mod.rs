@@ -2,6 +2,7 @@
 
 mod admm;
 mod apgd;
+mod auto;
 mod delassus;
 mod iterate;
 mod jacobi;
@@ -19,6 +20,7 @@ mod settings;
 mod stall;
 mod system;
 
+pub use auto::picked;
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, measure, residual};

@@ -7,7 +7,7 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::sim::live::StartInfo;
 use crate::solver::{
-    MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest,
+    MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest, picked,
 };
 
 /// The stopping tests, as the panel calls them.
@@ -201,6 +201,11 @@ fn readings(ui: &mut Ui, state: &AppState) {
             "Common residual of the last step.",
         );
         ui.end_row();
+        if world.settings.solver.method == Method::Auto {
+            let taken = picked(&world.settings.solver, last.contacts as usize).name();
+            reading(ui, "method", taken.to_owned(), "What auto took for the last step.");
+            ui.end_row();
+        }
         reading(ui, "contacts", last.contacts.to_string(), "Contacts of the last step.");
         reading(ui, "ms/step", format!("{:.2}", world.step_ms), "Mean time of a step, lately.");
         ui.end_row();

@@ -204,16 +204,18 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
                 }
                 if *in_legend {
                     has_legend = true;
+                    // Two dashes that touch are a line.
+                    let dash = if matches!(look, Look::Dashes(_)) { 11 } else { 14 };
                     let key = move |(x, y): (i32, i32)| {
                         // Without a line there is none in the key either.
                         let seen = if stroke > 0 { 1.0 } else { 0.0 };
-                        let stroke = PathElement::new(
-                            vec![(x, y), (x + 28, y)],
-                            colour.mix(seen).stroke_width(stroke.max(1)),
-                        );
+                        let style = colour.mix(seen).stroke_width(stroke.max(1));
+                        let first = PathElement::new(vec![(x, y), (x + dash, y)], style);
+                        let second = PathElement::new(vec![(x + 28 - dash, y), (x + 28, y)], style);
                         let (radius, style) = dot.unwrap_or((0, colour.mix(0.0).filled()));
                         EmptyElement::at((0, 0))
-                            + stroke
+                            + first
+                            + second
                             + Circle::new((x + 14, y), radius.min(8), style)
                     };
                     let nothing: [EmptyElement<(f64, f64), DB>; 0] = [];
