@@ -109,7 +109,19 @@ impl Candidates {
 
     /// Builds the list anew if the grains have moved too far for the present one; tells whether.
     pub fn update<const AXES: usize>(&mut self, world: &World) -> bool {
-        let allowed = 0.5 * (self.reach.skin - self.reach.gap_tolerance);
+        self.update_ahead::<AXES>(world, self.reach.gap_tolerance)
+    }
+
+    /// The same where all pairs with a gap below `look_ahead` (m) are asked for. The skin grows where
+    /// it is too thin for that.
+    pub fn update_ahead<const AXES: usize>(&mut self, world: &World, look_ahead: f64) -> bool {
+        if self.reach.skin < 1.25 * look_ahead {
+            self.reach.skin = 2.0 * look_ahead;
+            let largest = self.radii.iter().copied().fold(0.0, f64::max);
+            self.cell_width = 2.0 * largest + self.reach.skin;
+            self.starts.clear();
+        }
+        let allowed = 0.5 * (self.reach.skin - look_ahead);
         let positions = &world.grains.positions;
         let still_good = self.starts.len() == positions.len() + 1
             && positions

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Candidates;
+use super::range::Bond;
 use crate::world::World;
 
 /// One touching pair.
@@ -46,12 +47,24 @@ pub struct ContactMemory {
     pub tangential_force: f64,
 }
 
+/// Which pairs with a gap are contacts too, because they may touch within the step.
+#[derive(Clone, Copy, Debug)]
+pub struct LookAhead {
+    /// Δt, s.
+    pub time_step_secs: f64,
+    /// Pairs that would come nearer than this by themselves are contacts, m.
+    pub distance: f64,
+    /// Farther pairs are none, m.
+    pub reach: f64,
+}
+
 /// What is kept of a contact as long as it lives.
 #[derive(Clone, Debug, Default)]
 struct Kept {
     contacts: Vec<Contact>,
     impulses: Vec<Impulse>,
     memories: Vec<ContactMemory>,
+    bonds: Vec<Bond>,
 }
 
 /// The contacts of a step, sorted by (i, other), and their impulses. Memory is kept between steps.
@@ -59,6 +72,8 @@ struct Kept {
 pub struct ContactList {
     now: Kept,
     before: Kept,
+    /// Whether pairs with a gap are among the contacts.
+    looks_ahead: bool,
 }
 
 impl ContactList {
@@ -84,8 +99,23 @@ impl ContactList {
 
     /// The contacts, with impulses and memories to be changed, one a contact.
     pub fn parts_mut(&mut self) -> (&[Contact], &mut [Impulse], &mut [ContactMemory]) {
-        let Kept { contacts, impulses, memories } = &mut self.now;
+        let Kept { contacts, impulses, memories, .. } = &mut self.now;
         (contacts, impulses, memories)
+    }
+
+    /// The contacts with their bonds, one a contact; they mean something under the law `range` alone.
+    pub fn bonds(&self) -> &[Bond] {
+        &self.now.bonds
+    }
+
+    /// The bonds, to be changed.
+    pub fn bonds_mut(&mut self) -> &mut [Bond] {
+        &mut self.now.bonds
+    }
+
+    /// Whether the pair of a contact touches or is bonded, and does not just come near.
+    pub fn is_in_touch(&self, index: usize) -> bool {
+        !self.looks_ahead || self.now.bonds[index].alive
     }
 
     /// Empties the memories: what comes next was not prepared by the scheme that filled them.
@@ -105,13 +135,51 @@ impl ContactList {
     /// contact that was there the step before starts from its impulses and its memory of then, any
     /// other from 0.
     pub fn detect<const AXES: usize>(&mut self, world: &World, candidates: &Candidates) {
+        self.looks_ahead = false;
+        let gap_tolerance = candidates.gap_tolerance();
+        self.find::<AXES>(world, candidates, |contact, _| contact.gap < gap_tolerance);
+    }
+
+    /// Finds the contacts of the law `range`: pairs that touch, that are bonded, or that may come to
+    /// touch within the step. Those that touch are bonded from now on.
+    pub fn detect_ahead<const AXES: usize>(
+        &mut self,
+        world: &World,
+        candidates: &Candidates,
+        ahead: LookAhead,
+    ) {
+        self.looks_ahead = true;
+        let gap_tolerance = candidates.gap_tolerance();
+        let velocities = &world.grains.velocities;
+        self.find::<AXES>(world, candidates, |contact, bond| {
+            let gap = contact.gap;
+            if gap <= gap_tolerance && !bond.alive {
+                *bond = Bond { alive: true, stretch: 0.0 };
+            }
+            if bond.alive {
+                return true;
+            }
+            let other = velocities.get(contact.other as usize).copied().unwrap_or_default();
+            let opening = contact.normal.dot(velocities[contact.grain as usize] - other);
+            gap < ahead.reach && gap + ahead.time_step_secs * opening.min(0.0) < ahead.distance
+        });
+    }
+
+    /// Takes the candidates of which `keep` says, by normal, gap and bond, that they are contacts.
+    #[inline(always)]
+    fn find<const AXES: usize>(
+        &mut self,
+        world: &World,
+        candidates: &Candidates,
+        keep: impl Fn(&Contact, &mut Bond) -> bool,
+    ) {
         std::mem::swap(&mut self.now, &mut self.before);
-        let Self { now, before: old } = self;
+        let Self { now, before: old, .. } = self;
         now.contacts.clear();
         now.impulses.clear();
         now.memories.clear();
+        now.bonds.clear();
         let grains = &world.grains;
-        let gap_tolerance = candidates.gap_tolerance();
         let mut before = 0;
         for index in 0..grains.len() {
             let (position, radius) = (grains.positions[index], grains.radii[index]);
@@ -121,9 +189,6 @@ impl ContactList {
                 else {
                     continue;
                 };
-                if gap >= gap_tolerance {
-                    continue;
-                }
                 let contact = Contact { grain: index as u32, other, normal, gap };
                 // Both lists are sorted alike, so one walk over the old one serves all.
                 while before < old.contacts.len() && old.contacts[before].pair() < contact.pair() {
@@ -131,16 +196,56 @@ impl ContactList {
                 }
                 let lives_on =
                     old.contacts.get(before).is_some_and(|then| then.pair() == contact.pair());
-                let (impulse, memory) = if lives_on {
-                    (old.impulses[before], old.memories[before])
+                let (impulse, memory, mut bond) = if lives_on {
+                    (old.impulses[before], old.memories[before], old.bonds[before])
                 } else {
                     Default::default()
                 };
+                if !keep(&contact, &mut bond) {
+                    continue;
+                }
                 now.impulses.push(impulse);
                 now.memories.push(memory);
+                now.bonds.push(bond);
                 now.contacts.push(contact);
             }
         }
+    }
+}
+
+impl ContactList {
+    /// Moves grains that overlap by more than `allowed` (m) apart, pair by pair, each grain by the
+    /// other's share of the mass. Velocities, and so kinetic energy, stay as they are. Whether there
+    /// were any: one pass opens a pair and may close the next.
+    pub fn push_out<const AXES: usize>(
+        &self,
+        world: &mut World,
+        candidates: &Candidates,
+        allowed: f64,
+    ) -> bool {
+        let mut found = false;
+        for contact in &self.now.contacts {
+            let (i, j) = (contact.grain as usize, contact.other as usize);
+            let (position, radius) = (world.grains.positions[i], world.grains.radii[i]);
+            let Some((normal, gap)) = approach::<AXES>(world, candidates, position, radius, j)
+            else {
+                continue;
+            };
+            if gap >= -allowed {
+                continue;
+            }
+            found = true;
+            let push = -gap * normal;
+            let grains = &mut world.grains;
+            if j < grains.len() {
+                let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
+                grains.positions[i] += share * push;
+                grains.positions[j] -= (1.0 - share) * push;
+            } else {
+                grains.positions[i] += push;
+            }
+        }
+        found
     }
 }
 

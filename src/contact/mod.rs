@@ -5,10 +5,11 @@ mod contact_list;
 mod features;
 mod grid;
 pub mod law;
+pub mod range;
 mod tree;
 
 pub use candidates::{Candidates, Reach};
-pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
+pub use contact_list::{Contact, ContactList, ContactMemory, Impulse, LookAhead};
 pub use features::Feature;
 pub use grid::Grid;
 pub use tree::Tree;

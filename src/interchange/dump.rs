@@ -74,9 +74,9 @@ impl ProblemVisitor for Dump<'_> {
                 .collect(),
             restitution_velocity: rows().map(|row| row.restitution_velocity).collect(),
         };
-        let cohesion = problem.capture_speed;
-        let starts = rows().flat_map(|row| {
-            problem.reduced_impulse(row).map(|impulse| row.effective_mass * impulse)
+        let cohesions = || problem.rows().map(|(at, row)| row.effective_mass * problem.capture(at));
+        let starts = problem.rows().flat_map(|(at, row)| {
+            problem.reduced_impulse(at, row).map(|impulse| row.effective_mass * impulse)
         });
         ProblemFile {
             comment: None,
@@ -88,9 +88,10 @@ impl ProblemVisitor for Dump<'_> {
                 FrictionCone::Shifted
             },
             q: free_velocities,
-            c0: (cohesion > 0.0).then(|| rows().map(|row| row.effective_mass * cohesion).collect()),
+            c0: (problem.capture_speed > 0.0).then(|| cohesions().collect()),
             start: Some(starts.collect()),
-            bodies: Some(bodies),
+            // Bodies know of one capture speed alone.
+            bodies: problem.captures.is_empty().then_some(bodies),
             matrix,
         }
     }

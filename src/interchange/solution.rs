@@ -139,10 +139,9 @@ impl ModelVisitor for OnBodies<'_> {
         let ((seconds, report), problem) =
             least_time(repeats, &start, |problem| solve::<M>(problem, settings));
         let mut impulses = vec![[0.0; 2]; file.nc];
-        let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-        for (row, &contact) in rows.zip(&problem.contact_of_row) {
+        for ((number, row), &contact) in problem.rows().zip(&problem.contact_of_row) {
             impulses[contact as usize] =
-                problem.reduced_impulse(row).map(|impulse| row.effective_mass * impulse);
+                problem.reduced_impulse(number, row).map(|impulse| row.effective_mass * impulse);
         }
         let velocity = |(body, radius): (_, &f64)| {
             let [x, y, spin] = M::Kinematics::coordinates(body);

@@ -8,7 +8,9 @@ use glam::DVec2;
 
 use super::{Scene, View};
 use crate::solver::SolverSettings;
-use crate::world::{Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
+use crate::world::{
+    ContactLaw, DEBONDING_DISTANCE, Disc, FrictionCone, Grain, Gravity, Parameters, Physics,
+};
 
 /// d, m.
 const DIAMETER: f64 = 0.3;
@@ -31,6 +33,8 @@ pub fn collision() -> Scene {
             friction: 0.0,
             cone: FrictionCone::Shifted,
             restitution_threshold: 0.0,
+            law: ContactLaw::Moreau,
+            debonding_distance: DEBONDING_DISTANCE,
         },
         solver: SolverSettings::default(),
         view: Some(View {

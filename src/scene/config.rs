@@ -10,7 +10,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::solver::{Method, Ordering, StopTest};
-use crate::world::{FrictionCone, Grain, Parameters};
+use crate::world::{ContactLaw, FrictionCone, Grain, Parameters};
 
 /// A scene and changes to it. What is left out stays as the scene says.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, clap::Args)]
@@ -64,6 +64,14 @@ pub struct Config {
     #[arg(long, value_name = "X", help_heading = "Physics", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restitution_threshold: Option<f64>,
+    /// How long a bond lives: moreau is the paper's, while the gap is negative; range, until it has been stretched by the debonding distance
+    #[arg(long, value_name = "LAW", help_heading = "Physics")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub law: Option<ContactLaw>,
+    /// Debonding distance of the law range, in mean diameters
+    #[arg(long, value_name = "D", help_heading = "Physics", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub debonding_distance: Option<f64>,
     /// Simulated time, seconds
     #[arg(long, value_name = "SECONDS", help_heading = "Physics", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -168,8 +176,16 @@ impl Config {
 
     /// The same asked for, with every number that `scene` fills in.
     pub fn resolved(&self, scene: &Scene) -> Self {
-        let Parameters { bond, time_step_secs, restitution, friction, cone, restitution_threshold } =
-            scene.parameters;
+        let Parameters {
+            bond,
+            time_step_secs,
+            restitution,
+            friction,
+            cone,
+            restitution_threshold,
+            law,
+            debonding_distance,
+        } = scene.parameters;
         Self {
             scene: Some(self.scene.clone().unwrap_or_else(|| Self::DEFAULT_SCENE.into())),
             bond: Some(bond),
@@ -178,6 +194,8 @@ impl Config {
             mu: Some(friction),
             cone: Some(cone),
             restitution_threshold: Some(restitution_threshold),
+            law: Some(law),
+            debonding_distance: Some(debonding_distance),
             duration: Some(scene.duration_secs),
             solver: Some(scene.solver.method),
             ordering: Some(scene.solver.ordering),
@@ -217,6 +235,8 @@ impl Config {
         set(&mut scene.parameters.friction, self.mu);
         set(&mut scene.parameters.cone, self.cone);
         set(&mut scene.parameters.restitution_threshold, self.restitution_threshold);
+        set(&mut scene.parameters.law, self.law);
+        set(&mut scene.parameters.debonding_distance, self.debonding_distance);
         set(&mut scene.duration_secs, self.duration);
         set(&mut scene.solver.method, self.solver);
         set(&mut scene.solver.ordering, self.ordering);

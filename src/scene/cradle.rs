@@ -8,7 +8,9 @@ use glam::DVec2;
 
 use super::{Scene, View};
 use crate::solver::{Method, Ordering, SolverSettings, StopTest};
-use crate::world::{FrictionCone, Grain, Gravity, Parameters, Physics};
+use crate::world::{
+    ContactLaw, DEBONDING_DISTANCE, FrictionCone, Grain, Gravity, Parameters, Physics,
+};
 
 /// d, m.
 const DIAMETER: f64 = 0.3;
@@ -45,6 +47,8 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             friction: 0.0,
             cone: FrictionCone::Shifted,
             restitution_threshold: 0.0,
+            law: ContactLaw::Moreau,
+            debonding_distance: DEBONDING_DISTANCE,
         },
         solver: SolverSettings {
             method: Method::Nsgs,

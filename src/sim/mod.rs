@@ -1,5 +1,6 @@
 //! The step, what it measures, and what it shows.
 
+mod bonds;
 pub mod live;
 mod observables;
 mod pull;

@@ -232,7 +232,8 @@ impl Simulation {
             .collect();
         let per_time_step = 1.0 / self.time_step_of_impulses_secs;
         let list = self.contacts.contacts().iter().zip(self.contacts.impulses());
-        let contacts = list.map(|(contact, impulse)| {
+        let shown = list.enumerate().filter(|&(index, _)| self.contacts.is_in_touch(index));
+        let contacts = shown.map(|(_, (contact, impulse))| {
             let normal_force = impulse.normal * per_time_step;
             let other = contact.other as usize;
             for index in [contact.grain as usize, other] {

@@ -1,12 +1,22 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
-use super::{Observables, Simulation, pull, schemes};
-use crate::contact::ContactList;
+use super::{Observables, Simulation, bonds, pull, schemes};
+use crate::contact::range::TOUCH_IN_DIAMETERS;
+use crate::contact::{ContactList, LookAhead};
 use crate::error::Result;
 use crate::solver::{
-    Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport, StepProblem, measure,
-    solve, visit_leanest,
+    Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport, SolverSettings,
+    StepProblem, measure, solve, visit_leanest,
 };
+use crate::world::{ContactLaw, Parameters, World};
+
+/// Law `range`: pairs within the first of these many diameters that a step could close are contacts;
+/// a pair that is to meet within the step is one up to the second.
+const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
+
+/// Law `range`: passes in which a step pushes grains out of each other. One carries an overlap on by a
+/// layer of grains at the least.
+const PASSES_OF_PUSHING: u32 = 8;
 
 /// Takes one step of Δt, compiled for the leanest model that the scene and its parameters allow.
 pub(super) fn take(simulation: &mut Simulation) -> Result<()> {
@@ -77,10 +87,19 @@ fn prepare<M: Model>(simulation: &mut Simulation) {
     let push = simulation.push_of_pull(M::Kinematics::AXES, time_step_secs);
     let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
     let problem = M::Kinematics::problem(problems);
-    problem.prepare::<M>(world, contacts, parameters, physics.cohesion, solver);
+    let parameters = Parameters { law: law(parameters, solver), ..*parameters };
+    problem.prepare::<M>(world, contacts, &parameters, physics.cohesion, solver);
     if let Some(push) = push {
         pull::apply::<M::Kinematics>(&mut problem.free, push);
         pull::apply::<M::Kinematics>(&mut problem.bodies, push);
+    }
+}
+
+/// The law of a step: a scheme has its own.
+fn law(parameters: &Parameters, solver: &SolverSettings) -> ContactLaw {
+    match solver.method.kind() {
+        MethodKind::Problem => parameters.law,
+        MethodKind::Scheme(_) => ContactLaw::Moreau,
     }
 }
 
@@ -132,9 +151,18 @@ impl ModelVisitor for Step<'_> {
 
 /// Solves the prepared problem and moves the grains.
 fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
-    let Simulation { world, solver, contacts, problems, .. } = simulation;
+    let Simulation { solver, problems, parameters, .. } = simulation;
+    if parameters.law == ContactLaw::Range {
+        return range_step::<M>(simulation);
+    }
+    let report = solve::<M>(M::Kinematics::problem(problems), solver)?;
+    Ok(move_by::<M>(simulation, report))
+}
+
+/// Moves the grains by the solution of a problem.
+fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport) -> Taken {
+    let Simulation { world, contacts, problems, .. } = simulation;
     let problem = M::Kinematics::problem(problems);
-    let report = solve::<M>(problem, solver)?;
     let measures = measure::<M>(problem);
     problem.store_impulses(contacts);
     let mut gravity_work = 0.0;
@@ -145,7 +173,67 @@ fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
         gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
     }
     integrate::<M>(simulation, simulation.parameters.time_step_secs);
-    Ok(Taken { report, measures, gravity_work })
+    Taken { report, measures, gravity_work }
+}
+
+/// A step under the law `range`: as a whole, or in substeps where a bond breaks (`sim::bonds`).
+fn range_step<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
+    let Simulation { world, parameters, .. } = simulation;
+    let whole = parameters.time_step_secs;
+    let distance = parameters.debonding_distance * world.mean_diameter;
+    let substeps = bonds::substeps(parameters, world.gravity.magnitude(), distance);
+    let (given_up, taken) = try_range::<M>(simulation, distance, substeps == 1)?;
+    if let Some(taken) = taken {
+        return Ok(taken);
+    }
+    let mut sum = Taken { report: given_up, measures: Measures::default(), gravity_work: 0.0 };
+    sum.report.converged = true;
+    simulation.parameters.time_step_secs = whole / f64::from(substeps);
+    let mut outcome = Ok(());
+    for _ in 0..substeps {
+        prepare::<M>(simulation);
+        match try_range::<M>(simulation, distance, true) {
+            Ok((_, Some(taken))) => sum.add(taken),
+            Ok((_, None)) => {}
+            Err(error) => outcome = Err(error),
+        }
+    }
+    simulation.parameters.time_step_secs = whole;
+    outcome.map(|()| sum)
+}
+
+/// Solves the prepared problem with its bonds and moves the grains; none where a bond breaks that may
+/// not.
+fn try_range<M: Model>(
+    simulation: &mut Simulation,
+    distance: f64,
+    may_break: bool,
+) -> Result<(SolveReport, Option<Taken>)> {
+    let Simulation { contacts, problems, parameters, solver, .. } = simulation;
+    let problem = M::Kinematics::problem(problems);
+    let (report, done) =
+        bonds::solve_range::<M>(problem, contacts, parameters, distance, solver, may_break)?;
+    if !done {
+        return Ok((report, None));
+    }
+    let taken = move_by::<M>(simulation, report);
+    push_out::<M>(simulation);
+    Ok((report, Some(taken)))
+}
+
+impl Taken {
+    /// Counts another substep; what it measures at its end counts for the whole.
+    fn add(&mut self, other: Self) {
+        let before = self.measures;
+        self.report.add(other.report);
+        self.measures = Measures {
+            residual: before.residual.max(other.measures.residual),
+            normal_work: before.normal_work + other.measures.normal_work,
+            tangential_work: before.tangential_work + other.measures.tangential_work,
+            ..other.measures
+        };
+        self.gravity_work += other.gravity_work;
+    }
 }
 
 struct Start<'a>(&'a mut Simulation);
@@ -172,14 +260,49 @@ impl ModelVisitor for Start<'_> {
 
 /// Finds the contacts at the present positions.
 pub(super) fn detect<M: Model>(simulation: &mut Simulation) {
-    let Simulation { world, candidates, contacts, .. } = simulation;
-    if M::Kinematics::AXES == 1 {
+    let Simulation { world, candidates, contacts, parameters, solver, .. } = simulation;
+    if law(parameters, solver) == ContactLaw::Range {
+        let ahead = look_ahead(world, parameters.time_step_secs);
+        if M::Kinematics::AXES == 1 {
+            candidates.update_ahead::<1>(world, ahead.reach);
+            contacts.detect_ahead::<1>(world, candidates, ahead);
+        } else {
+            candidates.update_ahead::<2>(world, ahead.reach);
+            contacts.detect_ahead::<2>(world, candidates, ahead);
+        }
+    } else if M::Kinematics::AXES == 1 {
         candidates.update::<1>(world);
         contacts.detect::<1>(world, candidates);
     } else {
         candidates.update::<2>(world);
         contacts.detect::<2>(world, candidates);
     }
+}
+
+/// Pushes grains out of each other, as far as a few passes go.
+fn push_out<M: Model>(simulation: &mut Simulation) {
+    let Simulation { world, contacts, candidates, .. } = simulation;
+    let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
+    for _ in 0..PASSES_OF_PUSHING {
+        let found = if M::Kinematics::AXES == 1 {
+            contacts.push_out::<1>(world, candidates, allowed)
+        } else {
+            contacts.push_out::<2>(world, candidates, allowed)
+        };
+        if !found {
+            break;
+        }
+    }
+}
+
+/// How far a step has to look: the fastest grain tells what any of them may come to.
+fn look_ahead(world: &World, time_step_secs: f64) -> LookAhead {
+    let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
+    let fastest = speeds.fold(0.0, f64::max) + 2.0 * world.gravity.magnitude() * time_step_secs;
+    let [near, far] = AHEAD_IN_DIAMETERS.map(|most| most * world.mean_diameter);
+    let distance = (fastest * time_step_secs).min(near);
+    let reach = (distance + 2.0 * fastest * time_step_secs).min(far);
+    LookAhead { time_step_secs, distance, reach }
 }
 
 /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and the angles where grains turn.
@@ -208,10 +331,17 @@ fn geometry<M: Model>(simulation: &Simulation) -> Observables {
     let mut overlap_of_pairs = 0.0;
     let mut pairs = 0u32;
     let mut smallest_gap = 0f64;
-    for contact in contacts {
+    let ranges = law(&simulation.parameters, &simulation.solver) == ContactLaw::Range;
+    let mut in_touch = 0;
+    for (index, contact) in contacts.iter().enumerate() {
+        if !simulation.contacts.is_in_touch(index) {
+            continue;
+        }
+        in_touch += 1;
         smallest_gap = smallest_gap.min(contact.gap);
         if (contact.other as usize) < grains.len() {
-            overlap_of_pairs += contact.gap.abs();
+            // A bond may be stretched; what is not overlap does not count as such.
+            overlap_of_pairs += if ranges { (-contact.gap).max(0.0) } else { contact.gap.abs() };
             pairs += 1;
         }
     }
@@ -226,7 +356,7 @@ fn geometry<M: Model>(simulation: &Simulation) -> Observables {
     }
     let dropped = simulation.initial_heights - heights;
     Observables {
-        contacts: contacts.len() as u32,
+        contacts: in_touch,
         mean_overlap: overlap_of_pairs / f64::from(pairs.max(1)) / world.mean_diameter,
         max_overlap: -smallest_gap / world.mean_diameter,
         potential_energy,

@@ -31,7 +31,7 @@ pub struct Measures {
 /// formed in m/s and weighted by m_n.
 pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
     let mut sums = Sums::default();
-    for_each_row::<M::Kinematics>(problem, |row, motion| {
+    for_each_row::<M::Kinematics>(problem, |_, row, motion| {
         sums.add_error::<M>(problem, row, &motion)
     });
     sums.residual()
@@ -46,9 +46,9 @@ pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
 pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
     let mut sums = Sums::default();
     let mut measures = Measures::default();
-    for_each_row::<M::Kinematics>(problem, |row, motion| {
+    for_each_row::<M::Kinematics>(problem, |number, row, motion| {
         sums.add_error::<M>(problem, row, &motion);
-        let [normal, tangential] = problem.reduced_impulse(row);
+        let [normal, tangential] = problem.reduced_impulse(number, row);
         let half_mass = 0.5 * row.effective_mass;
         measures.compressive_contacts += u32::from(normal > 0.0);
         measures.tensile_contacts += u32::from(normal < 0.0);
@@ -61,25 +61,46 @@ pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
 }
 
 /// Relative (normal, tangential) velocities of one contact, m/s.
-struct Motion {
-    now: [f64; 2],
-    before: [f64; 2],
-    free: [f64; 2],
+pub struct Motion {
+    /// At the end of the step.
+    pub now: [f64; 2],
+    /// At its beginning.
+    pub before: [f64; 2],
+    /// At the end if no contact acted.
+    pub free: [f64; 2],
 }
 
-fn for_each_row<K: Kinematics>(problem: &StepProblem<K>, mut visit: impl FnMut(&Row<K>, Motion)) {
-    for row in &problem.fixed_rows {
+/// Visits the rows with their numbers and motions.
+pub fn for_each_row<K: Kinematics>(
+    problem: &StepProblem<K>,
+    mut visit: impl FnMut(usize, &Row<K>, Motion),
+) {
+    for (number, row) in problem.fixed_rows.iter().enumerate() {
         let of = |bodies: &[K::Body]| K::velocity(row.normal, &bodies[row.i as usize]);
         let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
-        visit(row, Motion { now, before, free });
+        visit(number, row, Motion { now, before, free });
     }
-    for row in &problem.pair_rows {
+    for (number, row) in (problem.fixed_rows.len()..).zip(&problem.pair_rows) {
         let of = |bodies: &[K::Body]| {
             K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])
         };
         let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
-        visit(row, Motion { now, before, free });
+        visit(number, row, Motion { now, before, free });
     }
+}
+
+/// v_n of every row among `bodies`, m/s; `speeds` is cleared first.
+pub fn relative_velocities<K: Kinematics>(
+    problem: &StepProblem<K>,
+    bodies: &[K::Body],
+    speeds: &mut Vec<f64>,
+) {
+    let StepProblem { fixed_rows, pair_rows, .. } = problem;
+    speeds.clear();
+    speeds.extend(fixed_rows.iter().map(|row| K::velocity(row.normal, &bodies[row.i as usize])[0]));
+    speeds.extend(pair_rows.iter().map(|row| {
+        K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])[0]
+    }));
 }
 
 #[derive(Default)]

@@ -185,6 +185,15 @@ pub struct SolveReport {
     pub stalled: bool,
 }
 
+impl SolveReport {
+    /// Counts another solve of the same step.
+    pub fn add(&mut self, other: Self) {
+        self.sweeps += other.sweeps;
+        self.factorisations += other.factorisations;
+        self.converged &= other.converged;
+    }
+}
+
 /// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
 /// the rows' impulses.
 ///

@@ -23,7 +23,7 @@ mod system;
 pub use auto::picked;
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
-pub use measure::{Measures, measure, residual};
+pub use measure::{Measures, Motion, for_each_row, measure, relative_velocities, residual};
 pub use method::{
     METHODS, Method, MethodInfo, MethodKind, Scheme, SolveReport, solve, solve_system,
 };

@@ -253,10 +253,11 @@ impl Change {
 
 /// Σ P², (N·s)².
 fn squared_impulses<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
-    let squared = |row: &Row<K>| {
-        let [normal, tangential] = problem.reduced_impulse(row);
+    let squared = |(number, row): (usize, &Row<K>)| {
+        let [normal, tangential] = problem.reduced_impulse(number, row);
         row.effective_mass * row.effective_mass * (normal * normal + tangential * tangential)
     };
-    problem.fixed_rows.iter().map(squared).sum::<f64>()
-        + problem.pair_rows.iter().map(squared).sum::<f64>()
+    let fixed_count = problem.fixed_rows.len();
+    problem.rows().take(fixed_count).map(squared).sum::<f64>()
+        + problem.rows().skip(fixed_count).map(squared).sum::<f64>()
 }

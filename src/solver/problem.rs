@@ -8,8 +8,9 @@ use super::nsgs_parallel::Colouring;
 use super::order::Sorter;
 use super::system::Vectors;
 use super::{Kinematics, Line, Model, Plane, SolverSettings, SpinningPlane};
+use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::contact::{Contact, ContactList, Impulse, law};
-use crate::world::{Parameters, World};
+use crate::world::{ContactLaw, Parameters, World};
 
 /// One contact as the sweep sees it: exactly one cache line in the plane. Impulses are reduced ones,
 /// λ = P/m_ij (see `solver::kinematics` and `contact::law`).
@@ -59,6 +60,9 @@ pub struct StepProblem<K: Kinematics> {
     pub friction: f64,
     /// C₀Δt/m_ij = Bond·g·Δt, m/s; 0 in a scene without cohesion.
     pub capture_speed: f64,
+    /// The same row by row, where rows differ in it (law `range`); else empty. Sweeps need it not:
+    /// they see σ alone.
+    pub captures: Vec<f64>,
     /// Masses of the bodies, kg.
     pub masses: Vec<f64>,
     /// Mean mass of the grains, kg.
@@ -83,6 +87,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             contact_of_row: Vec::new(),
             friction: 0.0,
             capture_speed: 0.0,
+            captures: Vec::new(),
             masses: Vec::new(),
             mean_mass: 0.0,
             newton: Workspaces::default(),
@@ -111,6 +116,8 @@ impl<K: Kinematics> StepProblem<K> {
         self.friction = parameters.friction;
         self.capture_speed =
             if cohesion { parameters.capture_speed(gravity_magnitude) } else { 0.0 };
+        let range = parameters.law == ContactLaw::Range;
+        self.captures.clear();
         self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
         self.masses.clone_from(&grains.masses);
         self.before.clear();
@@ -137,7 +144,24 @@ impl<K: Kinematics> StepProblem<K> {
         let fixed_count = rows.len();
         self.sorter.append(ordering, (world, list), pairs, rows, pair_ends);
 
-        let rebound = |velocity| parameters.restitution_velocity(velocity, gravity_magnitude);
+        let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
+        let rebound = |velocity: f64, contact: &Contact| {
+            if !range {
+                return parameters.restitution_velocity(velocity, gravity_magnitude);
+            }
+            // What is closed in the step must not close by more than its gap; what touches bounces.
+            if contact.gap > touch {
+                return (contact.gap - touch) / parameters.time_step_secs;
+            }
+            parameters.restitution_velocity(velocity.min(0.0), gravity_magnitude)
+        };
+        if range && self.capture_speed > 0.0 {
+            let capture = |&index: &u32| match contacts.bonds()[index as usize].alive {
+                true => self.capture_speed,
+                false => 0.0,
+            };
+            self.captures.extend(self.contact_of_row.iter().map(capture));
+        }
         let start = |index: u32| settings.warm_start.then(|| contacts.impulses()[index as usize]);
         self.fixed_rows.clear();
         for at in 0..fixed_count {
@@ -146,7 +170,8 @@ impl<K: Kinematics> StepProblem<K> {
             let i = contact.grain as usize;
             let [velocity, _] = K::velocity(K::normal(contact.normal), &self.before[i]);
             let masses = (grains.masses[i], 1.0);
-            let row = self.row::<M>(contact, masses, rebound(velocity), start(index));
+            let velocity = rebound(velocity, contact);
+            let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
             self.fixed_rows.push(row);
         }
         self.pair_rows.clear();
@@ -158,7 +183,8 @@ impl<K: Kinematics> StepProblem<K> {
             let [velocity, _] = K::relative_velocity(K::normal(contact.normal), before_i, before_j);
             let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
             let masses = (grains.masses[i] * share, share);
-            let row = self.row::<M>(contact, masses, rebound(velocity), start(index));
+            let velocity = rebound(velocity, contact);
+            let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
             self.pair_rows.push(row);
         }
         self.form_velocities();
@@ -170,11 +196,12 @@ impl<K: Kinematics> StepProblem<K> {
         contact: &Contact,
         (effective_mass, share): (f64, f64),
         restitution_velocity: f64,
+        capture_speed: f64,
         start: Option<Impulse>,
     ) -> Row<K> {
         let start = start.unwrap_or_default();
         let normal_impulse = start.normal / effective_mass;
-        let shifted_impulse = law::signorini(normal_impulse + self.capture_speed);
+        let shifted_impulse = law::signorini(normal_impulse + capture_speed);
         let tangential_impulse = if M::FRICTION {
             let bound = self.friction_bound::<M>(shifted_impulse);
             law::coulomb(start.tangential / effective_mass, bound)
@@ -196,12 +223,12 @@ impl<K: Kinematics> StepProblem<K> {
     /// Moves the bodies from their free velocities by the rows' impulses.
     pub fn form_velocities(&mut self) {
         self.bodies.clone_from(&self.free);
-        for row in &self.fixed_rows {
-            let impulse = self.reduced_impulse(row);
+        for (at, row) in self.fixed_rows.iter().enumerate() {
+            let impulse = self.reduced_impulse(at, row);
             K::push_single(&mut self.bodies[row.i as usize], row.normal, impulse);
         }
-        for row in &self.pair_rows {
-            let impulse = self.reduced_impulse(row);
+        for (at, row) in (self.fixed_rows.len()..).zip(&self.pair_rows) {
+            let impulse = self.reduced_impulse(at, row);
             let (mut i, mut j) = (self.bodies[row.i as usize], self.bodies[row.j as usize]);
             K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
             self.bodies[row.i as usize] = i;
@@ -236,10 +263,21 @@ impl<K: Kinematics> StepProblem<K> {
         *contact_of_row = order.iter().map(|&row| contact_of_row[row as usize]).collect();
     }
 
-    /// (λ_n, λ_t) of a row, m/s.
+    /// The capture speed of a row by its number (fixed rows, then pair rows), m/s.
     #[inline(always)]
-    pub fn reduced_impulse(&self, row: &Row<K>) -> [f64; 2] {
-        [row.shifted_impulse - self.capture_speed, row.tangential_impulse]
+    pub fn capture(&self, number: usize) -> f64 {
+        if self.captures.is_empty() { self.capture_speed } else { self.captures[number] }
+    }
+
+    /// (λ_n, λ_t) of a row with its number, m/s.
+    #[inline(always)]
+    pub fn reduced_impulse(&self, number: usize, row: &Row<K>) -> [f64; 2] {
+        [row.shifted_impulse - self.capture(number), row.tangential_impulse]
+    }
+
+    /// The rows with their numbers: fixed rows, then pair rows.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &Row<K>)> {
+        self.fixed_rows.iter().chain(&self.pair_rows).enumerate()
     }
 
     /// The largest |λ_t| that a shifted normal impulse allows, m/s.
@@ -255,9 +293,8 @@ impl<K: Kinematics> StepProblem<K> {
     /// Hands the rows' impulses back to the contacts, in N·s.
     pub fn store_impulses(&self, contacts: &mut ContactList) {
         let impulses = contacts.impulses_mut();
-        let rows = self.fixed_rows.iter().chain(&self.pair_rows);
-        for (row, &index) in rows.zip(&self.contact_of_row) {
-            let [normal, tangential] = self.reduced_impulse(row);
+        for ((number, row), &index) in self.rows().zip(&self.contact_of_row) {
+            let [normal, tangential] = self.reduced_impulse(number, row);
             let mass = row.effective_mass;
             impulses[index as usize] =
                 Impulse { normal: mass * normal, tangential: mass * tangential };
@@ -266,10 +303,12 @@ impl<K: Kinematics> StepProblem<K> {
 
     /// Gives the rows the impulses of a step that was taken in another way, one a contact, N·s.
     pub fn set_impulses(&mut self, impulses: &[Impulse]) {
-        let rows = self.fixed_rows.iter_mut().chain(&mut self.pair_rows);
-        for (row, &index) in rows.zip(&self.contact_of_row) {
+        let Self { fixed_rows, pair_rows, contact_of_row, capture_speed, captures, .. } = self;
+        let rows = fixed_rows.iter_mut().chain(pair_rows).enumerate();
+        for ((number, row), &index) in rows.zip(&*contact_of_row) {
             let Impulse { normal, tangential } = impulses[index as usize];
-            row.shifted_impulse = normal / row.effective_mass + self.capture_speed;
+            let capture_speed = captures.get(number).unwrap_or(capture_speed);
+            row.shifted_impulse = normal / row.effective_mass + capture_speed;
             row.tangential_impulse = tangential / row.effective_mass;
         }
     }

@@ -227,14 +227,14 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
         }
         // Impulses in N·s, and without the shift.
         let (mut squared, mut absolute, mut whole) = (0.0, 0.0, 0.0);
-        for ((row, root), [normal, tangential]) in self.rows().zip(before) {
+        for ((number, (row, root)), [normal, tangential]) in self.rows().enumerate().zip(before) {
             let mass = row.effective_mass;
             let mut add = |now: f64, change: f64| {
                 squared += change * change;
                 absolute += change.abs();
                 whole += now * now;
             };
-            let [now, now_tangential] = self.problem.reduced_impulse(row);
+            let [now, now_tangential] = self.problem.reduced_impulse(number, row);
             add(mass * now, mass * row.shifted_impulse - root * normal);
             if M::FRICTION {
                 add(mass * now_tangential, mass * row.tangential_impulse - root * tangential);

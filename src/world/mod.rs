@@ -8,7 +8,7 @@ mod parameters;
 pub use boundary::{Boundary, Disc};
 pub use grains::{Grain, Grains};
 pub use gravity::Gravity;
-pub use parameters::{FrictionCone, Parameters, Physics};
+pub use parameters::{ContactLaw, DEBONDING_DISTANCE, FrictionCone, Parameters, Physics};
 
 /// Everything that a step reads and moves.
 #[derive(Clone, Debug, PartialEq)]

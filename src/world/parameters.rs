@@ -54,6 +54,17 @@ pub enum FrictionCone {
     Compressive,
 }
 
+/// How long a bond lives, and what a contact sees of its gap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactLaw {
+    /// The paper's: a contact and its cohesion live while the gap is negative.
+    #[default]
+    Moreau,
+    /// A bond lives until it has been stretched by the debonding distance (`contact::range`).
+    Range,
+}
+
 /// Numbers that may change between any two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -75,6 +86,22 @@ pub struct Parameters {
     /// then has no solution. Below about 2 g·Δt it stands for no bounce that anyone could see.
     #[serde(default)]
     pub restitution_threshold: f64,
+    /// How long a bond lives.
+    #[serde(default)]
+    pub law: ContactLaw,
+    /// δ_c of the law `range`, in mean diameters.
+    #[serde(default = "default_debonding_distance")]
+    pub debonding_distance: f64,
+}
+
+/// δ_c where none is given, in mean diameters.
+pub const DEBONDING_DISTANCE: f64 = 0.01;
+
+/// The largest δ_c, in mean diameters: within it no third grain fits between two bonded ones.
+const LARGEST_DEBONDING_DISTANCE: f64 = 0.1;
+
+fn default_debonding_distance() -> f64 {
+    DEBONDING_DISTANCE
 }
 
 impl Parameters {
@@ -83,8 +110,16 @@ impl Parameters {
     /// # Errors
     /// Names the first field outside its range, its value and the range.
     pub fn validate(&self) -> Result<()> {
-        let Self { bond, time_step_secs, restitution, friction, cone: _, restitution_threshold } =
-            *self;
+        let Self {
+            bond,
+            time_step_secs,
+            restitution,
+            friction,
+            cone,
+            restitution_threshold,
+            law,
+            debonding_distance,
+        } = *self;
         // Written so that NaN fails each of them.
         if !(bond >= 0.0 && bond.is_finite()) {
             return Err(Error::value("bond", bond, "a finite number ≥ 0"));
@@ -101,6 +136,14 @@ impl Parameters {
         if !(restitution_threshold >= 0.0 && restitution_threshold.is_finite()) {
             let field = "restitution-threshold";
             return Err(Error::value(field, restitution_threshold, "a finite number ≥ 0"));
+        }
+        if !(debonding_distance > 0.0 && debonding_distance <= LARGEST_DEBONDING_DISTANCE) {
+            let allowed = format!("above 0 and at most {LARGEST_DEBONDING_DISTANCE} diameters");
+            return Err(Error::value("debonding-distance", debonding_distance, allowed));
+        }
+        // In the compressive cone the sweep needs the capture speed, which differs between contacts.
+        if law == ContactLaw::Range && cone == FrictionCone::Compressive {
+            return Err(Error::value("cone", "compressive", "shifted where law is range"));
         }
         Ok(())
     }

@@ -11,7 +11,9 @@ use rand_pcg::Pcg64;
 use slump::scene::{Scene, rough_base};
 use slump::sim::Simulation;
 use slump::solver::{Method, Ordering, SolverSettings, StopTest};
-use slump::world::{Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
+use slump::world::{
+    ContactLaw, DEBONDING_DISTANCE, Disc, FrictionCone, Grain, Gravity, Parameters, Physics,
+};
 
 /// g of the scenes made here, m/s².
 pub const G: f64 = 9.8;
@@ -32,6 +34,8 @@ pub fn parameters(bond: f64, time_step_secs: f64, restitution: f64, friction: f6
         friction,
         cone: FrictionCone::Shifted,
         restitution_threshold: 0.0,
+        law: ContactLaw::Moreau,
+        debonding_distance: DEBONDING_DISTANCE,
     }
 }
 
