@@ -101,6 +101,21 @@ impl ContactList {
         }
     }
 
+    /// Drops the contacts of a body, and numbers those after it one lower.
+    pub fn remove_body(&mut self, body: u32) {
+        let Kept { contacts, impulses, memories } = &mut self.now;
+        let stays = |contact: &Contact| contact.grain != body && contact.other != body;
+        let mut stay = contacts.iter().map(stays).collect::<Vec<_>>().into_iter();
+        let mut stay_too = stay.clone();
+        impulses.retain(|_| stay.next() == Some(true));
+        memories.retain(|_| stay_too.next() == Some(true));
+        contacts.retain(stays);
+        for contact in contacts {
+            contact.grain -= u32::from(contact.grain > body);
+            contact.other -= u32::from(contact.other > body);
+        }
+    }
+
     /// Finds the contacts at the present positions: candidates with a gap below the tolerance. A
     /// contact that was there the step before starts from its impulses and its memory of then, any
     /// other from 0.

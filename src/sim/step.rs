@@ -1,6 +1,6 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
-use super::{Observables, Simulation, pull, schemes};
+use super::{Observables, Simulation, pull, push_out, schemes};
 use crate::contact::ContactList;
 use crate::error::Result;
 use crate::solver::{
@@ -131,9 +131,17 @@ impl ModelVisitor for Step<'_> {
 
 /// Solves the prepared problem and moves the grains.
 fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
-    let Simulation { world, solver, contacts, problems, .. } = simulation;
+    let Simulation { solver, problems, .. } = simulation;
     let problem = M::Kinematics::problem(problems);
-    let report = solve::<M>(problem, solver)?;
+    let mut report = solve::<M>(problem, solver)?;
+    if !report.converged && solver.remedies.calm_unsolved {
+        let first = report;
+        report = solve_without_bounces::<M>(simulation)?;
+        report.sweeps += first.sweeps;
+        report.factorisations += first.factorisations;
+    }
+    let Simulation { world, contacts, problems, .. } = simulation;
+    let problem = M::Kinematics::problem(problems);
     let measures = measure::<M>(problem);
     problem.store_impulses(contacts);
     let mut gravity_work = 0.0;
@@ -143,8 +151,23 @@ fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
         let mass = world.grains.masses[index];
         gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
     }
-    integrate::<M>(simulation, simulation.parameters.time_step_secs);
+    let time_step_secs = simulation.parameters.time_step_secs;
+    integrate::<M>(simulation, time_step_secs);
+    if simulation.solver.remedies.push_out {
+        push_out::push_out(simulation, time_step_secs);
+    }
     Ok(Taken { report, measures, gravity_work })
+}
+
+/// Solves the step anew with ρ = 0, from the impulses of the step before. What it measures is the
+/// residual of that problem.
+fn solve_without_bounces<M: Model>(simulation: &mut Simulation) -> Result<SolveReport> {
+    let restitution = std::mem::take(&mut simulation.parameters.restitution);
+    // Detection at the same places finds the same contacts, and their impulses with them.
+    prepare::<M>(simulation);
+    simulation.parameters.restitution = restitution;
+    let Simulation { solver, problems, .. } = simulation;
+    solve::<M>(M::Kinematics::problem(problems), solver)
 }
 
 struct Start<'a>(&'a mut Simulation);
