@@ -1,6 +1,7 @@
 //! The command line.
 
 mod problem_command;
+mod stability_command;
 mod sweep_command;
 
 use std::path::PathBuf;
@@ -12,7 +13,9 @@ use slump::app::WindowOptions;
 use slump::error::Result;
 use slump::headless::HeadlessOptions;
 use slump::output::{Progress, check_writable, write_file};
-use slump::scene::{Config, Rain, SCENES, Settling, scene_to_toml, settle, write_discs};
+use slump::scene::{
+    Config, Rain, SCENES, SceneGroup, Settling, scene_to_toml, settle, write_discs,
+};
 use slump::solver::{METHODS, MethodKind};
 use slump::study::{
     ChartOptions, ChartPart, chart_speed, default_peers_folder, figure_names, reproduce,
@@ -88,6 +91,8 @@ enum Command {
         #[arg(long, value_name = "DIR", default_value_os_t = default_peers_folder().to_owned())]
         peers: PathBuf,
     },
+    /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
+    Stability(stability_command::StabilityCommand),
     /// Print a scene, with the changes asked for, as a scene file
     Scene {
         #[command(flatten)]
@@ -132,6 +137,7 @@ fn run(cli: Cli) -> Result<()> {
         Some(Command::Chart { out, quick, large, only, peers }) => {
             chart_speed(&ChartOptions { out, quick, large, only, peers })
         }
+        Some(Command::Stability(command)) => command.run(),
         Some(Command::Scene { config }) => {
             print!("{}", scene_to_toml(&slump::headless::settled(&config)?)?);
             Ok(())
@@ -162,9 +168,11 @@ fn generate(rain: &Rain, out: &std::path::Path) -> Result<()> {
 }
 
 fn list() {
-    println!("Scenes:");
-    for scene in SCENES {
-        println!("  {:10} {}", scene.name, scene.summary);
+    for group in SceneGroup::ALL {
+        println!("{}:", group.title());
+        for scene in SCENES.iter().filter(|scene| scene.group == group) {
+            println!("  {:14} {}", scene.name, scene.summary);
+        }
     }
     let methods = |heading: &str, of_problem: bool| {
         println!("{heading}:");

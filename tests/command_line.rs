@@ -38,7 +38,7 @@ fn names_in(folder: &Path) -> Vec<String> {
 
 #[test]
 fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
-    let cases: [(&[&str], &str, &str); 24] = [
+    let cases: [(&[&str], &str, &str); 25] = [
         (&["--bond", "-1"], "bond is -1", "≥ 0"),
         (&["--dt", "0"], "dt is 0", "> 0"),
         (&["--dt", "nan"], "dt is NaN", "> 0"),
@@ -50,6 +50,7 @@ fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
         (&["--tolerance", "0"], "tolerance is 0", "> 0"),
         (&["--max-sweeps", "0"], "max-sweeps is 0", "at least 1"),
         (&["--scene", "heap"], "scene is heap", "pile, cradle, collision"),
+        (&["--max-travel", "-1"], "max-travel is -1", "0 never cuts a step"),
         (&["--scene", "none.toml"], "none.toml", "No such file"),
         (&["--initial", "none.csv"], "none.csv", "No such file"),
         (&["--solver", "magic"], "magic", "nsgs"),
@@ -73,6 +74,12 @@ fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
         assert!(said.contains(field) && said.contains(allowed), "{arguments:?}: {said}");
         assert!(!out.exists(), "{arguments:?} was refused, but {} is there", out.display());
     }
+}
+
+#[test]
+fn an_unknown_challenge_is_told_of_with_those_there_are() {
+    let said = refusal(&["stability", "heap"]);
+    assert!(said.contains("scene is heap, but must be one of column, sag, mass-ratio"), "{said}");
 }
 
 #[test]

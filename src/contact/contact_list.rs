@@ -131,6 +131,22 @@ impl ContactList {
         }
     }
 
+    /// Drops the contacts of a body, and numbers those after it one lower.
+    pub fn remove_body(&mut self, body: u32) {
+        let Kept { contacts, impulses, memories, bonds } = &mut self.now;
+        let stays = |contact: &Contact| contact.grain != body && contact.other != body;
+        let stay = contacts.iter().map(stays).collect::<Vec<_>>().into_iter();
+        let [mut of_impulses, mut of_memories, mut of_bonds] = [(); 3].map(|()| stay.clone());
+        impulses.retain(|_| of_impulses.next() == Some(true));
+        memories.retain(|_| of_memories.next() == Some(true));
+        bonds.retain(|_| of_bonds.next() == Some(true));
+        contacts.retain(stays);
+        for contact in contacts {
+            contact.grain -= u32::from(contact.grain > body);
+            contact.other -= u32::from(contact.other > body);
+        }
+    }
+
     /// Finds the contacts at the present positions: candidates with a gap below the tolerance. A
     /// contact that was there the step before starts from its impulses and its memory of then, any
     /// other from 0.

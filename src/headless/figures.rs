@@ -8,13 +8,13 @@ use glam::DVec2;
 use image::RgbaImage;
 use rayon::prelude::*;
 
-use super::frames::{ObservablesTable, tell_of_unconverged_steps};
+use super::frames::{ObservablesTable, tell_of_alarms, tell_of_unconverged_steps};
 use super::manifest::{Manifest, Moment, PictureEntry, RunEntry};
 use crate::error::Result;
 use crate::output::{Progress, check_writable, write_png};
 use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::View;
-use crate::sim::{Snapshot, Tally};
+use crate::sim::{Alarm, Snapshot, Tally};
 use crate::study::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
     record,
@@ -32,6 +32,7 @@ struct Outcome {
     run: PaperRun,
     snapshots: Vec<Snapshot>,
     tally: Tally,
+    alarms: Vec<Alarm>,
 }
 
 /// Simulates the runs on all cores and draws the figures into `folder`.
@@ -43,8 +44,14 @@ pub(super) fn draw(folder: &Path, renderer: RendererChoice) -> Result<()> {
 
     let mut manifest = Manifest::new(renderer.name());
     for outcome in &outcomes {
-        manifest.runs.push(RunEntry::new(&outcome.run.name, &outcome.run.scene, outcome.tally)?);
+        manifest.runs.push(RunEntry::new(
+            &outcome.run.name,
+            &outcome.run.scene,
+            outcome.tally,
+            &outcome.alarms,
+        )?);
         tell_of_unconverged_steps(&outcome.run.scene, &outcome.tally);
+        tell_of_alarms(&outcome.run.scene, &outcome.alarms);
     }
     let mut press = Press { folder, renderer: &mut renderer, manifest };
     press.fig3(&outcomes)?;
@@ -85,7 +92,11 @@ fn simulate(folder: &Path) -> Result<Vec<Outcome>> {
             }
             let _one_at_a_time = said.lock();
             progress.say(&format!("{}: {:.1} s", run.name, started.elapsed().as_secs_f64()));
-            Ok(Outcome { run, snapshots, tally: recorded.tally })
+            if let Some(failure) = recorded.failure {
+                return Err(failure);
+            }
+            let alarms = recorded.simulation.alarms().to_vec();
+            Ok(Outcome { run, snapshots, tally: recorded.tally, alarms })
         })
         .collect();
     progress.finish();

@@ -13,7 +13,7 @@ use crate::render::{
     Camera, ColourBy, Renderer, Style, automatic_range, draw_scene, force_reference,
 };
 use crate::scene::{Config, Scene, Settling, View};
-use crate::sim::{Observables, Snapshot};
+use crate::sim::{Alarm, AlarmKind, Observables, Snapshot};
 use crate::solver::{Method, picked};
 use crate::study::record;
 
@@ -68,6 +68,7 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions) -> Result<()> {
     );
     progress.finish();
     let recorded = recorded?;
+    let alarms = recorded.simulation.alarms();
     if let Some(table) = table {
         table.finish()?;
     }
@@ -77,14 +78,23 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions) -> Result<()> {
             studio.shoot(number, snapshot)?;
         }
     }
-    studio.manifest.runs.push(RunEntry::new(RUN, &scene, recorded.tally)?);
+    studio.manifest.runs.push(RunEntry::new(RUN, &scene, recorded.tally, alarms)?);
     studio.finish()?;
     tell_of_unconverged_steps(&scene, &recorded.tally);
     if scene.solver.method == Method::Auto {
         let contacts = recorded.simulation.contacts().contacts().len();
         eprintln!("auto took {} for {contacts} contacts", picked(&scene.solver, contacts).name());
     }
-    Ok(())
+    tell_of_alarms(&scene, alarms);
+    recorded.failure.map_or(Ok(()), Err)
+}
+
+/// Says on stderr what went wrong, and what is most likely to help. A state that is no longer finite
+/// ends the run with an error of its own.
+pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
+    for alarm in alarms.iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite) {
+        eprintln!("{}: {}", scene.name, alarm.message(&scene.parameters, &scene.solver));
+    }
 }
 
 /// Says on stderr how many steps were not solved as asked.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::output::write_file;
 use crate::scene::Scene;
-use crate::sim::{Observables, Tally};
+use crate::sim::{Alarm, Observables, Tally};
 
 /// `manifest.json`.
 #[derive(Debug, Serialize)]
@@ -33,6 +33,8 @@ pub(super) struct RunEntry {
     /// Tells initial states apart: FNV-1a over all numbers of the grains, bit by bit.
     pub initial_state: String,
     pub tally: Tally,
+    /// What went wrong, and what is most likely to help.
+    pub alarms: Vec<AlarmEntry>,
     /// Dimensionless (paper §3.3).
     pub cohesive_time: f64,
     /// m/s (paper eq. 9).
@@ -42,6 +44,14 @@ pub(super) struct RunEntry {
     /// The longest substep that is surely stable, s, where the method has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_time_step_secs: Option<f64>,
+}
+
+/// Something that went wrong.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct AlarmEntry {
+    #[serde(flatten)]
+    pub alarm: Alarm,
+    pub message: String,
 }
 
 /// One picture.
@@ -81,7 +91,7 @@ impl Manifest {
 }
 
 impl RunEntry {
-    pub fn new(name: &str, scene: &Scene, tally: Tally) -> Result<Self> {
+    pub fn new(name: &str, scene: &Scene, tally: Tally, alarms: &[Alarm]) -> Result<Self> {
         let mut said = serde_json::to_value(scene)
             .map_err(|error| Error::value("scene", name, error.to_string()))?;
         if let Some(fields) = said.as_object_mut() {
@@ -97,6 +107,13 @@ impl RunEntry {
             fixed_discs: scene.fixed_discs.len(),
             initial_state: format!("{:016x}", fingerprint(scene)),
             tally,
+            alarms: alarms
+                .iter()
+                .map(|alarm| AlarmEntry {
+                    alarm: *alarm,
+                    message: alarm.message(&scene.parameters, &scene.solver),
+                })
+                .collect(),
             cohesive_time: scene.parameters.cohesive_time(scene.mean_diameter, gravity),
             capture_speed: scene.parameters.capture_speed(gravity),
             substeps: start.substeps(),

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Rain, Scene, Settling, built_in, cradle_from, pile_of, read_discs, read_scene, settle,
+    Preset, Rain, Scene, Settling, built_in, cradle_from, pile_of, read_discs, read_scene, settle,
 };
 use crate::error::{Error, Result};
 use crate::solver::{Method, Ordering, StopTest};
@@ -16,7 +16,7 @@ use crate::world::{ContactLaw, FrictionCone, Grain, Parameters};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Config {
-    /// Built-in scene (pile, cradle, collision) or a scene file (NAME.toml)
+    /// Built-in scene (pile, cradle, collision, …: `slump list`) or a scene file (NAME.toml)
     #[arg(long, value_name = "NAME|FILE", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
@@ -40,6 +40,10 @@ pub struct Config {
     #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start: Option<f64>,
+    /// Settings that go together; what else is given changes them
+    #[arg(long, value_name = "NAME", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preset: Option<Preset>,
     /// Bond number: cohesion force over effective weight, at least 0
     #[arg(long, value_name = "BOND", help_heading = "Physics", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -104,6 +108,18 @@ pub struct Config {
     #[arg(long, value_name = "N", help_heading = "Solver")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub substeps: Option<u32>,
+    /// Push overlap out by moving grains apart after each step, without giving them speed
+    #[arg(long, value_name = "BOOL", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub push_out: Option<bool>,
+    /// Cut steps into pieces in which no grain moves further than this, in diameters; 0 never does
+    #[arg(long, value_name = "D", help_heading = "Solver", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_travel: Option<f64>,
+    /// Solve a step that did not converge once more without bounces, which may contradict each other
+    #[arg(long, value_name = "BOOL", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calm_unsolved: Option<bool>,
 }
 
 impl Config {
@@ -204,6 +220,9 @@ impl Config {
             max_sweeps: Some(scene.solver.max_sweeps),
             warm_start: Some(scene.solver.warm_start),
             substeps: Some(scene.solver.substeps),
+            push_out: Some(scene.solver.remedies.push_out),
+            max_travel: Some(scene.solver.remedies.max_travel),
+            calm_unsolved: Some(scene.solver.remedies.calm_unsolved),
             ..self.clone()
         }
     }
@@ -229,6 +248,9 @@ impl Config {
                 *place = value;
             }
         }
+        if let Some(preset) = self.preset {
+            preset.apply(scene);
+        }
         set(&mut scene.parameters.bond, self.bond);
         set(&mut scene.parameters.time_step_secs, self.dt);
         set(&mut scene.parameters.restitution, self.rho);
@@ -245,6 +267,9 @@ impl Config {
         set(&mut scene.solver.max_sweeps, self.max_sweeps);
         set(&mut scene.solver.warm_start, self.warm_start);
         set(&mut scene.solver.substeps, self.substeps);
+        set(&mut scene.solver.remedies.push_out, self.push_out);
+        set(&mut scene.solver.remedies.max_travel, self.max_travel);
+        set(&mut scene.solver.remedies.calm_unsolved, self.calm_unsolved);
         scene.validate()
     }
 }

@@ -8,8 +8,10 @@ mod csv_states;
 mod description;
 mod file;
 mod pile;
+mod preset;
 mod rain;
 mod registry;
+pub mod stability;
 
 pub use collision::collision;
 pub use config::Config;
@@ -18,5 +20,6 @@ pub use csv_states::{parse_discs, read_discs, write_discs};
 pub use description::{GrainSource, Scene, View};
 pub use file::{read_scene, scene_to_toml};
 pub use pile::{paper_pile, pile_of, rough_base, tone_in_layers};
+pub use preset::Preset;
 pub use rain::{Rain, Settling, settle, walls};
-pub use registry::{SCENES, SceneInfo, built_in, scene_names};
+pub use registry::{SCENES, SceneGroup, SceneInfo, built_in, scene_names};

@@ -1,13 +1,37 @@
 //! The built-in scenes by name.
 
-use super::{Scene, collision, cradle, paper_pile};
+use super::{Scene, collision, cradle, paper_pile, stability};
 use crate::error::{Error, Result};
+
+/// What a scene is there for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneGroup {
+    /// The paper's scenes.
+    Paper,
+    /// Scenes made to break methods.
+    Stability,
+}
+
+impl SceneGroup {
+    /// All groups, in the order that lists show them.
+    pub const ALL: [Self; 2] = [Self::Paper, Self::Stability];
+
+    /// Heading of the group in lists.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Paper => "Scenes",
+            Self::Stability => "Scenes made to break methods",
+        }
+    }
+}
 
 /// A built-in scene.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneInfo {
     /// Its name on the command line.
     pub name: &'static str,
+    /// What it is there for.
+    pub group: SceneGroup,
     /// One line.
     pub summary: &'static str,
     /// Makes it.
@@ -15,21 +39,108 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 3] = [
+pub const SCENES: [SceneInfo; 17] = [
     SceneInfo {
         name: "pile",
+        group: SceneGroup::Paper,
         summary: "138 cohesive grains on a rough base; at t = 0 the walls go (paper section 3)",
         make: paper_pile,
     },
     SceneInfo {
         name: "cradle",
+        group: SceneGroup::Paper,
         summary: "three grains on a line, one falls on a bonded pair (paper section 4)",
         make: || Ok(cradle()),
     },
     SceneInfo {
         name: "collision",
+        group: SceneGroup::Paper,
         summary: "one grain dropped on a fixed one (paper section 2.2)",
         make: || Ok(collision()),
+    },
+    SceneInfo {
+        name: "column",
+        group: SceneGroup::Stability,
+        summary: "a column of 20 discs: does the floor carry them all?",
+        make: || Ok(stability::column(20)),
+    },
+    SceneInfo {
+        name: "mass-ratio",
+        group: SceneGroup::Stability,
+        summary: "a disc 1,000 times as heavy on a light one",
+        make: || Ok(stability::mass_ratio(1e3)),
+    },
+    SceneInfo {
+        name: "chain",
+        group: SceneGroup::Stability,
+        summary: "a hanging chain at 1.2 times the Bond number that breaks it",
+        make: || Ok(stability::hanging_chain(8, 1.2 * stability::breaking_bond(8))),
+    },
+    SceneInfo {
+        name: "cantilever",
+        group: SceneGroup::Stability,
+        summary: "two rows of cohesive grains reach out from a wall, held at Bond 100",
+        make: || Ok(stability::cantilever(4)),
+    },
+    SceneInfo {
+        name: "bridge",
+        group: SceneGroup::Stability,
+        summary: "two rows of cohesive grains between two walls, held at Bond 100",
+        make: || Ok(stability::bridge(10)),
+    },
+    SceneInfo {
+        name: "overlap",
+        group: SceneGroup::Stability,
+        summary: "two discs that overlap by a tenth at the start",
+        make: || Ok(stability::overlapped(0.1)),
+    },
+    SceneInfo {
+        name: "squeeze",
+        group: SceneGroup::Stability,
+        summary: "25 discs in a box that is a hundredth too small",
+        make: || Ok(stability::squeeze(1e-2)),
+    },
+    SceneInfo {
+        name: "logs",
+        group: SceneGroup::Stability,
+        summary: "a disc 20 times as large on two small ones",
+        make: || Ok(stability::logs(20.0)),
+    },
+    SceneInfo {
+        name: "repose",
+        group: SceneGroup::Stability,
+        summary: "a heap of 21 discs at 60 degrees, which stands still",
+        make: || Ok(stability::heap(6)),
+    },
+    SceneInfo {
+        name: "far",
+        group: SceneGroup::Stability,
+        summary: "the same heap, a thousand million diameters away",
+        make: || Ok(stability::heap_far_away(6, 1e9)),
+    },
+    SceneInfo {
+        name: "bounce",
+        group: SceneGroup::Stability,
+        summary: "a disc that bounces infinitely often in finite time",
+        make: || Ok(stability::bounce(0.9)),
+    },
+    SceneInfo {
+        name: "newtons-cradle",
+        group: SceneGroup::Stability,
+        summary: "five balls in a row: the last should fly off alone",
+        make: || Ok(stability::balls(5)),
+    },
+    SceneInfo {
+        name: "thin-wall",
+        group: SceneGroup::Stability,
+        summary: "a disc so fast that a step can carry it through the wall",
+        make: || Ok(stability::thin_wall(1.0, 0.0)),
+    },
+    SceneInfo {
+        name: "lift-off",
+        group: SceneGroup::Stability,
+        summary: "a column under a disc 100 times as heavy",
+        make: || Ok(stability::lift_off(100.0)),
     },
 ];
 

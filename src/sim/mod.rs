@@ -1,15 +1,19 @@
 //! The step, what it measures, and what it shows.
 
+mod alarm;
 mod bonds;
 pub mod live;
 mod observables;
 mod pull;
+mod push_out;
 mod schemes;
 mod simulation;
 mod snapshot;
 mod step;
 mod tally;
+mod travel;
 
+pub use alarm::{Alarm, AlarmKind};
 pub use observables::Observables;
 pub use pull::Pull;
 pub use schemes::SpringDashpot;

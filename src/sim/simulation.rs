@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use super::alarm::Watch;
 use super::snapshot::{ContactView, GrainView, Snapshot, Surroundings};
-use super::{Observables, ProblemVisitor, Pull, schemes, step};
+use super::{Alarm, Observables, ProblemVisitor, Pull, schemes, step, travel};
 use crate::contact::{Candidates, ContactList, Feature, Reach};
 use crate::error::{Error, Result};
 use crate::solver::{Method, Problems, SolverSettings};
@@ -36,6 +37,7 @@ pub struct Simulation {
     pub(super) method_of_memories: Option<Method>,
     /// A spring on one grain, from the next step on.
     pub(super) pull: Option<Pull>,
+    watch: Watch,
     surroundings: Arc<Surroundings>,
 }
 
@@ -77,6 +79,7 @@ impl Simulation {
         });
         let mut simulation = Self {
             initial_heights: world.grains.positions.iter().map(|position| position.y).sum(),
+            watch: Watch::new(&world, candidates.features()),
             world,
             physics,
             parameters,
@@ -100,8 +103,13 @@ impl Simulation {
     /// [`Error::NonFinite`] where a position or velocity is no longer a number; the state is then
     /// left as it is, for looking at.
     pub fn step(&mut self) -> Result<&Observables> {
-        step::take(self)?;
-        if self.is_finite() {
+        match travel::pieces(self) {
+            1 => step::take(self)?,
+            pieces => travel::take(self, pieces)?,
+        }
+        let finite = self.is_finite();
+        self.watch.look(&self.world, &self.observables, finite);
+        if finite {
             return Ok(&self.observables);
         }
         let Parameters { bond, time_step_secs, restitution, friction, .. } = self.parameters;
@@ -191,9 +199,33 @@ impl Simulation {
         &self.observables
     }
 
+    /// What went wrong so far, one alarm of a kind.
+    pub fn alarms(&self) -> &[Alarm] {
+        self.watch.alarms()
+    }
+
     /// Simulated time, s.
     pub fn time_secs(&self) -> f64 {
         self.observables.time_secs
+    }
+
+    /// Takes the last grain out of the world. The impulses of all other contacts stay.
+    ///
+    /// # Errors
+    /// Where it is the only one.
+    pub fn remove_last_grain(&mut self) -> Result<()> {
+        let last = self.world.grains.len() - 1;
+        if last == 0 {
+            return Err(Error::value("grains", 1, "more than one where one is taken away"));
+        }
+        self.initial_heights -= self.world.grains.positions[last].y;
+        self.world.grains.truncate(last);
+        self.contacts.remove_body(last as u32);
+        let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
+        let gap_tolerance = self.candidates.gap_tolerance();
+        self.candidates = Candidates::new(&self.world, Reach { skin, gap_tolerance })?;
+        self.pull = self.pull.filter(|pull| (pull.grain as usize) < last);
+        Ok(())
     }
 
     /// Sets all velocities to zero and forgets the contacts' impulses.

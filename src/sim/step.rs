@@ -1,6 +1,6 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
-use super::{Observables, Simulation, bonds, pull, schemes};
+use super::{Observables, Simulation, bonds, pull, push_out, schemes};
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::contact::{ContactList, LookAhead};
 use crate::error::Result;
@@ -155,8 +155,19 @@ fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
     if parameters.law == ContactLaw::Range {
         return range_step::<M>(simulation);
     }
-    let report = solve::<M>(M::Kinematics::problem(problems), solver)?;
-    Ok(move_by::<M>(simulation, report))
+    let problem = M::Kinematics::problem(problems);
+    let mut report = solve::<M>(problem, solver)?;
+    if !report.converged && solver.remedies.calm_unsolved {
+        let first = report;
+        report = solve_without_bounces::<M>(simulation)?;
+        report.sweeps += first.sweeps;
+        report.factorisations += first.factorisations;
+    }
+    let taken = move_by::<M>(simulation, report);
+    if simulation.solver.remedies.push_out {
+        push_out::push_out(simulation, simulation.parameters.time_step_secs);
+    }
+    Ok(taken)
 }
 
 /// Moves the grains by the solution of a problem.
@@ -234,6 +245,17 @@ impl Taken {
         };
         self.gravity_work += other.gravity_work;
     }
+}
+
+/// Solves the step anew with ρ = 0, from the impulses of the step before. What it measures is the
+/// residual of that problem.
+fn solve_without_bounces<M: Model>(simulation: &mut Simulation) -> Result<SolveReport> {
+    let restitution = std::mem::take(&mut simulation.parameters.restitution);
+    // Detection at the same places finds the same contacts, and their impulses with them.
+    prepare::<M>(simulation);
+    simulation.parameters.restitution = restitution;
+    let Simulation { solver, problems, .. } = simulation;
+    solve::<M>(M::Kinematics::problem(problems), solver)
 }
 
 struct Start<'a>(&'a mut Simulation);

@@ -259,8 +259,8 @@ impl<const D: usize> Workspace<D> {
             }
         }
         let softness = compliance * M::Kinematics::TANGENTIAL_COMPLIANCE;
-        for ((row, is_pair), target) in rows(problem).zip(targets) {
-            let [normal, tangential] = problem.reduced_impulse(row);
+        for (number, ((row, is_pair), target)) in rows(problem).zip(targets).enumerate() {
+            let [normal, tangential] = problem.reduced_impulse(number, row);
             let mass = row.effective_mass;
             let normal = mass * (normal + target[0] / compliance);
             let tangential =

@@ -16,6 +16,7 @@ mod nsgs;
 mod nsgs_parallel;
 mod order;
 mod problem;
+mod remedies;
 mod settings;
 mod stall;
 mod system;
@@ -30,6 +31,7 @@ pub use method::{
 pub use model::{Model, ModelParts, ModelVisitor, StepModel, visit_leanest, visit_model};
 pub use order::Ordering;
 pub use problem::{Problems, Row, StepProblem};
+pub use remedies::Remedies;
 pub use settings::{MAX_SUBSTEPS, SolverSettings, StopTest};
 pub use system::{BodySystem, ContactSystem, Pairs, Vectors};
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Method, Ordering};
+use super::{Method, Ordering, Remedies};
 use crate::error::{Error, Result};
 
 /// What the tolerance of a solver refers to.
@@ -41,6 +41,9 @@ pub struct SolverSettings {
     /// solve the step's problem take none.
     #[serde(default, skip_serializing_if = "is_default")]
     pub substeps: u32,
+    /// Remedies for known failures; none in the paper's scheme.
+    #[serde(default, skip_serializing_if = "Remedies::is_none")]
+    pub remedies: Remedies,
 }
 
 /// More substeps than this are a mistake: a single step of a pile would take many seconds.
@@ -67,7 +70,7 @@ impl SolverSettings {
             let allowed = format!("at most {MAX_SUBSTEPS}; 0 leaves it to the scheme");
             return Err(Error::value("substeps", self.substeps, allowed));
         }
-        Ok(())
+        self.remedies.validate()
     }
 }
 
@@ -84,6 +87,7 @@ impl Default for SolverSettings {
             max_sweeps: 5_000,
             warm_start: true,
             substeps: 0,
+            remedies: Remedies::default(),
         }
     }
 }

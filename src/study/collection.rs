@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::output::Progress;
 use crate::scene::{Config, Rain};
 use crate::sim::Simulation;
-use crate::solver::{Method, Ordering, SolverSettings, StopTest};
+use crate::solver::{Method, Ordering, Remedies, SolverSettings, StopTest};
 
 /// How the piles get to the steps that are collected: far better solved than any claim about a pile
 /// needs, so that a collection does not favour the errors of the methods it is to compare.
@@ -22,6 +22,7 @@ const ADVANCE: SolverSettings = SolverSettings {
     max_sweeps: 1000,
     warm_start: true,
     substeps: 0,
+    remedies: Remedies { push_out: false, max_travel: 0.0, calm_unsolved: false },
 };
 
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.

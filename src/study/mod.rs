@@ -13,6 +13,7 @@ mod plan;
 mod run;
 mod shard;
 mod speed;
+pub mod stability;
 mod states;
 mod statistics;
 mod sweep;

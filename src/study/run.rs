@@ -5,20 +5,22 @@ use crate::scene::Scene;
 use crate::sim::{Observables, Simulation, Snapshot, Tally};
 
 /// What a run leaves.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Recorded {
     /// The simulation at its end.
     pub simulation: Simulation,
     /// Sums over its steps.
     pub tally: Tally,
+    /// Why it ended early, if it did: its state was no longer finite.
+    pub failure: Option<Error>,
 }
 
 /// Runs a scene through `times_secs` (rising, s), calling `picture` at each with its number and the
-/// state at the nearest step, and `after_step` after every step.
+/// state at the nearest step, and `after_step` after every step. A state that is no longer finite ends
+/// the run, and is told of in what it leaves.
 ///
 /// # Errors
-/// Where the scene is not sound, a time lies outside 0 … duration, the state is no longer finite, or
-/// a call says so.
+/// Where the scene is not sound, a time lies outside 0 … duration, or a call says so.
 pub fn record(
     scene: &Scene,
     times_secs: &[f64],
@@ -36,11 +38,17 @@ pub fn record(
         }
         let step = (time_secs / time_step_secs).round() as u64;
         while simulation.observables().step < step {
-            let observables = simulation.step()?;
+            let observables = match simulation.step() {
+                Ok(observables) => observables,
+                Err(failure @ Error::NonFinite { .. }) => {
+                    return Ok(Recorded { simulation, tally, failure: Some(failure) });
+                }
+                Err(error) => return Err(error),
+            };
             tally.add(observables);
             after_step(observables)?;
         }
         picture(number, simulation.snapshot())?;
     }
-    Ok(Recorded { simulation, tally })
+    Ok(Recorded { simulation, tally, failure: None })
 }

@@ -92,6 +92,18 @@ impl Grains {
         lists
     }
 
+    /// Leaves the first `count` discs.
+    pub fn truncate(&mut self, count: usize) {
+        self.positions.truncate(count);
+        self.velocities.truncate(count);
+        self.angles.truncate(count);
+        self.angular_velocities.truncate(count);
+        self.radii.truncate(count);
+        self.masses.truncate(count);
+        self.feels_gravity.truncate(count);
+        self.tones.truncate(count);
+    }
+
     /// Number of discs.
     pub fn len(&self) -> usize {
         self.positions.len()

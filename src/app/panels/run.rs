@@ -4,7 +4,7 @@ use egui::{Align, ComboBox, RichText, Slider, Ui};
 
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::scene::{Config, Rain, SCENES};
+use crate::scene::{Config, Rain, SCENES, SceneGroup};
 use crate::sim::live::Command;
 
 /// Most grains that the panel offers; the command line takes more.
@@ -38,11 +38,14 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             let list = ComboBox::from_id_salt("scene").width(150.0).selected_text(&current);
             let shown = list.show_ui(ui, |ui| {
-                for info in &SCENES {
-                    let entry = ui.selectable_label(info.name == current, info.name);
-                    if entry.on_hover_text(info.summary).clicked() {
-                        let scene = Some(info.name.to_owned());
-                        state.load(Config { scene, ..Config::default() });
+                for group in SceneGroup::ALL {
+                    ui.label(RichText::new(group.title()).small().weak());
+                    for info in SCENES.iter().filter(|info| info.group == group) {
+                        let entry = ui.selectable_label(info.name == current, info.name);
+                        if entry.on_hover_text(info.summary).clicked() {
+                            let scene = Some(info.name.to_owned());
+                            state.load(Config { scene, ..Config::default() });
+                        }
                     }
                 }
             });
@@ -101,6 +104,9 @@ fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
         max_sweeps: solver.map(|solver| solver.max_sweeps),
         warm_start: solver.map(|solver| solver.warm_start),
         substeps: solver.map(|solver| solver.substeps),
+        push_out: solver.map(|solver| solver.remedies.push_out),
+        max_travel: solver.map(|solver| solver.remedies.max_travel),
+        calm_unsolved: solver.map(|solver| solver.remedies.calm_unsolved),
         ..state.config.clone()
     }
 }

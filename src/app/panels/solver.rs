@@ -5,6 +5,7 @@ use egui::{ComboBox, RichText, Ui};
 use crate::app::number::Number;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::scene::Preset;
 use crate::sim::live::StartInfo;
 use crate::solver::{
     MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest, picked,
@@ -61,6 +62,25 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     if before.method != Method::Dem {
         ui.checkbox(&mut solver.warm_start, "Warm start")
             .on_hover_text("Each step starts from the impulses of the one before.");
+    }
+    if before.method.kind() == MethodKind::Problem {
+        ui.checkbox(&mut solver.remedies.push_out, "Push overlap out")
+            .on_hover_text("Grains that overlap are moved apart after each step, without speed.");
+    }
+    if before.method.kind() == MethodKind::Problem {
+        ui.checkbox(&mut solver.remedies.calm_unsolved, "Calm unsolved steps").on_hover_text(
+            "A step that did not converge is solved once more without bounces, which may \
+             contradict each other.",
+        );
+    }
+    let robust = ui.button("Robust").on_hover_text(
+        "Newton to 1e-8, overlap pushed out, no bounce below 2 g Δt, fast grains in pieces of a \
+         step: hard scenes hold, and the paper's effects of Δt go.",
+    );
+    if robust.clicked() {
+        let mut parameters = state.wanted[index].parameters;
+        Preset::Robust.apply_to_settings(&mut parameters, &mut solver);
+        state.set_parameters(index, parameters);
     }
     if solver != before {
         state.set_solver(index, solver);

@@ -69,6 +69,14 @@ fn messages(ui: &mut Ui, state: &mut AppState) {
         ui.add(label).on_hover_text(text);
         return;
     }
+    let showing = state.notice().is_some();
+    if let Some(alarm) = alarm(state).filter(|_| !showing) {
+        let text = format!("▲ {alarm}");
+        let label = Label::new(RichText::new(&text).color(theme::warning(dark))).truncate();
+        let shown = ui.add(label).on_hover_text(text);
+        state.note_control("alarm", shown.rect);
+        return;
+    }
     if let Some((notice, left)) = state.notice() {
         let colour = if notice.failure { theme::warning(dark) } else { theme::good(dark) };
         let label = Label::new(RichText::new(&notice.text).color(colour)).truncate();
@@ -76,4 +84,17 @@ fn messages(ui: &mut Ui, state: &mut AppState) {
         ui.add(label).on_hover_text(text);
         ui.ctx().request_repaint_after_secs(left);
     }
+}
+
+/// The newest alarm of the selected world, or of any other, with its number where worlds are compared.
+fn alarm(state: &AppState) -> Option<String> {
+    let newest = |index: usize| {
+        let alarm = state.frame.worlds.get(index)?.alarms.last()?;
+        Some(if state.compares() {
+            format!("{}: {alarm}", super::compare::title(state, index))
+        } else {
+            alarm.to_string()
+        })
+    };
+    newest(state.selected).or_else(|| (0..state.frame.worlds.len()).find_map(newest))
 }

@@ -74,6 +74,8 @@ pub struct WorldFrame {
     pub substeps: u32,
     /// The longest substep that is surely stable, s, where the method has one.
     pub critical_time_step_secs: Option<f64>,
+    /// What went wrong up to this moment, and what is most likely to help.
+    pub alarms: Vec<Arc<str>>,
     /// Why the run cannot go on from here.
     pub failure: Option<Arc<str>>,
 }

@@ -6,7 +6,13 @@ use std::time::Instant;
 use super::engine::Engine;
 use super::track::Track;
 use super::{Frame, Settings, WorldFrame};
-use crate::sim::Snapshot;
+use crate::sim::{AlarmKind, Simulation, Snapshot};
+
+/// The sentences of a simulation's alarms, but for the one that ends it: that is a failure.
+fn alarms(simulation: &Simulation) -> Vec<Arc<str>> {
+    let alarms = simulation.alarms().iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite);
+    alarms.map(|alarm| alarm.message(simulation.parameters(), simulation.solver()).into()).collect()
+}
 
 impl Engine {
     /// Hands out the newest state, and wakes whoever waits for it.
@@ -47,6 +53,7 @@ impl Engine {
             step_ms: 1e3 * track.step_secs,
             substeps: track.simulation.substeps(),
             critical_time_step_secs: track.simulation.critical_time_step_secs(),
+            alarms: alarms(&track.simulation),
             failure: track.failure.clone(),
         }
     }

@@ -17,6 +17,9 @@ const WORDS: u32 = 24;
 const CAPTION: u32 = 20;
 /// Room below the charts for one line of the caption, pixels.
 const CAPTION_LINE: u32 = 28;
+/// Room for the words beside the vertical axis, and for each character of longer ones, pixels.
+const BESIDE: u32 = 104;
+const CHARACTER: u32 = 12;
 /// Name that the font goes by; one that browsers know too, for the SVG.
 const FONT: &str = "sans-serif";
 
@@ -131,7 +134,9 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
     let (x_places, y_places) = (Places::of(&chart.x), Places::of(&chart.y));
     let words = (FONT, WORDS).into_font().color(&rgb(super::INK));
     let mut builder = ChartBuilder::on(area);
-    builder.margin(14).margin_right(26).x_label_area_size(62).y_label_area_size(104);
+    let longest = chart.y.ticks.iter().map(|(_, words)| words.chars().count()).max();
+    let beside = BESIDE.max(CHARACTER * longest.unwrap_or(0) as u32 + WORDS);
+    builder.margin(14).margin_right(26).x_label_area_size(62).y_label_area_size(beside);
     if !chart.title.is_empty() {
         builder.caption(&chart.title, (FONT, TITLE).into_font().color(&rgb(super::INK)));
     }

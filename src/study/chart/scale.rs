@@ -56,6 +56,7 @@ fn log_marks(from: f64, to: f64) -> Vec<(f64, String)> {
             if number >= from * (1.0 - 1e-9) && number <= to * (1.0 + 1e-9) {
                 let words = match digit {
                     1 => power_of_ten(exponent),
+                    2 | 5 if to < SHORT * from && PLAIN.contains(&exponent) => format!("{number}"),
                     2 | 5 if to < SHORT * from => format!("{digit}·{}", power_of_ten(exponent)),
                     _ => String::new(),
                 };
@@ -66,9 +67,12 @@ fn log_marks(from: f64, to: f64) -> Vec<(f64, String)> {
     marks
 }
 
+/// Exponents of numbers that are written out.
+const PLAIN: std::ops::RangeInclusive<i32> = -2..=2;
+
 /// 10⁻⁴, and plain numbers from 0.01 to 100.
 fn power_of_ten(exponent: i32) -> String {
-    if (-2..=2).contains(&exponent) {
+    if PLAIN.contains(&exponent) {
         return format!("{}", 10f64.powi(exponent));
     }
     let digits = exponent.to_string();
@@ -105,6 +109,7 @@ mod tests {
             ["10⁻⁴", "2·10⁻⁴", "5·10⁻⁴", "10⁻³", "2·10⁻³", "5·10⁻³"]
         );
         assert_eq!(words(Scale::Log, 1e-12, 1e-11), ["10⁻¹²", "2·10⁻¹²", "5·10⁻¹²", "10⁻¹¹"]);
+        assert_eq!(words(Scale::Log, 2.0, 100.0), ["2", "5", "10", "20", "50", "100"]);
         assert_eq!(words(Scale::Log, 1e-4, 1e-2), ["10⁻⁴", "10⁻³", "0.01"]);
     }
 }

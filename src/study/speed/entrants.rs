@@ -1,6 +1,6 @@
 //! Who takes part: every method of the registry.
 
-use crate::solver::{METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest};
+use crate::solver::{METHODS, Method, MethodKind, Ordering, Remedies, SolverSettings, StopTest};
 
 /// A method as it is charted.
 #[derive(Clone, Debug)]
@@ -58,6 +58,7 @@ impl Entrant {
             max_sweeps,
             warm_start: true,
             substeps: 0,
+            remedies: Remedies::default(),
         }
     }
 

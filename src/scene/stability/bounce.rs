@@ -1,0 +1,17 @@
+//! A disc dropped on the floor. It rises to ρ² of its height, and for ρ < 1 it is at rest after
+//! infinitely many bounces, at √(2h/g)·(1 + ρ)/(1 − ρ).
+
+use super::{DIAMETER, GRAVITY, disc, dry, floor};
+use crate::scene::Scene;
+
+/// Height that it falls, in diameters.
+pub(crate) const DROP: f64 = 5.0;
+
+/// A disc above the floor.
+pub fn bounce(restitution: f64) -> Scene {
+    let mut scene = dry("bounce", vec![disc(0.0, DROP + 0.5)]);
+    scene.parameters.restitution = restitution;
+    scene.boundaries = vec![floor()];
+    scene.duration_secs = 10.0 * (2.0 * DROP * DIAMETER / GRAVITY).sqrt();
+    scene
+}

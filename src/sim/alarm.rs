@@ -1,0 +1,163 @@
+//! What a run says when it goes wrong: in which way, since when, and the one change that is most
+//! likely to help.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use crate::contact::Feature;
+use crate::sim::Observables;
+use crate::solver::{Method, MethodKind, SolverSettings};
+use crate::world::{Parameters, World};
+
+/// Steps in a row at the sweep limit that raise an alarm. Fewer: single hard steps, which do no
+/// harm, would raise it.
+const STEPS_AT_LIMIT: u32 = 100;
+/// Overlap of a contact that raises an alarm, in d: the paper's own curves end at 0.06.
+const LARGEST_OVERLAP: f64 = 0.05;
+/// How far the world reaches beyond the box of all that was there at the start, in sides of the box.
+const ROOM_IN_SIDES: f64 = 3.0;
+/// How deep a centre is behind a boundary when it is lost, in d: no contact brings it back from there.
+const LOST_DEPTH: f64 = 1.0;
+
+/// A way to go wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AlarmKind {
+    /// A position or velocity is no longer a number.
+    NotFinite,
+    /// A grain went through the ground, or far away.
+    GrainLost,
+    /// A hundred steps in a row ended at the sweep limit.
+    SweepLimit,
+    /// A contact overlaps by more than 5 % of d.
+    Overlap,
+}
+
+/// Something went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Alarm {
+    /// In which way.
+    pub kind: AlarmKind,
+    /// The first step that showed it.
+    pub step: u64,
+    /// Simulated time of that step, s.
+    pub time_secs: f64,
+}
+
+impl Alarm {
+    /// What happened, since when, and what is most likely to help, in one sentence.
+    pub fn message(&self, parameters: &Parameters, solver: &SolverSettings) -> String {
+        let what = match self.kind {
+            AlarmKind::NotFinite => "the state is no longer finite",
+            AlarmKind::GrainLost => "a grain has left the world",
+            AlarmKind::SweepLimit => "100 steps in a row reached the sweep limit",
+            AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
+        };
+        let Self { step, time_secs, .. } = self;
+        format!("{what} (step {step}, t = {time_secs:.4} s): {}", self.advice(parameters, solver))
+    }
+
+    /// The change that is most likely to help.
+    fn advice(&self, parameters: &Parameters, solver: &SolverSettings) -> String {
+        let scheme = matches!(solver.method.kind(), MethodKind::Scheme(_));
+        let smaller = format!("try a time step below {} s", parameters.time_step_secs);
+        match self.kind {
+            AlarmKind::NotFinite if scheme && solver.substeps > 0 => {
+                format!(
+                    "try more than {} substeps, or 0 for as many as are stable",
+                    solver.substeps
+                )
+            }
+            AlarmKind::NotFinite | AlarmKind::GrainLost | AlarmKind::Overlap => smaller,
+            AlarmKind::SweepLimit
+                if parameters.restitution_threshold == 0.0 && parameters.restitution > 0.0 =>
+            {
+                "try a restitution threshold of 2: wedged contacts ask for bounces that contradict \
+                 each other"
+                    .into()
+            }
+            AlarmKind::SweepLimit if solver.method != Method::Newton => "try method newton".into(),
+            AlarmKind::SweepLimit => {
+                format!("try a tolerance above {:e}", solver.tolerance)
+            }
+        }
+    }
+}
+
+/// What watches over a simulation. Part of it, so that a moment that is computed anew tells the same.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Watch {
+    unfinished_in_a_row: u32,
+    alarms: Vec<Alarm>,
+    /// Corners of the world, m; none where nothing is fixed and grains may fly where they like.
+    corners: Option<[DVec2; 2]>,
+    /// Shapes that have an inside to be lost in.
+    solids: Vec<Feature>,
+}
+
+impl Watch {
+    /// Watches over a world, whose boundaries are `features`, from now on.
+    pub fn new(world: &World, features: &[Feature]) -> Self {
+        let is_half_space = |feature: &&Feature| matches!(feature, Feature::HalfSpace { .. });
+        let open_ground = features.iter().any(|feature| is_half_space(&feature));
+        let has_inside = |feature: &&Feature| !matches!(feature, Feature::Segment { .. });
+        // On open ground grains may roll as far as they like.
+        let corners = (!world.fixed_discs.is_empty() && !open_ground).then(|| {
+            let fixed = world.fixed_discs.iter().map(|disc| disc.position);
+            let all = || world.grains.positions.iter().copied().chain(fixed.clone());
+            let min = all().fold(DVec2::INFINITY, DVec2::min);
+            let max = all().fold(DVec2::NEG_INFINITY, DVec2::max);
+            let side = (max - min).max_element() + world.mean_diameter;
+            [min - ROOM_IN_SIDES * side, max + ROOM_IN_SIDES * side]
+        });
+        let solids = features.iter().filter(has_inside).cloned().collect();
+        Self { corners, solids, ..Self::default() }
+    }
+
+    /// The alarms so far, one of a kind.
+    pub fn alarms(&self) -> &[Alarm] {
+        &self.alarms
+    }
+
+    /// Looks at the state after a step.
+    pub fn look(&mut self, world: &World, observables: &Observables, finite: bool) {
+        self.unfinished_in_a_row =
+            if observables.converged { 0 } else { self.unfinished_in_a_row + 1 };
+        if !finite {
+            self.raise(AlarmKind::NotFinite, observables);
+            return;
+        }
+        if self.unfinished_in_a_row >= STEPS_AT_LIMIT {
+            self.raise(AlarmKind::SweepLimit, observables);
+        }
+        if observables.max_overlap > LARGEST_OVERLAP {
+            self.raise(AlarmKind::Overlap, observables);
+        }
+        if !self.has(AlarmKind::GrainLost) && self.any_lost(world) {
+            self.raise(AlarmKind::GrainLost, observables);
+        }
+    }
+
+    fn any_lost(&self, world: &World) -> bool {
+        let deep = -LOST_DEPTH * world.mean_diameter;
+        let outside = |place: DVec2| {
+            self.corners
+                .is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
+                || self.solids.iter().any(|feature| {
+                    feature.distance(place).is_some_and(|(_, distance)| distance < deep)
+                })
+        };
+        world.grains.positions.iter().any(|place| outside(*place))
+    }
+
+    fn has(&self, kind: AlarmKind) -> bool {
+        self.alarms.iter().any(|alarm| alarm.kind == kind)
+    }
+
+    fn raise(&mut self, kind: AlarmKind, observables: &Observables) {
+        if !self.has(kind) {
+            let Observables { step, time_secs, .. } = *observables;
+            self.alarms.push(Alarm { kind, step, time_secs });
+        }
+    }
+}

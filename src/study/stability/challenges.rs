@@ -1,0 +1,255 @@
+//! The list of all challenges.
+
+use super::measures;
+use super::trial::Trial;
+use crate::error::{Error, Result};
+
+/// From which error on a method no longer holds, and from which on it fails.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Up to this error it holds.
+    pub holds: f64,
+    /// Above this error it fails; between the two it degrades.
+    pub fails: f64,
+}
+
+/// A scene made to break methods, and what is measured on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Challenge {
+    /// Its name on the command line and in the table.
+    pub name: &'static str,
+    /// What drives it into failure, with its unit.
+    pub driver: &'static str,
+    /// The values of the driver that a quick pass tries, from harmless to harmful.
+    pub quick: &'static [f64],
+    /// Further values of a full pass, more harmful still.
+    pub further: &'static [f64],
+    /// What the error is, with its unit.
+    pub measure: &'static str,
+    /// What counts as holding and as failing.
+    pub limits: Limits,
+    error: fn(&Trial) -> Result<f64>,
+}
+
+impl Challenge {
+    /// The challenge of that name.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn named(name: &str) -> Result<&'static Self> {
+        let names = || CHALLENGES.map(|challenge| challenge.name).join(", ");
+        CHALLENGES
+            .iter()
+            .find(|challenge| challenge.name == name)
+            .ok_or_else(|| Error::value("scene", name, format!("one of {}", names())))
+    }
+
+    /// The error of a trial; infinite where the state is no longer finite.
+    ///
+    /// # Errors
+    /// Where the scene is not sound.
+    pub fn error(&self, trial: &Trial) -> Result<f64> {
+        match (self.error)(trial) {
+            Ok(error) if error.is_nan() => Ok(f64::INFINITY),
+            Err(Error::NonFinite { .. }) => Ok(f64::INFINITY),
+            outcome => outcome,
+        }
+    }
+}
+
+const fn limits(holds: f64, fails: f64) -> Limits {
+    Limits { holds, fails }
+}
+
+/// All challenges.
+pub static CHALLENGES: [Challenge; 21] = [
+    Challenge {
+        name: "column",
+        driver: "discs",
+        quick: &[5.0, 20.0, 80.0, 200.0],
+        further: &[500.0],
+        measure: "error of the floor's force / weight, 100 sweeps a step",
+        limits: limits(0.01, 0.2),
+        error: measures::column,
+    },
+    Challenge {
+        name: "sag",
+        driver: "sweeps a step",
+        quick: &[2000.0, 200.0, 20.0, 4.0],
+        further: &[],
+        measure: "sinking of 20 discs / d, cold start, in 0.1 s",
+        limits: limits(0.01, 0.2),
+        error: measures::sag,
+    },
+    Challenge {
+        name: "mass-ratio",
+        driver: "ratio of masses",
+        quick: &[10.0, 100.0, 1e3, 1e4],
+        further: &[],
+        measure: "sinking / d in 0.1 s, 100 sweeps a step",
+        limits: limits(0.01, 0.2),
+        error: measures::mass_ratio,
+    },
+    Challenge {
+        name: "size-ratio",
+        driver: "ratio of radii",
+        quick: &[2.0, 5.0, 20.0, 100.0],
+        further: &[],
+        measure: "sinking / d in 0.1 s, 100 sweeps a step",
+        limits: limits(0.01, 0.2),
+        error: measures::size_ratio,
+    },
+    Challenge {
+        name: "chain",
+        driver: "time step (s)",
+        quick: &[2e-4, 1e-3, 5e-3, 2e-2],
+        further: &[],
+        measure: "relative error of the breaking Bond number",
+        limits: limits(0.02, 0.2),
+        error: measures::chain,
+    },
+    Challenge {
+        name: "cantilever",
+        driver: "time step (s)",
+        quick: &[2e-4, 1e-3, 5e-3, 2e-2],
+        further: &[],
+        measure: "longest way / d at Bond 100 in 0.25 s",
+        limits: limits(0.1, 1.0),
+        error: measures::cantilever,
+    },
+    Challenge {
+        name: "bridge",
+        driver: "time step (s)",
+        quick: &[2e-4, 1e-3, 5e-3, 2e-2],
+        further: &[],
+        measure: "longest way / d at Bond 100 in 0.25 s",
+        limits: limits(0.1, 1.0),
+        error: measures::bridge,
+    },
+    Challenge {
+        name: "shock",
+        driver: "tolerance (m/s)",
+        quick: &[1e-12, 1e-6, 2.2e-3],
+        further: &[],
+        measure: "gap of the bonded pair / d at Δt = 5e-4 s",
+        limits: limits(0.01, 0.1),
+        error: measures::shock,
+    },
+    Challenge {
+        name: "overlap",
+        driver: "overlap (d)",
+        quick: &[0.01, 0.1, 0.5],
+        further: &[],
+        measure: "overlap left, or energy gained / m g d (1: stays as it is)",
+        limits: limits(0.05, 1.1),
+        error: measures::overlap,
+    },
+    Challenge {
+        name: "squeeze",
+        driver: "strain",
+        quick: &[1e-4, 1e-2, 5e-2],
+        further: &[],
+        measure: "share of unsolved steps, or speed left / √(g d)",
+        limits: limits(1e-3, 0.1),
+        error: measures::squeeze,
+    },
+    Challenge {
+        name: "friction-limit",
+        driver: "time step (s)",
+        quick: &[1e-3, 5e-3, 2e-2],
+        further: &[],
+        measure: "relative error of the least friction of three logs",
+        limits: limits(0.05, 0.3),
+        error: measures::friction_limit,
+    },
+    Challenge {
+        name: "repose",
+        driver: "time step (s)",
+        quick: &[1e-3, 5e-3, 2e-2],
+        further: &[],
+        measure: "longest way / d in 0.2 s",
+        limits: limits(0.01, 0.2),
+        error: measures::repose,
+    },
+    Challenge {
+        name: "rest",
+        driver: "steps",
+        quick: &[300.0, 10000.0],
+        further: &[1e5],
+        measure: "longest way / d, or speed / √(g d)",
+        limits: limits(0.01, 0.2),
+        error: measures::rest,
+    },
+    Challenge {
+        name: "bounce",
+        driver: "restitution",
+        quick: &[0.0, 0.5, 0.9, 1.0],
+        further: &[],
+        measure: "error of the first height, or of what is left",
+        limits: limits(0.01, 0.1),
+        error: measures::bounce,
+    },
+    Challenge {
+        name: "newtons-cradle",
+        driver: "balls",
+        quick: &[2.0, 3.0, 20.0],
+        further: &[],
+        measure: "relative error of the last ball's speed",
+        limits: limits(0.05, 0.5),
+        error: measures::newtons_cradle,
+    },
+    Challenge {
+        name: "thin-wall",
+        driver: "travel a step (d)",
+        quick: &[0.4, 1.0, 4.0],
+        further: &[],
+        measure: "share of phases that go through",
+        limits: limits(0.0, 0.3),
+        error: measures::thin_wall,
+    },
+    Challenge {
+        name: "far",
+        driver: "distance from the origin (d)",
+        quick: &[1e3, 1e6, 1e9, 1e13],
+        further: &[],
+        measure: "difference of ways / d after 0.1 s",
+        limits: limits(0.01, 0.2),
+        error: measures::far,
+    },
+    Challenge {
+        name: "shuffle",
+        driver: "tolerance",
+        quick: &[1e-9, 1e-6, 1e-3, 1e-1],
+        further: &[],
+        measure: "difference of velocities / largest",
+        limits: limits(1e-4, 0.1),
+        error: measures::shuffle,
+    },
+    Challenge {
+        name: "lift-off",
+        driver: "ratio of masses",
+        quick: &[10.0, 100.0, 1e3, 1e4],
+        further: &[],
+        measure: "energy after the load is gone / m g d",
+        limits: limits(1e-3, 0.1),
+        error: measures::lift_off,
+    },
+    Challenge {
+        name: "time-step-switch",
+        driver: "factor on 2e-4 s",
+        quick: &[2.0, 10.0, 50.0, 200.0],
+        further: &[],
+        measure: "longest way / d, or speed / √(g d)",
+        limits: limits(0.01, 0.2),
+        error: measures::time_step_switch,
+    },
+    Challenge {
+        name: "sliders",
+        driver: "seconds of sliders at random",
+        quick: &[0.5, 2.0, 8.0],
+        further: &[60.0],
+        measure: "grains lost",
+        limits: limits(0.0, 0.0),
+        error: measures::sliders,
+    },
+];

@@ -1,0 +1,269 @@
+//! Stability maps: where, over two parameters, each method holds, where it sinks or overlaps by more
+//! than 1 % of d, and where it is lost: torn, thrown, or no longer finite.
+//!
+//! Borders that theory gives. A step of Gauss–Seidel from nothing leaves the share ρ^s of what gravity
+//! adds to the slowest mode, g Δt, and of what the step before left. So a column sinks with
+//!
+//! > v = A g Δt ρ^s / (1 − ρ^s),
+//!
+//! where A = 4/π is the slowest mode's part at the top of a column of many (1 for two discs) and ρ is
+//! what `scene::stability` derives for each scene. In T it sinks by v T = 0.01 d where
+//! s = ln(q/(1 + q)) / ln ρ, q = 0.01 d/(A g Δt T). The border of springs is their critical time step.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use rayon::prelude::*;
+
+use super::contenders::{CONTENDERS, Contender};
+use super::measures::{sagging, sunk};
+use super::picture::colour;
+use super::trial::jitter;
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::scene::stability::{cantilever, column_on_line, mass_ratio};
+use crate::solver::METHODS;
+use crate::study::chart::{Axis, Cell, Chart, Corner, INK, Layer, Look, Sheet, points};
+
+/// Simulated time of every run, s.
+const DURATION_SECS: f64 = 0.1;
+/// Sinking or overlap that counts, in d.
+const COUNTS: f64 = 0.01;
+/// A grain that has gone this far is lost, in d.
+const LOST: f64 = 1.0;
+/// Speed that a scene at rest does not have at its end, in √(g d).
+const SHAKES: f64 = 0.05;
+/// Speed, in √(g d), of a scene that does not come to rest: more than at a sinking that counts.
+const TREMBLES: f64 = 4e-3;
+/// Part of the slowest mode in the motion of a column's top.
+const TOP_OF_COLUMN: f64 = 4.0 / PI;
+/// Discs of the column whose size is not varied.
+const DISCS: usize = 20;
+/// Charts side by side.
+const ABREAST: usize = 4;
+
+/// A parameter of a map.
+struct Parameter {
+    label: &'static str,
+    from: f64,
+    to: f64,
+    /// Values of a full pass; a quick one takes half as many.
+    count: usize,
+    whole: bool,
+}
+
+impl Parameter {
+    /// Its values, in ratio, each with the edges of its cell.
+    fn values(&self, quick: bool) -> Vec<(f64, [f64; 2])> {
+        let count = if quick { self.count / 2 } else { self.count };
+        let ratio = (self.to / self.from).powf(1.0 / count as f64);
+        let edge = |k: usize| self.from * ratio.powi(k as i32);
+        (0..count)
+            .map(|k| {
+                let middle = (edge(k) * edge(k + 1)).sqrt();
+                (if self.whole { middle.round().max(1.0) } else { middle }, [edge(k), edge(k + 1)])
+            })
+            .collect()
+    }
+}
+
+/// A map of two parameters.
+struct Map {
+    name: &'static str,
+    title: &'static str,
+    x: Parameter,
+    y: Parameter,
+    scene: fn(f64, f64) -> Scene,
+    /// Sweeps at the border of Gauss–Seidel, against x.
+    border: Option<fn(f64) -> f64>,
+    /// Substeps at the border of springs, against x.
+    border_of_springs: Option<fn(f64) -> Result<f64>>,
+}
+
+const fn sweeps(to: f64) -> Parameter {
+    Parameter { label: "sweeps (substeps) a step", from: 1.0, to, count: 14, whole: true }
+}
+
+const fn time_step() -> Parameter {
+    Parameter { label: "Δt (s)", from: 1e-4, to: 1e-2, count: 12, whole: false }
+}
+
+/// All maps.
+const MAPS: [Map; 4] = [
+    Map {
+        name: "map-dt-bond",
+        title: "cantilever",
+        x: time_step(),
+        y: Parameter { label: "Bond", from: 5.0, to: 500.0, count: 12, whole: false },
+        scene: |time_step_secs, bond| {
+            let mut scene = cantilever(4);
+            scene.parameters.time_step_secs = time_step_secs;
+            scene.parameters.bond = bond;
+            scene
+        },
+        border: None,
+        border_of_springs: None,
+    },
+    Map {
+        name: "map-dt-sweeps",
+        title: "column of 20",
+        x: time_step(),
+        y: sweeps(1e3),
+        scene: |time_step_secs, sweeps| sagging_on_line(DISCS, time_step_secs, sweeps),
+        border: Some(|time_step_secs| {
+            sweeps_at_border(TOP_OF_COLUMN, time_step_secs, contraction_of_column(DISCS as f64))
+        }),
+        border_of_springs: Some(|time_step_secs| substeps_at_border(DISCS, time_step_secs)),
+    },
+    Map {
+        name: "map-mass-sweeps",
+        title: "heavy on light",
+        x: Parameter { label: "ratio of masses", from: 1.0, to: 1e4, count: 12, whole: false },
+        y: sweeps(1e5),
+        scene: |ratio, sweeps| {
+            let mut scene = mass_ratio(ratio);
+            scene.solver = sagging(1, sweeps as u32).solver;
+            scene
+        },
+        border: Some(|ratio| sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0))),
+        border_of_springs: None,
+    },
+    Map {
+        name: "map-discs-sweeps",
+        title: "columns",
+        x: Parameter { label: "discs", from: 2.0, to: 100.0, count: 12, whole: true },
+        y: sweeps(1e4),
+        scene: |count, sweeps| sagging_on_line(count as usize, 1e-3, sweeps),
+        border: Some(|count| sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count))),
+        border_of_springs: Some(|count| substeps_at_border(count as usize, 1e-3)),
+    },
+];
+
+fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
+    let mut scene = column_on_line(count);
+    scene.solver = sagging(count, sweeps as u32).solver;
+    scene.parameters.time_step_secs = time_step_secs;
+    scene
+}
+
+/// What a sweep of Gauss–Seidel leaves of the slowest mode of a column.
+pub fn contraction_of_column(count: f64) -> f64 {
+    (FRAC_PI_2 / count).cos().powi(2)
+}
+
+fn sweeps_at_border(part: f64, time_step_secs: f64, contraction: f64) -> f64 {
+    let scene = column_on_line(1);
+    let fall = part * scene.gravity.magnitude() * time_step_secs * DURATION_SECS;
+    let q = COUNTS * scene.mean_diameter / fall;
+    (q / (1.0 + q)).ln() / contraction.ln()
+}
+
+fn substeps_at_border(count: usize, time_step_secs: f64) -> Result<f64> {
+    let mut scene = column_on_line(count);
+    if let Some(dem) = Contender::named("dem") {
+        dem.apply(&mut scene);
+    }
+    let critical_secs = scene.simulation()?.critical_time_step_secs().unwrap_or(f64::INFINITY);
+    Ok(time_step_secs / critical_secs)
+}
+
+/// 0 where the contender holds, 1 where it sinks or overlaps, 2 where it is lost.
+fn class(contender: &Contender, scene: &Scene) -> Result<f64> {
+    let mut scene = scene.clone();
+    contender.apply(&mut scene);
+    let mut simulation = scene.simulation()?;
+    let mut overlap = 0f64;
+    while simulation.time_secs() < DURATION_SECS {
+        match simulation.step() {
+            Ok(observables) => overlap = overlap.max(observables.max_overlap),
+            Err(Error::NonFinite { .. }) => return Ok(2.0),
+            Err(error) => return Err(error),
+        }
+    }
+    let way = sunk(&simulation, &scene);
+    Ok(if way > LOST || jitter(&simulation) > SHAKES {
+        2.0
+    } else if way.max(overlap) > COUNTS || jitter(&simulation) > TREMBLES {
+        1.0
+    } else {
+        0.0
+    })
+}
+
+/// All maps, each with its file's name: the methods of the registry, four abreast.
+///
+/// # Errors
+/// Where a scene is not sound.
+pub fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
+    let mut sheets = Vec::new();
+    let contenders =
+        || CONTENDERS.iter().filter(|one| METHODS.iter().any(|info| info.name == one.name));
+    for map in &MAPS {
+        let mut charts = Vec::new();
+        for contender in contenders() {
+            charts.push(map.chart(contender, quick, &told)?);
+        }
+        for (number, charts) in charts.chunks(ABREAST).enumerate() {
+            let mut caption = vec![
+                "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s, or trembles; red is torn, thrown, still shaking or not finite.".to_owned(),
+            ];
+            if map.border.is_some() {
+                caption.push("Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs.".into());
+            }
+            let size = (2000, 620);
+            let sheet = Sheet { size, charts: charts.to_vec(), caption };
+            sheets.push((format!("{}-{}", map.name, number + 1), sheet));
+        }
+    }
+    Ok(sheets)
+}
+
+/// Number of charts of all maps.
+pub fn count_of_maps() -> usize {
+    MAPS.len() * METHODS.len()
+}
+
+impl Map {
+    fn chart(&self, contender: &Contender, quick: bool, told: &impl Fn()) -> Result<Chart>
+    where
+        Self: Sync,
+    {
+        let rows = self.y.values(quick);
+        let cells = self
+            .x
+            .values(quick)
+            .into_par_iter()
+            .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
+            .map(|(x, y)| Ok(Cell { x, y, value: class(contender, &(self.scene)(x.0, y.0))? }))
+            .collect::<Result<Vec<_>>>()?;
+        let mut chart = Chart::new(
+            format!("{}: {}", self.title, contender.name),
+            Axis::log(self.x.label, self.x.from, self.x.to),
+            Axis::log(self.y.label, self.y.from, self.y.to),
+        );
+        chart.legend = Corner::UpperLeft;
+        chart.layers.push(Layer::Cells { name: contender.name.into(), cells, colour });
+        let places: Vec<f64> = {
+            let ratio = (self.x.to / self.x.from).powf(1.0 / 60.0);
+            (0..=60).map(|k| self.x.from * ratio.powi(k)).collect()
+        };
+        let on_chart = |curve: Vec<(f64, f64)>| {
+            let within = |&(_, y): &(f64, f64)| (self.y.from..=self.y.to).contains(&y);
+            points(curve.into_iter().filter(within))
+        };
+        if let (Some(border), "nsgs") = (self.border, contender.name) {
+            let curve = on_chart(places.iter().map(|&x| (x, border(x))).collect());
+            chart.layers.push(Layer::quiet("theory", curve, INK, Look::Dashes(3)));
+        }
+        if let (Some(border), "dem") = (self.border_of_springs, contender.name) {
+            let curve: Result<Vec<_>> = places.iter().map(|&x| Ok((x, border(x)?))).collect();
+            chart.layers.push(Layer::quiet(
+                "critical time step",
+                on_chart(curve?),
+                INK,
+                Look::Line(3),
+            ));
+        }
+        told();
+        Ok(chart)
+    }
+}

@@ -1,0 +1,17 @@
+//! What is measured on each scene: an error that is 0 where the answer is right. One file a subject.
+
+mod cohesion;
+mod columns;
+mod impacts;
+mod numbering;
+mod piles;
+mod squeezed;
+mod sudden;
+
+pub(super) use cohesion::{bridge, cantilever, chain, shock};
+pub(super) use columns::{column, mass_ratio, sag, sagging, size_ratio, sunk};
+pub(super) use impacts::{bounce, newtons_cradle, thin_wall};
+pub(super) use numbering::{far, shuffle};
+pub(super) use piles::{friction_limit, repose, rest};
+pub(super) use squeezed::{overlap, squeeze};
+pub(super) use sudden::{lift_off, sliders, time_step_switch};

@@ -1,0 +1,18 @@
+//! Where methods fail: scenes made to break them, each with a right answer, what was measured on it,
+//! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in
+//! the file of the same subject here, and [`CHALLENGES`] lists all.
+
+mod challenges;
+mod contenders;
+mod maps;
+mod measures;
+mod picture;
+mod table;
+mod trial;
+
+pub use challenges::{CHALLENGES, Challenge, Limits};
+pub use contenders::{CONTENDERS, Contender};
+pub use maps::{contraction_of_column, count_of_maps, maps};
+pub use picture::picture;
+pub use table::{Cell, StabilityTable, Verdict};
+pub use trial::Trial;

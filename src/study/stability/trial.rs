@@ -1,0 +1,85 @@
+//! One contender on one challenge at one level, and what measures have in common.
+
+use super::Contender;
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::sim::Simulation;
+
+/// One contender at one level of a challenge.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial {
+    /// Who is tried.
+    pub contender: &'static Contender,
+    /// The value of the parameter that drives the scene into failure.
+    pub level: f64,
+}
+
+impl Trial {
+    /// The scene at t = 0, stepped by the contender.
+    pub(super) fn start(&self, mut scene: Scene) -> Result<Simulation> {
+        self.contender.apply(&mut scene);
+        scene.simulation()
+    }
+
+    /// The level as a count.
+    pub(super) fn count(&self) -> usize {
+        self.level as usize
+    }
+}
+
+/// Steps for a simulated time, s.
+pub(super) fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
+    let steps = (secs / simulation.parameters().time_step_secs).round() as u64;
+    steps_of(simulation, steps)
+}
+
+/// Takes so many steps.
+pub(super) fn steps_of(simulation: &mut Simulation, steps: u64) -> Result<()> {
+    for _ in 0..steps {
+        simulation.step()?;
+    }
+    Ok(())
+}
+
+/// The longest way that any grain has gone since `scene`, in d.
+pub(super) fn longest_way(simulation: &Simulation, scene: &Scene) -> f64 {
+    let now = &simulation.world().grains.positions;
+    let ways = scene.grains.iter().zip(now).map(|(grain, now)| grain.position.distance(*now));
+    ways.fold(0.0, f64::max) / scene.mean_diameter
+}
+
+/// √(2 E_kin/M), in √(g d).
+pub(super) fn jitter(simulation: &Simulation) -> f64 {
+    let world = simulation.world();
+    let mass: f64 = world.grains.masses.iter().sum();
+    let scale = world.gravity.magnitude() * world.mean_diameter;
+    (2.0 * simulation.observables().kinetic_energy / (mass * scale)).sqrt()
+}
+
+/// What the fixed bodies carry along the y axis, N: the sum of N n_y over their contacts.
+pub(super) fn force_on_ground(simulation: &Simulation) -> f64 {
+    let grains = simulation.world().grains.len();
+    let list = simulation.contacts();
+    let pairs = list.contacts().iter().zip(list.impulses());
+    let of_ground = pairs.filter(|(contact, _)| contact.other as usize >= grains);
+    let impulse: f64 = of_ground.map(|(contact, impulse)| impulse.normal * contact.normal.y).sum();
+    impulse / simulation.parameters().time_step_secs
+}
+
+/// Where a property that holds above a threshold begins, searched between `low` and `high` in
+/// ratio, with so many halvings.
+pub(super) fn threshold(
+    [mut low, mut high]: [f64; 2],
+    halvings: u32,
+    mut holds: impl FnMut(f64) -> Result<bool>,
+) -> Result<f64> {
+    for _ in 0..halvings {
+        let middle = (low * high).sqrt();
+        if holds(middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok((low * high).sqrt())
+}

@@ -1,0 +1,144 @@
+//! Borders that theory gives, against those that are measured.
+
+use slump::scene::Scene;
+use slump::scene::stability::{WALL_DISTANCE, balls, column_on_line, mass_ratio, thin_wall};
+use slump::sim::Simulation;
+use slump::solver::{Method, SolverSettings};
+use slump::study::stability::contraction_of_column;
+
+/// Steps until a column sinks steadily: each leaves a tenth or less of the one before.
+const STEADY: usize = 40;
+
+fn cold(sweeps: u32) -> SolverSettings {
+    SolverSettings {
+        max_sweeps: sweeps,
+        tolerance: 1e-14,
+        warm_start: false,
+        ..SolverSettings::default()
+    }
+}
+
+/// Steady speed of the last grain, in g Δt, where each step gets so many sweeps from nothing.
+fn sinking_speed(mut scene: Scene, sweeps: u32) -> f64 {
+    scene.solver = cold(sweeps);
+    let mut simulation = scene.simulation().expect("a sound scene");
+    for _ in 0..STEADY {
+        simulation.step().expect("a finite state");
+    }
+    let speed = simulation.world().grains.velocities.last().expect("a grain").length();
+    speed / (scene.gravity.magnitude() * scene.parameters.time_step_secs)
+}
+
+fn left(contraction: f64, sweeps: u32) -> f64 {
+    let share = contraction.powi(sweeps as i32);
+    share / (1.0 - share)
+}
+
+#[test]
+fn a_column_sinks_less_with_more_sweeps_as_theory_says() {
+    for count in [10, 20] {
+        let contraction = contraction_of_column(count as f64);
+        for sweeps in [(1.5 * (count * count) as f64) as u32, 2 * (count * count) as u32] {
+            let found = sinking_speed(column_on_line(count), sweeps);
+            let expected = 4.0 / std::f64::consts::PI * left(contraction, sweeps);
+            let ratio = found / expected;
+            assert!((0.9..1.1).contains(&ratio), "{count} discs, {sweeps} sweeps: {ratio}");
+        }
+        // The rate itself, free of the mode's amplitude.
+        let sweeps = 2 * (count * count) as u32;
+        let speeds =
+            [sweeps, sweeps + 50].map(|sweeps| sinking_speed(column_on_line(count), sweeps));
+        let found = (speeds[0] / speeds[1]).ln();
+        let expected = (left(contraction, sweeps) / left(contraction, sweeps + 50)).ln();
+        assert!((found / expected - 1.0).abs() < 0.01, "{count} discs: {found} for {expected}");
+    }
+}
+
+#[test]
+fn a_heavy_disc_needs_sweeps_by_the_ratio_of_the_masses() {
+    for ratio in [30.0, 300.0] {
+        let contraction = ratio / (ratio + 1.0);
+        let sweeps = 2 * ratio as u32;
+        let speeds = [sweeps, 2 * sweeps].map(|sweeps| sinking_speed(mass_ratio(ratio), sweeps));
+        let found = (speeds[0] / speeds[1]).ln();
+        let expected = (left(contraction, sweeps) / left(contraction, 2 * sweeps)).ln();
+        assert!((found / expected - 1.0).abs() < 0.01, "ratio {ratio}: {found} for {expected}");
+    }
+}
+
+#[test]
+fn a_disc_goes_through_a_wall_in_the_share_of_phases_that_geometry_gives() {
+    const PHASES: u32 = 40;
+    for travel in [0.3, 0.45, 0.7, 1.0, 2.0, 5.0] {
+        let through = (0..PHASES).filter(|phase| {
+            let scene = thin_wall(travel, (f64::from(*phase) + 0.5) / f64::from(PHASES));
+            let mut simulation = scene.simulation().expect("a sound scene");
+            for _ in 0..((WALL_DISTANCE + 5.0) / travel) as u32 {
+                simulation.step().expect("a finite state");
+            }
+            simulation.world().grains.positions[0].x > WALL_DISTANCE * scene.mean_diameter
+        });
+        let found = through.count() as f64 / f64::from(PHASES);
+        let expected = (1.0f64 - 0.5 / travel).max(0.0);
+        let phase = 1.0 / f64::from(PHASES);
+        assert!((found - expected).abs() <= phase, "{travel} d a step: {found} for {expected}");
+    }
+}
+
+/// At ρ = 1 the contact that is hit asks for v₂ − v₁ = v, all others for no motion. With what the
+/// balls share after it, u, momentum says u − v + (n − 1) u = v: they leave with 2v/n, and the first
+/// one bounces back. Momentum and energy are kept, and yet no cradle does that.
+#[test]
+fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
+    for count in [2, 3, 5, 20] {
+        let scene = balls(count);
+        let speed = scene.grains[0].velocity.x;
+        let mut simulation = scene.simulation().expect("a sound scene");
+        for _ in 0..100 {
+            simulation.step().expect("a finite state");
+        }
+        let velocities: Vec<f64> =
+            simulation.world().grains.velocities.iter().map(|v| v.x / speed).collect();
+        let shared = 2.0 / count as f64;
+        assert!((velocities[0] - (shared - 1.0)).abs() < 1e-4, "{count}: {velocities:?}");
+        for velocity in &velocities[1..] {
+            assert!((velocity - shared).abs() < 1e-4, "{count}: {velocities:?}");
+        }
+        let momentum: f64 = velocities.iter().sum();
+        let energy: f64 = velocities.iter().map(|v| v * v).sum();
+        assert!((momentum - 1.0).abs() < 1e-12 && (energy - 1.0).abs() < 1e-4, "{count}");
+    }
+}
+
+/// A column of springs with one substep a step, `part` of the critical one long.
+fn springs(part: f64) -> Simulation {
+    let mut scene = column_on_line(12);
+    scene.parameters.restitution = 0.5;
+    scene.solver.method = Method::Dem;
+    scene.solver.substeps = 1;
+    let critical = scene.simulation().expect("a sound scene").critical_time_step_secs();
+    scene.parameters.time_step_secs = part * critical.expect("springs have a critical step");
+    scene.simulation().expect("a sound scene")
+}
+
+#[test]
+fn springs_blow_up_at_their_critical_time_step() {
+    let stays_at_rest = |part: f64| {
+        let mut simulation = springs(part);
+        for _ in 0..20_000 {
+            if simulation.step().is_err() {
+                return false;
+            }
+        }
+        let world = simulation.world();
+        let fastest = world.grains.velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
+        fastest < 1e-6 * (world.gravity.magnitude() * world.mean_diameter).sqrt()
+    };
+    let (mut low, mut high) = (0.8, 1.25);
+    assert!(stays_at_rest(low) && !stays_at_rest(high), "the border is searched around theory");
+    for _ in 0..7 {
+        let middle = 0.5 * (low + high);
+        *(if stays_at_rest(middle) { &mut low } else { &mut high }) = middle;
+    }
+    assert!((0.995..1.03).contains(&low), "stable up to {low} of the critical time step");
+}
