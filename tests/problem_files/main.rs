@@ -97,7 +97,9 @@ impl ProblemVisitor for Swept {
             solve::<M>(problem, &never).expect("a method for problems");
         }
         let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-        let impulses = rows.map(|row| problem.reduced_impulse(row).map(|p| row.effective_mass * p));
+        let impulses = rows.enumerate().map(|(number, row)| {
+            problem.reduced_impulse(number, row).map(|p| row.effective_mass * p)
+        });
         (residual::<M>(problem), impulses.collect())
     }
 }

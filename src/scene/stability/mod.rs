@@ -31,7 +31,9 @@ pub use truss::{bridge, cantilever};
 
 use super::Scene;
 use crate::solver::SolverSettings;
-use crate::world::{Boundary, FrictionCone, Grain, Gravity, Parameters, Physics, ContactLaw, DEBONDING_DISTANCE};
+use crate::world::{
+    Boundary, ContactLaw, DEBONDING_DISTANCE, FrictionCone, Grain, Gravity, Parameters, Physics,
+};
 
 /// d of all these scenes, m.
 pub(super) const DIAMETER: f64 = 0.01;
