@@ -10,6 +10,7 @@ pub mod contact;
 pub mod error;
 pub mod headless;
 pub mod interchange;
+pub mod output;
 pub mod render;
 pub mod scene;
 pub mod sim;

@@ -11,7 +11,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
 use slump::app::WindowOptions;
 use slump::error::Result;
-use slump::headless::{HeadlessOptions, Progress, check_writable, write_file};
+use slump::headless::HeadlessOptions;
+use slump::output::{Progress, check_writable, write_file};
 use slump::scene::{
     Config, Rain, SCENES, SceneGroup, Settling, scene_to_toml, settle, write_discs,
 };
@@ -130,7 +131,9 @@ fn run(cli: Cli) -> Result<()> {
         }
         Some(Command::Problem { command }) => command.run(),
         Some(Command::Sweep(command)) => command.run(),
-        Some(Command::Reproduce { figures, out, quick }) => reproduce(&figures, &out, quick),
+        Some(Command::Reproduce { figures, out, quick }) => {
+            reproduce(&figures, &out, quick, slump::headless::draw_snapshots)
+        }
         Some(Command::Chart { out, quick, large, only, peers }) => {
             chart_speed(&ChartOptions { out, quick, large, only, peers })
         }

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use slump::error::Result;
-use slump::headless::{Progress, settled, write_file};
+use slump::headless::settled;
 use slump::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
+use slump::output::{Progress, write_file};
 use slump::scene::Config;
 use slump::solver::{Method, SolverSettings, StopTest};
 
@@ -95,5 +96,10 @@ fn tell(solution: &Solution) {
     println!("factorisations  {factorisations}");
     println!("seconds         {seconds:.3e}");
     println!("residual        {residual:.3e}");
-    println!("converged       {}", if solution.converged { "yes" } else { "no" });
+    let converged = match (solution.converged, solution.stalled) {
+        (true, _) => "yes",
+        (false, true) => "no: stalled, more sweeps are of no use",
+        (false, false) => "no: stopped too early",
+    };
+    println!("converged       {converged}");
 }

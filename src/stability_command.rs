@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use slump::error::Result;
-use slump::headless::{Progress, check_writable, write_file};
+use slump::output::{Progress, check_writable, write_file};
 use slump::study::chart::{png, svg};
 use slump::study::stability::{
     CHALLENGES, Challenge, StabilityTable, count_of_maps, maps, picture,

@@ -50,32 +50,24 @@ impl ProblemVisitor for Check {
             unit[column / entries][column % entries] = 1.0;
             system.write(&unit);
             system.velocities(&mut answer);
-            for row in 0..size {
+            for (row, numbers) in matrix.iter_mut().enumerate() {
                 let (contact, entry) = (row / entries, row % entries);
-                matrix[row][column] = answer[contact][entry] - origin[contact][entry];
+                numbers[column] = answer[contact][entry] - origin[contact][entry];
             }
         }
-        for row in 0..size {
-            let expected = match row % entries {
-                0 => 1.0,
-                _ => system.tangential_diagonal(row / entries),
-            };
-            assert!((matrix[row][row] - expected).abs() < 1e-11, "{}", matrix[row][row]);
-            for column in 0..row {
-                let (one, other) = (matrix[row][column], matrix[column][row]);
-                assert!((one - other).abs() < 1e-11, "{one} and {other}");
+        let diagonal = |index: usize| match index % entries {
+            0 => 1.0,
+            _ => system.tangential_diagonal(index / entries),
+        };
+        for (row, numbers) in matrix.iter().enumerate() {
+            assert!((numbers[row] - diagonal(row)).abs() < 1e-11, "{}", numbers[row]);
+            for (number, mirrored) in numbers.iter().zip(matrix.iter().map(|other| other[row])) {
+                assert!((number - mirrored).abs() < 1e-11, "{number} and {mirrored}");
             }
         }
 
         // A ⪯ D⁻¹: the largest eigenvalue of D^½ A D^½ is at most 1 (power iteration).
-        let scale = |index: usize| {
-            let diagonal = if index % entries == 0 {
-                1.0
-            } else {
-                system.tangential_diagonal(index / entries)
-            };
-            (weights[index / entries] / diagonal).sqrt()
-        };
+        let scale = |index: usize| (weights[index / entries] / diagonal(index)).sqrt();
         let mut vector: Vec<f64> = (0..size).map(|index| 1.0 + (index % 7) as f64).collect();
         let mut largest = 0.0;
         for _ in 0..300 {

@@ -225,8 +225,10 @@ fn every_method_honours_every_stopping_test_and_the_limit() {
                 let name = format!("{} {stop:?}", info.name);
                 assert!(first.converged && again.converged, "{name}: {first:?}");
                 assert!(first.sweeps > 1, "{name}: {first:?}");
-                // What is solved stays solved.
-                assert!(again.sweeps <= first.sweeps.div_ceil(2), "{name}: {again:?}, {first:?}");
+                if stop == StopTest::Residual {
+                    let most = first.sweeps.div_ceil(4);
+                    assert!(again.sweeps <= most, "a warm start, {name}: {again:?}, {first:?}");
+                }
                 let hasty = SolverSettings { tolerance: 1e-14, max_sweeps: 5, ..settings };
                 let (report, residual) = next_with(moment, hasty);
                 assert!(!report.converged && report.sweeps <= 5, "{name}: {report:?}");

@@ -10,6 +10,6 @@ if [ ! -e "$state" ]; then
     ../../target/release/slump generate --grains 2000 --box-width 60 --seed 1 --out "$state"
 fi
 "$peers" --out results/collapse_138.csv
-"$peers" --initial "$state" --box-width 60 --substeps 16 --slop 5e-4,2e-4 --out results/collapse_2000.csv
-"$peers" --initial "$state" --box-width 60 --substeps 16 --slop 5e-3,5e-4,2e-4 --rest --duration 0.2 \
+"$peers" --initial "$state" --box-width 60 --substeps 16 --slop 5e-4 --out results/collapse_2000.csv
+"$peers" --initial "$state" --box-width 60 --substeps 16 --slop 5e-4 --rest --duration 0.2 \
     --out results/rest_2000.csv

@@ -4,7 +4,7 @@ use egui::{CentralPanel, CollapsingHeader, Frame, Margin, Panel, RichText, Scrol
 
 use super::fill::fill;
 use super::panels::{
-    compare, grain, help, physics, plots, run, scene, see, solver, status, transport,
+    compare, grain, help, physics, plots, run, scene, see, solver, speed, status, transport,
 };
 use super::state::AppState;
 use super::{drop, keys};
@@ -77,6 +77,7 @@ fn panels(ui: &mut Ui, state: &mut AppState) {
     section(ui, state, "see", "See", false, see::show);
     section(ui, state, "compare", "Compare", false, compare::show);
     section(ui, state, "solver", "Solver", false, solver::show);
+    section(ui, state, "speed", "Speed and accuracy", false, speed::show);
 }
 
 fn section(

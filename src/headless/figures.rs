@@ -8,11 +8,10 @@ use glam::DVec2;
 use image::RgbaImage;
 use rayon::prelude::*;
 
-use super::Progress;
 use super::frames::{ObservablesTable, tell_of_alarms, tell_of_unconverged_steps};
 use super::manifest::{Manifest, Moment, PictureEntry, RunEntry};
-use super::output::{check_writable, write_png};
 use crate::error::Result;
+use crate::output::{Progress, check_writable, write_png};
 use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::View;
 use crate::sim::{Alarm, Snapshot, Tally};

@@ -4,16 +4,17 @@ use std::path::Path;
 
 use image::RgbaImage;
 
+use super::HeadlessOptions;
 use super::gif::Animation;
 use super::manifest::{Manifest, Moment, PictureEntry, RunEntry};
-use super::output::{check_writable, finish_file, start_file, write_png};
-use super::{HeadlessOptions, Progress};
 use crate::error::{Error, Result};
+use crate::output::{Progress, check_writable, finish_file, start_file, write_png};
 use crate::render::{
     Camera, ColourBy, Renderer, Style, automatic_range, draw_scene, force_reference,
 };
 use crate::scene::{Config, Scene, Settling, View};
 use crate::sim::{Alarm, AlarmKind, Observables, Snapshot};
+use crate::solver::{Method, picked};
 use crate::study::record;
 
 /// Name of the run in the manifest.
@@ -80,6 +81,10 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions) -> Result<()> {
     studio.manifest.runs.push(RunEntry::new(RUN, &scene, recorded.tally, alarms)?);
     studio.finish()?;
     tell_of_unconverged_steps(&scene, &recorded.tally);
+    if scene.solver.method == Method::Auto {
+        let contacts = recorded.simulation.contacts().contacts().len();
+        eprintln!("auto took {} for {contacts} contacts", picked(&scene.solver, contacts).name());
+    }
     tell_of_alarms(&scene, alarms);
     recorded.failure.map_or(Ok(()), Err)
 }
@@ -97,7 +102,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &crate::sim::Tally
     if tally.unconverged_steps > 0 {
         eprintln!(
             "{} (Bond {}, time step {} s): {} of {} steps did not reach tolerance {:e} within {} \
-             sweeps; largest residual {:.1e}",
+             sweeps, {} of them stalled (more sweeps would be of no use); largest residual {:.1e}",
             scene.name,
             scene.parameters.bond,
             scene.parameters.time_step_secs,
@@ -105,6 +110,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &crate::sim::Tally
             tally.steps,
             scene.solver.tolerance,
             scene.solver.max_sweeps,
+            tally.stalled_steps,
             tally.largest_residual
         );
     }

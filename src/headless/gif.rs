@@ -6,8 +6,8 @@ use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, RgbaImage};
 use tempfile::NamedTempFile;
 
-use super::output::{finish_file, start_file};
 use crate::error::{Error, Result};
+use crate::output::{finish_file, start_file};
 
 /// Time that each picture is shown, ms: 25 pictures a second, which viewers keep up with.
 const PICTURE_MS: u32 = 40;

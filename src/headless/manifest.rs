@@ -5,8 +5,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::output::write_file;
 use crate::error::{Error, Result};
+use crate::output::write_file;
 use crate::scene::Scene;
 use crate::sim::{Alarm, Observables, Tally};
 

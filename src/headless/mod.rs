@@ -5,16 +5,22 @@ mod frames;
 mod gif;
 mod manifest;
 mod options;
-mod output;
-mod progress;
 
 pub use frames::settled;
 pub use options::{HeadlessOptions, PictureSize, Show};
-pub use output::{check_writable, write_file};
-pub use progress::Progress;
+
+use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::scene::Config;
+
+/// Draws the paper's snapshots into a folder, with whatever renderer there is.
+///
+/// # Errors
+/// Where the folder cannot be written to.
+pub fn draw_snapshots(folder: &Path) -> Result<()> {
+    figures::draw(folder, HeadlessOptions::default().renderer)
+}
 
 /// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
 /// figures.

@@ -28,6 +28,8 @@ pub struct Solution {
     pub seconds: f64,
     /// Whether the method says that it got to its tolerance.
     pub converged: bool,
+    /// Whether it did not because it had stalled, rather than being stopped too early.
+    pub stalled: bool,
     /// The common residual of `r`, from the file's W and q.
     pub residual: f64,
     /// (v_n, v_t) of each contact at the end of the step, restitution's term included, W r + q, m/s.
@@ -80,6 +82,7 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
         factorisations: report.factorisations,
         seconds,
         converged: report.converged,
+        stalled: report.stalled,
         residual: delassus.residual(),
         u: delassus.velocities().flatten().collect(),
         r: impulses.into_iter().flatten().collect(),

@@ -18,6 +18,10 @@ pub struct Observables {
     /// Whether the stopping test was met within the sweep limit; true for a scheme, which does a
     /// fixed amount of work and tests nothing. What its step is worth, `residual` tells.
     pub converged: bool,
+    /// Whether a step that did not converge had stalled: its residual had stopped falling, so that
+    /// more sweeps are of no use. As a rule it has no solution (see the README).
+    #[serde(default)]
+    pub stalled: bool,
     /// The common residual (`solver::residual`), dimensionless. For a scheme: that of the step's
     /// problem with the impulses that the scheme summed up and the velocities it ended with.
     pub residual: f64,

@@ -116,6 +116,7 @@ impl ModelVisitor for Step<'_> {
             sweeps: report.sweeps,
             factorisations: report.factorisations,
             converged: report.converged,
+            stalled: report.stalled,
             residual: measures.residual,
             compressive_contacts: measures.compressive_contacts,
             tensile_contacts: measures.tensile_contacts,

@@ -11,6 +11,9 @@ pub struct Tally {
     pub steps: u64,
     /// Steps whose stopping test was not met within the sweep limit.
     pub unconverged_steps: u64,
+    /// Those of them that had stalled, so that more sweeps are of no use.
+    #[serde(default)]
+    pub stalled_steps: u64,
     /// Sweeps of all steps.
     pub sweeps: u64,
     /// Largest common residual of any step.
@@ -26,6 +29,7 @@ impl Tally {
     pub fn add(&mut self, step: &Observables) {
         self.steps += 1;
         self.unconverged_steps += u64::from(!step.converged);
+        self.stalled_steps += u64::from(step.stalled);
         self.sweeps += u64::from(step.sweeps);
         self.largest_residual = self.largest_residual.max(step.residual);
         self.mean_overlap += (step.mean_overlap - self.mean_overlap) / self.steps as f64;

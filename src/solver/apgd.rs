@@ -58,7 +58,9 @@ pub(super) fn solve<S: ContactSystem>(
         if is_tested(sweeps, settings) && system.is_settled(x, settings) {
             return SolveReport { sweeps, converged: true, ..SolveReport::default() };
         }
-        best.look(system, next, sweeps);
+        if best.look(system, next, sweeps, settings) {
+            return best.restore(system, sweeps);
+        }
         let momentum = if leads_away(system, y, next, x) {
             theta = 1.0;
             0.0

@@ -1,6 +1,7 @@
 //! What iterations that are no sweeps share: dot products, the test at the end of an iteration, and
 //! the best impulses so far.
 
+use super::stall::StallWatch;
 use super::system::{ContactSystem, Pairs};
 use super::{SolveReport, SolverSettings, StopTest};
 use crate::contact::law;
@@ -58,20 +59,27 @@ pub(super) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 pub(super) struct Best<'a> {
     impulses: &'a mut Pairs,
     residual: f64,
+    watch: StallWatch,
 }
 
 impl<'a> Best<'a> {
     /// Starts with the present impulses of a system.
     pub fn new<S: ContactSystem>(system: &S, impulses: &'a mut Pairs) -> Self {
         system.read(impulses);
-        Self { impulses, residual: system.residual() }
+        Self { impulses, residual: system.residual(), watch: StallWatch::default() }
     }
 
     /// Looks at `impulses`, which are the system's present ones, after iteration `sweeps`; now and
-    /// then only.
-    pub fn look<S: ContactSystem>(&mut self, system: &S, impulses: &[[f64; 2]], sweeps: u32) {
+    /// then only. Tells whether to stop, since nothing better is to be had.
+    pub fn look<S: ContactSystem>(
+        &mut self,
+        system: &S,
+        impulses: &[[f64; 2]],
+        sweeps: u32,
+        settings: &SolverSettings,
+    ) -> bool {
         if !sweeps.is_multiple_of(LOOK_INTERVAL) {
-            return;
+            return false;
         }
         let residual = system.residual();
         if residual < self.residual {
@@ -79,16 +87,20 @@ impl<'a> Best<'a> {
             self.impulses.clear();
             self.impulses.extend_from_slice(impulses);
         }
+        self.watch.look(sweeps, settings, || self.residual)
     }
 
     /// The end of a solve that failed: the system has the best impulses of all, its present ones
     /// included.
     pub fn restore<S: ContactSystem>(self, system: &mut S, sweeps: u32) -> SolveReport {
+        let residual = system.residual();
         // Not a number is not better than anything.
-        let present_is_best = system.residual() <= self.residual;
+        let present_is_best = residual <= self.residual;
         if !present_is_best {
             system.write(self.impulses);
         }
-        SolveReport { sweeps, ..SolveReport::default() }
+        let best = if present_is_best { residual } else { self.residual };
+        let stalled = self.watch.has_stalled(sweeps, best);
+        SolveReport { sweeps, stalled, ..SolveReport::default() }
     }
 }

@@ -40,7 +40,9 @@ pub(super) fn solve<S: ContactSystem>(
         if is_tested(sweeps, settings) && system.is_settled(before, settings) {
             return SolveReport { sweeps, converged: true, ..SolveReport::default() };
         }
-        best.look(system, impulses, sweeps);
+        if best.look(system, impulses, sweeps, settings) {
+            return best.restore(system, sweeps);
+        }
     }
     best.restore(system, settings.max_sweeps)
 }

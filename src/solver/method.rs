@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::system::{BodySystem, ContactSystem, Vectors};
 use super::{
-    Model, Ordering, SolverSettings, StepProblem, apgd, jacobi, newton, nncg, nsgs, nsgs_parallel,
+    Model, Ordering, SolverSettings, StepProblem, admm, apgd, jacobi, newton, nncg, nsgs,
+    nsgs_parallel, picked,
 };
 use crate::error::{Error, Result};
 
@@ -22,8 +23,12 @@ pub enum Method {
     Nncg,
     /// Accelerated projected gradients with adaptive restart.
     Apgd,
+    /// Alternating directions of multipliers with a cached factorisation.
+    Admm,
     /// Jacobi with mass splitting.
     Jacobi,
+    /// One of the above, by the size of the problem.
+    Auto,
     /// Substeps with soft contacts.
     TgsSoft,
     /// Discrete elements with springs and dashpots.
@@ -52,7 +57,7 @@ pub enum Scheme {
 impl Method {
     /// Whether the order of the settings tells the method in which order to sweep.
     pub fn sweeps_in_order(self) -> bool {
-        matches!(self, Self::Nsgs | Self::Newton | Self::Nncg)
+        matches!(self, Self::Nsgs | Self::Newton | Self::Nncg | Self::Auto)
     }
 
     /// The order of the rows that the method needs where the settings ask for `asked`.
@@ -94,7 +99,7 @@ pub struct MethodInfo {
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 
 /// All methods.
-pub const METHODS: [MethodInfo; 8] = [
+pub const METHODS: [MethodInfo; 10] = [
     MethodInfo {
         method: Method::Nsgs,
         name: "nsgs",
@@ -105,7 +110,7 @@ pub const METHODS: [MethodInfo; 8] = [
     MethodInfo {
         method: Method::NsgsParallel,
         name: "nsgs-parallel",
-        summary: "Gauss-Seidel by colours on several threads: for piles of tens of thousands",
+        summary: "Gauss-Seidel by colours on several threads: for large piles on idle cores",
         solves: COULOMB,
         source: "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
     },
@@ -131,11 +136,25 @@ pub const METHODS: [MethodInfo; 8] = [
         source: "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
     },
     MethodInfo {
+        method: Method::Admm,
+        name: "admm",
+        summary: "alternating directions of multipliers: one cached factorisation, many solves",
+        solves: "the same, the bound of friction taken anew every iteration",
+        source: "S. Boyd and others (2011); for contact V. Acary, M. Bremond, O. Huber (2018)",
+    },
+    MethodInfo {
         method: Method::Jacobi,
         name: "jacobi",
         summary: "Jacobi with mass splitting: all contacts at once, each with its part of the mass",
         solves: COULOMB,
         source: "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
+    },
+    MethodInfo {
+        method: Method::Auto,
+        name: "auto",
+        summary: "newton up to 1,000 contacts, nncg above, nsgs where sweeps are what is studied",
+        solves: COULOMB,
+        source: "the charts of speed against accuracy",
     },
     MethodInfo {
         method: Method::TgsSoft,
@@ -162,6 +181,8 @@ pub struct SolveReport {
     pub factorisations: u32,
     /// Whether the stopping test was met.
     pub converged: bool,
+    /// Whether a solve that did not converge had stalled, rather than being stopped too early.
+    pub stalled: bool,
 }
 
 /// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
@@ -176,10 +197,11 @@ pub fn solve<M: Model>(
     if problem.contact_of_row.is_empty() {
         return Ok(SolveReport { converged: true, ..SolveReport::default() });
     }
-    Ok(match settings.method {
+    Ok(match picked(settings, problem.contact_of_row.len()) {
         Method::Nsgs => nsgs::solve::<M>(problem, settings),
         Method::NsgsParallel => nsgs_parallel::solve::<M>(problem, settings),
         Method::Newton => newton::solve::<M>(problem, settings),
+        Method::Admm => admm::solve::<M>(problem, settings),
         Method::Nncg | Method::Apgd | Method::Jacobi => {
             let mut vectors = std::mem::take(&mut problem.vectors);
             let system = &mut BodySystem::<M>::new(problem);
@@ -188,7 +210,7 @@ pub fn solve<M: Model>(
             // The methods of this arm are among those that need no bodies.
             report.unwrap_or_default()
         }
-        Method::TgsSoft | Method::Dem => {
+        Method::Auto | Method::TgsSoft | Method::Dem => {
             let of_problems =
                 METHODS.iter().filter(|info| info.method.kind() == MethodKind::Problem);
             let names: Vec<_> = of_problems.map(|info| info.name).collect();
@@ -208,7 +230,7 @@ pub fn solve_system<S: ContactSystem>(
     if system.is_empty() {
         return Some(SolveReport { converged: true, ..SolveReport::default() });
     }
-    match settings.method {
+    match picked(settings, system.len()) {
         Method::Nncg => Some(nncg::solve(system, settings, vectors)),
         Method::Apgd => Some(apgd::solve(system, settings, vectors)),
         Method::Jacobi => Some(jacobi::solve(system, settings, vectors)),

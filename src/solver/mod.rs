@@ -1,6 +1,8 @@
 //! One step's contact problem, the methods that solve it, and the residual that judges them all.
 
+mod admm;
 mod apgd;
+mod auto;
 mod delassus;
 mod iterate;
 mod jacobi;
@@ -16,8 +18,10 @@ mod order;
 mod problem;
 mod remedies;
 mod settings;
+mod stall;
 mod system;
 
+pub use auto::picked;
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, measure, residual};

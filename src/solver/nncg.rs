@@ -36,7 +36,9 @@ pub(super) fn solve<S: ContactSystem>(
             system.sweep();
         }
         system.read(swept);
-        best.look(system, swept, sweeps);
+        if best.look(system, swept, sweeps, settings) {
+            return best.restore(system, sweeps);
+        }
         step.clear();
         step.extend(
             swept.iter().zip(&*impulses).map(|(now, old)| [now[0] - old[0], now[1] - old[1]]),

@@ -10,6 +10,7 @@
 
 use super::iterate::is_tested;
 use super::measure::residual;
+use super::stall::StallWatch;
 use super::{Kinematics, Model, Ordering, Row, SolveReport, SolverSettings, StepProblem, StopTest};
 use crate::contact::law;
 
@@ -18,7 +19,10 @@ pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> SolveReport {
-    for sweeps in 1..=settings.max_sweeps {
+    let mut watch = StallWatch::default();
+    let mut sweeps = 0;
+    while sweeps < settings.max_sweeps {
+        sweeps += 1;
         let backward = settings.ordering == Ordering::Symmetric && sweeps % 2 == 0;
         let converged = match (is_tested(sweeps, settings), backward) {
             (true, false) => tested::<M, false>(problem, settings),
@@ -35,8 +39,12 @@ pub(super) fn solve<M: Model>(
         if converged {
             return SolveReport { sweeps, converged, ..SolveReport::default() };
         }
+        if watch.look(sweeps, settings, || residual::<M>(problem)) {
+            break;
+        }
     }
-    SolveReport { sweeps: settings.max_sweeps, ..SolveReport::default() }
+    let stalled = watch.has_stalled(sweeps, residual::<M>(problem));
+    SolveReport { sweeps, stalled, ..SolveReport::default() }
 }
 
 /// One sweep, and whether the stopping test is met after it.

@@ -9,7 +9,9 @@
 use rayon::prelude::*;
 
 use super::iterate::is_tested;
+use super::measure::residual;
 use super::nsgs::{self, Change, Law, is_settled};
+use super::stall::StallWatch;
 use super::{Kinematics, Model, Row, SolveReport, SolverSettings, StepProblem, StopTest};
 
 /// Contacts that a thread takes at a time.
@@ -87,7 +89,10 @@ impl<'a, M: Model> Coloured<'a, M> {
     }
 
     fn run(&mut self, settings: &SolverSettings) -> SolveReport {
-        for sweeps in 1..=settings.max_sweeps {
+        let mut watch = StallWatch::default();
+        let mut sweeps = 0;
+        while sweeps < settings.max_sweeps {
+            sweeps += 1;
             if !is_tested(sweeps, settings) {
                 self.sweep::<false>();
                 continue;
@@ -99,8 +104,12 @@ impl<'a, M: Model> Coloured<'a, M> {
             if is_settled::<M>(self.problem, change, settings) {
                 return SolveReport { sweeps, converged: true, ..SolveReport::default() };
             }
+            if watch.look(sweeps, settings, || residual::<M>(self.problem)) {
+                break;
+            }
         }
-        SolveReport { sweeps: settings.max_sweeps, ..SolveReport::default() }
+        let stalled = watch.has_stalled(sweeps, residual::<M>(self.problem));
+        SolveReport { sweeps, stalled, ..SolveReport::default() }
     }
 
     /// One pass over all contacts.

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::admm;
 use super::newton::Workspaces;
 use super::nsgs_parallel::Colouring;
 use super::order::Sorter;
@@ -63,6 +64,7 @@ pub struct StepProblem<K: Kinematics> {
     /// Mean mass of the grains, kg.
     pub mean_mass: f64,
     pub(super) newton: Workspaces,
+    pub(super) admm: admm::Workspaces,
     pub(super) vectors: Vectors,
     /// √m_n of the rows, kg^½; filled where a method asks for it.
     pub(super) root_masses: Vec<f64>,
@@ -84,6 +86,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             masses: Vec::new(),
             mean_mass: 0.0,
             newton: Workspaces::default(),
+            admm: admm::Workspaces::default(),
             vectors: Vectors::default(),
             root_masses: Vec::new(),
             colouring: Colouring::default(),

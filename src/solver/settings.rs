@@ -25,7 +25,7 @@ pub struct SolverSettings {
     /// The method.
     pub method: Method,
     /// The order of a sweep.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub ordering: Ordering,
     /// What `tolerance` refers to.
     #[serde(default)]
@@ -39,7 +39,7 @@ pub struct SolverSettings {
     pub warm_start: bool,
     /// Substeps of a scheme that replaces the step; 0 leaves the number to the scheme. Methods that
     /// solve the step's problem take none.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub substeps: u32,
     /// Remedies for known failures; none in the paper's scheme.
     #[serde(default, skip_serializing_if = "Remedies::is_none")]
@@ -48,6 +48,11 @@ pub struct SolverSettings {
 
 /// More substeps than this are a mistake: a single step of a pile would take many seconds.
 pub const MAX_SUBSTEPS: u32 = 100_000;
+
+/// What came after the first scene files is written where it is not left at its default.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
 
 impl SolverSettings {
     /// Checks the numbers against their ranges.

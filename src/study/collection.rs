@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::states::States;
 use crate::error::Result;
-use crate::headless::Progress;
+use crate::output::Progress;
 use crate::scene::{Config, Rain};
 use crate::sim::Simulation;
 use crate::solver::{Method, Ordering, Remedies, SolverSettings, StopTest};

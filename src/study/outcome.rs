@@ -34,6 +34,9 @@ pub struct Outcome {
     pub first_gap: f64,
     /// Steps whose stopping test was not met.
     pub unconverged_steps: u64,
+    /// Those of them that had stalled.
+    #[serde(default)]
+    pub stalled_steps: u64,
     /// Sweeps of all steps.
     pub sweeps: u64,
     /// Largest common residual of any step.
@@ -87,6 +90,7 @@ pub fn run_to_end(
         max_overlap: finite(tally.max_overlap),
         first_gap: finite(first_gap(&simulation)),
         unconverged_steps: tally.unconverged_steps,
+        stalled_steps: tally.stalled_steps,
         sweeps: tally.sweeps,
         largest_residual: finite(tally.largest_residual),
     })

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::headless::{Progress, check_writable, write_file};
+use crate::output::{Progress, check_writable, write_file};
 use crate::scene::{Config, Rain, Scene, read_discs, settle, write_discs};
 use crate::world::Grain;
 

@@ -16,7 +16,7 @@ use super::states::States;
 use super::table::RunsTable;
 use super::{PlannedRun, Shard, Study};
 use crate::error::{Error, Result};
-use crate::headless::{Progress, check_writable, write_file};
+use crate::output::{Progress, check_writable, write_file};
 
 /// File that says which study a folder holds.
 const STUDY_FILE: &str = "study.json";

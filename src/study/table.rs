@@ -10,7 +10,7 @@ use super::journal::Entry;
 use super::outcome::{cells_of, names_of};
 use super::{Outcome, Status, Study};
 use crate::error::{Error, Result};
-use crate::headless::write_file;
+use crate::output::write_file;
 use crate::scene::Config;
 
 /// The results of a study.

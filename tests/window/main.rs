@@ -8,9 +8,11 @@
 //! SLUMP_BLESS=1 cargo test --release --test window
 //! ```
 
+mod alarms;
 mod compare;
 mod controls;
 mod mouse;
 mod pictures;
 mod recording;
 mod robot;
+mod speed;

@@ -41,10 +41,10 @@ struct Options {
     #[arg(long, value_delimiter = ',', default_value = "4,16")]
     substeps: Vec<u32>,
     /// Stiffness of contacts, Hz
-    #[arg(long, default_value_t = 960.0)]
-    contact_hertz: f32,
+    #[arg(long, value_delimiter = ',', default_value = "960,3840")]
+    contact_hertz: Vec<f32>,
     /// Overlaps that are not pushed out, in diameters
-    #[arg(long, value_delimiter = ',', default_value = "5e-3,5e-4,2e-4")]
+    #[arg(long, value_delimiter = ',', default_value = "5e-3,5e-4")]
     slop: Vec<f64>,
     /// Runs that the least time is taken of
     #[arg(long, default_value_t = 3)]
@@ -80,32 +80,40 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
     let pile = Pile::read(&options.initial, options.box_width, options.rest)?;
     let mut writer = csv::Writer::from_path(&options.out)?;
-    for &time_step_secs in &options.dt {
-        for &substeps in &options.substeps {
-            for &slop in &options.slop {
-                let contact_hertz = options.contact_hertz;
-                let setting = Setting { time_step_secs, substeps, contact_hertz, slop };
-                let rapier = || Ok(rapier::Rapier::new(&pile, setting));
-                let row = measured(rapier::NAME, &pile, setting, &options, rapier)?;
-                tell(&mut writer, row)?;
-                let box2d = || Ok(box2d::Box2d::new(&pile, setting)?);
-                let row = measured(box2d::NAME, &pile, setting, &options, box2d)?;
-                tell(&mut writer, row)?;
-            }
-        }
+    for setting in settings(&options) {
+        let rapier = || Ok(rapier::Rapier::new(&pile, setting));
+        tell(&mut writer, measured(rapier::NAME, &pile, setting, &options, rapier)?)?;
+        let box2d = || Ok(box2d::Box2d::new(&pile, setting)?);
+        tell(&mut writer, measured(box2d::NAME, &pile, setting, &options, box2d)?)?;
     }
     println!("{}", options.out.display());
     Ok(())
 }
 
+/// Every combination of what the options list.
+fn settings(options: &Options) -> Vec<Setting> {
+    let mut settings = Vec::new();
+    for &time_step_secs in &options.dt {
+        for &substeps in &options.substeps {
+            for &contact_hertz in &options.contact_hertz {
+                for &slop in &options.slop {
+                    settings.push(Setting { time_step_secs, substeps, contact_hertz, slop });
+                }
+            }
+        }
+    }
+    settings
+}
+
 fn tell(writer: &mut csv::Writer<std::fs::File>, row: Row) -> Result<(), Box<dyn Error>> {
     println!(
-        "{}, {}, {} grains, dt {:e}, {} substeps, slop {:e}: slump {:.3}, overlap {:.2e}, {:.4} ms a step",
+        "{}, {}, {} grains, dt {:e}, {} substeps, {} Hz, slop {:e}: slump {:.3}, overlap {:.2e}, {:.4} ms a step",
         row.engine,
         row.scene,
         row.grains,
         row.time_step_secs,
         row.substeps,
+        row.contact_hertz,
         row.slop,
         row.slump,
         row.mean_overlap,

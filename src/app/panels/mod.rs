@@ -9,5 +9,6 @@ pub mod run;
 pub mod scene;
 pub mod see;
 pub mod solver;
+pub mod speed;
 pub mod status;
 pub mod transport;

@@ -8,7 +8,7 @@ use crate::app::theme;
 use crate::scene::Preset;
 use crate::sim::live::StartInfo;
 use crate::solver::{
-    MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest,
+    MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest, picked,
 };
 
 /// The stopping tests, as the panel calls them.
@@ -171,7 +171,7 @@ pub fn method_box(
 ) {
     let name =
         |method| METHODS.iter().find(|info| info.method == method).map_or("", |info| info.name);
-    let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(110.0);
+    let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(100.0);
     let shown = list.selected_text(name(solver.method)).show_ui(ui, |ui| {
         for info in &METHODS {
             ui.selectable_value(&mut solver.method, info.method, info.name).on_hover_text(format!(
@@ -221,6 +221,11 @@ fn readings(ui: &mut Ui, state: &AppState) {
             "Common residual of the last step.",
         );
         ui.end_row();
+        if world.settings.solver.method == Method::Auto {
+            let taken = picked(&world.settings.solver, last.contacts as usize).name();
+            reading(ui, "method", taken.to_owned(), "What auto took for the last step.");
+            ui.end_row();
+        }
         reading(ui, "contacts", last.contacts.to_string(), "Contacts of the last step.");
         reading(ui, "ms/step", format!("{:.2}", world.step_ms), "Mean time of a step, lately.");
         ui.end_row();
@@ -244,6 +249,11 @@ fn readings(ui: &mut Ui, state: &AppState) {
     }
     let (mark, colour) = if last.converged {
         ("● converged".to_owned(), theme::good(dark))
+    } else if last.stalled {
+        (
+            format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual),
+            theme::warning(dark),
+        )
     } else {
         (format!("▲ not converged within {} sweeps", last.sweeps), theme::warning(dark))
     };

@@ -25,15 +25,15 @@
 //! A. Curnier 1991), with ε adapted as in a trust region.
 
 mod assembly;
-mod block_lu;
-mod ordering;
+pub(super) mod block_lu;
+pub(super) mod ordering;
 
 use self::assembly::{Guess, assemble};
 use self::block_lu::BlockMatrix;
 use self::ordering::Elimination;
 use super::measure::residual;
 use super::nsgs::{sweep, tested_sweep};
-use super::{Kinematics, Model, SolveReport, SolverSettings, StepProblem};
+use super::{BodySystem, Kinematics, Model, SolveReport, SolverSettings, StepProblem, nncg};
 use crate::contact::law;
 
 /// Compliance of the first step.
@@ -179,7 +179,25 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
             }
         }
         restore(self.problem, &self.workspace.best);
-        report
+        self.go_on_without(report)
+    }
+
+    /// Where Newton's method leads nowhere, conjugate gradients use up the sweeps that are left:
+    /// they solve some of what it cannot, and tell where there is nothing to be solved.
+    fn go_on_without(self, report: SolveReport) -> SolveReport {
+        let left = self.settings.max_sweeps - report.sweeps;
+        if left == 0 {
+            return report;
+        }
+        let settings = SolverSettings { max_sweeps: left, ..*self.settings };
+        let mut vectors = std::mem::take(&mut self.problem.vectors);
+        let rest = nncg::solve(&mut BodySystem::<M>::new(self.problem), &settings, &mut vectors);
+        self.problem.vectors = vectors;
+        SolveReport {
+            sweeps: report.sweeps + rest.sweeps,
+            factorisations: report.factorisations,
+            ..rest
+        }
     }
 
     /// Orders the elimination, unless the contacts between grains are those of the last time.

@@ -12,6 +12,7 @@ pub(super) fn of(sheet: &Sheet) -> Result<Vec<u8>> {
         for layer in &chart.layers {
             match layer {
                 Layer::Curve { name, points, .. } => {
+                    let name = &name.replace('\n', " ");
                     for point in points {
                         let (low, high) = point
                             .interval

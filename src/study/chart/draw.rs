@@ -80,9 +80,54 @@ fn draw<DB: DrawingBackend>(sheet: &Sheet, area: DrawingArea<DB, Shift>) -> Resu
     let no_rows: Vec<i32> = Vec::new();
     let panels = charts.split_by_breakpoints(inner, no_rows);
     for (chart, panel) in sheet.charts.iter().zip(&panels) {
-        draw_chart(chart, panel)?;
+        if chart.only_legend {
+            draw_legend(chart, panel)?;
+        } else {
+            draw_chart(chart, panel)?;
+        }
     }
     area.present().map_err(failed)
+}
+
+/// The names of a chart's curves, one below the other.
+fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
+    let style = (FONT, CAPTION + 2).into_font().color(&rgb(super::INK));
+    let mut y = 70;
+    for layer in &chart.layers {
+        let Layer::Curve { name, colour, look, .. } = layer else { continue };
+        let colour = rgb(*colour);
+        let line = vec![(10, y), (46, y)];
+        match look {
+            Look::Line(width) => {
+                area.draw(&PathElement::new(line, colour.stroke_width(*width))).map_err(failed)?;
+            }
+            Look::Dashes(width) => {
+                for from in [10, 24, 38] {
+                    let dash = vec![(from, y), (from + 8, y)];
+                    let dash = PathElement::new(dash, colour.stroke_width(*width));
+                    area.draw(&dash).map_err(failed)?;
+                }
+            }
+            Look::LineAndDots => {
+                area.draw(&PathElement::new(line, colour.stroke_width(3))).map_err(failed)?;
+                area.draw(&Circle::new((28, y), 5, colour.filled())).map_err(failed)?;
+            }
+            Look::Dots(radius) => {
+                let dot = Circle::new((28, y), (*radius).max(6), colour.filled());
+                area.draw(&dot).map_err(failed)?;
+            }
+            Look::Rings(radius) => {
+                let ring = Circle::new((28, y), *radius, colour.stroke_width(2));
+                area.draw(&ring).map_err(failed)?;
+            }
+        }
+        for part in name.split('\n') {
+            area.draw_text(part, &style, (58, y - 11)).map_err(failed)?;
+            y += CAPTION_LINE as i32;
+        }
+        y += 8;
+    }
+    Ok(())
 }
 
 fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
@@ -164,16 +209,18 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
                 }
                 if *in_legend {
                     has_legend = true;
+                    // Two dashes that touch are a line.
+                    let dash = if matches!(look, Look::Dashes(_)) { 11 } else { 14 };
                     let key = move |(x, y): (i32, i32)| {
                         // Without a line there is none in the key either.
                         let seen = if stroke > 0 { 1.0 } else { 0.0 };
-                        let stroke = PathElement::new(
-                            vec![(x, y), (x + 28, y)],
-                            colour.mix(seen).stroke_width(stroke.max(1)),
-                        );
+                        let style = colour.mix(seen).stroke_width(stroke.max(1));
+                        let first = PathElement::new(vec![(x, y), (x + dash, y)], style);
+                        let second = PathElement::new(vec![(x + 28 - dash, y), (x + 28, y)], style);
                         let (radius, style) = dot.unwrap_or((0, colour.mix(0.0).filled()));
                         EmptyElement::at((0, 0))
-                            + stroke
+                            + first
+                            + second
                             + Circle::new((x + 14, y), radius.min(8), style)
                     };
                     let nothing: [EmptyElement<(f64, f64), DB>; 0] = [];

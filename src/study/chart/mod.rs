@@ -184,6 +184,8 @@ pub struct Chart {
     pub legend: Corner,
     /// Its share of the width of the sheet.
     pub width: f64,
+    /// Whether it is nothing but a legend, without axes: for long ones, beside other charts.
+    pub only_legend: bool,
 }
 
 impl Chart {
@@ -196,7 +198,31 @@ impl Chart {
             layers: Vec::new(),
             legend: Corner::default(),
             width: 1.0,
+            only_legend: false,
         }
+    }
+
+    /// Moves what the legends of some charts say into a column of its own, each name once.
+    pub fn legend_of(charts: &mut [Self], width: f64) -> Self {
+        let nowhere = Axis::linear("", 0.0, 1.0);
+        let mut column = Self::new("", nowhere.clone(), nowhere);
+        column.width = width;
+        column.only_legend = true;
+        let mut names = std::collections::HashSet::new();
+        for layer in charts.iter_mut().flat_map(|chart| &mut chart.layers) {
+            if let Layer::Curve { name, in_legend, .. } = layer
+                && std::mem::take(in_legend)
+                && names.insert(name.clone())
+            {
+                let mut entry = layer.clone();
+                if let Layer::Curve { in_legend, points, .. } = &mut entry {
+                    *in_legend = true;
+                    points.clear();
+                }
+                column.layers.push(entry);
+            }
+        }
+        column
     }
 }
 

@@ -94,7 +94,8 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     );
     let mut sheet = Sheet::of(chart);
     sheet.caption = vec![format!(
-        "Means over {} initial states with 95 % intervals. A broken line bends at {found:.1} ({low:.1} … {high:.1}).",
+        "Means over {} initial states with 95 % intervals (Bond 0 has no cohesive time). A broken line \
+         bends at {found:.2} ({low:.2} … {high:.2}).",
         states.len()
     )];
     sheet.caption.extend(workshop.note());

@@ -130,8 +130,11 @@ pub(super) fn strip(workshop: &Workshop) -> Result<Figure> {
     chart.legend = Corner::UpperRight;
     let mut sheet = Sheet::of(chart);
     sheet.size = (1200, 480);
-    sheet.caption =
-        vec!["Start of k: 7.865 d, searched for so that the loose row is the paper's.".into()];
+    sheet.caption = vec![
+        "Start of k: 7.865 d, searched for so that the loose row is the paper's. The paper names \
+             six of its twenty time steps; the others are ours."
+            .into(),
+    ];
 
     let found = of(loose);
     let agrees = |&&(step, open): &&(f64, bool)| {

@@ -20,6 +20,11 @@ pub(super) fn size(workshop: &Workshop) -> Result<Figure> {
     let x = Axis::log("number of grains", 0.8 * counts[0], 1.25 * counts[counts.len() - 1]);
     let (mut sheet, curves) =
         series(workshop, &rows, "Slump against the number of grains", x, grains)?;
+    let solver = rows.0.first().map_or_else(String::new, |(config, _)| {
+        let method = config.solver.map_or("", |method| method.name());
+        format!("Solved by {method} to a residual of {:e}.", config.tolerance.unwrap_or_default())
+    });
+    sheet.caption.insert(1, solver);
     if let Some(chart) = sheet.charts.first_mut() {
         chart.x.ticks = counts.iter().map(|count| (*count, count.to_string())).collect();
     }

@@ -6,8 +6,7 @@ use std::time::Instant;
 
 use super::{FIGURES, Figure, FigureInfo, Workshop};
 use crate::error::{Error, Result};
-use crate::headless::{HeadlessOptions, check_writable, write_file};
-use crate::scene::Config;
+use crate::output::{check_writable, write_file};
 use crate::study::chart;
 
 /// The figures that are pictures of grains, drawn together.
@@ -22,11 +21,17 @@ pub fn figure_names() -> Vec<&'static str> {
 }
 
 /// Makes the figures of those names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies are
-/// kept below it, so that the same call goes on where one was stopped.
+/// kept below it, so that the same call goes on where one was stopped. `snapshots` draws the pictures
+/// of grains into a folder.
 ///
 /// # Errors
 /// Where a name is unknown, the folder cannot be written, or a study fails.
-pub fn reproduce(names: &[String], folder: &Path, quick: bool) -> Result<()> {
+pub fn reproduce(
+    names: &[String],
+    folder: &Path,
+    quick: bool,
+    snapshots: impl FnOnce(&Path) -> Result<()>,
+) -> Result<()> {
     let started = Instant::now();
     let known = figure_names();
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
@@ -47,12 +52,7 @@ pub fn reproduce(names: &[String], folder: &Path, quick: bool) -> Result<()> {
         report.add(info, &figure);
     }
     if wanted(SNAPSHOTS) {
-        let options = HeadlessOptions {
-            headless: true,
-            frames: Some(folder.to_owned()),
-            ..HeadlessOptions::default()
-        };
-        crate::headless::run(&Config::default(), &options)?;
+        snapshots(folder)?;
         report.snapshots();
     }
     let path = folder.join("report.md");

@@ -13,7 +13,7 @@ pub(super) struct Entrant {
     pub ordering: Ordering,
 }
 
-/// Every method of the registry, in its order.
+/// Every method of the registry, in its order; `auto` is one of the others.
 pub(super) fn all() -> Vec<Entrant> {
     let entrant = |(look, info): (usize, &crate::solver::MethodInfo)| Entrant {
         name: info.name.to_owned(),
@@ -21,7 +21,8 @@ pub(super) fn all() -> Vec<Entrant> {
         method: info.method,
         ordering: Ordering::default(),
     };
-    METHODS.iter().enumerate().map(entrant).collect()
+    let own = METHODS.iter().enumerate().filter(|(_, info)| info.method != Method::Auto);
+    own.map(entrant).collect()
 }
 
 /// Those that solve the problem of a step, and Gauss–Seidel in its other orders where `orders` are

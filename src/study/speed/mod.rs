@@ -26,7 +26,7 @@ use self::machine::Machine;
 use super::chart::{Sheet, png, svg};
 use super::journal::{self, Journal};
 use crate::error::Result;
-use crate::headless::{check_writable, write_file};
+use crate::output::{check_writable, write_file};
 
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -96,8 +96,8 @@ impl ProblemVisitor for Runner<'_> {
                 }
                 let (secs, _, left) = timed::<M>(problem, &settings);
                 race.smallest_residual = race.smallest_residual.min(left);
-                // Written so that what is not a number has not reached anything.
-                if !(left <= tolerance * (1.0 + ROUNDING)) {
+                // What is not a number has not reached anything.
+                if left.is_nan() || left > tolerance * (1.0 + ROUNDING) {
                     race.gave_up_secs = Some(secs);
                     return race;
                 }

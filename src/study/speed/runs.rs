@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::scene::Scene;
+use crate::sim::{Simulation, Tally};
 
 /// Steps between two looks at the clock.
 const STEPS_PER_LOOK: u64 = 16;
@@ -50,21 +51,36 @@ pub(super) fn timed_run(
     repeats: u32,
     limit_secs: f64,
 ) -> Result<TimedRun> {
-    let mut run = once(key, scene, limit_secs)?;
+    let steps = (scene.duration_secs / scene.parameters.time_step_secs).round() as u64;
+    timed_steps(key, &scene.simulation()?, steps, repeats, limit_secs)
+}
+
+/// Takes so many steps from a start, `repeats` times for the least time, unless that takes more than
+/// `limit_secs` of the wall's time.
+///
+/// # Errors
+/// Where the settings of the start do not fit it. A state that is no longer finite is an ending.
+pub(super) fn timed_steps(
+    key: String,
+    start: &Simulation,
+    steps: u64,
+    repeats: u32,
+    limit_secs: f64,
+) -> Result<TimedRun> {
+    let mut run = once(key, start, steps, limit_secs)?;
     for _ in 1..repeats {
         if run.ending != Ending::Done {
             break;
         }
-        let again = once(String::new(), scene, limit_secs)?;
+        let again = once(String::new(), start, steps, limit_secs)?;
         run.wall_secs = run.wall_secs.min(again.wall_secs);
     }
     Ok(run)
 }
 
-fn once(key: String, scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
-    let mut simulation = scene.simulation()?;
-    let steps = (scene.duration_secs / scene.parameters.time_step_secs).round() as u64;
-    let mut tally = crate::sim::Tally::default();
+fn once(key: String, start: &Simulation, steps: u64, limit_secs: f64) -> Result<TimedRun> {
+    let mut simulation = start.clone();
+    let mut tally = Tally::default();
     let mut ending = Ending::Done;
     let started = Instant::now();
     for step in 0..steps {
@@ -88,7 +104,7 @@ fn once(key: String, scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
         key,
         ending,
         wall_secs,
-        simulated_secs: simulation.time_secs(),
+        simulated_secs: simulation.time_secs() - start.time_secs(),
         steps: tally.steps,
         unconverged_steps: tally.unconverged_steps,
         slump: finite(simulation.observables().slump),

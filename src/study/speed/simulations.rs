@@ -18,10 +18,10 @@ use super::peers::{self, PeerRun};
 use super::runs::{Ending, TimedRun, timed_run};
 use super::{Bench, Part};
 use crate::error::Result;
-use crate::headless::Progress;
+use crate::output::Progress;
 use crate::scene::{Config, Rain};
 use crate::solver::{Method, MethodKind, SolverSettings, StopTest};
-use crate::study::chart::{Axis, Chart, Corner, INK, Layer, Look, Sheet, points};
+use crate::study::chart::{Axis, Chart, INK, Layer, Look, Sheet, points};
 use crate::study::journal::Journal;
 use crate::study::performance::pareto_front;
 use crate::study::states::States;
@@ -38,7 +38,7 @@ const HOLDS: f64 = 0.1;
 /// Contacts slower than this many g·Δt do not bounce.
 const THRESHOLD: f64 = 2.0;
 /// Errors below this are drawn here.
-const LEAST_ERROR: f64 = 1e-4;
+const LEAST_ERROR: f64 = 1e-3;
 
 /// What is run.
 struct Plan {
@@ -324,7 +324,7 @@ fn draw(
             let line = [0.7 * slowest, 1.5 * fastest].map(|x| (x, floor.max(LEAST_ERROR)));
             let grey = (130, 130, 130);
             chart.layers.push(Layer::curve(
-                "difference of two references",
+                "two references\nfrom each other",
                 points(line),
                 grey,
                 Look::Dashes(2),
@@ -342,7 +342,7 @@ fn draw(
             let failed = of_method().filter(|point| point.failed.is_some()).count();
             let told = match failed {
                 0 => entrant.name.clone(),
-                failed => format!("{} ({failed} of {} failed)", entrant.name, of_method().count()),
+                failed => format!("{}\n{failed} of {} failed", entrant.name, of_method().count()),
             };
             let mut in_legend = panel == 1;
             for (size, time_step_secs) in plan.time_steps_secs.iter().enumerate() {
@@ -360,11 +360,12 @@ fn draw(
         if panel == 1 {
             chart.layers.extend(peer_layers(plan, peers, references));
         }
-        chart.legend = Corner::LowerLeft;
         charts.push(chart);
     }
+    let legend = Chart::legend_of(&mut charts, 0.36);
+    charts.push(legend);
     let sheet = Sheet {
-        size: (1640, 900),
+        size: (1900, 820),
         charts,
         caption: bench.caption(&[&format!(
             "A point for each method, effort and Δt (the larger the dot, the larger: {}); means over {} piles of 138 grains.",
@@ -392,7 +393,7 @@ fn peer_layers(plan: &Plan, peers: &[PeerRun], references: &References) -> Vec<L
         by_engine.entry(&run.engine).or_default().push((run.speed(), error));
     }
     let layers = by_engine.into_iter().enumerate().map(|(index, (engine, places))| {
-        let name = format!("{engine}, Bond 0 alone");
+        let name = format!("{engine},\nBond 0 alone");
         Layer::curve(name, points(places), peers::colour(index), Look::Rings(9))
     });
     layers.collect()

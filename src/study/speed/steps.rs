@@ -7,7 +7,7 @@ use super::look::{colour, line_layers, staircase, stroke};
 use super::race::{Course, Race, Runner};
 use super::{Bench, Part};
 use crate::error::Result;
-use crate::headless::Progress;
+use crate::output::Progress;
 use crate::solver::{Method, Ordering};
 use crate::study::chart::{Axis, Chart, Corner, Layer, Sheet};
 use crate::study::collection::{CollectedStep, CollectionPlan, collect};
@@ -24,6 +24,9 @@ const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 const FAR: f64 = 1e-3;
 /// Threshold of restitution with which nearly every step has a solution.
 const THRESHOLD: f64 = 2.0;
+
+/// The table that the window shows; a copy lies in `assets/charts/`.
+const WINDOW: &str = "chart-window";
 
 /// A collection and what the methods made of it.
 #[derive(Clone)]
@@ -145,10 +148,10 @@ impl Raced {
 }
 
 /// Residual against time, a panel a collection.
-fn residuals(bench: &Bench, raced: &[Raced], course: &Course) -> Part {
+fn residuals(bench: &Bench, all: &[Raced], course: &Course) -> Part {
     let tightest = course.tolerances.iter().copied().fold(1.0, f64::min);
     let mut charts = Vec::new();
-    for raced in raced {
+    for raced in all {
         let curves: Vec<Vec<(f64, f64)>> = (0..raced.entrants.len())
             .map(|method| {
                 let point = |&tolerance: &f64| {
@@ -167,26 +170,43 @@ fn residuals(bench: &Bench, raced: &[Raced], course: &Course) -> Part {
             Axis::log("residual", 0.5 * tightest, 0.2),
         );
         for (method, (entrant, curve)) in raced.entrants.iter().zip(curves).enumerate() {
-            let share = 100.0 * share_solved(&raced.timings(method, 1e-8));
-            let name = format!("{}, {share:.0} % to 1e-8", entrant.name);
+            let shares = all
+                .iter()
+                .map(|raced| format!("{:.0}", 100.0 * share_solved(&raced.timings(method, 1e-8))));
+            let shares = shares.collect::<Vec<_>>().join(", ");
+            let name = format!("{}\nto 10⁻⁸: {shares} %", entrant.name);
             chart.layers.extend(line_layers(entrant.look, name, curve, true));
         }
-        chart.legend = Corner::LowerLeft;
         charts.push(chart);
     }
+    let count = charts.len() as u32;
+    let legend = Chart::legend_of(&mut charts, 0.3);
+    charts.push(legend);
     let sheet = Sheet {
-        size: (760 * charts.len() as u32 + 40, 820),
+        size: (760 * count + 280, 820),
         charts,
         caption: bench.caption(&[
-            "Median time, warm start; a curve ends where half of the steps cannot be solved further.",
+            "Median time, warm start; a curve ends where half of the steps are solved no further. To 10⁻⁸: share of \
+             steps solved to that residual, panel by panel.",
         ]),
     };
-    Part {
-        name: "chart-step".into(),
-        sheet,
-        report: told(raced, course),
-        tables: tables(raced, course),
+    let mut tables = tables(all, course);
+    tables.extend(all.first().map(|raced| (WINDOW.to_owned(), for_window(bench, raced, course))));
+    Part { name: "chart-step".into(), sheet, report: told(all, course), tables }
+}
+
+/// The curves of one panel as the window reads them.
+fn for_window(bench: &Bench, raced: &Raced, course: &Course) -> String {
+    let mut text =
+        format!("# {}; {}\nmethod,residual,ms_per_step\n", raced.title, bench.machine.words());
+    for (method, entrant) in raced.entrants.iter().enumerate() {
+        for &tolerance in &course.tolerances {
+            if let Some(secs) = median_with_failures(&raced.timings(method, tolerance)) {
+                text.push_str(&format!("{},{tolerance:e},{:e}\n", entrant.name, 1e3 * secs));
+            }
+        }
     }
+    text
 }
 
 /// Performance profiles of one collection, a panel a residual.

@@ -33,21 +33,21 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 /// Names the file and what the system says.
-pub(super) fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
+pub fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| Error::file(path, error))?;
     write_file(path, bytes.get_ref())
 }
 
 /// A file that is there only once it is finished.
-pub(super) fn start_file(path: &Path) -> Result<tempfile::NamedTempFile> {
+pub(crate) fn start_file(path: &Path) -> Result<tempfile::NamedTempFile> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new(".")))
         .map_err(|error| Error::file(path, format!("cannot be written ({error})")))
 }
 
 /// Gives a file its name.
-pub(super) fn finish_file(file: tempfile::NamedTempFile, path: &Path) -> Result<()> {
+pub(crate) fn finish_file(file: tempfile::NamedTempFile, path: &Path) -> Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -1,0 +1,8 @@
+//! What all long work shares: files that are whole or not there, and how far it has come.
+
+mod files;
+mod progress;
+
+pub use files::{check_writable, write_file, write_png};
+pub(crate) use files::{finish_file, start_file};
+pub use progress::Progress;
