@@ -78,7 +78,8 @@ fn the_residual_reported_is_that_of_the_natural_map() {
                 converged.set(converged.get() + 1);
             } else {
                 prop_assert!(reported > 1e-7);
-                prop_assert_eq!(simulation.observables().sweeps, 3000);
+                let last = simulation.observables();
+                prop_assert!(last.sweeps == 3000 || last.stalled, "{}", last.sweeps);
                 not_converged.set(not_converged.get() + 1);
             }
         }

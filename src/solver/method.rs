@@ -230,8 +230,9 @@ pub fn solve_system<S: ContactSystem>(
     if system.is_empty() {
         return Some(SolveReport { converged: true, ..SolveReport::default() });
     }
-    match picked(settings, system.len()) {
-        Method::Nncg => Some(nncg::solve(system, settings, vectors)),
+    match settings.method {
+        // Without bodies there is nothing to factorise.
+        Method::Nncg | Method::Auto => Some(nncg::solve(system, settings, vectors)),
         Method::Apgd => Some(apgd::solve(system, settings, vectors)),
         Method::Jacobi => Some(jacobi::solve(system, settings, vectors)),
         _ => None,

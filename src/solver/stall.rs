@@ -83,7 +83,7 @@ mod tests {
         let flat = |sweep: u32| 1e-4 + (-0.02 * f64::from(sweep)).exp();
         let slow = |sweep: u32| (-18.4e-5 * f64::from(sweep)).exp();
         let paused = |sweep: u32| if sweep < 1500 { 1e-2 } else { slow(sweep - 1500) * 1e-2 };
-        assert_eq!(watched(StopTest::Residual, 50_000, flat), (2048, true));
+        assert_eq!(watched(StopTest::Residual, 50_000, flat), (4096, true));
         assert_eq!(watched(StopTest::RelativeChange, 5_000, flat), (5_000, true));
         assert_eq!(watched(StopTest::Residual, 50_000, slow), (50_000, false));
         assert_eq!(watched(StopTest::RelativeChange, 5_000, slow), (5_000, false));

@@ -14,8 +14,8 @@ use slump::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use slump::scene::{Scene, cradle};
 use slump::sim::ProblemVisitor;
 use slump::solver::{
-    DelassusProblem, METHODS, Method, Model, SolverSettings, StepProblem, StopTest, Triplets,
-    residual, solve, solve_delassus,
+    DelassusProblem, METHODS, Method, MethodKind, Model, SolverSettings, StepProblem, StopTest,
+    Triplets, residual, solve, solve_delassus,
 };
 use slump::world::{FrictionCone, Physics};
 
@@ -157,7 +157,7 @@ fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     for name in kept() {
         let file = read(&name);
         let in_matrix = ProblemFile { bodies: None, ..file.clone() };
-        for info in &METHODS {
+        for info in METHODS.iter().filter(|info| info.method.kind() == MethodKind::Problem) {
             let settings = settings(info.method, 1e-6);
             let judge = |solution: Solution| {
                 let Solution { residual, sweeps, .. } = solution;
