@@ -27,7 +27,7 @@ pub enum AlarmKind {
     NotFinite,
     /// A grain went through the ground, or far away.
     GrainLost,
-    /// A hundred steps in a row ended at the sweep limit.
+    /// A hundred steps in a row ended at the sweep limit, or stalled before it.
     SweepLimit,
     /// A contact overlaps by more than 5 % of d.
     Overlap,
@@ -50,7 +50,7 @@ impl Alarm {
         let what = match self.kind {
             AlarmKind::NotFinite => "the state is no longer finite",
             AlarmKind::GrainLost => "a grain has left the world",
-            AlarmKind::SweepLimit => "100 steps in a row reached the sweep limit",
+            AlarmKind::SweepLimit => "100 steps in a row were not solved to their tolerance",
             AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
         };
         let Self { step, time_secs, .. } = self;

@@ -30,7 +30,7 @@ pub(super) fn take(simulation: &mut Simulation, pieces: u32) -> Result<()> {
     let before = simulation.observables;
     simulation.parameters.time_step_secs /= f64::from(pieces);
     let mut sum = Observables { converged: true, ..before };
-    (sum.sweeps, sum.factorisations, sum.residual) = (0, 0, 0.0);
+    (sum.sweeps, sum.factorisations, sum.residual, sum.stalled) = (0, 0, 0.0, false);
     (sum.normal_work, sum.tangential_work, sum.gravity_work) = (0.0, 0.0, 0.0);
     let mut outcome = Ok(());
     for _ in 0..pieces {
@@ -42,6 +42,7 @@ pub(super) fn take(simulation: &mut Simulation, pieces: u32) -> Result<()> {
         sum.sweeps += piece.sweeps;
         sum.factorisations += piece.factorisations;
         sum.converged &= piece.converged;
+        sum.stalled |= piece.stalled;
         sum.residual = sum.residual.max(piece.residual);
         sum.normal_work += piece.normal_work;
         sum.tangential_work += piece.tangential_work;
@@ -55,6 +56,7 @@ pub(super) fn take(simulation: &mut Simulation, pieces: u32) -> Result<()> {
         sweeps: sum.sweeps,
         factorisations: sum.factorisations,
         converged: sum.converged,
+        stalled: sum.stalled,
         residual: sum.residual,
         normal_work: sum.normal_work,
         tangential_work: sum.tangential_work,

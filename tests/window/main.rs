@@ -8,6 +8,7 @@
 //! SLUMP_BLESS=1 cargo test --release --test window
 //! ```
 
+mod alarms;
 mod compare;
 mod controls;
 mod mouse;
