@@ -173,9 +173,9 @@ pub fn title(state: &AppState, index: usize) -> String {
     let laws_differ = state.wanted.iter().any(|other| other.parameters.law != parameters.law);
     let law = match parameters.law {
         _ if !laws_differ => "",
-        ContactLaw::Moreau => ", moreau",
-        ContactLaw::Range => ", range",
+        ContactLaw::Moreau => "moreau, ",
+        ContactLaw::Range => "range, ",
     };
     let step = written(parameters.time_step_secs);
-    format!("Bond {}, Δt {step} s{law}{method}", written(parameters.bond))
+    format!("{law}Bond {}, Δt {step} s{method}", written(parameters.bond))
 }
