@@ -1,6 +1,7 @@
 //! Worlds side by side.
 
 use slump::sim::live::{Command, Variant};
+use slump::world::ContactLaw;
 
 use crate::robot::{Robot, pile};
 
@@ -32,6 +33,21 @@ fn compared_worlds_share_their_simulated_time() {
     robot.settle();
     let times = robot.state().frame.worlds.iter().map(|world| world.snapshot.observables.time_secs);
     assert!(times.into_iter().all(|time| (time - 0.01).abs() < 1e-9));
+}
+
+#[test]
+fn two_laws_stand_side_by_side() {
+    let mut robot = Robot::open(pile());
+    robot.click("Compare");
+    robot.click("Two laws");
+    let worlds = &robot.state().frame.worlds;
+    let told: Vec<(ContactLaw, f64, f64)> = worlds
+        .iter()
+        .map(|world| world.settings.parameters)
+        .map(|numbers| (numbers.law, numbers.bond, numbers.time_step_secs))
+        .collect();
+    let of_law = |law| [1e-4, 1e-3, 5e-3].map(|time| (law, 20.0, time));
+    assert_eq!(told, [of_law(ContactLaw::Moreau), of_law(ContactLaw::Range)].concat());
 }
 
 #[test]

@@ -9,9 +9,13 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::sim::live::{Command, Settings, Variant};
 use crate::solver::METHODS;
+use crate::world::{ContactLaw, FrictionCone};
 
 /// Most worlds side by side.
 pub const MOST_WORLDS: usize = 6;
+
+/// The time steps at which the laws are compared, s.
+const LAW_TIME_STEPS: [f64; 3] = [1e-4, 1e-3, 5e-3];
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, state: &mut AppState) {
@@ -87,6 +91,21 @@ fn presets(ui: &mut Ui, state: &mut AppState) {
             let all = PAPER_TIME_STEPS.map(|time| with(base.parameters.bond, time));
             state.live.send(Command::Compare(all.to_vec()));
         }
+        let laws = ui
+            .button("Two laws")
+            .on_hover_text("Bond 20 at Δt 1e-4, 1e-3 and 5e-3 s, under the laws moreau and range.");
+        if laws.clicked() {
+            let of_law = |law| {
+                LAW_TIME_STEPS.map(|time| {
+                    let mut variant = with(20.0, time);
+                    variant.parameters.law = law;
+                    variant.parameters.cone = FrictionCone::Shifted;
+                    variant
+                })
+            };
+            let all = [ContactLaw::Moreau, ContactLaw::Range].into_iter().flat_map(of_law);
+            state.live.send(Command::Compare(all.collect()));
+        }
         let bonds = ui.button("Four Bonds").on_hover_text("This Δt with Bond 0, 20, 50 and 100.");
         if bonds.clicked() {
             let all =
@@ -151,6 +170,12 @@ pub fn title(state: &AppState, index: usize) -> String {
     let name =
         METHODS.iter().find(|info| info.method == solver.method).map_or("", |info| info.name);
     let method = if methods_differ { format!(", {name}") } else { String::new() };
+    let laws_differ = state.wanted.iter().any(|other| other.parameters.law != parameters.law);
+    let law = match parameters.law {
+        _ if !laws_differ => "",
+        ContactLaw::Moreau => "moreau, ",
+        ContactLaw::Range => "range, ",
+    };
     let step = written(parameters.time_step_secs);
-    format!("Bond {}, Δt {step} s{method}", written(parameters.bond))
+    format!("{law}Bond {}, Δt {step} s{method}", written(parameters.bond))
 }

@@ -5,8 +5,9 @@ use egui::{RichText, Ui};
 use crate::app::number::Number;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::contact::range::escape_speed;
 use crate::render::numbers::si_prefix;
-use crate::world::Parameters;
+use crate::world::{ContactLaw, FrictionCone, Parameters};
 
 /// The paper's time steps, s.
 pub const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
@@ -79,6 +80,25 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
         places.push(("μ", edited.slider.rect));
     }
 
+    if start.physics.cohesion {
+        ui.add_space(4.0);
+        law_switch(ui, &mut parameters);
+        if parameters.law == ContactLaw::Range {
+            let distance = Number {
+                label: "δc, debonding distance",
+                unit: "d",
+                hint: "How far a bond is opened before it breaks, in mean diameters.",
+                range: [1e-3, 0.1],
+                logarithmic: true,
+                default: defaults.debonding_distance,
+                refuse: &|value| refusal(Parameters { debonding_distance: value, ..before }),
+            };
+            let edited = distance.show(ui, before.debonding_distance);
+            parameters.debonding_distance = edited.value.unwrap_or(parameters.debonding_distance);
+            places.push(("δc", edited.slider.rect));
+        }
+    }
+
     for (name, rect) in places {
         state.note_control(name, rect);
     }
@@ -87,6 +107,24 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     }
     ui.add_space(2.0);
     derived(ui, state, &parameters);
+}
+
+/// The paper's law or the one under which Bond means the same at every Δt.
+fn law_switch(ui: &mut Ui, parameters: &mut Parameters) {
+    ui.horizontal(|ui| {
+        ui.label("Law");
+        let laws = [
+            (ContactLaw::Moreau, "moreau", "The paper's: a bond lives while the gap is negative."),
+            (ContactLaw::Range, "range", "A bond lives until it is opened by δc, at every Δt."),
+        ];
+        // The law range knows the shifted cone alone.
+        let shifted = parameters.cone == FrictionCone::Shifted;
+        for (law, name, hint) in laws {
+            ui.add_enabled_ui(shifted || law == ContactLaw::Moreau, |ui| {
+                ui.selectable_value(&mut parameters.law, law, name).on_hover_text(hint);
+            });
+        }
+    });
 }
 
 fn refusal(parameters: Parameters) -> Option<String> {
@@ -128,5 +166,19 @@ fn derived(ui: &mut Ui, state: &AppState, parameters: &Parameters) {
             .on_hover_text("The opening speed that one step of cohesion cancels (paper eq. 9).");
         ui.label(RichText::new(format!("{:.3} {prefix}m/s", speed / factor)).color(accent));
         ui.end_row();
+        if parameters.law == ContactLaw::Range {
+            let distance = parameters.debonding_distance * diameter;
+            ui.label(RichText::new("escape speed √(2C₀δc/m_ij)").weak())
+                .on_hover_text("A pair that is thrown apart faster parts, at every time step.");
+            let escape = escape_speed(parameters.bond, g, distance);
+            let (prefix, factor) = si_prefix(escape);
+            ui.label(RichText::new(format!("{:.3} {prefix}m/s", escape / factor)).color(accent));
+            ui.end_row();
+            ui.label(RichText::new("work of a bond C₀δc").weak())
+                .on_hover_text("In units of m_ij·g·d: what lifts the pair's mass by a diameter.");
+            let work = parameters.bond * parameters.debonding_distance;
+            ui.label(RichText::new(format!("{work:.3} m_ij g d")).color(accent));
+            ui.end_row();
+        }
     });
 }

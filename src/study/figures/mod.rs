@@ -8,6 +8,7 @@ mod fig6;
 mod fig8;
 mod pile_map;
 mod pile_series;
+mod range;
 mod reproduce;
 mod two_body;
 mod verdict;
@@ -41,7 +42,7 @@ pub(super) struct FigureInfo {
 }
 
 /// All figures that are charts, in the order of the report.
-pub(super) const FIGURES: [FigureInfo; 12] = [
+pub(super) const FIGURES: [FigureInfo; 13] = [
     FigureInfo { name: "fig2", studies: &[], make: fig2::make },
     FigureInfo { name: "two-body", studies: &[], make: two_body::make },
     FigureInfo { name: "fig5a", studies: &["pile"], make: fig5::slump },
@@ -58,4 +59,5 @@ pub(super) const FIGURES: [FigureInfo; 12] = [
         studies: &["pile-tolerance"],
         make: pile_series::tolerance,
     },
+    FigureInfo { name: "range", studies: &["range"], make: range::make },
 ];

@@ -9,7 +9,7 @@ use crate::scene::Config;
 use crate::study::{Outcome, RunsTable, Study, SweepOptions, series_path, sweep};
 
 /// The studies that are shipped.
-const STUDIES: [(&str, &str); 7] = [
+const STUDIES: [(&str, &str); 8] = [
     ("pile", include_str!("../../../assets/studies/pile.toml")),
     ("cradle", include_str!("../../../assets/studies/cradle.toml")),
     ("cradle-share", include_str!("../../../assets/studies/cradle-share.toml")),
@@ -17,6 +17,7 @@ const STUDIES: [(&str, &str); 7] = [
     ("pile-map", include_str!("../../../assets/studies/pile-map.toml")),
     ("pile-size", include_str!("../../../assets/studies/pile-size.toml")),
     ("pile-tolerance", include_str!("../../../assets/studies/pile-tolerance.toml")),
+    ("range", include_str!("../../../assets/studies/range.toml")),
 ];
 
 /// Finished studies by name.

@@ -1,0 +1,200 @@
+//! The law `range` beside the paper's: slump against Δt under both, slump against Bond under `range`
+//! at all Δt, and what a simulated second costs at which error.
+
+use std::time::Instant;
+
+use super::verdict::{SIGNIFICANT, Verdict};
+use super::workshop::Rows;
+use super::{Claim, Figure, Workshop};
+use crate::error::Result;
+use crate::scene::Config;
+use crate::study::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
+use crate::study::statistics::{mean, p_value};
+use crate::world::ContactLaw;
+
+/// Both laws with what the figure calls them.
+const LAWS: [(ContactLaw, &str); 2] =
+    [(ContactLaw::Moreau, "moreau"), (ContactLaw::Range, "range")];
+
+/// Bonds whose curves against Δt are drawn.
+const SHOWN_BONDS: [f64; 5] = [0.0, 10.0, 15.0, 20.0, 100.0];
+
+/// A mean overlap that no run is to pass, in diameters.
+const MOST_OVERLAP: f64 = 1e-3;
+
+/// The run that is timed, s of simulated time at this Bond.
+const TIMED: (f64, f64) = (0.3, 20.0);
+
+pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
+    let rows = workshop.rows("range")?;
+    let of_law = LAWS.map(|(law, _)| rows.such_that(|config| config.law == Some(law)));
+    let steps = rows.values(|config| config.dt);
+    let mut charts: Vec<Chart> = LAWS
+        .iter()
+        .zip(&of_law)
+        .map(|((_, name), rows)| against_step(name, rows, &steps))
+        .collect();
+    charts.push(against_bond(&of_law[1], &steps));
+    charts.push(cost(&of_law, &steps, workshop.quick)?);
+    let mut sheet = Sheet { size: (2000, 760), charts, caption: Vec::new() };
+    sheet.caption = vec![format!(
+        "Means over {} initial states of 138 grains with 95 % intervals. Error: mean over the Bonds of the \
+         difference of slump from that at Δt = {:e} s.",
+        rows.seeds().len(),
+        steps[0]
+    )];
+    sheet.caption.extend(workshop.note());
+    let mut claims: Vec<Claim> =
+        LAWS.iter().zip(&of_law).map(|((_, name), rows)| agreement(name, rows, &steps)).collect();
+    let overlaps = of_law[1].outcomes(|outcome| outcome.mean_overlap);
+    let largest = overlaps.into_iter().fold(0.0, f64::max);
+    claims.push(Claim::new(
+        format!("Beyond the paper: under range the mean overlap stays below {MOST_OVERLAP} d"),
+        format!("largest mean overlap of a run {largest:.1e} d").replace("e-", "e−"),
+        (largest < MOST_OVERLAP).into(),
+    ));
+    Ok(Figure { name: "range", sheet, claims })
+}
+
+fn slumps(rows: &Rows<'_>, bond: f64, step: f64) -> Vec<f64> {
+    let here = |config: &Config| config.bond == Some(bond) && config.dt == Some(step);
+    rows.such_that(here).outcomes(|outcome| outcome.slump)
+}
+
+fn point(x: f64, slumps: &[f64]) -> Point {
+    let told = mean(slumps);
+    // Two states tell next to nothing of their spread.
+    let interval = (told.count > 2).then_some((told.low.max(0.0), told.high.min(0.7)));
+    Point { x, y: told.mean, interval }
+}
+
+fn against_step(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Chart {
+    let x = Axis::log("Δt (s)", 0.8 * steps[0], 1.3 * steps[steps.len() - 1]);
+    let mut chart = Chart::new(format!("Law {law}"), x, Axis::linear("slump Δy_G", 0.0, 0.7));
+    let bonds = rows.values(|config| config.bond);
+    let shown = bonds.into_iter().filter(|bond| SHOWN_BONDS.contains(bond));
+    for (index, bond) in shown.enumerate() {
+        let means = steps.iter().map(|&step| point(step, &slumps(rows, bond, step)));
+        let colour = PALETTE[index % PALETTE.len()];
+        let curve =
+            Layer::curve(format!("Bond {bond}"), means.collect(), colour, Look::LineAndDots);
+        chart.layers.push(curve.beside(index, SHOWN_BONDS.len()));
+    }
+    chart
+}
+
+fn against_bond(rows: &Rows<'_>, steps: &[f64]) -> Chart {
+    let bonds = rows.values(|config| config.bond);
+    let most = bonds[bonds.len() - 1];
+    let x = Axis::linear("Bond", -0.03 * most, 1.05 * most);
+    let y = Axis::linear("slump Δy_G", 0.0, 0.7);
+    let mut chart = Chart::new("Law range, every Δt", x, y);
+    for (index, &step) in steps.iter().enumerate() {
+        let means = bonds.iter().map(|&bond| point(bond, &slumps(rows, bond, step)));
+        let colour = PALETTE[index % PALETTE.len()];
+        let name = format!("Δt {step:e} s").replace("e-", "e−");
+        let curve = Layer::curve(name, means.collect(), colour, Look::LineAndDots);
+        chart.layers.push(curve.beside(index, steps.len()));
+    }
+    chart
+}
+
+/// Wall-clock seconds of one thread for a simulated second against the error, a point a Δt.
+fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
+    let mut curves = Vec::new();
+    for ((law, name), rows) in LAWS.into_iter().zip(of_law) {
+        let bonds = rows.values(|config| config.bond);
+        let mut points = Vec::new();
+        for &step in &steps[1..] {
+            let differences = bonds.iter().map(|&bond| {
+                let at = |step| mean(&slumps(rows, bond, step)).mean;
+                (at(step) - at(steps[0])).abs()
+            });
+            let error = differences.sum::<f64>() / bonds.len() as f64;
+            let secs = seconds_per_second(rows, law, step, quick)?;
+            points.push(Point { x: error, y: secs, interval: None });
+        }
+        curves.push((name, points));
+    }
+    let all = || curves.iter().flat_map(|(_, points)| points);
+    let span = |number: fn(&Point) -> f64, room: f64| {
+        let numbers = || all().map(number).filter(|number| *number > 0.0);
+        let low = numbers().fold(f64::INFINITY, f64::min);
+        (low / room, numbers().fold(0.0, f64::max) * room)
+    };
+    let ((left, right), (low, high)) = (span(|point| point.x, 1.5), span(|point| point.y, 2.0));
+    let mut chart = Chart::new(
+        "Cost at equal error",
+        Axis::log("error of the slump", left, right),
+        Axis::log("seconds per simulated second", low, high),
+    );
+    chart.legend = Corner::UpperRight;
+    for ((name, points), colour) in curves.into_iter().zip([PALETTE[6], PALETTE[1]]) {
+        chart.layers.push(Layer::curve(name, points, colour, Look::LineAndDots));
+    }
+    Ok(chart)
+}
+
+/// Times one state of the study.
+fn seconds_per_second(rows: &Rows<'_>, law: ContactLaw, step: f64, quick: bool) -> Result<f64> {
+    let (duration, bond) = TIMED;
+    let like = rows.such_that(|config| config.dt == Some(step));
+    let Some((config, _)) = like.0.first() else { return Ok(f64::NAN) };
+    // The state that is shipped: no pile is settled for this.
+    let config = Config {
+        seed: None,
+        bond: Some(bond),
+        law: Some(law),
+        duration: Some(duration),
+        ..(*config).clone()
+    };
+    let scene = config.without_settling()?;
+    let mut least = f64::INFINITY;
+    for _ in 0..if quick { 1 } else { 3 } {
+        let mut simulation = scene.simulation()?;
+        let begun = Instant::now();
+        while simulation.time_secs() < duration {
+            simulation.step()?;
+        }
+        least = least.min(begun.elapsed().as_secs_f64());
+    }
+    Ok(least / duration)
+}
+
+/// Whether the slump at each Δt differs from that at the smallest one, state by state. With many
+/// comparisons some differ by chance, so p-values are multiplied by their number (Bonferroni).
+fn agreement(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Claim {
+    let bonds = rows.values(|config| config.bond);
+    let (mut outside, mut count) = (Vec::new(), 0);
+    let (mut least, mut widest) = (1.0f64, 0.0f64);
+    for &bond in &bonds {
+        for &step in &steps[1..] {
+            let pairs = slumps(rows, bond, step).into_iter().zip(slumps(rows, bond, steps[0]));
+            let told = mean(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>());
+            count += 1;
+            widest = widest.max(told.mean.abs());
+            least = least.min(2.0 * told.p_above(0.0).min(told.p_below(0.0)));
+            if told.low > 0.0 || told.high < 0.0 {
+                outside.push(format!("Bond {bond} at {step:e} s ({:+.3})", told.mean));
+            }
+        }
+    }
+    let p = (least * f64::from(count)).min(1.0);
+    let measured = format!(
+        "{} of {count} means outside the 95 % interval about that at {:e} s{}{}; largest difference \
+         {widest:.3}; any difference: {}; {} states",
+        outside.len(),
+        steps[0],
+        if outside.is_empty() { "" } else { ": " },
+        outside.join(", "),
+        p_value(p),
+        rows.seeds().len()
+    );
+    let verdict = match (p < SIGNIFICANT, outside.is_empty()) {
+        (true, _) => Verdict::Fails,
+        (false, true) => Verdict::Holds,
+        (false, false) => Verdict::Open,
+    };
+    let said = format!("Beyond the paper: under {law} the slump does not depend on Δt");
+    Claim::new(said, measured.replace('-', "−"), verdict)
+}
