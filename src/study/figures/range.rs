@@ -56,6 +56,16 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     Ok(Figure { name: "range", sheet, claims })
 }
 
+/// Those of the values that lie on an axis: the panels are too narrow for more.
+fn ticks(values: &[f64], from: f64, to: f64) -> Vec<(f64, String)> {
+    let written = |value: f64| {
+        let plain = if value < 1e-3 { format!("{value:e}") } else { value.to_string() };
+        (value, plain.replace('-', "−"))
+    };
+    let on_axis = values.iter().copied().filter(|value| (from..=to).contains(value));
+    on_axis.map(written).collect()
+}
+
 fn slumps(rows: &Rows<'_>, bond: f64, step: f64) -> Vec<f64> {
     let here = |config: &Config| config.bond == Some(bond) && config.dt == Some(step);
     rows.such_that(here).outcomes(|outcome| outcome.slump)
@@ -70,6 +80,7 @@ fn point(x: f64, slumps: &[f64]) -> Point {
 
 fn against_step(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Chart {
     let x = Axis::log("Δt (s)", 0.8 * steps[0], 1.3 * steps[steps.len() - 1]);
+    let x = Axis { ticks: ticks(&[1e-4, 1e-3], steps[0], steps[steps.len() - 1]), ..x };
     let mut chart = Chart::new(format!("Law {law}"), x, Axis::linear("slump Δy_G", 0.0, 0.7));
     let bonds = rows.values(|config| config.bond);
     let shown = bonds.into_iter().filter(|bond| SHOWN_BONDS.contains(bond));
@@ -123,11 +134,10 @@ fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
         (low / room, numbers().fold(0.0, f64::max) * room)
     };
     let ((left, right), (low, high)) = (span(|point| point.x, 1.5), span(|point| point.y, 2.0));
-    let mut chart = Chart::new(
-        "Cost at equal error",
-        Axis::log("error of the slump", left, right),
-        Axis::log("seconds per simulated second", low, high),
-    );
+    let x = Axis::log("error of the slump", left, right);
+    let x = Axis { ticks: ticks(&[3e-3, 1e-2, 3e-2, 1e-1], left, right), ..x };
+    let mut chart =
+        Chart::new("Cost at equal error", x, Axis::log("seconds per simulated second", low, high));
     chart.legend = Corner::UpperRight;
     for ((name, points), colour) in curves.into_iter().zip([PALETTE[6], PALETTE[1]]) {
         chart.layers.push(Layer::curve(name, points, colour, Look::LineAndDots));
