@@ -59,7 +59,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
 /// Those of the values that lie on an axis: the panels are too narrow for more.
 fn ticks(values: &[f64], from: f64, to: f64) -> Vec<(f64, String)> {
     let written = |value: f64| {
-        let plain = if value < 1e-3 { format!("{value:e}") } else { value.to_string() };
+        let plain = if value < 1e-2 { format!("{value:e}") } else { value.to_string() };
         (value, plain.replace('-', "−"))
     };
     let on_axis = values.iter().copied().filter(|value| (from..=to).contains(value));
@@ -80,7 +80,7 @@ fn point(x: f64, slumps: &[f64]) -> Point {
 
 fn against_step(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Chart {
     let x = Axis::log("Δt (s)", 0.8 * steps[0], 1.3 * steps[steps.len() - 1]);
-    let x = Axis { ticks: ticks(&[1e-4, 1e-3], steps[0], steps[steps.len() - 1]), ..x };
+    let x = Axis { ticks: ticks(&[2e-4, 1e-3, 5e-3], steps[0], steps[steps.len() - 1]), ..x };
     let mut chart = Chart::new(format!("Law {law}"), x, Axis::linear("slump Δy_G", 0.0, 0.7));
     let bonds = rows.values(|config| config.bond);
     let shown = bonds.into_iter().filter(|bond| SHOWN_BONDS.contains(bond));
