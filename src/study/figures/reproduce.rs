@@ -11,8 +11,10 @@ use crate::study::chart;
 
 /// The figures that are pictures of grains, drawn together.
 const SNAPSHOTS: &str = "snapshots";
-/// Every figure.
+/// Every figure, but for [`APART`].
 const ALL: &str = "all";
+/// What is not of the paper and takes hours: asked for by name alone.
+const APART: [&str; 1] = ["range"];
 
 /// The names that [`reproduce`] knows.
 pub fn figure_names() -> Vec<&'static str> {
@@ -37,7 +39,10 @@ pub fn reproduce(
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
         return Err(Error::value("figure", unknown, format!("one of {}", known.join(", "))));
     }
-    let wanted = |name: &str| names.iter().any(|asked| asked == name || asked == ALL);
+    let wanted = |name: &str| {
+        let asked_for = |asked: &String| asked == name || asked == ALL && !APART.contains(&name);
+        names.iter().any(asked_for)
+    };
     check_writable(folder)?;
     let mut workshop = Workshop::new(folder.join("studies"), quick);
     let mut report = Report::new(quick);
