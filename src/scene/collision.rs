@@ -8,9 +8,7 @@ use glam::DVec2;
 
 use super::{Scene, View};
 use crate::solver::SolverSettings;
-use crate::world::{
-    ContactLaw, DEBONDING_DISTANCE, Disc, FrictionCone, Grain, Gravity, Parameters, Physics,
-};
+use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 
 /// d, m.
 const DIAMETER: f64 = 0.3;
@@ -31,10 +29,7 @@ pub fn collision() -> Scene {
             time_step_secs: 1e-3,
             restitution: 0.5,
             friction: 0.0,
-            cone: FrictionCone::Shifted,
-            restitution_threshold: 0.0,
-            law: ContactLaw::Moreau,
-            debonding_distance: DEBONDING_DISTANCE,
+            ..Parameters::default()
         },
         solver: SolverSettings::default(),
         view: Some(View {

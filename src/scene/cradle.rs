@@ -8,9 +8,7 @@ use glam::DVec2;
 
 use super::{Scene, View};
 use crate::solver::{Method, Ordering, SolverSettings, StopTest};
-use crate::world::{
-    ContactLaw, DEBONDING_DISTANCE, FrictionCone, Grain, Gravity, Parameters, Physics,
-};
+use crate::world::{Grain, Gravity, Parameters, Physics};
 
 /// d, m.
 const DIAMETER: f64 = 0.3;
@@ -45,10 +43,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             time_step_secs: 5e-4,
             restitution: 0.2,
             friction: 0.0,
-            cone: FrictionCone::Shifted,
-            restitution_threshold: 0.0,
-            law: ContactLaw::Moreau,
-            debonding_distance: DEBONDING_DISTANCE,
+            ..Parameters::default()
         },
         solver: SolverSettings {
             method: Method::Nsgs,

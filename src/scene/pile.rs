@@ -5,9 +5,7 @@ use glam::DVec2;
 use super::{GrainSource, Rain, Scene, csv_states};
 use crate::error::Result;
 use crate::solver::SolverSettings;
-use crate::world::{
-    ContactLaw, DEBONDING_DISTANCE, Disc, FrictionCone, Grain, Gravity, Parameters, Physics,
-};
+use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 
 /// d, m.
 pub(super) const DIAMETER: f64 = 5e-3;
@@ -51,10 +49,7 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
             time_step_secs: 1e-3,
             restitution: 0.1,
             friction: 0.5,
-            cone: FrictionCone::Shifted,
-            restitution_threshold: 0.0,
-            law: ContactLaw::Moreau,
-            debonding_distance: DEBONDING_DISTANCE,
+            ..Parameters::default()
         },
         solver: SolverSettings::default(),
         view: None,

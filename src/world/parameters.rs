@@ -104,6 +104,22 @@ fn default_debonding_distance() -> f64 {
     DEBONDING_DISTANCE
 }
 
+impl Default for Parameters {
+    /// The paper's scheme at Δt = 1e-3 s, with contacts that neither pull, bounce nor rub.
+    fn default() -> Self {
+        Self {
+            bond: 0.0,
+            time_step_secs: 1e-3,
+            restitution: 0.0,
+            friction: 0.0,
+            cone: FrictionCone::Shifted,
+            restitution_threshold: 0.0,
+            law: ContactLaw::Moreau,
+            debonding_distance: DEBONDING_DISTANCE,
+        }
+    }
+}
+
 impl Parameters {
     /// Checks every number against its range.
     ///

@@ -11,9 +11,7 @@ use rand_pcg::Pcg64;
 use slump::scene::{Scene, rough_base};
 use slump::sim::Simulation;
 use slump::solver::{Method, Ordering, SolverSettings, StopTest};
-use slump::world::{
-    ContactLaw, DEBONDING_DISTANCE, Disc, FrictionCone, Grain, Gravity, Parameters, Physics,
-};
+use slump::world::{Disc, Grain, Gravity, Parameters, Physics};
 
 /// g of the scenes made here, m/s².
 pub const G: f64 = 9.8;
@@ -27,16 +25,7 @@ pub const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: fals
 
 /// Parameters with the shifted cone.
 pub fn parameters(bond: f64, time_step_secs: f64, restitution: f64, friction: f64) -> Parameters {
-    Parameters {
-        bond,
-        time_step_secs,
-        restitution,
-        friction,
-        cone: FrictionCone::Shifted,
-        restitution_threshold: 0.0,
-        law: ContactLaw::Moreau,
-        debonding_distance: DEBONDING_DISTANCE,
-    }
+    Parameters { bond, time_step_secs, restitution, friction, ..Parameters::default() }
 }
 
 /// As far as rounding allows.

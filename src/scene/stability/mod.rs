@@ -31,9 +31,7 @@ pub use truss::{bridge, cantilever};
 
 use super::Scene;
 use crate::solver::SolverSettings;
-use crate::world::{
-    Boundary, ContactLaw, DEBONDING_DISTANCE, FrictionCone, Grain, Gravity, Parameters, Physics,
-};
+use crate::world::{Boundary, Grain, Gravity, Parameters, Physics};
 
 /// d of all these scenes, m.
 pub(super) const DIAMETER: f64 = 0.01;
@@ -60,10 +58,7 @@ fn dry(name: &str, grains: Vec<Grain>) -> Scene {
             time_step_secs: TIME_STEP_SECS,
             restitution: 0.0,
             friction: 0.5,
-            cone: FrictionCone::Shifted,
-            restitution_threshold: 0.0,
-            law: ContactLaw::Moreau,
-            debonding_distance: DEBONDING_DISTANCE,
+            ..Parameters::default()
         },
         solver: SolverSettings::default(),
         view: None,
