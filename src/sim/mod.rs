@@ -6,6 +6,7 @@ pub mod live;
 mod observables;
 mod pull;
 mod push_out;
+mod range_step;
 mod schemes;
 mod simulation;
 mod snapshot;

@@ -1,22 +1,13 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
-use super::{Observables, Simulation, bonds, pull, push_out, schemes};
-use crate::contact::range::TOUCH_IN_DIAMETERS;
-use crate::contact::{ContactList, LookAhead};
+use super::{Observables, Simulation, pull, push_out, range_step, schemes};
+use crate::contact::ContactList;
 use crate::error::Result;
 use crate::solver::{
     Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport, SolverSettings,
     StepProblem, measure, solve, visit_leanest,
 };
-use crate::world::{ContactLaw, Parameters, World};
-
-/// Law `range`: pairs within the first of these many diameters that a step could close are contacts;
-/// a pair that is to meet within the step is one up to the second.
-const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
-
-/// Law `range`: passes in which a step pushes grains out of each other. One carries an overlap on by a
-/// layer of grains at the least.
-const PASSES_OF_PUSHING: u32 = 8;
+use crate::world::{ContactLaw, Parameters};
 
 /// Takes one step of Δt, compiled for the leanest model that the scene and its parameters allow.
 pub(super) fn take(simulation: &mut Simulation) -> Result<()> {
@@ -76,7 +67,7 @@ impl<V: ProblemVisitor> ModelVisitor for Show<'_, V> {
 }
 
 /// Detects the contacts and sets up the problem of the next step.
-fn prepare<M: Model>(simulation: &mut Simulation) {
+pub(super) fn prepare<M: Model>(simulation: &mut Simulation) {
     let time_step_secs = simulation.parameters.time_step_secs;
     let time_step_before = simulation.time_step_of_impulses_secs;
     if time_step_secs != time_step_before {
@@ -153,7 +144,7 @@ impl ModelVisitor for Step<'_> {
 fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
     let Simulation { solver, problems, parameters, .. } = simulation;
     if parameters.law == ContactLaw::Range {
-        return range_step::<M>(simulation);
+        return range_step::take::<M>(simulation);
     }
     let problem = M::Kinematics::problem(problems);
     let mut report = solve::<M>(problem, solver)?;
@@ -171,7 +162,7 @@ fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
 }
 
 /// Moves the grains by the solution of a problem.
-fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport) -> Taken {
+pub(super) fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport) -> Taken {
     let Simulation { world, contacts, problems, .. } = simulation;
     let problem = M::Kinematics::problem(problems);
     let measures = measure::<M>(problem);
@@ -185,66 +176,6 @@ fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport) -> Taken 
     }
     integrate::<M>(simulation, simulation.parameters.time_step_secs);
     Taken { report, measures, gravity_work }
-}
-
-/// A step under the law `range`: as a whole, or in substeps where a bond breaks (`sim::bonds`).
-fn range_step<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
-    let Simulation { world, parameters, .. } = simulation;
-    let whole = parameters.time_step_secs;
-    let distance = parameters.debonding_distance * world.mean_diameter;
-    let substeps = bonds::substeps(parameters, world.gravity.magnitude(), distance);
-    let (given_up, taken) = try_range::<M>(simulation, distance, substeps == 1)?;
-    if let Some(taken) = taken {
-        return Ok(taken);
-    }
-    let mut sum = Taken { report: given_up, measures: Measures::default(), gravity_work: 0.0 };
-    sum.report.converged = true;
-    simulation.parameters.time_step_secs = whole / f64::from(substeps);
-    let mut outcome = Ok(());
-    for _ in 0..substeps {
-        prepare::<M>(simulation);
-        match try_range::<M>(simulation, distance, true) {
-            Ok((_, Some(taken))) => sum.add(taken),
-            Ok((_, None)) => {}
-            Err(error) => outcome = Err(error),
-        }
-    }
-    simulation.parameters.time_step_secs = whole;
-    outcome.map(|()| sum)
-}
-
-/// Solves the prepared problem with its bonds and moves the grains; none where a bond breaks that may
-/// not.
-fn try_range<M: Model>(
-    simulation: &mut Simulation,
-    distance: f64,
-    may_break: bool,
-) -> Result<(SolveReport, Option<Taken>)> {
-    let Simulation { contacts, problems, parameters, solver, .. } = simulation;
-    let problem = M::Kinematics::problem(problems);
-    let (report, done) =
-        bonds::solve_range::<M>(problem, contacts, parameters, distance, solver, may_break)?;
-    if !done {
-        return Ok((report, None));
-    }
-    let taken = move_by::<M>(simulation, report);
-    push_out::<M>(simulation);
-    Ok((report, Some(taken)))
-}
-
-impl Taken {
-    /// Counts another substep; what it measures at its end counts for the whole.
-    fn add(&mut self, other: Self) {
-        let before = self.measures;
-        self.report.add(other.report);
-        self.measures = Measures {
-            residual: before.residual.max(other.measures.residual),
-            normal_work: before.normal_work + other.measures.normal_work,
-            tangential_work: before.tangential_work + other.measures.tangential_work,
-            ..other.measures
-        };
-        self.gravity_work += other.gravity_work;
-    }
 }
 
 /// Solves the step anew with ρ = 0, from the impulses of the step before. What it measures is the
@@ -284,14 +215,7 @@ impl ModelVisitor for Start<'_> {
 pub(super) fn detect<M: Model>(simulation: &mut Simulation) {
     let Simulation { world, candidates, contacts, parameters, solver, .. } = simulation;
     if law(parameters, solver) == ContactLaw::Range {
-        let ahead = look_ahead(world, parameters.time_step_secs);
-        if M::Kinematics::AXES == 1 {
-            candidates.update_ahead::<1>(world, ahead.reach);
-            contacts.detect_ahead::<1>(world, candidates, ahead);
-        } else {
-            candidates.update_ahead::<2>(world, ahead.reach);
-            contacts.detect_ahead::<2>(world, candidates, ahead);
-        }
+        range_step::detect::<M>(world, candidates, contacts, parameters.time_step_secs);
     } else if M::Kinematics::AXES == 1 {
         candidates.update::<1>(world);
         contacts.detect::<1>(world, candidates);
@@ -299,32 +223,6 @@ pub(super) fn detect<M: Model>(simulation: &mut Simulation) {
         candidates.update::<2>(world);
         contacts.detect::<2>(world, candidates);
     }
-}
-
-/// Pushes grains out of each other, as far as a few passes go.
-fn push_out<M: Model>(simulation: &mut Simulation) {
-    let Simulation { world, contacts, candidates, .. } = simulation;
-    let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
-    for _ in 0..PASSES_OF_PUSHING {
-        let found = if M::Kinematics::AXES == 1 {
-            contacts.push_out::<1>(world, candidates, allowed)
-        } else {
-            contacts.push_out::<2>(world, candidates, allowed)
-        };
-        if !found {
-            break;
-        }
-    }
-}
-
-/// How far a step has to look: the fastest grain tells what any of them may come to.
-fn look_ahead(world: &World, time_step_secs: f64) -> LookAhead {
-    let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
-    let fastest = speeds.fold(0.0, f64::max) + 2.0 * world.gravity.magnitude() * time_step_secs;
-    let [near, far] = AHEAD_IN_DIAMETERS.map(|most| most * world.mean_diameter);
-    let distance = (fastest * time_step_secs).min(near);
-    let reach = (distance + 2.0 * fastest * time_step_secs).min(far);
-    LookAhead { time_step_secs, distance, reach }
 }
 
 /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and the angles where grains turn.
