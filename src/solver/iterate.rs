@@ -23,6 +23,29 @@ pub(super) fn is_tested(sweeps: u32, settings: &SolverSettings) -> bool {
         || settings.stop == StopTest::ImpulsePerMass
 }
 
+/// Sweeps over `problem` until `sweep`, which is given the number of the sweep from 1, says that the
+/// stopping test is met, until nothing is gained any more, or up to the limit.
+pub(super) fn sweep_until_settled<P>(
+    problem: &mut P,
+    settings: &SolverSettings,
+    mut sweep: impl FnMut(&mut P, u32) -> bool,
+    residual: impl Fn(&P) -> f64,
+) -> SolveReport {
+    let mut watch = StallWatch::default();
+    let mut sweeps = 0;
+    while sweeps < settings.max_sweeps {
+        sweeps += 1;
+        if sweep(problem, sweeps) {
+            return SolveReport { sweeps, converged: true, ..SolveReport::default() };
+        }
+        if watch.look(sweeps, settings, || residual(problem)) {
+            break;
+        }
+    }
+    let stalled = watch.has_stalled(sweeps, residual(problem));
+    SolveReport { sweeps, stalled, ..SolveReport::default() }
+}
+
 /// What the contact laws make of impulses that a step has led to: the nearest normal impulse that
 /// is allowed, then the nearest tangential one that this allows.
 #[inline(always)]

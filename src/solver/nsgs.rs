@@ -8,9 +8,8 @@
 //!
 //! The normal impulse does not change v_t, so both velocities are read once.
 
-use super::iterate::is_tested;
+use super::iterate::{is_tested, sweep_until_settled};
 use super::measure::residual;
-use super::stall::StallWatch;
 use super::{Kinematics, Model, Ordering, Row, SolveReport, SolverSettings, StepProblem, StopTest};
 use crate::contact::law;
 
@@ -19,32 +18,17 @@ pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> SolveReport {
-    let mut watch = StallWatch::default();
-    let mut sweeps = 0;
-    while sweeps < settings.max_sweeps {
-        sweeps += 1;
+    let sweep = |problem: &mut StepProblem<M::Kinematics>, sweeps| {
         let backward = settings.ordering == Ordering::Symmetric && sweeps % 2 == 0;
-        let converged = match (is_tested(sweeps, settings), backward) {
-            (true, false) => tested::<M, false>(problem, settings),
-            (true, true) => tested::<M, true>(problem, settings),
-            (false, _) => {
-                if backward {
-                    directed_sweep::<M, false, true>(problem);
-                } else {
-                    sweep::<M, false>(problem);
-                }
-                false
-            }
+        match (is_tested(sweeps, settings), backward) {
+            (true, false) => return tested::<M, false>(problem, settings),
+            (true, true) => return tested::<M, true>(problem, settings),
+            (false, false) => sweep::<M, false>(problem),
+            (false, true) => directed_sweep::<M, false, true>(problem),
         };
-        if converged {
-            return SolveReport { sweeps, converged, ..SolveReport::default() };
-        }
-        if watch.look(sweeps, settings, || residual::<M>(problem)) {
-            break;
-        }
-    }
-    let stalled = watch.has_stalled(sweeps, residual::<M>(problem));
-    SolveReport { sweeps, stalled, ..SolveReport::default() }
+        false
+    };
+    sweep_until_settled(problem, settings, sweep, residual::<M>)
 }
 
 /// One sweep, and whether the stopping test is met after it.

@@ -8,10 +8,9 @@
 
 use rayon::prelude::*;
 
-use super::iterate::is_tested;
+use super::iterate::{is_tested, sweep_until_settled};
 use super::measure::residual;
 use super::nsgs::{self, Change, Law, is_settled};
-use super::stall::StallWatch;
 use super::{Kinematics, Model, Row, SolveReport, SolverSettings, StepProblem, StopTest};
 
 /// Contacts that a thread takes at a time.
@@ -89,27 +88,18 @@ impl<'a, M: Model> Coloured<'a, M> {
     }
 
     fn run(&mut self, settings: &SolverSettings) -> SolveReport {
-        let mut watch = StallWatch::default();
-        let mut sweeps = 0;
-        while sweeps < settings.max_sweeps {
-            sweeps += 1;
+        let sweep = |coloured: &mut Self, sweeps| {
             if !is_tested(sweeps, settings) {
-                self.sweep::<false>();
-                continue;
+                coloured.sweep::<false>();
+                return false;
             }
             let change = match settings.stop {
-                StopTest::Residual => self.sweep::<false>(),
-                _ => self.sweep::<true>(),
+                StopTest::Residual => coloured.sweep::<false>(),
+                _ => coloured.sweep::<true>(),
             };
-            if is_settled::<M>(self.problem, change, settings) {
-                return SolveReport { sweeps, converged: true, ..SolveReport::default() };
-            }
-            if watch.look(sweeps, settings, || residual::<M>(self.problem)) {
-                break;
-            }
-        }
-        let stalled = watch.has_stalled(sweeps, residual::<M>(self.problem));
-        SolveReport { sweeps, stalled, ..SolveReport::default() }
+            is_settled::<M>(coloured.problem, change, settings)
+        };
+        sweep_until_settled(self, settings, sweep, |coloured| residual::<M>(coloured.problem))
     }
 
     /// One pass over all contacts.

@@ -3,6 +3,7 @@
 
 use super::DelassusProblem;
 use crate::error::{Error, Result};
+use crate::solver::iterate::sweep_until_settled;
 use crate::solver::{
     METHODS, Method, SolveReport, SolverSettings, StopTest, Vectors, solve_system,
 };
@@ -40,16 +41,14 @@ pub fn solve_delassus(
 
 fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveReport {
     let near = NEAR * settings.tolerance * problem.scale;
-    for sweeps in 1..=settings.max_sweeps {
+    let sweep = |problem: &mut DelassusProblem, sweeps: u32| {
         let squared_change = problem.sweep();
         let is_tested = squared_change <= near * near
             || sweeps.is_multiple_of(TEST_INTERVAL)
             || sweeps == settings.max_sweeps;
-        if is_tested && problem.is_solved(settings) {
-            return SolveReport { sweeps, converged: true, ..SolveReport::default() };
-        }
-    }
-    SolveReport { sweeps: settings.max_sweeps, ..SolveReport::default() }
+        is_tested && problem.is_solved(settings)
+    };
+    sweep_until_settled(problem, settings, sweep, DelassusProblem::residual)
 }
 
 impl DelassusProblem {
@@ -68,5 +67,39 @@ impl DelassusProblem {
             squared_change += change[0] * change[0] + change[1] * change[1];
         }
         squared_change
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::delassus::Triplets;
+    use crate::world::FrictionCone;
+
+    /// Two contacts on opposite sides of one body, which close at 1 m/s
+    /// each: u₀ + u₁ = −2 m/s whatever the impulses, so that not both can be ≥ 0.
+    #[test]
+    fn a_problem_without_solution_is_told_from_one_that_was_stopped_too_early() {
+        let matrix = Triplets {
+            row: vec![0, 0, 1, 2, 2, 3],
+            col: vec![0, 2, 1, 0, 2, 3],
+            val: vec![1.0, -1.0, 1.0, -1.0, 1.0, 1.0],
+        };
+        let free_velocities = [-1.0, 0.0, -1.0, 0.0];
+        let settings = SolverSettings {
+            stop: StopTest::Residual,
+            max_sweeps: 100_000,
+            ..SolverSettings::default()
+        };
+        let problem = |free: &[f64]| {
+            DelassusProblem::new(&matrix, free, &[0.0; 2], &[0.0; 2], FrictionCone::Shifted)
+        };
+        let mut infeasible = problem(&free_velocities).expect("a valid problem");
+        let report = solve_delassus(&mut infeasible, &settings).expect("a method that works on W");
+        assert!(report.stalled && !report.converged && report.sweeps < 10_000, "{report:?}");
+
+        let mut feasible = problem(&[-1.0, 0.0, 2.0, 0.0]).expect("a valid problem");
+        let report = solve_delassus(&mut feasible, &settings).expect("a method that works on W");
+        assert!(report.converged && !report.stalled, "{report:?}");
     }
 }
