@@ -55,7 +55,9 @@ pub enum FrictionCone {
 }
 
 /// How long a bond lives, and what a contact sees of its gap.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactLaw {
     /// The paper's: a contact and its cohesion live while the gap is negative.

@@ -11,6 +11,9 @@ use crate::sim::{Simulation, Tally};
 /// Steps between two looks at the clock.
 const STEPS_PER_LOOK: u64 = 16;
 
+/// What disturbs a run that takes longer, s, averages out within it.
+const LONG_ENOUGH_SECS: f64 = 2.0;
+
 /// How a timed run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -56,7 +59,7 @@ pub(super) fn timed_run(
 }
 
 /// Takes so many steps from a start, `repeats` times for the least time, unless that takes more than
-/// `limit_secs` of the wall's time.
+/// `limit_secs` of the wall's time. A run that takes longer than [`LONG_ENOUGH_SECS`] is not repeated.
 ///
 /// # Errors
 /// Where the settings of the start do not fit it. A state that is no longer finite is an ending.
@@ -69,7 +72,7 @@ pub(super) fn timed_steps(
 ) -> Result<TimedRun> {
     let mut run = once(key, start, steps, limit_secs)?;
     for _ in 1..repeats {
-        if run.ending != Ending::Done {
+        if run.ending != Ending::Done || run.wall_secs > LONG_ENOUGH_SECS {
             break;
         }
         let again = once(String::new(), start, steps, limit_secs)?;

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use super::super::Bench;
-use super::super::entrants;
 use super::super::look::{colour, dots};
 use super::super::peers::{self, PeerRun};
 use super::FINEST_SECS;
@@ -12,6 +11,7 @@ use super::runs::{Charted, References};
 use crate::scene::Rain;
 use crate::study::chart::{Axis, Chart, INK, Layer, Look, Sheet, points};
 use crate::study::performance::pareto_front;
+use crate::world::ContactLaw;
 
 /// Errors below this are drawn here.
 const LEAST_ERROR: f64 = 1e-3;
@@ -56,8 +56,8 @@ pub(super) fn draw(
         let honest: Vec<_> = places.iter().map(|&(x, y)| (x, y.max(floor))).collect();
         let front = pareto_front(&honest).into_iter().map(|index| honest[index]);
         chart.layers.push(Layer::curve("Pareto front", points(front), INK, Look::Line(1)));
-        for entrant in entrants::all() {
-            let is_its = |point: &Charted| plan.efforts[point.effort].0.method == entrant.method;
+        for (number, entrant) in plan.entrants.iter().enumerate() {
+            let is_its = |point: &Charted| plan.efforts[point.effort].entrant == number;
             let of_method = || charted.iter().filter(|point| is_its(point));
             let failed = of_method().filter(|point| point.failed.is_some()).count();
             let told = match failed {
@@ -103,7 +103,7 @@ fn said(words: impl Iterator<Item = String>) -> String {
 fn peer_layers(plan: &Plan, peers: &[PeerRun], references: &References) -> Vec<Layer> {
     let shared = (0.0, Rain::default().seed);
     let Some(pile) = plan.piles.iter().position(|pile| *pile == shared) else { return Vec::new() };
-    let reference = references[&(FINEST_SECS.to_bits(), pile)];
+    let reference = references.slump(ContactLaw::Moreau, FINEST_SECS, pile);
     let mut by_engine: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
     for run in peers.iter().filter(|run| run.is_collapse_of(Rain::default().grains)) {
         let error = (run.slump - reference).abs().max(LEAST_ERROR);

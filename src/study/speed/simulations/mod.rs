@@ -6,7 +6,8 @@
 //! told apart. Against the reference *at the same Δt* a slump is off by what the solver left undone;
 //! against the reference at [`FINEST_SECS`] also by the time step. Piles are chaotic: two references,
 //! one solved ten times tighter than the other, differ by the *floor*, and no error below it means
-//! anything.
+//! anything. The law `range` is another model of the same pile, and is held against references of its
+//! own.
 
 mod drawing;
 mod plan;
@@ -20,6 +21,7 @@ use super::runs::TimedRun;
 use super::{Bench, Part, peers};
 use crate::error::Result;
 use crate::study::states::States;
+use crate::world::ContactLaw;
 
 /// Δt of the reference that has next to no error of the time step, s.
 const FINEST_SECS: f64 = 1e-4;
@@ -30,7 +32,11 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<Part>> {
     let plan = Plan::new(bench.quick);
     let states = States::of(
         bench.states_folder(),
-        plan.piles.iter().map(|&pile| config(pile, 1e-3)).collect::<Vec<_>>().iter(),
+        plan.piles
+            .iter()
+            .map(|&pile| config(pile, 1e-3, ContactLaw::Moreau))
+            .collect::<Vec<_>>()
+            .iter(),
     )?;
     let (journal, done) = bench.journal::<TimedRun>("simulations")?;
     let mut done: HashMap<String, TimedRun> =

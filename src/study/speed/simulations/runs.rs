@@ -13,14 +13,19 @@ use crate::solver::{Method, SolverSettings, StopTest};
 use crate::study::journal::Journal;
 use crate::study::states::States;
 use crate::study::statistics::mean;
+use crate::world::ContactLaw;
 
 /// A pile that slumps less than this holds.
 const HOLDS: f64 = 0.1;
+
+/// The law under which the floor is measured.
+const FLOOR_LAW: ContactLaw = ContactLaw::Moreau;
 
 /// What one method at one Δt and one effort comes to.
 pub(super) struct Charted {
     /// Number in `Plan::efforts`.
     pub effort: usize,
+    pub law: ContactLaw,
     pub time_step_secs: f64,
     /// The runs that reached their end, pile by pile; `None` where one did not.
     pub runs: Vec<Option<TimedRun>>,
@@ -34,8 +39,15 @@ pub(super) struct Charted {
     pub verdicts: f64,
 }
 
-/// Slumps of references by Δt and number of the pile.
-pub(super) type References = HashMap<(u64, usize), f64>;
+/// Slumps of references by law, Δt and number of the pile.
+pub(super) struct References(HashMap<(ContactLaw, u64, usize), f64>);
+
+impl References {
+    /// Slump of that pile. There is one for every law, Δt and pile of the plan, and at the finest Δt.
+    pub fn slump(&self, law: ContactLaw, time_step_secs: f64, pile: usize) -> f64 {
+        self.0.get(&(law, time_step_secs.to_bits(), pile)).copied().unwrap_or(f64::NAN)
+    }
+}
 
 /// The slumps of the references, and of those that show the floor.
 pub(super) fn references(
@@ -45,11 +57,15 @@ pub(super) fn references(
     done: &mut HashMap<String, TimedRun>,
 ) -> Result<[References; 2]> {
     let mut wanted = Vec::new();
-    let steps = std::iter::once(&FINEST_SECS).chain(&plan.time_steps_secs);
-    for &time_step_secs in steps {
-        for (pile, &numbers) in plan.piles.iter().enumerate() {
-            for (number, tolerance) in REFERENCE.into_iter().enumerate() {
-                wanted.push((time_step_secs, pile, numbers, number, tolerance));
+    let steps = || std::iter::once(&FINEST_SECS).chain(&plan.time_steps_secs);
+    for &law in &plan.laws {
+        for &time_step_secs in steps() {
+            for (pile, &numbers) in plan.piles.iter().enumerate() {
+                for (number, tolerance) in REFERENCE.into_iter().enumerate() {
+                    if law == FLOOR_LAW || number == 0 {
+                        wanted.push((law, time_step_secs, pile, numbers, number, tolerance));
+                    }
+                }
             }
         }
     }
@@ -58,14 +74,15 @@ pub(super) fn references(
     let runs: Result<Vec<_>> = wanted
         .into_par_iter()
         .with_max_len(1)
-        .map(|(time_step_secs, pile, numbers, number, tolerance)| {
+        .map(|(law, time_step_secs, pile, numbers, number, tolerance)| {
             let (bond, seed) = numbers;
-            let key =
-                format!("reference {tolerance:e}, Bond {bond}, seed {seed}, dt {time_step_secs:e}");
+            let key = format!(
+                "reference {tolerance:e}, law {law:?}, Bond {bond}, seed {seed}, dt {time_step_secs:e}"
+            );
             let run = match known.get(&key) {
                 Some(run) => run.clone(),
                 None => {
-                    let mut scene = states.scene(&config(numbers, time_step_secs))?;
+                    let mut scene = states.scene(&config(numbers, time_step_secs, law))?;
                     scene.solver = SolverSettings {
                         method: Method::Newton,
                         stop: StopTest::Residual,
@@ -78,13 +95,13 @@ pub(super) fn references(
                 }
             };
             progress.advance(1);
-            Ok((number, (time_step_secs.to_bits(), pile), run.slump))
+            Ok((number, (law, time_step_secs.to_bits(), pile), run.slump))
         })
         .collect();
     progress.finish();
-    let mut references = [References::new(), References::new()];
+    let mut references = [(); 2].map(|()| References(HashMap::new()));
     for (number, key, slump) in runs? {
-        references[number].insert(key, slump);
+        references[number].0.insert(key, slump);
     }
     Ok(references)
 }
@@ -94,8 +111,8 @@ pub(super) fn floor(plan: &Plan, references: &References, others: &References) -
     let mut differences = Vec::new();
     for time_step_secs in &plan.time_steps_secs {
         for pile in 0..plan.piles.len() {
-            let key = (time_step_secs.to_bits(), pile);
-            differences.push((references[&key] - others[&key]).abs());
+            let slump = |of: &References| of.slump(FLOOR_LAW, *time_step_secs, pile);
+            differences.push((slump(references) - slump(others)).abs());
         }
     }
     mean(&differences).mean
@@ -113,7 +130,8 @@ pub(super) fn run_all(
     let progress = Progress::new("simulations", (points * plan.piles.len()) as u64);
     let mut charted = Vec::with_capacity(points);
     for &time_step_secs in &plan.time_steps_secs {
-        for (effort, (entrant, name, settings)) in plan.efforts.iter().enumerate() {
+        for (number, effort) in plan.efforts.iter().enumerate() {
+            let name = format!("{}, {}", plan.entrants[effort.entrant].name, effort.name);
             let mut runs = Vec::new();
             let mut failed = None;
             for &(bond, seed) in &plan.piles {
@@ -122,15 +140,13 @@ pub(super) fn run_all(
                     runs.push(None);
                     continue;
                 }
-                let key = format!(
-                    "{}, {name}, Bond {bond}, seed {seed}, dt {time_step_secs:e}",
-                    entrant.name
-                );
+                let key = format!("{name}, Bond {bond}, seed {seed}, dt {time_step_secs:e}");
                 let run = match done.remove(&key) {
                     Some(run) => run,
                     None => {
-                        let mut scene = states.scene(&config((bond, seed), time_step_secs))?;
-                        scene.solver = *settings;
+                        let config = config((bond, seed), time_step_secs, effort.law);
+                        let mut scene = states.scene(&config)?;
+                        scene.solver = effort.settings;
                         let run = timed_run(key, &scene, plan.repeats, plan.limit_secs)?;
                         journal.add(&run)?;
                         run
@@ -144,7 +160,8 @@ pub(super) fn run_all(
                 runs.push(failed.is_none().then_some(run));
             }
             let mut point = Charted {
-                effort,
+                effort: number,
+                law: effort.law,
                 time_step_secs,
                 runs,
                 failed,
@@ -170,13 +187,13 @@ impl Charted {
         self.speed = sum(|run| run.simulated_secs) / sum(|run| run.wall_secs);
         let off = |step_secs: f64| {
             let off = |(pile, run): (usize, &&TimedRun)| {
-                (run.slump - references[&(step_secs.to_bits(), pile)]).abs()
+                (run.slump - references.slump(self.law, step_secs, pile)).abs()
             };
             mean(&runs.iter().enumerate().map(off).collect::<Vec<_>>()).mean
         };
         self.errors = [off(self.time_step_secs), off(FINEST_SECS)];
         let agree = runs.iter().enumerate().filter(|(pile, run)| {
-            let reference = references[&(self.time_step_secs.to_bits(), *pile)];
+            let reference = references.slump(self.law, self.time_step_secs, *pile);
             (run.slump < HOLDS) == (reference < HOLDS)
         });
         self.verdicts = agree.count() as f64 / runs.len().max(1) as f64;

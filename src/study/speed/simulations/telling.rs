@@ -21,8 +21,9 @@ pub(super) fn told(plan: &Plan, charted: &[Charted], floor: f64) -> String {
         "\n| method | Δt, s | effort | simulated s per s | error, same Δt | error, finest Δt | verdicts agreed |\n|---|---|---|---|---|---|---|".into(),
     ];
     for point in charted {
-        let (entrant, effort, _) = &plan.efforts[point.effort];
-        let (name, step) = (&entrant.name, point.time_step_secs);
+        let effort = &plan.efforts[point.effort];
+        let (name, step) = (&plan.entrants[effort.entrant].name, point.time_step_secs);
+        let effort = &effort.name;
         lines.push(match point.failed {
             Some(why) => format!("| {name} | {step:e} | {effort} | {why} | | | |"),
             None => format!(
@@ -44,7 +45,7 @@ pub(super) fn table(plan: &Plan, charted: &[Charted]) -> String {
          verdicts_agreed,mean_overlap,unconverged_steps,steps\n",
     );
     for point in charted {
-        let (entrant, effort, _) = &plan.efforts[point.effort];
+        let effort = &plan.efforts[point.effort];
         let runs = || point.runs.iter().flatten();
         let overlap = mean(&runs().map(|run| run.mean_overlap).collect::<Vec<_>>()).mean;
         let sum = |number: fn(&TimedRun) -> u64| runs().map(number).sum::<u64>();
@@ -62,7 +63,7 @@ pub(super) fn table(plan: &Plan, charted: &[Charted]) -> String {
         };
         text.push_str(&format!(
             "{},{:e},{},{numbers}\n",
-            entrant.name, point.time_step_secs, effort
+            plan.entrants[effort.entrant].name, point.time_step_secs, effort.name
         ));
     }
     text
