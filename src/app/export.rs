@@ -137,20 +137,22 @@ fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     let mut plain = csv::WriterBuilder::new();
     plain.has_headers(false);
     let mut writer = plain.from_path(path).map_err(refuse)?;
-    let names = column_names().map_err(refuse)?;
+    let any_bonds = curves.iter().flat_map(Curve::rows).any(|row| row.bond_energy.is_some());
+    let cells = |row: Observables| if any_bonds { row.with_columns_of_bonds() } else { row };
+    let names = column_names(cells(Observables::default())).map_err(refuse)?;
     writer.write_record(std::iter::once("world").chain(names.iter())).map_err(refuse)?;
     for (world, curve) in curves.iter().enumerate() {
         for row in curve.rows() {
-            writer.serialize((world + 1, row)).map_err(refuse)?;
+            writer.serialize((world + 1, cells(*row))).map_err(refuse)?;
         }
     }
     writer.flush().map_err(|error| Error::file(path, error))
 }
 
 /// What a table of observables calls its columns.
-fn column_names() -> std::result::Result<csv::StringRecord, csv::Error> {
+fn column_names(row: Observables) -> std::result::Result<csv::StringRecord, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    table.serialize(Observables::default())?;
+    table.serialize(row)?;
     let bytes = table.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
     csv::Reader::from_reader(bytes.as_slice()).headers().cloned()
 }

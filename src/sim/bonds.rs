@@ -4,137 +4,164 @@
 //! the shocks of the step have gone through, and the load J on it. So a step is solved more than once,
 //! always by the same method and through the same rows.
 //!
-//! 1. **Shocks.** Collisions are instantaneous, and in no time a bond, whose force is finite, can do
-//!    nothing. The problem without cohesion and without gravity, from the velocities of the step
-//!    before, gives v. Where nothing collides, v is the speed of the step before, and nothing is solved.
-//! 2. **The step** from the same velocities with gravity, every bond pulling with up to C₀Δt.
+//! 1. **Shocks** (`sim::shocks`), in which a bond, whose force is finite, can do nothing, give v.
+//! 2. **The step** from the velocities after them, with gravity, every bond pulling with up to C₀Δt.
 //! 3. **Breaks.** The solution tells the loads. Bonds that would have been opened by δ_c before the
 //!    end of the step get the impulse of the time that they live, and the step is solved again, from
 //!    where it was, until no bond's bound falls. Bounds never rise again, so this ends.
 //!
-//! **Substeps.** One broken bond loads the next, and a step hands a load on by one bond only. Where a
-//! step is long against the time √(2δ_c m_ij/C₀) of a break, it is therefore given up as soon as a bond
-//! is seen in it that would break if it were half as strong, and taken in substeps. A pile that holds
-//! is stepped at full length. Measured at Δt = 5e-3 s over six initial states: slump at Bond 10 and 15
-//! without substeps 0.24 and 0.11, with substeps of a whole such time 0.26 and 0.12, of 0.4 of it 0.28
-//! and 0.17; at Δt = 5e-5 s it is 0.31 and 0.20 (± 0.02). Without the shocks it is 0.23 at Bond 10.
+//! **Restless bonds.** One broken bond loads the next, and a step hands a load on by one bond only; a
+//! long step tells of loads their mean alone. So a step says whether a bond is seen in it that would
+//! break if it were half as strong, and a long one is then given up (`sim::range_step`).
 
+use super::shocks;
 use crate::contact::ContactList;
-use crate::contact::range::{Bond, Opening, bond_time_secs};
+use crate::contact::range::{Bond, Opening};
 use crate::error::Result;
 use crate::solver::{
-    Kinematics, Model, SolveReport, SolverSettings, StepProblem, for_each_row, relative_velocities,
-    solve,
+    Kinematics, Measures, Model, SolveReport, SolverSettings, StepProblem, for_each_row,
+    relative_velocities, solve,
 };
-use crate::world::Parameters;
 
 /// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
 /// and the next step looks at them again.
 const MOST_ROUNDS: u32 = 8;
 
-/// Longest substep, in times of a break.
-const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
-
-/// Strength, in that of a bond, at which no bond may break in a step that is taken as a whole. A long
-/// step tells of loads their mean alone.
-const STRENGTH_OF_WHOLE_STEPS: f64 = 0.5;
-
-/// More would be a step of another order than the one asked for.
-const MOST_SUBSTEPS: f64 = 16.0;
+/// Strength, in that of a bond, at which a bond that would break is restless.
+const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 
 /// Part of a bound by which it has to fall to be worth another solution.
 const FALL: f64 = 1e-6;
 
-/// Substeps into which a step is cut where a bond breaks in it.
-pub(super) fn substeps(parameters: &Parameters, gravity_magnitude: f64, distance: f64) -> u32 {
-    let bond_time = bond_time_secs(parameters.bond, gravity_magnitude, distance);
-    let substeps = parameters.time_step_secs / (SUBSTEP_IN_BOND_TIMES * bond_time);
-    substeps.ceil().clamp(1.0, MOST_SUBSTEPS) as u32
+/// Memory that is kept from one step to the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Workspace {
+    shocks: shocks::Workspace,
+    speeds: Vec<f64>,
+    falls: Vec<(usize, f64)>,
+    /// Whether bonds were about to break in the last step.
+    pub restless: bool,
+}
+
+/// The numbers of a step that its bonds hang on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepNumbers {
+    pub time_step_secs: f64,
+    /// ρ.
+    pub restitution: f64,
+    /// δ_c, m.
+    pub debonding_distance: f64,
+    /// Gaps below this are none, m.
+    pub touch: f64,
+    /// Whether bonds may break in it.
+    pub may_break: bool,
+}
+
+/// What solving a step came to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solved {
+    pub report: SolveReport,
+    /// Works of the shocks, and the residual of theirs.
+    pub of_shocks: Measures,
+    pub bonds: BondEnergies,
+    /// False where a bond breaks that may not.
+    pub done: bool,
+}
+
+/// What bonds took and gave, J.
+///
+/// A bond that is opened by s has taken C₀ s. It gives that back where it closes, and keeps it where
+/// it breaks. So its work is −Δ(C₀ s), and that of its last step −C₀ (opening) until then, with the
+/// impulse b m_ij of the time that it lived: −b m_ij ½(v⁺ + v^n), which leaves C₀δ_c in all. What a
+/// contact does beyond that is the work of the grains' push on each other.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct BondEnergies {
+    /// Work of this step.
+    pub work: f64,
+    /// Σ C₀ s of the bonds that live.
+    pub stored: f64,
+    /// What the bonds took that broke in this step.
+    pub broken: f64,
+}
+
+impl BondEnergies {
+    /// Counts another substep.
+    pub fn add(&mut self, other: Self) {
+        let Self { work, broken, .. } = *self;
+        *self = Self { work: work + other.work, broken: broken + other.broken, ..other };
+    }
 }
 
 /// Solves a prepared problem, and tells the bonds what became of them; or gives up where a bond breaks
-/// and `may_break` is false. `debonding_distance` is δ_c, m.
+/// that may not.
 pub(super) fn solve_range<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     contacts: &mut ContactList,
-    parameters: &Parameters,
-    debonding_distance: f64,
+    workspace: &mut Workspace,
+    numbers: StepNumbers,
     settings: &SolverSettings,
-    may_break: bool,
-) -> Result<(SolveReport, bool)> {
-    let time_step_secs = parameters.time_step_secs;
+) -> Result<Solved> {
+    let Workspace { shocks, speeds, falls, restless } = workspace;
+    let StepNumbers { time_step_secs, restitution, debonding_distance, touch, may_break } = numbers;
     let mut report = SolveReport { converged: true, ..SolveReport::default() };
-    let mut speeds = Vec::new();
-    if problem.captures.is_empty() {
-        relative_velocities(problem, &problem.before, &mut speeds);
-    } else {
-        report.add(shocks::<M>(problem, settings, &mut speeds)?);
+    let mut of_shocks = Measures::default();
+    if let Some(passed) =
+        shocks::pass::<M>(problem, shocks, restitution, time_step_secs, touch, settings)?
+    {
+        report.add(passed.report);
+        of_shocks = passed.measures;
     }
-    for _ in 0..MOST_ROUNDS {
+    relative_velocities(problem, &problem.before, speeds);
+    let mut round = 0;
+    loop {
+        round += 1;
         report.add(solve::<M>(problem, settings)?);
         let bonds = contacts.bonds();
-        let limits = Limits { bonds, speeds: &speeds, debonding_distance, time_step_secs };
-        if !may_break {
-            if limits.falls::<M>(problem, STRENGTH_OF_WHOLE_STEPS).is_empty() {
-                break;
+        let limits = Limits { bonds, speeds, debonding_distance, time_step_secs };
+        if round == 1 {
+            limits.falls::<M>(problem, STRENGTH_OF_RESTLESS_BONDS, falls);
+            *restless |= !falls.is_empty();
+            if !may_break && *restless {
+                let bonds = BondEnergies::default();
+                return Ok(Solved { report, of_shocks, bonds, done: false });
             }
-            return Ok((report, false));
         }
-        if !shorten(problem, &limits.falls::<M>(problem, 1.0)) {
+        limits.falls::<M>(problem, 1.0, falls);
+        if falls.is_empty() || round == MOST_ROUNDS {
             break;
         }
+        shorten(problem, falls);
     }
     let bonds = contacts.bonds_mut();
+    let mut energies = BondEnergies::default();
     for_each_row(problem, |number, row, motion| {
         let bond = &mut bonds[problem.contact_of_row[number] as usize];
-        if row.shifted_impulse > 0.0 {
+        let cohesion_force = row.effective_mass * problem.capture_speed / time_step_secs;
+        let opening_speed = 0.5 * (speeds[number] + motion.now[0]);
+        let was_alive = bond.alive;
+        let before = if was_alive { cohesion_force * bond.stretch } else { 0.0 };
+        // A pair that was to meet may have been kept apart by the step after all.
+        let gap_left = (motion.now[0] + row.restitution_velocity) * time_step_secs;
+        let was_struck = shocks.struck.get(number).is_some_and(|&impulse| impulse > 0.0);
+        let meets = was_struck && gap_left <= touch;
+        if row.shifted_impulse > 0.0 || (meets && !was_alive) {
             *bond = Bond { alive: true, stretch: 0.0 };
         } else if bond.alive {
-            let opened = 0.5 * (speeds[number] + motion.now[0]) * time_step_secs;
-            bond.stretch = (bond.stretch + opened).max(0.0);
+            bond.stretch = (bond.stretch + opening_speed * time_step_secs).max(0.0);
             let broken = problem.capture(number) < problem.capture_speed;
             bond.alive = !broken && bond.stretch < debonding_distance;
         }
+        if bond.alive {
+            let stored = cohesion_force * bond.stretch;
+            energies.stored += stored;
+            energies.work -= stored - before;
+        } else if was_alive {
+            let taken = row.effective_mass * problem.capture(number) * opening_speed;
+            energies.broken += before + taken;
+            energies.work -= taken;
+        }
     });
-    Ok((report, true))
-}
-
-/// Works out at what speed (m/s) each contact opens after the shocks of the step.
-fn shocks<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
-    settings: &SolverSettings,
-    speeds: &mut Vec<f64>,
-) -> Result<SolveReport> {
-    relative_velocities(problem, &problem.before, speeds);
-    // Against the step's own scale, as its residual is.
-    let (mut violated, mut scale) = (0.0, 0.0);
-    for_each_row(problem, |number, row, motion| {
-        let squared_mass = row.effective_mass * row.effective_mass;
-        let closing = (speeds[number] + row.restitution_velocity).min(0.0);
-        let free = motion.free[0] + row.restitution_velocity;
-        violated += squared_mass * closing * closing;
-        scale += squared_mass * free * free;
-    });
-    if violated <= settings.tolerance * settings.tolerance * scale {
-        return Ok(SolveReport { converged: true, ..SolveReport::default() });
-    }
-    let fixed = problem.fixed_rows.clone();
-    let pairs = problem.pair_rows.clone();
-    let captures = std::mem::replace(&mut problem.captures, vec![0.0; speeds.len()]);
-    let free = std::mem::replace(&mut problem.free, problem.before.clone());
-    for row in problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows) {
-        row.shifted_impulse = 0.0;
-        row.tangential_impulse = 0.0;
-    }
-    problem.form_velocities();
-    let report = solve::<M>(problem, settings);
-    relative_velocities(problem, &problem.bodies, speeds);
-    problem.free = free;
-    problem.captures = captures;
-    problem.fixed_rows = fixed;
-    problem.pair_rows = pairs;
-    problem.form_velocities();
-    report
+    Ok(Solved { report, of_shocks, bonds: energies, done: true })
 }
 
 /// What the bounds of a step hang on.
@@ -149,16 +176,17 @@ struct Limits<'a> {
 }
 
 impl Limits<'_> {
-    /// Rows with bounds (m/s) below those that they have: bonds that do not live to the end of the
+    /// Finds rows with bounds (m/s) below those that they have: bonds that do not live to the end of the
     /// step, were they of `strength` times their own.
     fn falls<M: Model>(
         &self,
         problem: &StepProblem<M::Kinematics>,
         strength: f64,
-    ) -> Vec<(usize, f64)> {
-        let mut falls = Vec::new();
+        falls: &mut Vec<(usize, f64)>,
+    ) {
+        falls.clear();
         if problem.captures.is_empty() {
-            return falls;
+            return;
         }
         for_each_row(problem, |number, row, motion| {
             let before = strength * problem.capture(number);
@@ -172,12 +200,11 @@ impl Limits<'_> {
                 falls.push((number, bound));
             }
         });
-        falls
     }
 }
 
-/// Lowers the bounds of bonds that do not live to the end of the step. Whether there were any.
-fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, falls: &[(usize, f64)]) -> bool {
+/// Lowers the bounds of bonds that do not live to the end of the step.
+fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, falls: &[(usize, f64)]) {
     let fixed_count = problem.fixed_rows.len();
     for &(number, bound) in falls {
         let before = std::mem::replace(&mut problem.captures[number], bound);
@@ -188,8 +215,5 @@ fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, falls: &[(usize, f64)]) 
         };
         row.shifted_impulse = (row.shifted_impulse - before + bound).max(0.0);
     }
-    if !falls.is_empty() {
-        problem.form_velocities();
-    }
-    !falls.is_empty()
+    problem.form_velocities();
 }

@@ -8,6 +8,7 @@ mod pull;
 mod push_out;
 mod range_step;
 mod schemes;
+mod shocks;
 mod simulation;
 mod snapshot;
 mod step;

@@ -47,4 +47,28 @@ pub struct Observables {
     pub gravity_work: f64,
     /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11); 0 where Σ y_i(0) is 0.
     pub slump: f64,
+    /// Work that bonds did in this step, a part of `normal_work`, J: negative while they are
+    /// stretched. None but under the law `range`, as all that is told of bonds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bond_work: Option<f64>,
+    /// Σ C₀ s over the bonds that live, J: what stretching them took.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bond_energy: Option<f64>,
+    /// What bonds took that have broken since the start, J: C₀ δ_c each.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub broken_bond_energy: Option<f64>,
+}
+
+impl Observables {
+    /// With numbers that are none where there are no bonds, so that rows with and without bonds fit
+    /// in one table.
+    pub fn with_columns_of_bonds(self) -> Self {
+        let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));
+        Self {
+            bond_work: number(self.bond_work),
+            bond_energy: number(self.bond_energy),
+            broken_bond_energy: number(self.broken_bond_energy),
+            ..self
+        }
+    }
 }

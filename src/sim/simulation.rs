@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::alarm::Watch;
 use super::snapshot::{ContactView, GrainView, Snapshot, Surroundings};
-use super::{Alarm, Observables, ProblemVisitor, Pull, schemes, step, travel};
+use super::{Alarm, Observables, ProblemVisitor, Pull, bonds, schemes, step, travel};
 use crate::contact::{Candidates, ContactList, Feature, Reach};
 use crate::error::{Error, Result};
 use crate::solver::{Method, Problems, SolverSettings};
@@ -28,6 +28,8 @@ pub struct Simulation {
     pub(super) candidates: Candidates,
     pub(super) contacts: ContactList,
     pub(super) problems: Problems,
+    /// Of the law `range`.
+    pub(super) bonds: bonds::Workspace,
     pub(super) observables: Observables,
     /// Σ y_i(0), m, of eq. 11.
     pub(super) initial_heights: f64,
@@ -87,6 +89,7 @@ impl Simulation {
             candidates,
             contacts: ContactList::default(),
             problems: Problems::default(),
+            bonds: bonds::Workspace::default(),
             observables: Observables::default(),
             time_step_of_impulses_secs: parameters.time_step_secs,
             method_of_memories: None,

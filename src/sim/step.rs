@@ -1,5 +1,6 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
+use super::bonds::BondEnergies;
 use super::{Observables, Simulation, pull, push_out, range_step, schemes};
 use crate::contact::ContactList;
 use crate::error::Result;
@@ -21,6 +22,8 @@ pub(super) struct Taken {
     pub measures: Measures,
     /// Work of gravity and of a spring, J.
     pub gravity_work: f64,
+    /// Of the law `range`.
+    pub bonds: Option<BondEnergies>,
 }
 
 /// Measures the initial state: energies, and the contacts that are there before any impulse.
@@ -107,7 +110,7 @@ impl ModelVisitor for Step<'_> {
             simulation.contacts.forget();
             simulation.method_of_memories = Some(method);
         }
-        let Taken { report, measures, gravity_work } = match method.kind() {
+        let Taken { report, measures, gravity_work, bonds } = match method.kind() {
             MethodKind::Problem => solve_and_move::<M>(simulation)?,
             MethodKind::Scheme(scheme) => schemes::advance::<M>(simulation, scheme),
         };
@@ -134,6 +137,10 @@ impl ModelVisitor for Step<'_> {
             tangential_work: measures.tangential_work,
             gravity_work,
             kinetic_energy,
+            bond_work: bonds.map(|bonds| bonds.work),
+            bond_energy: bonds.map(|bonds| bonds.stored),
+            broken_bond_energy: bonds
+                .map(|bonds| before.broken_bond_energy.unwrap_or(0.0) + bonds.broken),
             ..geometry::<M>(simulation)
         };
         Ok(())
@@ -175,7 +182,7 @@ pub(super) fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport
         gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
     }
     integrate::<M>(simulation, simulation.parameters.time_step_secs);
-    Taken { report, measures, gravity_work }
+    Taken { report, measures, gravity_work, bonds: None }
 }
 
 /// Solves the step anew with ρ = 0, from the impulses of the step before. What it measures is the
@@ -202,10 +209,15 @@ impl ModelVisitor for Start<'_> {
             let body = M::Kinematics::body(&simulation.world, index);
             M::Kinematics::kinetic_energy(&body, simulation.world.grains.masses[index])
         };
+        let law = law(&simulation.parameters, &simulation.solver);
+        let none_yet = (law == ContactLaw::Range).then_some(0.0);
         simulation.observables = Observables {
             time_step_secs: simulation.parameters.time_step_secs,
             converged: true,
             kinetic_energy: bodies.map(energy).sum(),
+            bond_work: none_yet,
+            bond_energy: none_yet,
+            broken_bond_energy: none_yet,
             ..geometry::<M>(simulation)
         };
     }

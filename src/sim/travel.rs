@@ -29,7 +29,7 @@ pub(super) fn take(simulation: &mut Simulation, pieces: u32) -> Result<()> {
     let whole = simulation.parameters;
     let before = simulation.observables;
     simulation.parameters.time_step_secs /= f64::from(pieces);
-    let mut sum = Observables { converged: true, ..before };
+    let mut sum = Observables { converged: true, bond_work: None, ..before };
     (sum.sweeps, sum.factorisations, sum.residual, sum.stalled) = (0, 0, 0.0, false);
     (sum.normal_work, sum.tangential_work, sum.gravity_work) = (0.0, 0.0, 0.0);
     let mut outcome = Ok(());
@@ -47,6 +47,7 @@ pub(super) fn take(simulation: &mut Simulation, pieces: u32) -> Result<()> {
         sum.normal_work += piece.normal_work;
         sum.tangential_work += piece.tangential_work;
         sum.gravity_work += piece.gravity_work;
+        sum.bond_work = piece.bond_work.map(|work| work + sum.bond_work.unwrap_or(0.0));
     }
     simulation.parameters = whole;
     simulation.observables = Observables {
@@ -61,6 +62,7 @@ pub(super) fn take(simulation: &mut Simulation, pieces: u32) -> Result<()> {
         normal_work: sum.normal_work,
         tangential_work: sum.tangential_work,
         gravity_work: sum.gravity_work,
+        bond_work: sum.bond_work,
         ..simulation.observables
     };
     outcome

@@ -149,11 +149,8 @@ impl<K: Kinematics> StepProblem<K> {
             if !range {
                 return parameters.restitution_velocity(velocity, gravity_magnitude);
             }
-            // What is closed in the step must not close by more than its gap; what touches bounces.
-            if contact.gap > touch {
-                return (contact.gap - touch) / parameters.time_step_secs;
-            }
-            parameters.restitution_velocity(velocity.min(0.0), gravity_magnitude)
+            // A gap must not close by more than itself. Bounces are part of the shocks (`sim::shocks`).
+            (contact.gap - touch).max(0.0) / parameters.time_step_secs
         };
         if range && self.capture_speed > 0.0 {
             let capture = |&index: &u32| match contacts.bonds()[index as usize].alive {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::SeriesSettings;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::sim::{Observables, Simulation, Tally};
+use crate::sim::{Simulation, Tally};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -119,8 +119,8 @@ pub(super) fn series_cells(simulation: &Simulation, grains: &[usize]) -> Result<
 }
 
 /// The names of [`series_cells`].
-pub(super) fn series_names(grains: &[usize]) -> Result<Vec<String>> {
-    let mut names = names_of(&Observables::default())?;
+pub(super) fn series_names(simulation: &Simulation, grains: &[usize]) -> Result<Vec<String>> {
+    let mut names = names_of(simulation.observables())?;
     names.extend(grains.iter().flat_map(|grain| [format!("x{grain}"), format!("y{grain}")]));
     Ok(names)
 }

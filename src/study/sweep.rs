@@ -124,7 +124,7 @@ fn run_all(
     let ended = part.into_iter().par_bridge().try_for_each(|run| {
         let started = Instant::now();
         let scene = states.scene(&run.config)?;
-        let mut course = Course::start(study)?;
+        let mut course = Course::start(study);
         let outcome =
             run_to_end(&scene, study.series.as_ref(), |simulation| course.add(simulation))?;
         course.finish(folder, run)?;
@@ -150,20 +150,17 @@ struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    fn start(study: &'a Study) -> Result<Self> {
-        let mut course = Self { study, writer: None };
-        if let Some(series) = &study.series {
-            course.writer = Some(csv::Writer::from_writer(Vec::new()));
-            course.write(&series_names(&series.grains)?)?;
-        }
-        Ok(course)
+    fn start(study: &'a Study) -> Self {
+        Self { study, writer: None }
     }
 
     fn add(&mut self, simulation: &crate::sim::Simulation) -> Result<()> {
-        match &self.study.series {
-            Some(series) => self.write(&series_cells(simulation, &series.grains)?),
-            None => Ok(()),
+        let Some(series) = &self.study.series else { return Ok(()) };
+        if self.writer.is_none() {
+            self.writer = Some(csv::Writer::from_writer(Vec::new()));
+            self.write(&series_names(simulation, &series.grains)?)?;
         }
+        self.write(&series_cells(simulation, &series.grains)?)
     }
 
     fn write(&mut self, cells: &[String]) -> Result<()> {

@@ -1,7 +1,9 @@
 //! Panel: what the run measures, against simulated time.
 
 use egui::{Color32, RichText, Ui};
-use egui_plot::{AxisHints, GridInput, GridMark, HoverPosition, Line, Plot, PlotPoints, VLine};
+use egui_plot::{
+    AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::app::export::Export;
@@ -61,6 +63,19 @@ impl Quantity {
             Self::Energy => row.kinetic_energy,
         }
     }
+}
+
+/// An energy of the bonds in a row, J.
+type EnergyOfBonds = fn(&Observables) -> Option<f64>;
+
+/// What the plot of energy shows of bonds, with its style.
+const ENERGIES_OF_BONDS: [(&str, LineStyle, EnergyOfBonds); 2] = [
+    ("stored in bonds", LineStyle::Dashed { length: 6.0 }, |row| row.bond_energy),
+    ("taken by broken bonds", LineStyle::Dotted { spacing: 4.0 }, |row| row.broken_bond_energy),
+];
+
+fn has_bonds(curve: &Curve) -> bool {
+    curve.last().is_some_and(|row| row.bond_energy.is_some())
 }
 
 /// Everything that plots are drawn from.
@@ -178,11 +193,18 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
     let (prefix, factor) = match quantity {
         Quantity::Energy => {
             let rows = data.worlds.iter().flat_map(|(.., curve)| curve.rows());
-            si_prefix(rows.map(|row| row.kinetic_energy).fold(0.0, f64::max))
+            let largest = |row: &Observables| {
+                let taken = row.broken_bond_energy.unwrap_or(0.0);
+                row.kinetic_energy.max(taken).max(row.bond_energy.unwrap_or(0.0))
+            };
+            si_prefix(rows.map(largest).fold(0.0, f64::max))
         }
         _ => ("", 1.0),
     };
-    ui.label(RichText::new(quantity.title(prefix)).small());
+    let label = ui.label(RichText::new(quantity.title(prefix)).small());
+    if quantity == Quantity::Energy && data.worlds.iter().any(|(.., curve)| has_bonds(curve)) {
+        label.on_hover_text("Dashed: stored in stretched bonds. Dotted: taken by broken ones.");
+    }
     let log = quantity == Quantity::Residual;
     let group = egui::Id::unique("time");
     let response = Plot::new(("plot", quantity.name()))
@@ -207,8 +229,16 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
         .show(ui, |plot| {
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
             for (name, colour, curve) in &data.worlds {
-                let points = points(curve, quantity, factor);
-                plot.line(Line::new(name.clone(), points).color(*colour).width(1.6));
+                let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
+                    Line::new(name, points(curve, |row| value(row) / factor)).color(*colour)
+                };
+                plot.line(line(name.clone(), &|row| quantity.value(row)).width(1.6));
+                if quantity == Quantity::Energy && has_bonds(curve) {
+                    for (what, style, value) in ENERGIES_OF_BONDS {
+                        let value = |row: &Observables| value(row).unwrap_or(f64::NAN);
+                        plot.line(line(format!("{name}: {what}"), &value).style(style));
+                    }
+                }
             }
             plot.pointer_coordinate()
         });
@@ -245,20 +275,17 @@ fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
 }
 
 /// The curve, or, of a long one, the least and the largest value of every interval.
-fn points(curve: &Curve, quantity: Quantity, factor: f64) -> PlotPoints<'static> {
-    // A state that no step has led to has no residual.
-    let finite = |row: &&Observables| {
-        row.time_secs.is_finite() && (quantity != Quantity::Residual || row.residual > 0.0)
-    };
-    let value = |row: &Observables| quantity.value(row) / factor;
+fn points(curve: &Curve, value: impl Fn(&Observables) -> f64) -> PlotPoints<'static> {
+    let points = curve.rows().map(|row| [row.time_secs, value(row)]);
+    // A state that no step has led to has no residual, and its logarithm is no number.
+    let mut points_there = points.filter(|point| point.iter().all(|number| number.is_finite()));
     if curve.len() <= 2 * BUCKETS {
-        return curve.rows().filter(finite).map(|row| [row.time_secs, value(row)]).collect();
+        return points_there.collect();
     }
     let per_bucket = curve.len().div_ceil(BUCKETS);
     let mut points = Vec::with_capacity(2 * BUCKETS + 2);
-    let mut rows = curve.rows().filter(finite).map(|row| [row.time_secs, value(row)]);
     loop {
-        let bucket: Vec<[f64; 2]> = rows.by_ref().take(per_bucket).collect();
+        let bucket: Vec<[f64; 2]> = points_there.by_ref().take(per_bucket).collect();
         let extremes = [f64::lt as fn(&f64, &f64) -> bool, f64::gt].map(|beats| {
             bucket
                 .iter()

@@ -29,7 +29,7 @@ pub(super) fn advance<M: Model>(simulation: &mut Simulation, scheme: Scheme) -> 
     let measures =
         Measures { normal_work: normal, tangential_work: tangential, ..measure::<M>(problem) };
     let report = SolveReport { sweeps, converged: true, ..SolveReport::default() };
-    Taken { report, measures, gravity_work }
+    Taken { report, measures, gravity_work, bonds: None }
 }
 
 /// Substeps of the next step.
