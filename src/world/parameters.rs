@@ -86,6 +86,7 @@ pub struct Parameters {
     ///
     /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step
     /// then has no solution. Below about 2 g·Δt it stands for no bounce that anyone could see.
+    /// Without effect under the law `range`, whose shocks have a solution always.
     #[serde(default)]
     pub restitution_threshold: f64,
     /// How long a bond lives.

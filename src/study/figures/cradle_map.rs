@@ -77,5 +77,5 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         ),
         (loose > tight + 0.1).into(),
     );
-    Ok(Figure { name: "cradle-map", sheet, claims: vec![claim] })
+    Ok(Figure { name: "cradle-map", sheet, claims: vec![claim], table: None })
 }

@@ -73,5 +73,5 @@ pub(super) fn make(_workshop: &Workshop) -> Result<Figure> {
         format!("six simulated steps lie there to {worst:.1e}"),
         (worst < 1e-12).into(),
     );
-    Ok(Figure { name: "fig2", sheet, claims: vec![claim] })
+    Ok(Figure { name: "fig2", sheet, claims: vec![claim], table: None })
 }

@@ -30,7 +30,7 @@ pub(super) fn slump(workshop: &Workshop) -> Result<Figure> {
         Claim::new(format!("Fig. 5a: {said}"), measured, verdict)
     });
     let claims = claims.collect();
-    Ok(Figure { name: "fig5a", sheet: sheet(workshop, &rows, chart), claims })
+    Ok(Figure { name: "fig5a", sheet: sheet(workshop, &rows, chart), claims, table: None })
 }
 
 pub(super) fn overlap(workshop: &Workshop) -> Result<Figure> {
@@ -66,7 +66,12 @@ pub(super) fn overlap(workshop: &Workshop) -> Result<Figure> {
         format!("largest mean overlap of a run {largest:.3} d"),
         (largest < 0.06).into(),
     );
-    Ok(Figure { name: "fig5b", sheet: sheet(workshop, &rows, chart), claims: vec![grows, range] })
+    Ok(Figure {
+        name: "fig5b",
+        sheet: sheet(workshop, &rows, chart),
+        claims: vec![grows, range],
+        table: None,
+    })
 }
 
 fn chart(rows: &Rows<'_>, title: &str, y: Axis, number: fn(&Outcome) -> f64) -> Chart {

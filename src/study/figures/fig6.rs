@@ -99,7 +99,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         states.len()
     )];
     sheet.caption.extend(workshop.note());
-    Ok(Figure { name: "fig6", sheet, claims: vec![regimes, guess] })
+    Ok(Figure { name: "fig6", sheet, claims: vec![regimes, guess], table: None })
 }
 
 /// Where the slump turns, with the interval in which it does so for resampled initial states.

@@ -73,7 +73,7 @@ pub(super) fn courses(workshop: &Workshop) -> Result<Figure> {
     let mut sheet = Sheet::of(chart);
     sheet.caption =
         vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
-    Ok(Figure { name: "fig8", sheet, claims: Vec::new() })
+    Ok(Figure { name: "fig8", sheet, claims: Vec::new(), table: None })
 }
 
 /// x_j/d against the time since k first touched i.
@@ -158,7 +158,7 @@ pub(super) fn strip(workshop: &Workshop) -> Result<Figure> {
         ),
         if opened == 0 { Verdict::Fails } else { Verdict::Open },
     );
-    Ok(Figure { name: "fig8-strip", sheet, claims: vec![pattern, solved] })
+    Ok(Figure { name: "fig8-strip", sheet, claims: vec![pattern, solved], table: None })
 }
 
 pub(super) fn share(workshop: &Workshop) -> Result<Figure> {
@@ -213,5 +213,5 @@ pub(super) fn share(workshop: &Workshop) -> Result<Figure> {
         )
     });
     let claims = claims.collect();
-    Ok(Figure { name: "fig8-share", sheet, claims })
+    Ok(Figure { name: "fig8-share", sheet, claims, table: None })
 }

@@ -1,6 +1,7 @@
 //! Every figure of the paper and those that its conclusion asks for, from simulation alone, and a
 //! report of what holds. One file a figure, listed in [`FIGURES`].
 
+mod agreement;
 mod cradle_map;
 mod fig2;
 mod fig5;
@@ -10,6 +11,7 @@ mod pile_map;
 mod pile_series;
 mod range;
 mod reproduce;
+mod table;
 mod two_body;
 mod verdict;
 mod workshop;
@@ -19,6 +21,7 @@ use workshop::Workshop;
 
 use super::chart::Sheet;
 use crate::error::Result;
+use table::Table;
 use verdict::Claim;
 
 /// A finished figure.
@@ -29,6 +32,8 @@ pub(super) struct Figure {
     pub sheet: Sheet,
     /// What it says of the paper's claims.
     pub claims: Vec<Claim>,
+    /// The numbers behind them, where the chart shows too few.
+    pub table: Option<Table>,
 }
 
 /// A figure that can be asked for.

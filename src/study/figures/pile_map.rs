@@ -127,5 +127,5 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
             rows.seeds().len()
         )], workshop.note()].concat(),
     };
-    Ok(Figure { name: "pile-map", sheet, claims: vec![claim] })
+    Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
 }

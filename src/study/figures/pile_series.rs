@@ -41,7 +41,7 @@ pub(super) fn size(workshop: &Workshop) -> Result<Figure> {
         )
     });
     let claims = claims.collect();
-    Ok(Figure { name: "pile-size", sheet, claims })
+    Ok(Figure { name: "pile-size", sheet, claims, table: None })
 }
 
 pub(super) fn tolerance(workshop: &Workshop) -> Result<Figure> {
@@ -92,7 +92,7 @@ pub(super) fn tolerance(workshop: &Workshop) -> Result<Figure> {
         )
     });
     let claims = claims.collect();
-    Ok(Figure { name: "pile-tolerance", sheet, claims })
+    Ok(Figure { name: "pile-tolerance", sheet, claims, table: None })
 }
 
 /// A cohesive time and its slope for each initial state.

@@ -3,13 +3,13 @@
 
 use std::time::Instant;
 
-use super::verdict::{SIGNIFICANT, Verdict};
+use super::agreement::{self, slumps};
 use super::workshop::Rows;
 use super::{Claim, Figure, Workshop};
 use crate::error::Result;
 use crate::scene::Config;
 use crate::study::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
-use crate::study::statistics::{mean, p_value};
+use crate::study::statistics::mean;
 use crate::world::ContactLaw;
 
 /// Both laws with what the figure calls them.
@@ -44,8 +44,8 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         steps[0]
     )];
     sheet.caption.extend(workshop.note());
-    let mut claims: Vec<Claim> =
-        LAWS.iter().zip(&of_law).map(|((_, name), rows)| agreement(name, rows, &steps)).collect();
+    let named = [(LAWS[0].1, &of_law[0]), (LAWS[1].1, &of_law[1])];
+    let mut claims = Vec::from(named.map(|(name, rows)| agreement::claim(name, rows, &steps)));
     let overlaps = of_law[1].outcomes(|outcome| outcome.mean_overlap);
     let largest = overlaps.into_iter().fold(0.0, f64::max);
     claims.push(Claim::new(
@@ -53,7 +53,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         format!("largest mean overlap of a run {largest:.1e} d").replace("e-", "e−"),
         (largest < MOST_OVERLAP).into(),
     ));
-    Ok(Figure { name: "range", sheet, claims })
+    Ok(Figure { name: "range", sheet, claims, table: Some(agreement::table(&named, &steps)) })
 }
 
 /// Those of the values that lie on an axis: the panels are too narrow for more.
@@ -64,11 +64,6 @@ fn ticks(values: &[f64], from: f64, to: f64) -> Vec<(f64, String)> {
     };
     let on_axis = values.iter().copied().filter(|value| (from..=to).contains(value));
     on_axis.map(written).collect()
-}
-
-fn slumps(rows: &Rows<'_>, bond: f64, step: f64) -> Vec<f64> {
-    let here = |config: &Config| config.bond == Some(bond) && config.dt == Some(step);
-    rows.such_that(here).outcomes(|outcome| outcome.slump)
 }
 
 fn point(x: f64, slumps: &[f64]) -> Point {
@@ -169,42 +164,4 @@ fn seconds_per_second(rows: &Rows<'_>, law: ContactLaw, step: f64, quick: bool) 
         least = least.min(begun.elapsed().as_secs_f64());
     }
     Ok(least / duration)
-}
-
-/// Whether the slump at each Δt differs from that at the smallest one, state by state. With many
-/// comparisons some differ by chance, so p-values are multiplied by their number (Bonferroni).
-fn agreement(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Claim {
-    let bonds = rows.values(|config| config.bond);
-    let (mut outside, mut count) = (Vec::new(), 0);
-    let (mut least, mut widest) = (1.0f64, 0.0f64);
-    for &bond in &bonds {
-        for &step in &steps[1..] {
-            let pairs = slumps(rows, bond, step).into_iter().zip(slumps(rows, bond, steps[0]));
-            let told = mean(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>());
-            count += 1;
-            widest = widest.max(told.mean.abs());
-            least = least.min(2.0 * told.p_above(0.0).min(told.p_below(0.0)));
-            if told.low > 0.0 || told.high < 0.0 {
-                outside.push(format!("Bond {bond} at {step:e} s ({:+.3})", told.mean));
-            }
-        }
-    }
-    let p = (least * f64::from(count)).min(1.0);
-    let measured = format!(
-        "{} of {count} means outside the 95 % interval about that at {:e} s{}{}; largest difference \
-         {widest:.3}; any difference: {}; {} states",
-        outside.len(),
-        steps[0],
-        if outside.is_empty() { "" } else { ": " },
-        outside.join(", "),
-        p_value(p),
-        rows.seeds().len()
-    );
-    let verdict = match (p < SIGNIFICANT, outside.is_empty()) {
-        (true, _) => Verdict::Fails,
-        (false, true) => Verdict::Holds,
-        (false, false) => Verdict::Open,
-    };
-    let said = format!("Beyond the paper: under {law} the slump does not depend on Δt");
-    Claim::new(said, measured.replace('-', "−"), verdict)
 }

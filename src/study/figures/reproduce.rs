@@ -70,6 +70,9 @@ fn write(figure: &Figure, folder: &Path) -> Result<()> {
     let path = |ending: &str| folder.join(format!("{}.{ending}", figure.name));
     write_file(&path("csv"), &figure.sheet.to_csv()?)?;
     write_file(&path("png"), &chart::png(&figure.sheet)?)?;
+    if let Some(table) = &figure.table {
+        write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
+    }
     write_file(&path("svg"), chart::svg(&figure.sheet)?.as_bytes())
 }
 
@@ -104,6 +107,10 @@ impl Report {
             );
             println!("{}: {} [{}]", info.name, claim.said, claim.verdict.words());
             println!("    {}", claim.measured);
+        }
+        if let Some(table) = &figure.table {
+            let _ = write!(self.text, "\n{}", table.to_markdown());
+            print!("{}", table.to_markdown());
         }
         if figure.claims.is_empty() {
             self.text.push_str("No claim is tested on this figure.\n");

@@ -99,5 +99,5 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         ),
         (worst < 1e-12).into(),
     );
-    Ok(Figure { name: "two-body", sheet, claims: vec![claim] })
+    Ok(Figure { name: "two-body", sheet, claims: vec![claim], table: None })
 }
