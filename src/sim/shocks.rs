@@ -95,7 +95,7 @@ pub(super) fn pass<M: Model>(
     }
     let StepProblem { bodies, before, free, .. } = problem;
     for ((now, before), free) in bodies.iter().zip(before).zip(free) {
-        let coordinates = [now, before, free].map(|body| M::Kinematics::coordinates(body));
+        let coordinates = [now, before, free].map(M::Kinematics::coordinates);
         let [after, was, would_be] = coordinates;
         *free = M::Kinematics::from_coordinates(std::array::from_fn(|axis| {
             after[axis] + (would_be[axis] - was[axis])
