@@ -15,19 +15,16 @@
 //! be. Then no solution is to be had, and a tenth of the steps of a collapsing pile at Δt = 5e-3 s were
 //! such. Asked for alone, v⁺ = −ρ v⁻ of all grains obeys every contact, and so does v = 0 in the step.
 //! For this, contacts that open have their term too: they may close by ρ v_n⁻ until the step forbids it.
+//!
+//! **How tightly.** As the step. Solved a hundred times less tightly, with what that leaves of approach
+//! taken up by the step, shocks cost half as much, but their errors add up where steps are short: at
+//! Bond 15 and Δt = 5e-5 s slump was 0.21 … 0.23 instead of 0.17, over eight states (± 0.025).
 
 use crate::error::Result;
 use crate::solver::{
     Kinematics, Measures, Model, SolveReport, SolverSettings, StepProblem, for_each_row, measure,
     relative_velocities, residual, solve,
 };
-
-/// By how much shocks are solved less tightly than steps, and how loosely at most. What they leave of
-/// approach the step takes up, so that no error is left in the constraints, only the impulse is
-/// divided a little otherwise. Solved as tightly, shocks took half the time of a run.
-const LOOSER: f64 = 100.0;
-/// See [`LOOSER`].
-const LOOSEST: f64 = 1e-2;
 
 /// What the shocks of a step came to.
 #[derive(Clone, Copy, Debug)]
@@ -59,8 +56,7 @@ pub(super) fn pass<M: Model>(
 ) -> Result<Option<Shocks>> {
     workspace.struck.clear();
     relative_velocities(problem, &problem.before, &mut workspace.speeds);
-    let tolerance = (LOOSER * settings.tolerance).min(LOOSEST).max(settings.tolerance);
-    if !any::<M::Kinematics>(problem, &workspace.speeds, tolerance) {
+    if !any::<M::Kinematics>(problem, &workspace.speeds, settings.tolerance) {
         return Ok(None);
     }
     let Workspace { speeds, captures, rows, struck } = workspace;
@@ -81,7 +77,7 @@ pub(super) fn pass<M: Model>(
         row.restitution_velocity = if touches { bounce } else { closing_gap.max(bounce) };
     }
     problem.bodies.clone_from(&problem.free);
-    let report = solve::<M>(problem, &SolverSettings { tolerance, ..*settings });
+    let report = solve::<M>(problem, settings);
     let residual = residual::<M>(problem);
     std::mem::swap(&mut problem.free, &mut problem.before);
     let measures = Measures { residual, ..measure::<M>(problem) };
