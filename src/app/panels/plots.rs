@@ -1,6 +1,6 @@
 //! Panel: what the run measures, against simulated time.
 
-use egui::{Color32, RichText, Ui};
+use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine,
 };
@@ -201,10 +201,11 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
         }
         _ => ("", 1.0),
     };
-    let label = ui.label(RichText::new(quantity.title(prefix)).small());
+    let mut title = quantity.title(prefix);
     if quantity == Quantity::Energy && data.worlds.iter().any(|(.., curve)| has_bonds(curve)) {
-        label.on_hover_text("Dashed: stored in stretched bonds. Dotted: taken by broken ones.");
+        title.push_str("; dashed: stored in bonds, dotted: taken by broken ones");
     }
+    ui.add(Label::new(RichText::new(title).small()).truncate());
     let log = quantity == Quantity::Residual;
     let group = egui::Id::unique("time");
     let response = Plot::new(("plot", quantity.name()))
@@ -236,7 +237,7 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
                 if quantity == Quantity::Energy && has_bonds(curve) {
                     for (what, style, value) in ENERGIES_OF_BONDS {
                         let value = |row: &Observables| value(row).unwrap_or(f64::NAN);
-                        plot.line(line(format!("{name}: {what}"), &value).style(style));
+                        plot.line(line(format!("{name}: {what}"), &value).style(style).width(1.2));
                     }
                 }
             }
