@@ -7,6 +7,7 @@ mod delassus;
 mod iterate;
 mod jacobi;
 mod kinematics;
+mod lane_blocks;
 mod measure;
 mod method;
 mod model;
@@ -20,6 +21,7 @@ mod remedies;
 mod settings;
 mod stall;
 mod system;
+mod update;
 
 pub use auto::picked;
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};

@@ -25,7 +25,7 @@ pub struct Row<K: Kinematics> {
     /// Grain j; unused in a row against a fixed body.
     pub j: u32,
     /// n, from j to i.
-    pub normal: K::Normal,
+    pub normal: K::Normal<f64>,
     /// g_i = m_ij/m_i; 1 against a fixed body.
     pub share: f64,
     /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold.
@@ -45,11 +45,11 @@ pub struct Row<K: Kinematics> {
 #[derive(Clone, Debug)]
 pub struct StepProblem<K: Kinematics> {
     /// Bodies as the sweep moves them.
-    pub bodies: Vec<K::Body>,
+    pub bodies: Vec<K::Body<f64>>,
     /// Bodies at the beginning of the step.
-    pub before: Vec<K::Body>,
+    pub before: Vec<K::Body<f64>>,
     /// Bodies at the end of the step if no contact acted.
-    pub free: Vec<K::Body>,
+    pub free: Vec<K::Body<f64>>,
     /// Rows against fixed bodies.
     pub fixed_rows: Vec<Row<K>>,
     /// Rows between grains.
@@ -168,7 +168,7 @@ impl<K: Kinematics> StepProblem<K> {
             let index = self.contact_of_row[at];
             let contact = &list[index as usize];
             let i = contact.grain as usize;
-            let [velocity, _] = K::velocity(K::normal(contact.normal), &self.before[i]);
+            let [velocity, _] = K::velocity(K::normal(contact.normal.to_array()), &self.before[i]);
             let masses = (grains.masses[i], 1.0);
             let velocity = rebound(velocity, contact);
             let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
@@ -180,7 +180,7 @@ impl<K: Kinematics> StepProblem<K> {
             let contact = &list[index as usize];
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let (before_i, before_j) = (&self.before[i], &self.before[j]);
-            let [velocity, _] = K::relative_velocity(K::normal(contact.normal), before_i, before_j);
+            let [velocity, _] = K::relative_velocity(K::normal(contact.normal.to_array()), before_i, before_j);
             let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
             let masses = (grains.masses[i] * share, share);
             let velocity = rebound(velocity, contact);
@@ -211,7 +211,7 @@ impl<K: Kinematics> StepProblem<K> {
         Row {
             i: contact.grain,
             j: contact.other,
-            normal: K::normal(contact.normal),
+            normal: K::normal(contact.normal.to_array()),
             share,
             restitution_velocity,
             shifted_impulse,
@@ -284,9 +284,9 @@ impl<K: Kinematics> StepProblem<K> {
     #[inline(always)]
     pub fn friction_bound<M: Model>(&self, shifted_impulse: f64) -> f64 {
         if M::COMPRESSIVE_CONE {
-            law::friction_bound::<true>(self.friction, shifted_impulse, self.capture_speed)
+            law::friction_bound::<true, _>(self.friction, shifted_impulse, self.capture_speed)
         } else {
-            law::friction_bound::<false>(self.friction, shifted_impulse, 0.0)
+            law::friction_bound::<false, _>(self.friction, shifted_impulse, 0.0)
         }
     }
 

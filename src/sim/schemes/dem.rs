@@ -186,8 +186,8 @@ pub(super) fn advance<M: Model>(
 
 /// (v_n, v_t) of a contact, m/s.
 #[inline(always)]
-fn velocity<K: Kinematics>(contact: &Contact, bodies: &[K::Body]) -> [f64; 2] {
-    let (normal, i) = (K::normal(contact.normal), &bodies[contact.grain as usize]);
+fn velocity<K: Kinematics>(contact: &Contact, bodies: &[K::Body<f64>]) -> [f64; 2] {
+    let (normal, i) = (K::normal(contact.normal.to_array()), &bodies[contact.grain as usize]);
     match bodies.get(contact.other as usize) {
         Some(j) => K::relative_velocity(normal, i, j),
         None => K::velocity(normal, i),
@@ -209,7 +209,7 @@ impl Elements {
     fn push<M: Model>(
         &self,
         simulation: &mut Simulation,
-        start: &[<M::Kinematics as Kinematics>::Body],
+        start: &[<M::Kinematics as Kinematics>::Body<f64>],
         totals: &mut Totals,
         pushes: &mut Vec<(f64, [f64; 2])>,
     ) {
@@ -234,9 +234,9 @@ impl Elements {
             if M::FRICTION {
                 let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
                 let bound = if M::COMPRESSIVE_CONE {
-                    law::friction_bound::<true>(self.friction, push, cohesion)
+                    law::friction_bound::<true, _>(self.friction, push, cohesion)
                 } else {
-                    law::friction_bound::<false>(self.friction, push, 0.0)
+                    law::friction_bound::<false, _>(self.friction, push, 0.0)
                 };
                 let dashpot = part * damping * tangential_velocity;
                 let spring = part * stiffness;
@@ -255,7 +255,7 @@ impl Elements {
             totals.add(contact, impulse);
             let reduced = [impulse.normal / mass, impulse.tangential / mass];
             pushes.push((mass, reduced));
-            let normal = M::Kinematics::normal(contact.normal);
+            let normal = M::Kinematics::normal(contact.normal.to_array());
             if j < bodies.len() {
                 let (mut one, mut other) = (bodies[i], bodies[j]);
                 M::Kinematics::push_pair(&mut one, &mut other, normal, reduced, share);

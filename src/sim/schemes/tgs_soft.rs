@@ -250,9 +250,9 @@ impl Softness {
         if !M::FRICTION {
             0.0
         } else if M::COMPRESSIVE_CONE {
-            law::friction_bound::<true>(self.friction, shifted, capture_speed)
+            law::friction_bound::<true, _>(self.friction, shifted, capture_speed)
         } else {
-            law::friction_bound::<false>(self.friction, shifted, 0.0)
+            law::friction_bound::<false, _>(self.friction, shifted, 0.0)
         }
     }
 }
@@ -284,7 +284,7 @@ fn update<K: Kinematics>(
 /// The relative velocities of all rows with the given bodies, m/s.
 fn velocities<'a, K: Kinematics>(
     problem: &'a StepProblem<K>,
-    bodies: &'a [K::Body],
+    bodies: &'a [K::Body<f64>],
 ) -> impl Iterator<Item = [f64; 2]> + 'a {
     let of_fixed = |row: &Row<K>| K::velocity(row.normal, &bodies[row.i as usize]);
     let of_pair = |row: &Row<K>| {

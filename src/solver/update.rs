@@ -1,0 +1,176 @@
+//! The update of one contact in a Gauss–Seidel sweep, or of several that share no grain.
+//!
+//! In reduced impulses (`contact::law`, `solver::kinematics`):
+//!
+//! > σ ← max(σ − (v_n + ρ v_n^{n−1}), 0),  λ_t ← clamp(λ_t − v_t · m_t/m_n, ±bound(σ)).
+//!
+//! The normal impulse does not change v_t, so both velocities are read once.
+
+use super::{Kinematics, Model, Row, StepProblem};
+use crate::contact::{Lanes, law};
+
+/// A body of a model; with several lanes, a body a lane.
+pub(super) type Body<M, T> = <<M as Model>::Kinematics as Kinematics>::Body<T>;
+
+/// What an update needs of a row; with several lanes, of a row a lane. Units as in [`Row`].
+#[derive(Clone, Copy)]
+pub(super) struct Local<K: Kinematics, T: Lanes> {
+    pub normal: K::Normal<T>,
+    pub share: T,
+    pub restitution_velocity: T,
+    /// (σ, λ_t).
+    pub impulse: [T; 2],
+    pub effective_mass: T,
+}
+
+impl<K: Kinematics> Local<K, f64> {
+    /// That of a row.
+    #[inline(always)]
+    pub fn of(row: &Row<K>) -> Self {
+        Self {
+            normal: row.normal,
+            share: row.share,
+            restitution_velocity: row.restitution_velocity,
+            impulse: [row.shifted_impulse, row.tangential_impulse],
+            effective_mass: row.effective_mass,
+        }
+    }
+
+    /// Gives a row the impulses.
+    #[inline(always)]
+    pub fn store<M: Model<Kinematics = K>>(&self, row: &mut Row<K>) {
+        row.shifted_impulse = self.impulse[0];
+        if M::FRICTION {
+            row.tangential_impulse = self.impulse[1];
+        }
+    }
+}
+
+/// The numbers of the contact law that all rows share.
+pub(super) struct Law {
+    friction: f64,
+    capture_speed: f64,
+}
+
+impl Law {
+    /// Those of a problem.
+    pub fn of<K: Kinematics>(problem: &StepProblem<K>) -> Self {
+        Self { friction: problem.friction, capture_speed: problem.capture_speed }
+    }
+
+    /// Solves the contact of a row: of grain i with a fixed body.
+    #[inline(always)]
+    pub fn solve_single_row<M: Model, const MEASURE: bool>(
+        &self,
+        row: &mut Row<M::Kinematics>,
+        i: &mut Body<M, f64>,
+        change: &mut Change,
+    ) {
+        let mut local = Local::of(row);
+        self.solve_single::<M, f64, MEASURE>(&mut local, i, change);
+        local.store::<M>(row);
+    }
+
+    /// Solves the contact of a row: between grains i and j.
+    #[inline(always)]
+    pub fn solve_pair_row<M: Model, const MEASURE: bool>(
+        &self,
+        row: &mut Row<M::Kinematics>,
+        i: &mut Body<M, f64>,
+        j: &mut Body<M, f64>,
+        change: &mut Change,
+    ) {
+        let mut local = Local::of(row);
+        self.solve_pair::<M, f64, MEASURE>(&mut local, i, j, change);
+        local.store::<M>(row);
+    }
+
+    /// Solves contacts of grains i with fixed bodies.
+    #[inline(always)]
+    pub fn solve_single<M: Model, T: Lanes, const MEASURE: bool>(
+        &self,
+        local: &mut Local<M::Kinematics, T>,
+        i: &mut Body<M, T>,
+        change: &mut Change<T>,
+    ) {
+        let velocity = M::Kinematics::velocity(local.normal, i);
+        let impulse = self.update::<M, T>(local, velocity);
+        M::Kinematics::push_single(i, local.normal, impulse);
+        change.add::<M, MEASURE>(local.effective_mass, impulse);
+    }
+
+    /// Solves contacts between grains i and j.
+    #[inline(always)]
+    pub fn solve_pair<M: Model, T: Lanes, const MEASURE: bool>(
+        &self,
+        local: &mut Local<M::Kinematics, T>,
+        i: &mut Body<M, T>,
+        j: &mut Body<M, T>,
+        change: &mut Change<T>,
+    ) {
+        let velocity = M::Kinematics::relative_velocity(local.normal, i, j);
+        let impulse = self.update::<M, T>(local, velocity);
+        M::Kinematics::push_pair(i, j, local.normal, impulse, local.share);
+        change.add::<M, MEASURE>(local.effective_mass, impulse);
+    }
+
+    /// Solves at the given (v_n, v_t) and returns the change of (λ_n, λ_t).
+    #[inline(always)]
+    fn update<M: Model, T: Lanes>(
+        &self,
+        local: &mut Local<M::Kinematics, T>,
+        [normal_velocity, tangential_velocity]: [T; 2],
+    ) -> [T; 2] {
+        let [normal_before, tangential_before] = local.impulse;
+        let closing = normal_velocity + local.restitution_velocity;
+        let shifted = law::signorini(normal_before - closing);
+        local.impulse[0] = shifted;
+        let normal_change = shifted - normal_before;
+        if !M::FRICTION {
+            return [normal_change, shifted.same(0.0)];
+        }
+        let bound = if M::COMPRESSIVE_CONE {
+            law::friction_bound::<true, _>(self.friction, shifted, self.capture_speed)
+        } else {
+            law::friction_bound::<false, _>(self.friction, shifted, 0.0)
+        };
+        let compliance = shifted.same(1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE);
+        let tangential = tangential_before - compliance * tangential_velocity;
+        local.impulse[1] = law::coulomb(tangential, bound);
+        [normal_change, local.impulse[1] - tangential_before]
+    }
+}
+
+/// How much a sweep changed the impulses; zero where it was not asked to measure. With several
+/// lanes, how much those of each lane.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Change<T = f64> {
+    /// Σ ΔP², (N·s)².
+    pub squared: T,
+    /// Σ |ΔP|, N·s.
+    pub absolute: T,
+}
+
+impl Change {
+    /// Adds the change of other contacts.
+    pub fn add_all(&mut self, other: Self) {
+        self.squared += other.squared;
+        self.absolute += other.absolute;
+    }
+}
+
+impl<T: Lanes> Change<T> {
+    #[inline(always)]
+    fn add<M: Model, const MEASURE: bool>(&mut self, mass: T, [normal, tangential]: [T; 2]) {
+        if MEASURE {
+            let normal = mass * normal;
+            self.squared += normal * normal;
+            self.absolute += normal.magnitude();
+            if M::FRICTION {
+                let tangential = mass * tangential;
+                self.squared += tangential * tangential;
+                self.absolute += tangential.magnitude();
+            }
+        }
+    }
+}
