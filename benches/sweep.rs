@@ -7,6 +7,7 @@ use std::hint::black_box;
 
 use common::timing::{criterion, least_secs};
 use criterion::Criterion;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use slump::sim::Simulation;
 use slump::solver::{
     Method, Ordering, SolverSettings, SpinningPlane, StepModel, StepProblem, StopTest, solve, sweep,
@@ -29,24 +30,27 @@ fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) 
     };
     let coloured = SolverSettings { ordering: Ordering::Coloured, ..one_by_one };
     let side_by_side = SolverSettings { method: Method::NsgsParallel, ..one_by_one };
-    let mut time = |name: &str, settings: SolverSettings, threads: usize| {
+    let mut time = |name: &str, settings: SolverSettings, pool: Option<&ThreadPool>| {
         let (world, contacts) = (simulation.world(), simulation.contacts());
         let mut problem = StepProblem::<SpinningPlane>::default();
         problem.prepare::<Full>(world, contacts, simulation.parameters(), true, &settings);
         let updates = problem.contact_of_row.len() * settings.max_sweeps as usize;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let secs = pool.install(|| {
-            least_secs(criterion, &format!("{name}/{count} discs"), || {
-                let report = solve::<Full>(&mut problem, &settings).expect("a method for problems");
-                assert_eq!(black_box(report).sweeps, settings.max_sweeps);
-            })
-        });
+        let mut run = || {
+            let report = solve::<Full>(&mut problem, &settings).expect("a method for problems");
+            assert_eq!(black_box(report).sweeps, settings.max_sweeps);
+        };
+        let name = format!("{name}/{count} discs");
+        let secs = match pool {
+            Some(pool) => least_secs(criterion, &name, || pool.install(&mut run)),
+            None => least_secs(criterion, &name, run),
+        };
         1e9 * secs / updates as f64
     };
-    let plain = time("one by one", one_by_one, 1);
-    let colours = time("colours, one by one", coloured, 1);
-    let lanes = time("colours, side by side", side_by_side, 1);
-    let threads = time("colours, side by side, two threads", side_by_side, 2);
+    let pool = ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+    let plain = time("one by one", one_by_one, None);
+    let colours = time("colours, one by one", coloured, None);
+    let lanes = time("colours, side by side", side_by_side, None);
+    let threads = time("colours, side by side, two threads", side_by_side, Some(&pool));
     format!(
         "{count} discs, ns a contact and sweep of a solve: one by one {plain:.2}, by colours \
          {colours:.2}, side by side {lanes:.2}, on two threads {threads:.2}; nsgs / nsgs-parallel \
@@ -57,9 +61,10 @@ fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) 
 }
 
 fn main() {
+    ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
     let mut criterion = criterion();
     let mut summary = Vec::new();
-    for count in [138, 2_000, 10_000, 50_000] {
+    for count in [138, 2_000, 10_000] {
         let mut simulation = common::with(&common::settled(count), |numbers| numbers.bond = 20.0);
         let mut settings = *simulation.solver();
         // From a cold start to a tolerance that it cannot meet, every step takes all its sweeps.
@@ -90,6 +95,9 @@ fn main() {
             100.0 * around / of_step
         ));
     }
+    let mut large = common::with(&common::settled(50_000), |numbers| numbers.bond = 20.0);
+    large.step().expect("a finite state");
+    summary.push(by_colours(&mut criterion, &large, 50_000));
     println!("\nleast over all repeats:\n{}", summary.join("\n"));
     criterion.final_summary();
 }

@@ -52,6 +52,8 @@ fn solve_at<M: Model>(
 ) -> SolveReport {
     let mut colouring = std::mem::take(&mut problem.colouring);
     let report = match Coloured::<M>::new(level, problem, &mut colouring) {
+        // Inside the pool a colour is handed out without a call from outside it each time.
+        Some(mut coloured) if coloured.threads => rayon::scope(|_| coloured.run(settings)),
         Some(mut coloured) => coloured.run(settings),
         None => nsgs::solve::<M>(problem, settings),
     };
@@ -64,6 +66,8 @@ fn solve_at<M: Model>(
 /// While it lives, impulses of rows in blocks are the blocks'.
 struct Coloured<'a, M: Model> {
     level: Level,
+    /// Whether there are several threads, and a colour that is worth waking them.
+    threads: bool,
     problem: &'a mut StepProblem<M::Kinematics>,
     ends: &'a [Vec<usize>; 2],
     blocks: &'a mut [Block],
@@ -81,7 +85,7 @@ impl<'a, M: Model> Coloured<'a, M> {
         seen.clear();
         seen.resize(problem.bodies.len(), 0);
         blocks.clear();
-        let mut colour = 0;
+        let (mut colour, mut threads) = (0, false);
         let mut is_first_in_colour = |grain: u32, colour: usize| {
             seen.get_mut(grain as usize)
                 .is_some_and(|seen| std::mem::replace(seen, colour) != colour)
@@ -101,13 +105,15 @@ impl<'a, M: Model> Coloured<'a, M> {
                     }
                 }
                 blocks.extend(rows.as_chunks::<LANES>().0.iter().map(Block::of));
+                threads |= rows.len() / LANES >= WORTH_THREADS;
                 start = end;
             }
             if start != rows.len() {
                 return None;
             }
         }
-        Some(Self { level, problem, ends, blocks, changes })
+        threads &= rayon::current_num_threads() > 1;
+        Some(Self { level, threads, problem, ends, blocks, changes })
     }
 
     fn run(&mut self, settings: &SolverSettings) -> SolveReport {
@@ -139,6 +145,7 @@ impl<'a, M: Model> Coloured<'a, M> {
         let StepProblem { bodies, fixed_rows, pair_rows, .. } = &mut *self.problem;
         let (level, bodies) = (self.level, Bodies::<M>::new(bodies));
         let mut change = Change::default();
+        let mut changes = self.threads.then_some(&mut *self.changes);
         // SAFETY: `Coloured::new` has looked at every row. Its grains are among the bodies, and no
         // other row of its colour has one of them: while a colour is solved, each body is touched
         // from one place only.
@@ -152,10 +159,10 @@ impl<'a, M: Model> Coloured<'a, M> {
         let [fixed_ends, pair_ends] = self.ends;
         let mut blocks = &mut *self.blocks;
         for_each_colour(&mut blocks, fixed_rows, fixed_ends, |blocks, rows| {
-            change.add_all(solve_colour(blocks, rows, self.changes, single));
+            change.add_all(solve_colour(blocks, rows, changes.as_deref_mut(), single));
         });
         for_each_colour(&mut blocks, pair_rows, pair_ends, |blocks, rows| {
-            change.add_all(solve_colour(blocks, rows, self.changes, pair));
+            change.add_all(solve_colour(blocks, rows, changes.as_deref_mut(), pair));
         });
         change
     }
@@ -190,23 +197,27 @@ fn for_each_colour<R>(
     }
 }
 
-/// Solves a colour's contacts in portions, on several threads where it pays.
+/// Solves a colour's contacts in portions. With a place for what they change, they are solved on several threads
+/// where it pays.
 fn solve_colour<R: Send>(
     blocks: &mut [Block],
     rows: &mut [R],
-    changes: &mut Vec<Change>,
+    changes: Option<&mut Vec<Change>>,
     solve: impl Fn(&mut [Block], &mut [R]) -> Change + Send + Sync,
 ) -> Change {
     let mut change = Change::default();
     let left_over = blocks.len() * LANES;
-    if blocks.len() < WORTH_THREADS {
-        for portion in blocks.chunks_mut(PORTION) {
-            change.add_all(solve(portion, &mut []));
+    match changes.filter(|_| blocks.len() >= WORTH_THREADS) {
+        Some(changes) => {
+            let portions = blocks.par_chunks_mut(PORTION);
+            portions.map(|portion| solve(portion, &mut [])).collect_into_vec(changes);
+            changes.iter().for_each(|&portion| change.add_all(portion));
         }
-    } else {
-        let portions = blocks.par_chunks_mut(PORTION);
-        portions.map(|portion| solve(portion, &mut [])).collect_into_vec(changes);
-        changes.iter().for_each(|&portion| change.add_all(portion));
+        None => {
+            for portion in blocks.chunks_mut(PORTION) {
+                change.add_all(solve(portion, &mut []));
+            }
+        }
     }
     change.add_all(solve(&mut [], &mut rows[left_over..]));
     change

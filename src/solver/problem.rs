@@ -180,7 +180,8 @@ impl<K: Kinematics> StepProblem<K> {
             let contact = &list[index as usize];
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let (before_i, before_j) = (&self.before[i], &self.before[j]);
-            let [velocity, _] = K::relative_velocity(K::normal(contact.normal.to_array()), before_i, before_j);
+            let [velocity, _] =
+                K::relative_velocity(K::normal(contact.normal.to_array()), before_i, before_j);
             let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
             let masses = (grains.masses[i] * share, share);
             let velocity = rebound(velocity, contact);

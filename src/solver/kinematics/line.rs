@@ -1,8 +1,8 @@
 //! Motion on the x axis.
 
 use super::Kinematics;
-use crate::solver::{Problems, StepProblem};
 use crate::contact::Lanes;
+use crate::solver::{Problems, StepProblem};
 use crate::world::World;
 
 /// A body on the x axis.

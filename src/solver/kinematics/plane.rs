@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::Kinematics;
-use crate::solver::{Problems, StepProblem};
 use crate::contact::Lanes;
+use crate::solver::{Problems, StepProblem};
 use crate::world::World;
 
 /// A body in the plane, aligned so that it never straddles two cache lines.
