@@ -87,21 +87,22 @@ impl<S: Simd> Lanes for f64x4<S> {
 /// two zeros.
 const SECOND_WHERE_UNDECIDED: bool = cfg!(any(target_arch = "x86_64", target_arch = "x86"));
 
+/// Levels of vector instructions that this processor has.
+#[cfg(test)]
+pub(crate) fn levels() -> Vec<fearless_simd::Level> {
+    let best = fearless_simd::Level::new();
+    #[cfg(target_arch = "x86_64")]
+    let lower = [best.as_sse2().map(Simd::level), best.as_avx2().map(Simd::level)];
+    #[cfg(not(target_arch = "x86_64"))]
+    let lower = [None; 0];
+    lower.into_iter().flatten().chain([best]).collect()
+}
+
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, SimdFrom, dispatch};
+    use fearless_simd::{SimdFrom, dispatch};
 
     use super::*;
-
-    /// Levels of vector instructions that this processor has.
-    fn levels() -> Vec<Level> {
-        let best = Level::new();
-        #[cfg(target_arch = "x86_64")]
-        let lower = [best.as_sse2().map(Simd::level), best.as_avx2().map(Simd::level)];
-        #[cfg(not(target_arch = "x86_64"))]
-        let lower = [None; 0];
-        lower.into_iter().flatten().chain([best]).collect()
-    }
 
     #[test]
     fn a_lane_does_just_what_a_number_does() {

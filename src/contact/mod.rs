@@ -14,4 +14,6 @@ pub use contact_list::{Contact, ContactList, ContactMemory, Impulse, LookAhead};
 pub use features::Feature;
 pub use grid::Grid;
 pub use lanes::Lanes;
+#[cfg(test)]
+pub(crate) use lanes::levels;
 pub use tree::Tree;

@@ -17,8 +17,11 @@ use super::nsgs::{self, is_settled};
 use super::update::{Change, Law};
 use super::{Model, SolveReport, SolverSettings, StepProblem, StopTest};
 
+#[cfg(test)]
+mod tests;
+
 /// Blocks that a thread takes at a time.
-const PORTION: usize = 128;
+const PORTION: usize = 256;
 /// Blocks of a colour from which on threads are woken: some 10 µs of work, about what waking costs.
 const WORTH_THREADS: usize = 4 * PORTION;
 
