@@ -6,7 +6,7 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdFrom, dispatch, f64x4};
 
-use super::update::{Body, Change, Law, Local};
+use super::update::{Body, Change, Law, Local, squared_impulse};
 use super::{Kinematics, Model, Row};
 
 /// Contacts in a block: the numbers in a register of AVX2. Wider blocks would leave more rows over.
@@ -50,6 +50,16 @@ impl Block {
                 row.tangential_impulse = self.tangential_impulse[lane];
             }
         }
+    }
+
+    /// P² of each contact, (N·s)², given the capture speeds.
+    #[inline(always)]
+    pub fn squared_impulses(&self, captures: [f64; LANES]) -> [f64; LANES] {
+        std::array::from_fn(|lane| {
+            let normal = self.shifted_impulse[lane] - captures[lane];
+            let impulse = [normal, self.tangential_impulse[lane]];
+            squared_impulse(self.effective_mass[lane], impulse)
+        })
     }
 
     #[inline(always)]
@@ -186,8 +196,14 @@ unsafe fn solve_blocks<S: Simd, M: Model, const MEASURE: bool, const PAIR: bool>
             block.tangential_impulse = local.impulse[1].to_array();
         }
     }
-    let sum = |[a, b, c, d]: [f64; LANES]| (a + b) + (c + d);
-    Change { squared: sum(change.squared.to_array()), absolute: sum(change.absolute.to_array()) }
+    let Change { squared, absolute } = change;
+    Change { squared: sum(squared.to_array()), absolute: sum(absolute.to_array()) }
+}
+
+/// The sum over all lanes.
+#[inline(always)]
+pub(super) fn sum([a, b, c, d]: [f64; LANES]) -> f64 {
+    (a + b) + (c + d)
 }
 
 /// Solves contacts one by one.

@@ -6,7 +6,7 @@
 
 use super::iterate::{is_tested, sweep_until_settled};
 use super::measure::residual;
-use super::update::{Body, Change, Law};
+use super::update::{Body, Change, Law, squared_impulse};
 use super::{Kinematics, Model, Ordering, Row, SolveReport, SolverSettings, StepProblem, StopTest};
 
 /// Solves a prepared problem by sweeps.
@@ -44,22 +44,28 @@ fn tested<M: Model, const BACKWARD: bool>(
     } else {
         directed_sweep::<M, true, BACKWARD>(problem)
     };
-    is_settled::<M>(problem, change, settings)
+    let mean_mass = problem.mean_mass;
+    is_settled(problem, (change, mean_mass), settings, squared_impulses, |problem| {
+        residual::<M>(problem)
+    })
 }
 
-/// Whether the stopping test is met after a sweep that made this change.
-pub(super) fn is_settled<M: Model>(
-    problem: &StepProblem<M::Kinematics>,
-    change: Change,
+/// Whether the stopping test is met after a sweep that made this change, by a mean mass (kg) of the
+/// grains, by Σ P² ((N·s)²), or by the residual.
+pub(super) fn is_settled<P>(
+    problem: &mut P,
+    (change, mean_mass): (Change, f64),
     settings: &SolverSettings,
+    squared_impulses: impl FnOnce(&mut P) -> f64,
+    residual: impl FnOnce(&mut P) -> f64,
 ) -> bool {
     let tolerance = settings.tolerance;
     match settings.stop {
         StopTest::RelativeChange => {
             change.squared <= tolerance * tolerance * squared_impulses(problem)
         }
-        StopTest::ImpulsePerMass => change.absolute <= tolerance * problem.mean_mass,
-        StopTest::Residual => residual::<M>(problem) <= tolerance,
+        StopTest::ImpulsePerMass => change.absolute <= tolerance * mean_mass,
+        StopTest::Residual => residual(problem) <= tolerance,
     }
 }
 
@@ -129,10 +135,9 @@ fn solve_pair<M: Model, const MEASURE: bool>(
 }
 
 /// Σ P², (N·s)².
-fn squared_impulses<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
+fn squared_impulses<K: Kinematics>(problem: &mut StepProblem<K>) -> f64 {
     let squared = |(number, row): (usize, &Row<K>)| {
-        let [normal, tangential] = problem.reduced_impulse(number, row);
-        row.effective_mass * row.effective_mass * (normal * normal + tangential * tangential)
+        squared_impulse(row.effective_mass, problem.reduced_impulse(number, row))
     };
     let fixed_count = problem.fixed_rows.len();
     problem.rows().take(fixed_count).map(squared).sum::<f64>()

@@ -11,10 +11,10 @@ use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::iterate::{is_tested, sweep_until_settled};
-use super::lane_blocks::{Block, Bodies, LANES, solve_apart};
+use super::lane_blocks::{Block, Bodies, LANES, solve_apart, sum};
 use super::measure::residual;
 use super::nsgs::{self, is_settled};
-use super::update::{Change, Law};
+use super::update::{Change, Law, squared_impulse};
 use super::{Model, SolveReport, SolverSettings, StepProblem, StopTest};
 
 #[cfg(test)]
@@ -129,17 +129,42 @@ impl<'a, M: Model> Coloured<'a, M> {
                 StopTest::Residual => coloured.sweep::<false>(),
                 _ => coloured.sweep::<true>(),
             };
-            if settings.stop != StopTest::ImpulsePerMass {
-                coloured.store();
-            }
-            is_settled::<M>(coloured.problem, change, settings)
+            let change = (change, coloured.problem.mean_mass);
+            is_settled(coloured, change, settings, Self::squared_impulses, Self::residual)
         };
-        let report = sweep_until_settled(self, settings, sweep, |coloured| {
-            coloured.store();
-            residual::<M>(coloured.problem)
-        });
+        let report = sweep_until_settled(self, settings, sweep, Self::residual);
         self.store();
         report
+    }
+
+    fn residual(&mut self) -> f64 {
+        self.store();
+        residual::<M>(self.problem)
+    }
+
+    /// Σ P², (N·s)².
+    fn squared_impulses(&mut self) -> f64 {
+        let StepProblem { fixed_rows, pair_rows, captures, capture_speed, .. } = &mut *self.problem;
+        let capture = |number: usize| *captures.get(number).unwrap_or(capture_speed);
+        let (mut in_lanes, mut left_over, mut number) = ([0.0; LANES], 0.0, 0);
+        let mut blocks = &mut *self.blocks;
+        for (rows, ends) in [(fixed_rows, &self.ends[0]), (pair_rows, &self.ends[1])] {
+            for_each_colour(&mut blocks, rows, ends, |blocks, rows| {
+                let first = number;
+                number += rows.len();
+                for (at, block) in blocks.iter().enumerate() {
+                    let captures = std::array::from_fn(|lane| capture(first + LANES * at + lane));
+                    let squares = block.squared_impulses(captures);
+                    in_lanes.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
+                }
+                for (at, row) in rows.iter().enumerate().skip(LANES * blocks.len()) {
+                    let impulse =
+                        [row.shifted_impulse - capture(first + at), row.tangential_impulse];
+                    left_over += squared_impulse(row.effective_mass, impulse);
+                }
+            });
+        }
+        sum(in_lanes) + left_over
     }
 
     /// One pass over all contacts.

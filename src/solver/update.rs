@@ -141,6 +141,12 @@ impl Law {
     }
 }
 
+/// P² of an impulse (λ_n, λ_t) of an effective mass, (N·s)².
+#[inline(always)]
+pub(super) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
+    mass * mass * (normal * normal + tangential * tangential)
+}
+
 /// How much a sweep changed the impulses; zero where it was not asked to measure. With several
 /// lanes, how much those of each lane.
 #[derive(Clone, Copy, Debug, Default)]

@@ -64,6 +64,26 @@ fn sweeps(max_sweeps: u32) -> SolverSettings {
     SolverSettings { stop, tolerance: 0.0, max_sweeps, ..SolverSettings::default() }
 }
 
+#[test]
+fn the_sum_of_squared_impulses_is_that_of_the_rows_with_a_capture_speed_each() {
+    type Full = StepModel<SpinningPlane, true, false>;
+    for captures in [false, true] {
+        let mut problem = problem::<Full>(3, 40, 203);
+        if captures {
+            problem.captures = (0..203).map(|row| 1e-3 * f64::from(row)).collect();
+        }
+        let square = |(number, row): (usize, &Row<SpinningPlane>)| {
+            let [normal, tangential] = problem.reduced_impulse(number, row);
+            row.effective_mass.powi(2) * (normal.powi(2) + tangential.powi(2))
+        };
+        let expected: f64 = problem.rows().map(square).sum();
+        let mut colouring = std::mem::take(&mut problem.colouring);
+        let coloured = Coloured::<Full>::new(Level::new(), &mut problem, &mut colouring);
+        let found = coloured.expect("colours").squared_impulses();
+        assert!((found / expected - 1.0).abs() < 1e-14, "{found} for {expected}");
+    }
+}
+
 fn same_bits_at_all_levels<M: Model>() {
     let mut seen = [0; LANES];
     for seed in 0..60 {
