@@ -69,10 +69,6 @@ impl Block {
             normal: K::normal([f64x4::simd_from(simd, x), f64x4::simd_from(simd, y)]),
             share: f64x4::simd_from(simd, self.share),
             restitution_velocity: f64x4::simd_from(simd, self.restitution_velocity),
-            impulse: [
-                f64x4::simd_from(simd, self.shifted_impulse),
-                f64x4::simd_from(simd, self.tangential_impulse),
-            ],
             effective_mass: f64x4::simd_from(simd, self.effective_mass),
         }
     }
@@ -178,22 +174,25 @@ unsafe fn solve_blocks<S: Simd, M: Model, const MEASURE: bool, const PAIR: bool>
     let none = f64x4::splat(simd, 0.0);
     let mut change = Change { squared: none, absolute: none };
     for block in blocks {
-        let mut local = block.local(simd);
+        let local = block.local(simd);
+        let mut shifted = f64x4::simd_from(simd, block.shifted_impulse);
+        let mut tangential = f64x4::simd_from(simd, block.tangential_impulse);
+        let row = (&local, [&mut shifted, &mut tangential]);
         // SAFETY: as for this function; the grains i and j of a block are all different.
         unsafe {
             let mut i = bodies.gather(simd, block.i);
             if PAIR {
                 let mut j = bodies.gather(simd, block.j);
-                law.solve_pair::<M, _, MEASURE>(&mut local, &mut i, &mut j, &mut change);
+                law.solve_pair::<M, _, MEASURE>(row, &mut i, &mut j, &mut change);
                 bodies.scatter(block.j, &j);
             } else {
-                law.solve_single::<M, _, MEASURE>(&mut local, &mut i, &mut change);
+                law.solve_single::<M, _, MEASURE>(row, &mut i, &mut change);
             }
             bodies.scatter(block.i, &i);
         }
-        block.shifted_impulse = local.impulse[0].to_array();
+        block.shifted_impulse = shifted.to_array();
         if M::FRICTION {
-            block.tangential_impulse = local.impulse[1].to_array();
+            block.tangential_impulse = tangential.to_array();
         }
     }
     let Change { squared, absolute } = change;

@@ -12,38 +12,22 @@ use crate::contact::{Lanes, law};
 /// A body of a model; with several lanes, a body a lane.
 pub(super) type Body<M, T> = <<M as Model>::Kinematics as Kinematics>::Body<T>;
 
-/// What an update needs of a row; with several lanes, of a row a lane. Units as in [`Row`].
+/// What an update needs of a row beside its impulses; with several lanes, of a row a lane. Units as
+/// in [`Row`].
 #[derive(Clone, Copy)]
 pub(super) struct Local<K: Kinematics, T: Lanes> {
     pub normal: K::Normal<T>,
     pub share: T,
     pub restitution_velocity: T,
-    /// (σ, λ_t).
-    pub impulse: [T; 2],
     pub effective_mass: T,
 }
 
-impl<K: Kinematics> Local<K, f64> {
-    /// That of a row.
-    #[inline(always)]
-    pub fn of(row: &Row<K>) -> Self {
-        Self {
-            normal: row.normal,
-            share: row.share,
-            restitution_velocity: row.restitution_velocity,
-            impulse: [row.shifted_impulse, row.tangential_impulse],
-            effective_mass: row.effective_mass,
-        }
-    }
-
-    /// Gives a row the impulses.
-    #[inline(always)]
-    pub fn store<M: Model<Kinematics = K>>(&self, row: &mut Row<K>) {
-        row.shifted_impulse = self.impulse[0];
-        if M::FRICTION {
-            row.tangential_impulse = self.impulse[1];
-        }
-    }
+/// A row's [`Local`], and its (σ, λ_t).
+#[inline(always)]
+fn parts<K: Kinematics>(row: &mut Row<K>) -> (Local<K, f64>, [&mut f64; 2]) {
+    let Row { normal, share, restitution_velocity, effective_mass, .. } = *row;
+    let local = Local { normal, share, restitution_velocity, effective_mass };
+    (local, [&mut row.shifted_impulse, &mut row.tangential_impulse])
 }
 
 /// The numbers of the contact law that all rows share.
@@ -66,9 +50,8 @@ impl Law {
         i: &mut Body<M, f64>,
         change: &mut Change,
     ) {
-        let mut local = Local::of(row);
-        self.solve_single::<M, f64, MEASURE>(&mut local, i, change);
-        local.store::<M>(row);
+        let (local, impulse) = parts(row);
+        self.solve_single::<M, f64, MEASURE>((&local, impulse), i, change);
     }
 
     /// Solves the contact of a row: between grains i and j.
@@ -80,21 +63,20 @@ impl Law {
         j: &mut Body<M, f64>,
         change: &mut Change,
     ) {
-        let mut local = Local::of(row);
-        self.solve_pair::<M, f64, MEASURE>(&mut local, i, j, change);
-        local.store::<M>(row);
+        let (local, impulse) = parts(row);
+        self.solve_pair::<M, f64, MEASURE>((&local, impulse), i, j, change);
     }
 
     /// Solves contacts of grains i with fixed bodies.
     #[inline(always)]
     pub fn solve_single<M: Model, T: Lanes, const MEASURE: bool>(
         &self,
-        local: &mut Local<M::Kinematics, T>,
+        (local, impulse): (&Local<M::Kinematics, T>, [&mut T; 2]),
         i: &mut Body<M, T>,
         change: &mut Change<T>,
     ) {
         let velocity = M::Kinematics::velocity(local.normal, i);
-        let impulse = self.update::<M, T>(local, velocity);
+        let impulse = self.update::<M, T>((local, impulse), velocity);
         M::Kinematics::push_single(i, local.normal, impulse);
         change.add::<M, MEASURE>(local.effective_mass, impulse);
     }
@@ -103,13 +85,13 @@ impl Law {
     #[inline(always)]
     pub fn solve_pair<M: Model, T: Lanes, const MEASURE: bool>(
         &self,
-        local: &mut Local<M::Kinematics, T>,
+        (local, impulse): (&Local<M::Kinematics, T>, [&mut T; 2]),
         i: &mut Body<M, T>,
         j: &mut Body<M, T>,
         change: &mut Change<T>,
     ) {
         let velocity = M::Kinematics::relative_velocity(local.normal, i, j);
-        let impulse = self.update::<M, T>(local, velocity);
+        let impulse = self.update::<M, T>((local, impulse), velocity);
         M::Kinematics::push_pair(i, j, local.normal, impulse, local.share);
         change.add::<M, MEASURE>(local.effective_mass, impulse);
     }
@@ -118,26 +100,25 @@ impl Law {
     #[inline(always)]
     fn update<M: Model, T: Lanes>(
         &self,
-        local: &mut Local<M::Kinematics, T>,
+        (local, [shifted, tangential]): (&Local<M::Kinematics, T>, [&mut T; 2]),
         [normal_velocity, tangential_velocity]: [T; 2],
     ) -> [T; 2] {
-        let [normal_before, tangential_before] = local.impulse;
+        let normal_before = *shifted;
         let closing = normal_velocity + local.restitution_velocity;
-        let shifted = law::signorini(normal_before - closing);
-        local.impulse[0] = shifted;
-        let normal_change = shifted - normal_before;
+        *shifted = law::signorini(normal_before - closing);
+        let normal_change = *shifted - normal_before;
         if !M::FRICTION {
-            return [normal_change, shifted.same(0.0)];
+            return [normal_change, normal_change.same(0.0)];
         }
         let bound = if M::COMPRESSIVE_CONE {
-            law::friction_bound::<true, _>(self.friction, shifted, self.capture_speed)
+            law::friction_bound::<true, _>(self.friction, *shifted, self.capture_speed)
         } else {
-            law::friction_bound::<false, _>(self.friction, shifted, 0.0)
+            law::friction_bound::<false, _>(self.friction, *shifted, 0.0)
         };
-        let compliance = shifted.same(1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE);
-        let tangential = tangential_before - compliance * tangential_velocity;
-        local.impulse[1] = law::coulomb(tangential, bound);
-        [normal_change, local.impulse[1] - tangential_before]
+        let tangential_before = *tangential;
+        let compliance = tangential.same(1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE);
+        *tangential = law::coulomb(tangential_before - compliance * tangential_velocity, bound);
+        [normal_change, *tangential - tangential_before]
     }
 }
 
