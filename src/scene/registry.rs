@@ -39,7 +39,7 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 19] = [
+pub const SCENES: [SceneInfo; 20] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
@@ -99,6 +99,12 @@ pub const SCENES: [SceneInfo; 19] = [
         group: SceneGroup::Stability,
         summary: "25 discs in a box that is a hundredth too small",
         make: || Ok(stability::squeeze(1e-2)),
+    },
+    SceneInfo {
+        name: "moving-walls",
+        group: SceneGroup::Stability,
+        summary: "18 discs between two walls that move in: each has one place to be",
+        make: || Ok(stability::press()),
     },
     SceneInfo {
         name: "logs",

@@ -42,13 +42,9 @@ pub fn arch() -> Scene {
     let mut scene = dry("arch", stones.into());
     let abutment = |eighth: u8| Disc { position: DIAMETER * place(eighth), radius: 0.5 * DIAMETER };
     scene.fixed_discs = vec![abutment(0), abutment(4)];
-    scene.boundaries = vec![Boundary::HalfSpace {
-        point: DIAMETER * DVec2::new(0.0, -GROUND),
-        normal: DVec2::Y,
-    }];
-    scene.view = Some(View {
-        min: DIAMETER * DVec2::new(-3.0, -1.0),
-        max: DIAMETER * DVec2::new(3.0, 2.5),
-    });
+    scene.boundaries =
+        vec![Boundary::HalfSpace { point: DIAMETER * DVec2::new(0.0, -GROUND), normal: DVec2::Y }];
+    scene.view =
+        Some(View { min: DIAMETER * DVec2::new(-3.0, -1.0), max: DIAMETER * DVec2::new(3.0, 2.5) });
     scene
 }

@@ -62,7 +62,7 @@ const fn limits(holds: f64, fails: f64) -> Limits {
 }
 
 /// All challenges.
-pub static CHALLENGES: [Challenge; 23] = [
+pub static CHALLENGES: [Challenge; 24] = [
     Challenge {
         name: "column",
         driver: "discs",
@@ -152,6 +152,15 @@ pub static CHALLENGES: [Challenge; 23] = [
         measure: "share of unsolved steps, or speed left / √(g d)",
         limits: limits(1e-3, 0.1),
         error: measures::squeeze,
+    },
+    Challenge {
+        name: "moving-walls",
+        driver: "time step (s)",
+        quick: &[5e-4, 3e-3, 2e-2],
+        further: &[],
+        measure: "distance from the right place / d, or speed left / √(g d)",
+        limits: limits(0.05, 0.5),
+        error: measures::moving_walls,
     },
     Challenge {
         name: "friction-limit",
