@@ -33,7 +33,7 @@ pub use press::{press, pressed_places, pressing_secs};
 pub use slope::{STEEPEST_DEGREES, heap_on_slope};
 pub use squeeze::squeeze;
 pub use thin_wall::{WALL_DISTANCE, thin_wall};
-pub use truss::{bridge, cantilever};
+pub use truss::{breaking_bond_of_cantilever, bridge, cantilever};
 
 use super::Scene;
 use crate::solver::SolverSettings;
