@@ -82,6 +82,7 @@ fn nothing_depends_on_whether_the_floor_rises_or_the_onlooker_sinks() {
     scene.solver.stop = StopTest::Residual;
     scene.solver.tolerance = 1e-11;
     scene.solver.max_sweeps = 20_000;
+    let mut differences = Vec::new();
     for info in &METHODS {
         for (law, push_out) in
             [(ContactLaw::Moreau, false), (ContactLaw::Moreau, true), (ContactLaw::Range, false)]
@@ -100,14 +101,16 @@ fn nothing_depends_on_whether_the_floor_rises_or_the_onlooker_sinks() {
             let risen = DVec2::new(0.0, SPEED * still.time_secs());
             let [still, rising] = [&still, &rising].map(|run| &run.world().grains.positions);
             assert!(rest.distance(still[3]) > 0.5 * scene.mean_diameter, "it falls and bounces");
-            for (one, other) in still.iter().zip(rising) {
-                let off = (*one + risen).distance(*other) / scene.mean_diameter;
-                // Where friction leaves a choice, rounding decides, in the seventh digit of a velocity.
-                // A floor whose speed were forgotten in one step would be off by 0.02 d.
-                assert!(off < 1e-3, "{} under {law:?}, push-out {push_out}: {off} d", info.name);
+            let ways = still.iter().zip(rising).map(|(one, other)| (*one + risen).distance(*other));
+            let off = ways.fold(0.0, f64::max) / scene.mean_diameter;
+            // Where friction leaves a choice, rounding decides, in the seventh digit of a velocity. A
+            // floor whose speed were forgotten in one step would be off by 0.02 d.
+            if off > 1e-3 {
+                differences.push((info.name, law, push_out, off));
             }
         }
     }
+    assert!(differences.is_empty(), "{differences:?}");
 }
 
 #[test]
