@@ -70,8 +70,7 @@ pub fn repose_angle(trial: &Trial) -> Result<f64> {
 fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
     let mut simulation = trial.start(scene.clone())?;
     advance(&mut simulation, SLIDING_SECS)?;
-    // Written so that a place that is no number counts as far.
-    Ok(!(longest_way(&simulation, &scene) < SLID))
+    Ok(longest_way(&simulation, &scene) >= SLID)
 }
 
 /// After very many steps at rest: the longest way of any grain, in d, or the speed that is left, in
