@@ -70,6 +70,9 @@ pub(super) fn solve_range<M: Model>(
     } else {
         report.add(shocks::<M>(problem, settings, &mut speeds)?);
     }
+    for (speed, wall_speed) in speeds.iter_mut().zip(&problem.wall_speeds) {
+        *speed -= wall_speed;
+    }
     for _ in 0..MOST_ROUNDS {
         report.add(solve::<M>(problem, settings)?);
         let bonds = contacts.bonds();
@@ -90,7 +93,8 @@ pub(super) fn solve_range<M: Model>(
         if row.shifted_impulse > 0.0 {
             *bond = Bond { alive: true, stretch: 0.0 };
         } else if bond.alive {
-            let opened = 0.5 * (speeds[number] + motion.now[0]) * time_step_secs;
+            let now = motion.now[0] - problem.wall_speed(number);
+            let opened = 0.5 * (speeds[number] + now) * time_step_secs;
             bond.stretch = (bond.stretch + opened).max(0.0);
             let broken = problem.capture(number) < problem.capture_speed;
             bond.alive = !broken && bond.stretch < debonding_distance;
@@ -166,7 +170,8 @@ impl Limits<'_> {
             let [impulse, _] = problem.reduced_impulse(number, row);
             let stretch = self.bonds[problem.contact_of_row[number] as usize].stretch;
             let left = (self.debonding_distance - stretch).max(0.0);
-            let opening = Opening { left, speed, load: motion.now[0] - speed - impulse };
+            let now = motion.now[0] - problem.wall_speed(number);
+            let opening = Opening { left, speed, load: now - speed - impulse };
             let bound = opening.bound(strength * problem.capture_speed, self.time_step_secs);
             if before > 0.0 && bound < (1.0 - FALL) * before {
                 falls.push((number, bound));

@@ -13,6 +13,7 @@ mod snapshot;
 mod step;
 mod tally;
 mod travel;
+mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
 pub use observables::Observables;

@@ -74,12 +74,17 @@ pub(super) fn prepare<M: Model>(simulation: &mut Simulation) {
         simulation.contacts.scale_impulses(time_step_secs / time_step_before);
         simulation.time_step_of_impulses_secs = time_step_secs;
     }
+    simulation.walls.begin(&simulation.world, &simulation.candidates, time_step_secs);
     detect::<M>(simulation);
     let push = simulation.push_of_pull(M::Kinematics::AXES, time_step_secs);
-    let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
+    let Simulation { world, physics, parameters, solver, contacts, problems, walls, .. } =
+        simulation;
     let problem = M::Kinematics::problem(problems);
     let parameters = Parameters { law: law(parameters, solver), ..*parameters };
     problem.prepare::<M>(world, contacts, &parameters, physics.cohesion, solver);
+    if walls.any_move() {
+        problem.drive(world, contacts, &parameters, |contact| walls.speed(world, contact));
+    }
     if let Some(push) = push {
         pull::apply::<M::Kinematics>(&mut problem.free, push);
         pull::apply::<M::Kinematics>(&mut problem.bodies, push);
@@ -213,9 +218,10 @@ impl ModelVisitor for Start<'_> {
 
 /// Finds the contacts at the present positions.
 pub(super) fn detect<M: Model>(simulation: &mut Simulation) {
-    let Simulation { world, candidates, contacts, parameters, solver, .. } = simulation;
+    let Simulation { world, candidates, contacts, parameters, solver, walls, .. } = simulation;
     if law(parameters, solver) == ContactLaw::Range {
-        range_step::detect::<M>(world, candidates, contacts, parameters.time_step_secs);
+        let fastest = walls.fastest();
+        range_step::detect::<M>(world, candidates, contacts, fastest, parameters.time_step_secs);
     } else if M::Kinematics::AXES == 1 {
         candidates.update::<1>(world);
         contacts.detect::<1>(world, candidates);
@@ -240,6 +246,10 @@ pub(super) fn integrate<M: Model>(simulation: &mut Simulation, time_step_secs: f
         for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
             *angle += time_step_secs * spin;
         }
+    }
+    let Simulation { world, candidates, walls, .. } = simulation;
+    if walls.any_move() {
+        walls.advance(world, candidates, time_step_secs);
     }
 }
 

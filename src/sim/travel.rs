@@ -16,7 +16,7 @@ pub(super) fn pieces(simulation: &Simulation) -> u32 {
     }
     let time_step_secs = parameters.time_step_secs;
     let fastest = world.grains.velocities.iter().map(|velocity| velocity.length());
-    let mut travel = fastest.fold(0.0, f64::max) * time_step_secs
+    let mut travel = fastest.fold(simulation.fastest_wall(), f64::max) * time_step_secs
         + world.gravity.magnitude() * time_step_secs * time_step_secs;
     if let Some(pull) = simulation.pull {
         travel += world.grains.positions[pull.grain as usize].distance(pull.target);

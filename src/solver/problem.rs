@@ -28,7 +28,8 @@ pub struct Row<K: Kinematics> {
     pub normal: K::Normal<f64>,
     /// g_i = m_ij/m_i; 1 against a fixed body.
     pub share: f64,
-    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold.
+    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold, and less
+    /// the speed of a wall that comes ([`StepProblem::drive`]).
     pub restitution_velocity: f64,
     /// σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
@@ -63,6 +64,8 @@ pub struct StepProblem<K: Kinematics> {
     /// The same row by row, where rows differ in it (law `range`); else empty. Sweeps need it not:
     /// they see σ alone.
     pub captures: Vec<f64>,
+    /// How fast the wall of each fixed row comes along the normal, m/s; empty where no wall moves.
+    pub wall_speeds: Vec<f64>,
     /// Masses of the bodies, kg.
     pub masses: Vec<f64>,
     /// Mean mass of the grains, kg.
@@ -88,6 +91,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             friction: 0.0,
             capture_speed: 0.0,
             captures: Vec::new(),
+            wall_speeds: Vec::new(),
             masses: Vec::new(),
             mean_mass: 0.0,
             newton: Workspaces::default(),
@@ -118,6 +122,7 @@ impl<K: Kinematics> StepProblem<K> {
             if cohesion { parameters.capture_speed(gravity_magnitude) } else { 0.0 };
         let range = parameters.law == ContactLaw::Range;
         self.captures.clear();
+        self.wall_speeds.clear();
         self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
         self.masses.clone_from(&grains.masses);
         self.before.clear();
@@ -144,17 +149,8 @@ impl<K: Kinematics> StepProblem<K> {
         let fixed_count = rows.len();
         self.sorter.append(ordering, (world, list), pairs, rows, pair_ends);
 
-        let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
-        let rebound = |velocity: f64, contact: &Contact| {
-            if !range {
-                return parameters.restitution_velocity(velocity, gravity_magnitude);
-            }
-            // What is closed in the step must not close by more than its gap; what touches bounces.
-            if contact.gap > touch {
-                return (contact.gap - touch) / parameters.time_step_secs;
-            }
-            parameters.restitution_velocity(velocity.min(0.0), gravity_magnitude)
-        };
+        let rebound =
+            |velocity: f64, contact: &Contact| rebound(world, parameters, velocity, contact.gap);
         if range && self.capture_speed > 0.0 {
             let capture = |&index: &u32| match contacts.bonds()[index as usize].alive {
                 true => self.capture_speed,
@@ -219,6 +215,36 @@ impl<K: Kinematics> StepProblem<K> {
             tangential_impulse,
             effective_mass,
         }
+    }
+
+    /// Tells a problem that has just been prepared of walls that move along their normal: `speed` gives
+    /// how fast the wall of a contact comes, m/s.
+    ///
+    /// Relative to a wall of speed V a grain has v_n − V and, since the wall is a plane, the same v_t
+    /// as ever. So the law's v_n + ρ v_n^{n−1} becomes v_n − V + ρ (v_n^{n−1} − V): what is added to v_n
+    /// is another number, and no method has to know.
+    pub fn drive(
+        &mut self,
+        world: &World,
+        contacts: &ContactList,
+        parameters: &Parameters,
+        speed: impl Fn(&Contact) -> f64,
+    ) {
+        let Self { fixed_rows, before, contact_of_row, wall_speeds, .. } = self;
+        for (row, &index) in fixed_rows.iter_mut().zip(&*contact_of_row) {
+            let contact = &contacts.contacts()[index as usize];
+            let speed = speed(contact);
+            let [velocity, _] = K::velocity(row.normal, &before[row.i as usize]);
+            row.restitution_velocity =
+                rebound(world, parameters, velocity - speed, contact.gap) - speed;
+            wall_speeds.push(speed);
+        }
+    }
+
+    /// How fast the wall of a row comes, by the row's number (fixed rows, then pair rows), m/s.
+    #[inline(always)]
+    pub fn wall_speed(&self, number: usize) -> f64 {
+        self.wall_speeds.get(number).copied().unwrap_or(0.0)
     }
 
     /// Moves the bodies from their free velocities by the rows' impulses.
@@ -313,6 +339,21 @@ impl<K: Kinematics> StepProblem<K> {
             row.tangential_impulse = tangential / row.effective_mass;
         }
     }
+}
+
+/// What the law adds to v_n, m/s, where it was `velocity` before the step and the gap is `gap` (m).
+#[inline(always)]
+fn rebound(world: &World, parameters: &Parameters, velocity: f64, gap: f64) -> f64 {
+    let gravity_magnitude = world.gravity.magnitude();
+    if parameters.law != ContactLaw::Range {
+        return parameters.restitution_velocity(velocity, gravity_magnitude);
+    }
+    // What is closed in the step must not close by more than its gap; what touches bounces.
+    let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
+    if gap > touch {
+        return (gap - touch) / parameters.time_step_secs;
+    }
+    parameters.restitution_velocity(velocity.min(0.0), gravity_magnitude)
 }
 
 /// A problem for each kind of motion; those that a scene never uses hold no memory.

@@ -214,7 +214,7 @@ impl Elements {
         pushes: &mut Vec<(f64, [f64; 2])>,
     ) {
         let h = self.substep_secs;
-        let Simulation { world, contacts, problems, .. } = simulation;
+        let Simulation { world, contacts, problems, walls, .. } = simulation;
         let bodies = &mut M::Kinematics::problem(problems).bodies;
         let masses = &world.grains.masses;
         let (list, impulses, memories) = contacts.parts_mut();
@@ -225,6 +225,7 @@ impl Elements {
             let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
             let mass = masses[i] * share;
             let [normal_velocity, tangential_velocity] = velocity::<M::Kinematics>(contact, start);
+            let normal_velocity = normal_velocity - walls.speed(world, contact);
 
             let stiffness = self.springs.stiffness;
             let damping = self.springs.damping(mass);
