@@ -120,6 +120,10 @@ pub struct Config {
     #[arg(long, value_name = "BOOL", help_heading = "Solver")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calm_unsolved: Option<bool>,
+    /// Have shocks run through touching grains one after the other, as in Newton's cradle; not with cohesion
+    #[arg(long, value_name = "BOOL", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sequential_impacts: Option<bool>,
 }
 
 impl Config {
@@ -223,6 +227,7 @@ impl Config {
             push_out: Some(scene.solver.remedies.push_out),
             max_travel: Some(scene.solver.remedies.max_travel),
             calm_unsolved: Some(scene.solver.remedies.calm_unsolved),
+            sequential_impacts: Some(scene.solver.remedies.sequential_impacts),
             ..self.clone()
         }
     }
@@ -270,6 +275,7 @@ impl Config {
         set(&mut scene.solver.remedies.push_out, self.push_out);
         set(&mut scene.solver.remedies.max_travel, self.max_travel);
         set(&mut scene.solver.remedies.calm_unsolved, self.calm_unsolved);
+        set(&mut scene.solver.remedies.sequential_impacts, self.sequential_impacts);
         scene.validate()
     }
 }

@@ -42,7 +42,12 @@ impl Preset {
             tolerance: TOLERANCE,
             max_sweeps: MAX_SWEEPS,
             warm_start: true,
-            remedies: Remedies { push_out: true, max_travel: MAX_TRAVEL, calm_unsolved: true },
+            remedies: Remedies {
+                push_out: true,
+                max_travel: MAX_TRAVEL,
+                calm_unsolved: true,
+                sequential_impacts: true,
+            },
             ..*solver
         };
     }

@@ -4,8 +4,8 @@ use super::{Observables, Simulation, pull, push_out, range_step, schemes};
 use crate::contact::ContactList;
 use crate::error::Result;
 use crate::solver::{
-    Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport, SolverSettings,
-    StepProblem, measure, solve, visit_leanest,
+    self, Bounces, Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport,
+    SolverSettings, StepProblem, measure, solve, visit_leanest,
 };
 use crate::world::{ContactLaw, Parameters};
 
@@ -61,6 +61,8 @@ impl<V: ProblemVisitor> ModelVisitor for Show<'_, V> {
 
     fn visit<M: Model>(self) -> V::Output {
         prepare::<M>(self.simulation);
+        // A scheme, which alone could be refused, has none.
+        let _ = follow_impacts::<M>(self.simulation);
         let Simulation { problems, contacts, .. } = self.simulation;
         self.visitor.visit::<M>(M::Kinematics::problem(problems), contacts)
     }
@@ -142,18 +144,19 @@ impl ModelVisitor for Step<'_> {
 
 /// Solves the prepared problem and moves the grains.
 fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
-    let Simulation { solver, problems, parameters, .. } = simulation;
-    if parameters.law == ContactLaw::Range {
+    if simulation.parameters.law == ContactLaw::Range {
         return range_step::take::<M>(simulation);
     }
-    let problem = M::Kinematics::problem(problems);
-    let mut report = solve::<M>(problem, solver)?;
+    let ahead = follow_impacts::<M>(simulation)?;
+    let Simulation { solver, problems, .. } = simulation;
+    let mut report = solve::<M>(M::Kinematics::problem(problems), solver)?;
+    let mut earlier = ahead;
     if !report.converged && solver.remedies.calm_unsolved {
-        let first = report;
+        earlier.add(report);
         report = solve_without_bounces::<M>(simulation)?;
-        report.sweeps += first.sweeps;
-        report.factorisations += first.factorisations;
     }
+    report.sweeps += earlier.sweeps;
+    report.factorisations += earlier.factorisations;
     let taken = move_by::<M>(simulation, report);
     if simulation.solver.remedies.push_out {
         push_out::push_out(simulation, simulation.parameters.time_step_secs);
@@ -176,6 +179,22 @@ pub(super) fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport
     }
     integrate::<M>(simulation, simulation.parameters.time_step_secs);
     Taken { report, measures, gravity_work }
+}
+
+/// Has the contacts of the prepared step open as its shocks say, where that is asked for.
+fn follow_impacts<M: Model>(simulation: &mut Simulation) -> Result<SolveReport> {
+    let Simulation { world, parameters, solver, problems, .. } = simulation;
+    let range = law(parameters, solver) == ContactLaw::Range;
+    let scheme = solver.method.kind() != MethodKind::Problem;
+    if !solver.remedies.sequential_impacts || range || scheme {
+        return Ok(SolveReport::default());
+    }
+    let bounces = Bounces {
+        restitution: parameters.restitution,
+        threshold: parameters.restitution_threshold,
+        step_of_gravity: world.gravity.magnitude() * parameters.time_step_secs,
+    };
+    solver::follow_impacts::<M>(M::Kinematics::problem(problems), bounces, solver)
 }
 
 /// Solves the step anew with ρ = 0, from the impulses of the step before. What it measures is the

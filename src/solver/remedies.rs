@@ -16,12 +16,19 @@ pub struct Remedies {
     /// Solve a step that did not converge once more without bounces: restitution can ask wedged
     /// contacts for what contradicts itself, and then a step has no solution with them.
     pub calm_unsolved: bool,
+    /// Have shocks run through touching grains one after the other (`solver::impacts`), in scenes
+    /// without cohesion.
+    pub sequential_impacts: bool,
 }
 
 impl Remedies {
+    /// No remedy: the paper's scheme.
+    pub const NONE: Self =
+        Self { push_out: false, max_travel: 0.0, calm_unsolved: false, sequential_impacts: false };
+
     /// Whether there are none.
     pub fn is_none(&self) -> bool {
-        *self == Self::default()
+        *self == Self::NONE
     }
 
     /// Checks the numbers against their ranges.

@@ -107,6 +107,7 @@ fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
         push_out: solver.map(|solver| solver.remedies.push_out),
         max_travel: solver.map(|solver| solver.remedies.max_travel),
         calm_unsolved: solver.map(|solver| solver.remedies.calm_unsolved),
+        sequential_impacts: solver.map(|solver| solver.remedies.sequential_impacts),
         ..state.config.clone()
     }
 }
