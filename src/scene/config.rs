@@ -253,6 +253,8 @@ impl Config {
                 *place = value;
             }
         }
+        // A preset leaves out what the law does not take.
+        set(&mut scene.parameters.law, self.law);
         if let Some(preset) = self.preset {
             preset.apply(scene);
         }
@@ -262,7 +264,6 @@ impl Config {
         set(&mut scene.parameters.friction, self.mu);
         set(&mut scene.parameters.cone, self.cone);
         set(&mut scene.parameters.restitution_threshold, self.restitution_threshold);
-        set(&mut scene.parameters.law, self.law);
         set(&mut scene.parameters.debonding_distance, self.debonding_distance);
         set(&mut scene.duration_secs, self.duration);
         set(&mut scene.solver.method, self.solver);

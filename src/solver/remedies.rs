@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::world::ContactLaw;
 
 /// Remedies that the step of a method that solves its problem can take. A scheme that replaces the
 /// step has its own ways.
@@ -29,6 +30,36 @@ impl Remedies {
     /// Whether there are none.
     pub fn is_none(&self) -> bool {
         *self == Self::NONE
+    }
+
+    /// Those of them that go with a law. The law `range` pushes overlap out by itself, and solves a
+    /// step more than once, shocks apart from loads: it has its own ways for all but fast grains.
+    pub fn under(self, law: ContactLaw) -> Self {
+        match law {
+            ContactLaw::Moreau => self,
+            ContactLaw::Range => Self { max_travel: self.max_travel, ..Self::NONE },
+        }
+    }
+
+    /// Checks that a law takes them all.
+    ///
+    /// # Errors
+    /// Names the first that it does not take.
+    pub fn validate_under(&self, law: ContactLaw) -> Result<()> {
+        let taken = self.under(law);
+        let refuse = |field: &str, why: &str| {
+            Err(Error::value(field, true, format!("false where law is range, {why}")))
+        };
+        if self.push_out != taken.push_out {
+            return refuse("push-out", "which pushes overlap out by itself");
+        }
+        if self.calm_unsolved != taken.calm_unsolved {
+            return refuse("calm-unsolved", "which solves shocks and loads apart");
+        }
+        if self.sequential_impacts != taken.sequential_impacts {
+            return refuse("sequential-impacts", "which solves shocks and loads apart");
+        }
+        Ok(())
     }
 
     /// Checks the numbers against their ranges.
