@@ -124,6 +124,10 @@ pub struct Config {
     #[arg(long, value_name = "BOOL", help_heading = "Solver")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sequential_impacts: Option<bool>,
+    /// Let pairs that would close their gap within a step close it and no more, so that nothing tunnels; it costs bounces
+    #[arg(long, value_name = "BOOL", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speculative: Option<bool>,
 }
 
 impl Config {
@@ -228,6 +232,7 @@ impl Config {
             max_travel: Some(scene.solver.remedies.max_travel),
             calm_unsolved: Some(scene.solver.remedies.calm_unsolved),
             sequential_impacts: Some(scene.solver.remedies.sequential_impacts),
+            speculative: Some(scene.solver.remedies.speculative),
             ..self.clone()
         }
     }
@@ -277,6 +282,7 @@ impl Config {
         set(&mut scene.solver.remedies.max_travel, self.max_travel);
         set(&mut scene.solver.remedies.calm_unsolved, self.calm_unsolved);
         set(&mut scene.solver.remedies.sequential_impacts, self.sequential_impacts);
+        set(&mut scene.solver.remedies.speculative, self.speculative);
         scene.validate()
     }
 }

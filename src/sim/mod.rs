@@ -10,6 +10,7 @@ mod range_step;
 mod schemes;
 mod simulation;
 mod snapshot;
+mod speculative;
 mod step;
 mod tally;
 mod travel;

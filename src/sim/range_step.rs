@@ -17,14 +17,13 @@ const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
 /// layer of grains at the least.
 const PASSES_OF_PUSHING: u32 = 8;
 
-/// Finds the contacts that a step of that length may have to do with.
+/// Finds the contacts that a step may have to do with.
 pub(super) fn detect<M: Model>(
     world: &World,
     candidates: &mut Candidates,
     contacts: &mut ContactList,
-    time_step_secs: f64,
+    ahead: LookAhead,
 ) {
-    let ahead = look_ahead(world, time_step_secs);
     if M::Kinematics::AXES == 1 {
         candidates.update_ahead::<1>(world, ahead.reach);
         contacts.detect_ahead::<1>(world, candidates, ahead);
@@ -35,13 +34,18 @@ pub(super) fn detect<M: Model>(
 }
 
 /// How far a step has to look: the fastest grain tells what any of them may come to.
-fn look_ahead(world: &World, time_step_secs: f64) -> LookAhead {
-    let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
-    let fastest = speeds.fold(0.0, f64::max) + 2.0 * world.gravity.magnitude() * time_step_secs;
+pub(super) fn look_ahead(world: &World, time_step_secs: f64) -> LookAhead {
+    let fastest = fastest(world) + 2.0 * world.gravity.magnitude() * time_step_secs;
     let [near, far] = AHEAD_IN_DIAMETERS.map(|most| most * world.mean_diameter);
     let distance = (fastest * time_step_secs).min(near);
     let reach = (distance + 2.0 * fastest * time_step_secs).min(far);
-    LookAhead { time_step_secs, distance, reach }
+    LookAhead { time_step_secs, distance, reach, bonds: true }
+}
+
+/// Speed of the fastest grain, m/s.
+pub(super) fn fastest(world: &World) -> f64 {
+    let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
+    speeds.fold(0.0, f64::max)
 }
 
 /// A step under the law `range`: as a whole, or in substeps where a bond breaks (`sim::bonds`).

@@ -1,6 +1,6 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
-use super::{Observables, Simulation, pull, push_out, range_step, schemes};
+use super::{Observables, Simulation, pull, push_out, range_step, schemes, speculative};
 use crate::contact::ContactList;
 use crate::error::Result;
 use crate::solver::{
@@ -183,7 +183,7 @@ pub(super) fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport
 
 /// Has the contacts of the prepared step open as its shocks say, where that is asked for.
 fn follow_impacts<M: Model>(simulation: &mut Simulation) -> Result<SolveReport> {
-    let Simulation { world, parameters, solver, problems, .. } = simulation;
+    let Simulation { world, parameters, solver, problems, contacts, .. } = simulation;
     let range = law(parameters, solver) == ContactLaw::Range;
     let scheme = solver.method.kind() != MethodKind::Problem;
     if !solver.remedies.sequential_impacts || range || scheme {
@@ -194,7 +194,7 @@ fn follow_impacts<M: Model>(simulation: &mut Simulation) -> Result<SolveReport> 
         threshold: parameters.restitution_threshold,
         step_of_gravity: world.gravity.magnitude() * parameters.time_step_secs,
     };
-    solver::follow_impacts::<M>(M::Kinematics::problem(problems), bounces, solver)
+    solver::follow_impacts::<M>(M::Kinematics::problem(problems), contacts, bounces, solver)
 }
 
 /// Solves the step anew with ρ = 0, from the impulses of the step before. What it measures is the
@@ -233,8 +233,13 @@ impl ModelVisitor for Start<'_> {
 /// Finds the contacts at the present positions.
 pub(super) fn detect<M: Model>(simulation: &mut Simulation) {
     let Simulation { world, candidates, contacts, parameters, solver, .. } = simulation;
+    let time_step_secs = parameters.time_step_secs;
     if law(parameters, solver) == ContactLaw::Range {
-        range_step::detect::<M>(world, candidates, contacts, parameters.time_step_secs);
+        let ahead = range_step::look_ahead(world, time_step_secs);
+        range_step::detect::<M>(world, candidates, contacts, ahead);
+    } else if solver.remedies.speculative && solver.method.kind() == MethodKind::Problem {
+        let ahead = speculative::look_ahead(world, time_step_secs);
+        range_step::detect::<M>(world, candidates, contacts, ahead);
     } else if M::Kinematics::AXES == 1 {
         candidates.update::<1>(world);
         contacts.detect::<1>(world, candidates);

@@ -39,6 +39,7 @@ use super::{
     Kinematics, Method, Model, Ordering, Remedies, Row, SolveReport, SolverSettings, StepProblem,
     StopTest, relative_velocities, solve,
 };
+use crate::contact::ContactList;
 use crate::error::Result;
 
 /// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
@@ -81,6 +82,7 @@ pub struct Bounces {
 /// Where the method of `settings` is a scheme.
 pub fn follow_impacts<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
+    contacts: &ContactList,
     bounces: Bounces,
     settings: &SolverSettings,
 ) -> Result<SolveReport> {
@@ -88,7 +90,7 @@ pub fn follow_impacts<M: Model>(
     if problem.capture_speed > 0.0 || bounces.restitution == 0.0 {
         return Ok(report);
     }
-    let mut shocks = Shocks::new(problem);
+    let mut shocks = Shocks::new(problem, contacts);
     let fastest = shocks.fastest_closing();
     let threshold = bounces.threshold.max(LEAST_IN_STEPS_OF_GRAVITY);
     let least = (threshold * bounces.step_of_gravity).max(LEAST_IN_FASTEST * fastest);
@@ -118,21 +120,26 @@ struct Shocks<K: Kinematics> {
     speeds: Vec<f64>,
     /// P/m_ij of each row so far, m/s.
     impulses: Vec<f64>,
+    /// Whether a row's pair touches: one that will do so within the step only has no shock yet.
+    touching: Vec<bool>,
 }
 
 impl<K: Kinematics> Shocks<K> {
     /// Nothing has happened yet.
-    fn new(problem: &StepProblem<K>) -> Self {
+    fn new(problem: &StepProblem<K>, contacts: &ContactList) -> Self {
         let bodies = problem.before.clone();
         let mut speeds = Vec::new();
         relative_velocities(problem, &bodies, &mut speeds);
         let impulses = vec![0.0; speeds.len()];
-        Self { bodies, speeds, impulses }
+        let touches = |&index: &u32| contacts.is_in_touch(index as usize);
+        let touching = problem.contact_of_row.iter().map(touches).collect();
+        Self { bodies, speeds, impulses, touching }
     }
 
     /// max(−u), m/s, or 0.
     fn fastest_closing(&self) -> f64 {
-        self.speeds.iter().fold(0.0, |fastest, speed| fastest.max(-speed))
+        let all = self.speeds.iter().zip(&self.touching);
+        all.filter(|(_, touches)| **touches).fold(0.0, |fastest, (speed, _)| fastest.max(-speed))
     }
 
     /// Sets `pass` up with the rows that close faster than `least` (m/s). Whether there are any.
@@ -149,7 +156,7 @@ impl<K: Kinematics> Shocks<K> {
         contact_of_row.clear();
         for (number, row) in problem.rows() {
             let speed = self.speeds[number];
-            if speed >= -least {
+            if speed >= -least || !self.touching[number] {
                 continue;
             }
             let rows =
@@ -186,8 +193,11 @@ impl<K: Kinematics> Shocks<K> {
         let free = std::mem::replace(&mut problem.free, self.bodies.clone());
         let friction = std::mem::take(&mut problem.friction);
         let (fixed, pairs) = (problem.fixed_rows.clone(), problem.pair_rows.clone());
-        for row in problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows) {
-            row.restitution_velocity = 0.0;
+        let rows = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
+        for (row, &touches) in rows.zip(&self.touching) {
+            if touches {
+                row.restitution_velocity = 0.0;
+            }
             row.shifted_impulse = 0.0;
             row.tangential_impulse = 0.0;
         }
@@ -211,7 +221,9 @@ impl<K: Kinematics> Shocks<K> {
         let StepProblem { fixed_rows, pair_rows, .. } = problem;
         for (number, row) in fixed_rows.iter_mut().chain(pair_rows).enumerate() {
             let impulse = self.impulses[number];
-            row.restitution_velocity = if impulse > 0.0 {
+            row.restitution_velocity = if !self.touching[number] {
+                row.restitution_velocity
+            } else if impulse > 0.0 {
                 -self.speeds[number].max(0.0)
             } else {
                 row.restitution_velocity.max(0.0)

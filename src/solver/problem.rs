@@ -145,7 +145,11 @@ impl<K: Kinematics> StepProblem<K> {
         self.sorter.append(ordering, (world, list), pairs, rows, pair_ends);
 
         let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
-        let rebound = |velocity: f64, contact: &Contact| {
+        let rebound = |velocity: f64, index: u32, contact: &Contact| {
+            if !range && !contacts.is_in_touch(index as usize) {
+                // It lands in touch, so that the next step knows it.
+                return (contact.gap + touch) / parameters.time_step_secs;
+            }
             if !range {
                 return parameters.restitution_velocity(velocity, gravity_magnitude);
             }
@@ -155,8 +159,8 @@ impl<K: Kinematics> StepProblem<K> {
             }
             parameters.restitution_velocity(velocity.min(0.0), gravity_magnitude)
         };
-        if range && self.capture_speed > 0.0 {
-            let capture = |&index: &u32| match contacts.bonds()[index as usize].alive {
+        if contacts.looks_ahead() && self.capture_speed > 0.0 {
+            let capture = |&index: &u32| match contacts.is_in_touch(index as usize) {
                 true => self.capture_speed,
                 false => 0.0,
             };
@@ -170,7 +174,7 @@ impl<K: Kinematics> StepProblem<K> {
             let i = contact.grain as usize;
             let [velocity, _] = K::velocity(K::normal(contact.normal), &self.before[i]);
             let masses = (grains.masses[i], 1.0);
-            let velocity = rebound(velocity, contact);
+            let velocity = rebound(velocity, index, contact);
             let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
             self.fixed_rows.push(row);
         }
@@ -183,7 +187,7 @@ impl<K: Kinematics> StepProblem<K> {
             let [velocity, _] = K::relative_velocity(K::normal(contact.normal), before_i, before_j);
             let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
             let masses = (grains.masses[i] * share, share);
-            let velocity = rebound(velocity, contact);
+            let velocity = rebound(velocity, index, contact);
             let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
             self.pair_rows.push(row);
         }

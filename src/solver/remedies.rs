@@ -20,12 +20,20 @@ pub struct Remedies {
     /// Have shocks run through touching grains one after the other (`solver::impacts`), in scenes
     /// without cohesion.
     pub sequential_impacts: bool,
+    /// Let pairs with a gap that would close within the step close that gap and no more
+    /// (`sim::speculative`).
+    pub speculative: bool,
 }
 
 impl Remedies {
     /// No remedy: the paper's scheme.
-    pub const NONE: Self =
-        Self { push_out: false, max_travel: 0.0, calm_unsolved: false, sequential_impacts: false };
+    pub const NONE: Self = Self {
+        push_out: false,
+        max_travel: 0.0,
+        calm_unsolved: false,
+        sequential_impacts: false,
+        speculative: false,
+    };
 
     /// Whether there are none.
     pub fn is_none(&self) -> bool {
@@ -58,6 +66,9 @@ impl Remedies {
         }
         if self.sequential_impacts != taken.sequential_impacts {
             return refuse("sequential-impacts", "which solves shocks and loads apart");
+        }
+        if self.speculative != taken.speculative {
+            return refuse("speculative", "which looks ahead by itself");
         }
         Ok(())
     }

@@ -111,6 +111,7 @@ fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
         max_travel: solver.map(|solver| solver.remedies.max_travel),
         calm_unsolved: solver.map(|solver| solver.remedies.calm_unsolved),
         sequential_impacts: solver.map(|solver| solver.remedies.sequential_impacts),
+        speculative: solver.map(|solver| solver.remedies.speculative),
         ..state.config.clone()
     }
 }

@@ -86,7 +86,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
 /// Known remedies for known failures. The law range has its own ways.
 fn remedy_boxes(ui: &mut Ui, remedies: &mut Remedies) {
     let no_need = "The law range has its own way for this.";
-    let Remedies { push_out, calm_unsolved, sequential_impacts, .. } = remedies;
+    let Remedies { push_out, calm_unsolved, sequential_impacts, speculative, .. } = remedies;
     for (on, name, hint) in [
         (
             push_out,
@@ -104,6 +104,12 @@ fn remedy_boxes(ui: &mut Ui, remedies: &mut Remedies) {
             "Shocks in sequence",
             "Shocks run through touching grains one after the other, as in Newton's cradle; not \
              where Bond is above 0.",
+        ),
+        (
+            speculative,
+            "Look ahead",
+            "Pairs that would meet within a step close their gap and no more: nothing tunnels, but \
+             they hardly bounce.",
         ),
     ] {
         ui.checkbox(on, name).on_hover_text(hint).on_disabled_hover_text(no_need);
