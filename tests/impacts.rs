@@ -194,6 +194,29 @@ fn shocks_keep_the_momentum_and_never_gain_energy() {
     runner.run(&all, run).unwrap_or_else(|failure| panic!("{failure}"));
 }
 
+#[test]
+fn with_friction_and_spins_none_of_these_shocks_gains_energy() {
+    for seed in 0..60 {
+        for restitution in [0.5, 1.0] {
+            let mut scene = crowd(restitution, 36, seed);
+            let mut random = random(seed);
+            scene.physics = Physics::FULL;
+            scene.parameters.friction = 0.5;
+            scene.solver.tolerance = 1e-10;
+            for grain in &mut scene.grains {
+                grain.angular_velocity = 40.0 * random.random_range(-1.0..=1.0);
+            }
+            let mut simulation = start(&scene);
+            for _ in 0..5 {
+                let before = simulation.observables().kinetic_energy;
+                let after = *simulation.step().expect("a finite state");
+                let grown = after.kinetic_energy / before - 1.0;
+                assert!(grown < 1e-9, "seed {seed}, ρ {restitution}: {grown:e}");
+            }
+        }
+    }
+}
+
 /// Steps a scene with and without the remedy. The largest difference of velocities, over the largest
 /// velocity.
 fn difference(scene: &Scene, steps: usize) -> f64 {

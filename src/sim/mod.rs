@@ -2,6 +2,7 @@
 
 mod alarm;
 mod bonds;
+mod bounces;
 pub mod live;
 mod observables;
 mod pull;

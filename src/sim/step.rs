@@ -1,11 +1,11 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
-use super::{Observables, Simulation, pull, push_out, range_step, schemes, speculative};
+use super::{Observables, Simulation, bounces, pull, push_out, range_step, schemes, speculative};
 use crate::contact::ContactList;
 use crate::error::Result;
 use crate::solver::{
-    self, Bounces, Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport,
-    SolverSettings, StepProblem, measure, solve, visit_leanest,
+    Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport, SolverSettings,
+    StepProblem, measure, visit_leanest,
 };
 use crate::world::{ContactLaw, Parameters};
 
@@ -62,7 +62,7 @@ impl<V: ProblemVisitor> ModelVisitor for Show<'_, V> {
     fn visit<M: Model>(self) -> V::Output {
         prepare::<M>(self.simulation);
         // A scheme, which alone could be refused, has none.
-        let _ = follow_impacts::<M>(self.simulation);
+        let _ = bounces::follow_impacts::<M>(self.simulation);
         let Simulation { problems, contacts, .. } = self.simulation;
         self.visitor.visit::<M>(M::Kinematics::problem(problems), contacts)
     }
@@ -89,7 +89,7 @@ pub(super) fn prepare<M: Model>(simulation: &mut Simulation) {
 }
 
 /// The law of a step: a scheme has its own.
-fn law(parameters: &Parameters, solver: &SolverSettings) -> ContactLaw {
+pub(super) fn law(parameters: &Parameters, solver: &SolverSettings) -> ContactLaw {
     match solver.method.kind() {
         MethodKind::Problem => parameters.law,
         MethodKind::Scheme(_) => ContactLaw::Moreau,
@@ -147,16 +147,7 @@ fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
     if simulation.parameters.law == ContactLaw::Range {
         return range_step::take::<M>(simulation);
     }
-    let ahead = follow_impacts::<M>(simulation)?;
-    let Simulation { solver, problems, .. } = simulation;
-    let mut report = solve::<M>(M::Kinematics::problem(problems), solver)?;
-    let mut earlier = ahead;
-    if !report.converged && solver.remedies.calm_unsolved {
-        earlier.add(report);
-        report = solve_without_bounces::<M>(simulation)?;
-    }
-    report.sweeps += earlier.sweeps;
-    report.factorisations += earlier.factorisations;
+    let report = bounces::solve_step::<M>(simulation)?;
     let taken = move_by::<M>(simulation, report);
     if simulation.solver.remedies.push_out {
         push_out::push_out(simulation, simulation.parameters.time_step_secs);
@@ -179,33 +170,6 @@ pub(super) fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport
     }
     integrate::<M>(simulation, simulation.parameters.time_step_secs);
     Taken { report, measures, gravity_work }
-}
-
-/// Has the contacts of the prepared step open as its shocks say, where that is asked for.
-fn follow_impacts<M: Model>(simulation: &mut Simulation) -> Result<SolveReport> {
-    let Simulation { world, parameters, solver, problems, contacts, .. } = simulation;
-    let range = law(parameters, solver) == ContactLaw::Range;
-    let scheme = solver.method.kind() != MethodKind::Problem;
-    if !solver.remedies.sequential_impacts || range || scheme {
-        return Ok(SolveReport::default());
-    }
-    let bounces = Bounces {
-        restitution: parameters.restitution,
-        threshold: parameters.restitution_threshold,
-        step_of_gravity: world.gravity.magnitude() * parameters.time_step_secs,
-    };
-    solver::follow_impacts::<M>(M::Kinematics::problem(problems), contacts, bounces, solver)
-}
-
-/// Solves the step anew with ρ = 0, from the impulses of the step before. What it measures is the
-/// residual of that problem.
-fn solve_without_bounces<M: Model>(simulation: &mut Simulation) -> Result<SolveReport> {
-    let restitution = std::mem::take(&mut simulation.parameters.restitution);
-    // Detection at the same places finds the same contacts, and their impulses with them.
-    prepare::<M>(simulation);
-    simulation.parameters.restitution = restitution;
-    let Simulation { solver, problems, .. } = simulation;
-    solve::<M>(M::Kinematics::problem(problems), solver)
 }
 
 struct Start<'a>(&'a mut Simulation);

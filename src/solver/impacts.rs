@@ -24,7 +24,8 @@
 //!
 //! Contacts that still close after the last pass, slower than anything that is to bounce, are stopped
 //! by the projection of the velocities on those that close no contact. That takes energy too. Impulses
-//! act on pairs, so momentum stays.
+//! act on pairs, so momentum stays. Friction in the step itself is another matter: there Newton's law of
+//! bounces has no such proof, here as little as in the paper's scheme (T. R. Kane, 1984).
 //!
 //! **The step itself** then asks each contact that was struck to open with the speed û_k ≥ 0 that the
 //! shocks have left it: u_k^n − û_k takes the place of u_k^n + ρ u_k^{n−1} in its law. Without gravity
@@ -48,8 +49,8 @@ const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
 /// The same in the fastest closing speed of the step, for scenes without gravity. For ρ < 1 a chain
 /// closes infinitely often; smaller: more passes for what cannot be seen.
 const LEAST_IN_FASTEST: f64 = 1e-6;
-/// Most passes. A row of n balls needs n − 1 of them; more passes would let longer rows through.
-const MOST_PASSES: u32 = 500;
+/// Most passes, so that a step ends. A row of n balls needs n − 1 of them.
+const MOST_PASSES: u32 = 2000;
 
 /// How a pass is solved, whatever the step's own method: contacts that close together are few.
 const PASS: SolverSettings = SolverSettings {
