@@ -19,9 +19,10 @@ fn there_is_no_remedy_unless_asked_for() {
     assert!(SolverSettings::default().remedies.is_none());
     let mut robust = heap(2);
     Preset::Robust.apply(&mut robust);
-    let Remedies { push_out, max_travel, calm_unsolved, sequential_impacts } =
+    let Remedies { push_out, max_travel, calm_unsolved, sequential_impacts, speculative } =
         robust.solver.remedies;
     assert!(push_out && calm_unsolved && sequential_impacts && max_travel > 0.0);
+    assert!(!speculative, "pieces of a step keep bounces");
 }
 
 #[test]
