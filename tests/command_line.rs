@@ -38,7 +38,7 @@ fn names_in(folder: &Path) -> Vec<String> {
 
 #[test]
 fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
-    let cases: [(&[&str], &str, &str); 25] = [
+    let cases: [(&[&str], &str, &str); 28] = [
         (&["--bond", "-1"], "bond is -1", "≥ 0"),
         (&["--dt", "0"], "dt is 0", "> 0"),
         (&["--dt", "nan"], "dt is NaN", "> 0"),
@@ -51,6 +51,9 @@ fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
         (&["--max-sweeps", "0"], "max-sweeps is 0", "at least 1"),
         (&["--scene", "heap"], "scene is heap", "pile, cradle, collision"),
         (&["--max-travel", "-1"], "max-travel is -1", "0 never cuts a step"),
+        (&["--law", "range", "--push-out", "true"], "push-out is true", "false where law is range"),
+        (&["--law", "range", "--calm-unsolved", "true"], "calm-unsolved is true", "law is range"),
+        (&["--law", "range", "--sequential-impacts", "true"], "sequential-imp", "law is range"),
         (&["--scene", "none.toml"], "none.toml", "No such file"),
         (&["--initial", "none.csv"], "none.csv", "No such file"),
         (&["--solver", "magic"], "magic", "nsgs"),

@@ -177,3 +177,23 @@ fn a_wall_that_cannot_be_is_refused_with_its_field() {
         assert!(said.starts_with("boundaries[0] is speed"), "{said}");
     }
 }
+
+/// Each shock runs through the row and leaves its last ball not yet struck with 2V; in the end no
+/// contact closes, and every ball has it.
+#[test]
+fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
+    for balls in 1..=4 {
+        let place = |ball: usize| DVec2::new(2.0 * RADIUS * ball as f64, 0.0);
+        let mut scene = pushed(LINE, 1.0, 0.0, 10.0);
+        let row = (0..balls).map(|ball| Grain::at_rest(place(ball), RADIUS));
+        scene.grains = row.collect();
+        // Wherever rounding has put the last digit, they touch.
+        scene.parameters.gap_tolerance = 1e-9;
+        scene.solver.remedies = Remedies { sequential_impacts: true, ..Remedies::NONE };
+        let mut simulation = start(&scene);
+        take_steps(&mut simulation, 1);
+        for velocity in &simulation.world().grains.velocities {
+            assert_close(velocity.x, 2.0 * SPEED, 1e-9, "speed after the wall came");
+        }
+    }
+}

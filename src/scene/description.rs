@@ -94,6 +94,7 @@ impl Scene {
         self.physics.validate()?;
         self.parameters.validate()?;
         self.solver.validate()?;
+        self.solver.remedies.validate_under(self.parameters.law)?;
         positive("areal_density", self.areal_density, " kg/m²")?;
         positive("duration", self.duration_secs, " s")?;
         positive("mean_diameter", self.mean_diameter, " m")?;

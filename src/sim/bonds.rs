@@ -70,9 +70,6 @@ pub(super) fn solve_range<M: Model>(
     } else {
         report.add(shocks::<M>(problem, settings, &mut speeds)?);
     }
-    for (speed, wall_speed) in speeds.iter_mut().zip(&problem.wall_speeds) {
-        *speed -= wall_speed;
-    }
     for _ in 0..MOST_ROUNDS {
         report.add(solve::<M>(problem, settings)?);
         let bonds = contacts.bonds();

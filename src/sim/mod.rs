@@ -2,6 +2,7 @@
 
 mod alarm;
 mod bonds;
+mod bounces;
 pub mod live;
 mod observables;
 mod pull;
@@ -10,6 +11,7 @@ mod range_step;
 mod schemes;
 mod simulation;
 mod snapshot;
+mod speculative;
 mod step;
 mod tally;
 mod travel;

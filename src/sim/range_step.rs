@@ -17,15 +17,13 @@ const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
 /// layer of grains at the least.
 const PASSES_OF_PUSHING: u32 = 8;
 
-/// Finds the contacts that a step of that length may have to do with; the fastest wall in m/s.
+/// Finds the contacts that a step may have to do with.
 pub(super) fn detect<M: Model>(
     world: &World,
     candidates: &mut Candidates,
     contacts: &mut ContactList,
-    fastest_wall: f64,
-    time_step_secs: f64,
+    ahead: LookAhead,
 ) {
-    let ahead = look_ahead(world, fastest_wall, time_step_secs);
     if M::Kinematics::AXES == 1 {
         candidates.update_ahead::<1>(world, ahead.reach);
         contacts.detect_ahead::<1>(world, candidates, ahead);
@@ -35,15 +33,20 @@ pub(super) fn detect<M: Model>(
     }
 }
 
-/// How far a step has to look: the fastest grain or wall tells what any grain may come to.
-fn look_ahead(world: &World, fastest_wall: f64, time_step_secs: f64) -> LookAhead {
-    let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
-    let fastest =
-        speeds.fold(fastest_wall, f64::max) + 2.0 * world.gravity.magnitude() * time_step_secs;
+/// How far a step has to look, with the speed of the fastest grain or wall (m/s): it tells what any
+/// grain may come to.
+pub(super) fn look_ahead(world: &World, fastest: f64, time_step_secs: f64) -> LookAhead {
+    let fastest = fastest + 2.0 * world.gravity.magnitude() * time_step_secs;
     let [near, far] = AHEAD_IN_DIAMETERS.map(|most| most * world.mean_diameter);
     let distance = (fastest * time_step_secs).min(near);
     let reach = (distance + 2.0 * fastest * time_step_secs).min(far);
-    LookAhead { time_step_secs, distance, reach }
+    LookAhead { time_step_secs, distance, reach, bonds: true }
+}
+
+/// Speed of the fastest grain or wall, m/s, with that of the fastest wall.
+pub(super) fn fastest(world: &World, fastest_wall: f64) -> f64 {
+    let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
+    speeds.fold(fastest_wall, f64::max)
 }
 
 /// A step under the law `range`: as a whole, or in substeps where a bond breaks (`sim::bonds`).

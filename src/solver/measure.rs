@@ -89,7 +89,7 @@ pub fn for_each_row<K: Kinematics>(
     }
 }
 
-/// v_n of every row among `bodies`, m/s; `speeds` is cleared first.
+/// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
 pub fn relative_velocities<K: Kinematics>(
     problem: &StepProblem<K>,
     bodies: &[K::Body<f64>],
@@ -101,6 +101,9 @@ pub fn relative_velocities<K: Kinematics>(
     speeds.extend(pair_rows.iter().map(|row| {
         K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])[0]
     }));
+    for (speed, wall_speed) in speeds.iter_mut().zip(&problem.wall_speeds) {
+        *speed -= wall_speed;
+    }
 }
 
 #[derive(Default)]

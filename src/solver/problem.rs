@@ -120,7 +120,6 @@ impl<K: Kinematics> StepProblem<K> {
         self.friction = parameters.friction;
         self.capture_speed =
             if cohesion { parameters.capture_speed(gravity_magnitude) } else { 0.0 };
-        let range = parameters.law == ContactLaw::Range;
         self.captures.clear();
         self.wall_speeds.clear();
         self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
@@ -149,10 +148,12 @@ impl<K: Kinematics> StepProblem<K> {
         let fixed_count = rows.len();
         self.sorter.append(ordering, (world, list), pairs, rows, pair_ends);
 
-        let rebound =
-            |velocity: f64, contact: &Contact| rebound(world, parameters, velocity, contact.gap);
-        if range && self.capture_speed > 0.0 {
-            let capture = |&index: &u32| match contacts.bonds()[index as usize].alive {
+        let rebound = |velocity: f64, index: u32, contact: &Contact| {
+            let in_touch = contacts.is_in_touch(index as usize);
+            rebound(world, parameters, velocity, contact.gap, in_touch)
+        };
+        if contacts.looks_ahead() && self.capture_speed > 0.0 {
+            let capture = |&index: &u32| match contacts.is_in_touch(index as usize) {
                 true => self.capture_speed,
                 false => 0.0,
             };
@@ -166,7 +167,7 @@ impl<K: Kinematics> StepProblem<K> {
             let i = contact.grain as usize;
             let [velocity, _] = K::velocity(K::normal(contact.normal.to_array()), &self.before[i]);
             let masses = (grains.masses[i], 1.0);
-            let velocity = rebound(velocity, contact);
+            let velocity = rebound(velocity, index, contact);
             let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
             self.fixed_rows.push(row);
         }
@@ -180,7 +181,7 @@ impl<K: Kinematics> StepProblem<K> {
                 K::relative_velocity(K::normal(contact.normal.to_array()), before_i, before_j);
             let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
             let masses = (grains.masses[i] * share, share);
-            let velocity = rebound(velocity, contact);
+            let velocity = rebound(velocity, index, contact);
             let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
             self.pair_rows.push(row);
         }
@@ -235,8 +236,9 @@ impl<K: Kinematics> StepProblem<K> {
             let contact = &contacts.contacts()[index as usize];
             let speed = speed(contact);
             let [velocity, _] = K::velocity(row.normal, &before[row.i as usize]);
-            row.restitution_velocity =
-                rebound(world, parameters, velocity - speed, contact.gap) - speed;
+            let in_touch = contacts.is_in_touch(index as usize);
+            let rebound = rebound(world, parameters, velocity - speed, contact.gap, in_touch);
+            row.restitution_velocity = rebound - speed;
             wall_speeds.push(speed);
         }
     }
@@ -341,15 +343,20 @@ impl<K: Kinematics> StepProblem<K> {
     }
 }
 
-/// What the law adds to v_n, m/s, where it was `velocity` before the step and the gap is `gap` (m).
+/// What the law adds to v_n, m/s, where it was `velocity` before the step, the gap is `gap` (m), and
+/// the pair is known to touch or not.
 #[inline(always)]
-fn rebound(world: &World, parameters: &Parameters, velocity: f64, gap: f64) -> f64 {
+fn rebound(world: &World, parameters: &Parameters, velocity: f64, gap: f64, in_touch: bool) -> f64 {
     let gravity_magnitude = world.gravity.magnitude();
+    let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
     if parameters.law != ContactLaw::Range {
-        return parameters.restitution_velocity(velocity, gravity_magnitude);
+        if in_touch {
+            return parameters.restitution_velocity(velocity, gravity_magnitude);
+        }
+        // It lands in touch, so that the next step knows it.
+        return (gap + touch) / parameters.time_step_secs;
     }
     // What is closed in the step must not close by more than its gap; what touches bounces.
-    let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
     if gap > touch {
         return (gap - touch) / parameters.time_step_secs;
     }
