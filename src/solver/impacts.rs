@@ -24,8 +24,7 @@
 //!
 //! Contacts that still close after the last pass, slower than anything that is to bounce, are stopped
 //! by the projection of the velocities on those that close no contact. That takes energy too. Impulses
-//! act on pairs, so momentum stays. Friction in the step itself is another matter: there Newton's law of
-//! bounces has no such proof, here as little as in the paper's scheme (T. R. Kane, 1984).
+//! act on pairs, so momentum stays.
 //!
 //! **The step itself** then asks each contact that was struck to open with the speed û_k ≥ 0 that the
 //! shocks have left it: u_k^n − û_k takes the place of u_k^n + ρ u_k^{n−1} in its law. Without gravity
@@ -33,12 +32,16 @@
 //! they are not 0, u_k^n = û_k. With friction it rubs by the whole normal impulse, shocks included.
 //! A single contact has û = −ρ u^{n−1}: nothing changes for it.
 //!
+//! **Friction.** With it bounces may gain energy, here as in the paper's scheme (T. R. Kane, 1984).
+//! Where the contacts of a step have done positive work, its û_k are halved and it is solved again. With
+//! û_k = 0 that work is, without gravity, P_t·u_t − ½P·WP ≤ 0, so this ends.
+//!
 //! **Not with cohesion.** In the paper's law what touches is bonded, and a bond takes part in a shock.
 //! Then all contacts belong to the first pass, which is the law as it was.
 
 use super::{
-    Kinematics, Method, Model, Ordering, Remedies, Row, SolveReport, SolverSettings, StepProblem,
-    StopTest, relative_velocities, solve,
+    Kinematics, Measures, Method, Model, Ordering, Remedies, Row, SolveReport, SolverSettings,
+    StepProblem, StopTest, measure, relative_velocities, solve,
 };
 use crate::contact::ContactList;
 use crate::error::Result;
@@ -51,6 +54,9 @@ const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
 const LEAST_IN_FASTEST: f64 = 1e-6;
 /// Most passes, so that a step ends. A row of n balls needs n − 1 of them.
 const MOST_PASSES: u32 = 2000;
+
+/// Part of the kinetic energy that a step may gain by rounding and by the tolerance of its solution.
+const GAIN_OF_ROUNDING: f64 = 1e-9;
 
 /// How a pass is solved, whatever the step's own method: contacts that close together are few.
 const PASS: SolverSettings = SolverSettings {
@@ -77,7 +83,7 @@ pub struct Bounces {
 
 /// Follows the shocks of a prepared step, and has its contacts open as they say. Reports the work that
 /// took; whether the step is solved is for the step to say. Leaves a problem with cohesion, or without
-/// bounces, as it is.
+/// shocks that bounce, as it is, and reports nothing.
 ///
 /// # Errors
 /// Where the method of `settings` is a scheme.
@@ -86,17 +92,17 @@ pub fn follow_impacts<M: Model>(
     contacts: &ContactList,
     bounces: Bounces,
     settings: &SolverSettings,
-) -> Result<SolveReport> {
+) -> Result<Option<SolveReport>> {
     let mut report = SolveReport::default();
     if problem.capture_speed > 0.0 || bounces.restitution == 0.0 {
-        return Ok(report);
+        return Ok(None);
     }
     let mut shocks = Shocks::new(problem, contacts);
     let fastest = shocks.fastest_closing();
     let threshold = bounces.threshold.max(LEAST_IN_STEPS_OF_GRAVITY);
     let least = (threshold * bounces.step_of_gravity).max(LEAST_IN_FASTEST * fastest);
     if fastest <= least {
-        return Ok(report);
+        return Ok(None);
     }
     let mut pass = StepProblem::default();
     for _ in 0..MOST_PASSES {
@@ -110,7 +116,25 @@ pub fn follow_impacts<M: Model>(
         report.add(shocks.stop_the_rest::<M>(problem, settings)?);
     }
     shocks.set_rebounds(problem);
-    Ok(report)
+    Ok(Some(report))
+}
+
+/// Whether the contacts of a solved step have done work on the grains, beyond rounding.
+pub fn gains_energy<M: Model>(problem: &StepProblem<M::Kinematics>) -> bool {
+    let Measures { normal_work, tangential_work, .. } = measure::<M>(problem);
+    let moving = problem.before.iter().zip(&problem.masses);
+    let energy: f64 = moving.map(|(body, &mass)| M::Kinematics::kinetic_energy(body, mass)).sum();
+    normal_work + tangential_work > GAIN_OF_ROUNDING * energy
+}
+
+/// Multiplies the speeds that contacts are asked to open with.
+pub fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
+    let StepProblem { fixed_rows, pair_rows, .. } = problem;
+    for row in fixed_rows.iter_mut().chain(pair_rows) {
+        if row.restitution_velocity < 0.0 {
+            row.restitution_velocity *= factor;
+        }
+    }
 }
 
 /// How far the shocks have gone.

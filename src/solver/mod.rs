@@ -26,7 +26,7 @@ mod update;
 
 pub use auto::picked;
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
-pub use impacts::{Bounces, follow_impacts};
+pub use impacts::{Bounces, follow_impacts, gains_energy, scale_rebounds};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, Motion, for_each_row, measure, relative_velocities, residual};
 pub use method::{
