@@ -188,7 +188,7 @@ fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
         let row = (0..balls).map(|ball| Grain::at_rest(place(ball), RADIUS));
         scene.grains = row.collect();
         // Wherever rounding has put the last digit, they touch.
-        scene.parameters.gap_tolerance = 1e-9;
+        scene.gap_tolerance = 1e-9;
         scene.solver.remedies = Remedies { sequential_impacts: true, ..Remedies::NONE };
         let mut simulation = start(&scene);
         take_steps(&mut simulation, 1);
