@@ -2,8 +2,8 @@
 
 use slump::scene::Scene;
 use slump::scene::stability::{
-    WALL_DISTANCE, balls, breaking_bond_of_cantilever, cantilever, column_on_line, mass_ratio,
-    thin_wall,
+    FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, breaking_bond_of_cantilever, cantilever,
+    column_on_line, mass_ratio, thin_wall,
 };
 use slump::sim::Simulation;
 use slump::solver::{Method, SolverSettings};
@@ -167,5 +167,24 @@ fn a_cantilever_without_friction_tears_at_the_bond_number_of_statics_at_every_ti
                 assert_eq!(found, torn, "{length} discs, {part} of {right}, {time_step_secs} s");
             }
         }
+    }
+}
+
+#[test]
+fn the_contacts_of_an_arch_carry_what_statics_says() {
+    let mut scene = arch();
+    scene.solver.tolerance = 1e-12;
+    let mut simulation = scene.simulation().expect("a sound scene");
+    for _ in 0..3 {
+        simulation.step().expect("a finite state");
+    }
+    let list = simulation.contacts();
+    assert_eq!(list.contacts().len(), 4);
+    let spring = (2f64.sqrt() - 1.0) / (2f64.sqrt() + 3.0);
+    for (contact, impulse) in list.contacts().iter().zip(list.impulses()) {
+        let crown = contact.other < 3;
+        let expected = if crown { FRICTION_OF_ARCH } else { spring };
+        let found = impulse.tangential.abs() / impulse.normal;
+        assert!((found - expected).abs() < 1e-5, "crown {crown}: {found} for {expected}");
     }
 }

@@ -18,7 +18,8 @@
 //!
 //! > T/N = (c² − 3s²)/(1 + 4cs) = (√2 − 1)/(√2 + 1) = 3 − 2√2.
 //!
-//! The spring contacts need 0.094. Below μ = 3 − 2√2 the keystone slips through.
+//! The spring contacts need (√2 − 1)/(3 + √2), about half of it. Below μ = 3 − 2√2 the keystone slips
+//! through.
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_8, SQRT_2};
 
