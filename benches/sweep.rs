@@ -1,18 +1,67 @@
-//! What one contact update costs, and what a step costs around its sweeps.
+//! What one contact update costs, and what a step costs around its sweeps; and what a whole solve of
+//! sweeps costs a contact one after the other and by colours.
 
 mod common;
 
 use std::hint::black_box;
 
 use common::timing::{criterion, least_secs};
-use slump::solver::{SolverSettings, SpinningPlane, StepModel, StepProblem, StopTest, sweep};
+use criterion::Criterion;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use slump::sim::Simulation;
+use slump::solver::{
+    Method, Ordering, SolverSettings, SpinningPlane, StepModel, StepProblem, StopTest, solve, sweep,
+};
 
 type Full = StepModel<SpinningPlane, true, false>;
 
 /// Sweeps of every step that is timed: a fixed amount of work.
 const SWEEPS: u32 = 50;
 
+/// ns that a solve of the simulation's next problem takes a contact and sweep, with setting up what the
+/// method needs: in the default order; by colours one by one, side by side, and so on two threads.
+fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) -> String {
+    let one_by_one = SolverSettings {
+        method: Method::Nsgs,
+        stop: StopTest::RelativeChange,
+        tolerance: 0.0,
+        max_sweeps: 2 * SWEEPS,
+        ..SolverSettings::default()
+    };
+    let coloured = SolverSettings { ordering: Ordering::Coloured, ..one_by_one };
+    let side_by_side = SolverSettings { method: Method::NsgsParallel, ..one_by_one };
+    let mut time = |name: &str, settings: SolverSettings, pool: Option<&ThreadPool>| {
+        let (world, contacts) = (simulation.world(), simulation.contacts());
+        let mut problem = StepProblem::<SpinningPlane>::default();
+        problem.prepare::<Full>(world, contacts, simulation.parameters(), true, &settings);
+        let updates = problem.contact_of_row.len() * settings.max_sweeps as usize;
+        let mut run = || {
+            let report = solve::<Full>(&mut problem, &settings).expect("a method for problems");
+            assert_eq!(black_box(report).sweeps, settings.max_sweeps);
+        };
+        let name = format!("{name}/{count} discs");
+        let secs = match pool {
+            Some(pool) => least_secs(criterion, &name, || pool.install(&mut run)),
+            None => least_secs(criterion, &name, run),
+        };
+        1e9 * secs / updates as f64
+    };
+    let pool = ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+    let plain = time("one by one", one_by_one, None);
+    let colours = time("colours, one by one", coloured, None);
+    let lanes = time("colours, side by side", side_by_side, None);
+    let threads = time("colours, side by side, two threads", side_by_side, Some(&pool));
+    format!(
+        "{count} discs, ns a contact and sweep of a solve: one by one {plain:.2}, by colours \
+         {colours:.2}, side by side {lanes:.2}, on two threads {threads:.2}; nsgs / nsgs-parallel \
+         {:.2}, on two threads {:.2}",
+        plain / lanes,
+        plain / threads
+    )
+}
+
 fn main() {
+    ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
     let mut criterion = criterion();
     let mut summary = Vec::new();
     for count in [138, 2_000, 10_000] {
@@ -32,6 +81,7 @@ fn main() {
         let of_sweep = least_secs(&mut criterion, &format!("sweep/{count} discs"), || {
             black_box(sweep::<Full, false>(&mut problem));
         });
+        summary.push(by_colours(&mut criterion, &simulation, count));
         let of_step = least_secs(&mut criterion, &format!("step/{count} discs"), || {
             let sweeps = simulation.step().expect("a finite state").sweeps;
             assert_eq!(black_box(sweeps), SWEEPS);
@@ -45,6 +95,9 @@ fn main() {
             100.0 * around / of_step
         ));
     }
+    let mut large = common::with(&common::settled(50_000), |numbers| numbers.bond = 20.0);
+    large.step().expect("a finite state");
+    summary.push(by_colours(&mut criterion, &large, 50_000));
     println!("\nleast over all repeats:\n{}", summary.join("\n"));
     criterion.final_summary();
 }

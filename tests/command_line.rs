@@ -38,7 +38,7 @@ fn names_in(folder: &Path) -> Vec<String> {
 
 #[test]
 fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
-    let cases: [(&[&str], &str, &str); 25] = [
+    let cases: [(&[&str], &str, &str); 28] = [
         (&["--bond", "-1"], "bond is -1", "≥ 0"),
         (&["--dt", "0"], "dt is 0", "> 0"),
         (&["--dt", "nan"], "dt is NaN", "> 0"),
@@ -51,6 +51,9 @@ fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
         (&["--max-sweeps", "0"], "max-sweeps is 0", "at least 1"),
         (&["--scene", "heap"], "scene is heap", "pile, cradle, collision"),
         (&["--max-travel", "-1"], "max-travel is -1", "0 never cuts a step"),
+        (&["--law", "range", "--push-out", "true"], "push-out is true", "false where law is range"),
+        (&["--law", "range", "--calm-unsolved", "true"], "calm-unsolved is true", "law is range"),
+        (&["--law", "range", "--sequential-impacts", "true"], "sequential-imp", "law is range"),
         (&["--scene", "none.toml"], "none.toml", "No such file"),
         (&["--initial", "none.csv"], "none.csv", "No such file"),
         (&["--solver", "magic"], "magic", "nsgs"),
@@ -186,4 +189,38 @@ fn the_shipped_initial_state_is_reproduced_bit_for_bit() {
     let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/pile_138.csv");
     let read = |path: &Path| std::fs::read_to_string(path).expect("a file");
     assert_eq!(read(&out), read(shipped.as_ref()));
+}
+
+#[test]
+fn a_run_that_blows_up_leaves_its_frames_and_says_so_in_its_manifest() {
+    let folder = folder();
+    // Springs in a box, with a substep far beyond the critical one.
+    let output = slump()
+        .args(["--headless", "--scene", "squeeze", "--solver", "dem", "--substeps", "1"])
+        .args(["--dt", "0.02", "--duration", "20", "--times", "0,0.02,0.04,20"])
+        .args(["--size", "100x100", "--renderer", "cpu", "--frames"])
+        .arg(folder.path())
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(said.contains("the state is no longer finite at step "), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+
+    let mut expected: Vec<_> = (0..3).map(|number| format!("frame_{number:05}.png")).collect();
+    expected.extend(["manifest.json".to_owned(), "observables.csv".to_owned()]);
+    assert_eq!(names_in(folder.path()), expected);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("a file");
+    let manifest: serde_json::Value = serde_json::from_str(&read("manifest.json")).expect("JSON");
+    assert_eq!(manifest["pictures"].as_array().map(Vec::len), Some(3));
+    let run = &manifest["runs"][0];
+    let alarms = run["alarms"].as_array().expect("a list");
+    let alarm = alarms.iter().find(|alarm| alarm["kind"] == "not-finite").expect("the alarm");
+    let message = alarm["message"].as_str().expect("words");
+    assert!(message.contains("more than 1 substeps"), "{message}");
+    // The step that blew up is no row, and all before it are.
+    let steps = run["tally"]["steps"].as_u64().expect("a number");
+    assert!((3..1000).contains(&steps), "it blows up on the way: {steps} steps");
+    assert_eq!(alarm["step"].as_u64(), Some(steps + 1));
+    assert_eq!(read("observables.csv").lines().count() as u64, 1 + steps);
 }

@@ -3,14 +3,14 @@
 mod common;
 
 use clap::ValueEnum;
-use slump::contact::ContactList;
+use slump::contact::{ContactList, Impulse};
 use slump::scene::{Rain, Scene, cradle, pile_of, settle};
 use slump::sim::{ProblemVisitor, Simulation};
 use slump::solver::{
     METHODS, Method, MethodInfo, MethodKind, Model, Ordering, SolveReport, SolverSettings,
     StepProblem, StopTest, residual, solve,
 };
-use slump::world::{FrictionCone, Physics};
+use slump::world::{ContactLaw, FrictionCone, Grains, Physics};
 
 /// A small pile that has begun to fall.
 fn falling_pile(seed: u64) -> Scene {
@@ -250,10 +250,30 @@ fn a_step_without_contacts_is_solved_by_every_method() {
     }
 }
 
+/// Sweeps, impulses and grains after three steps on so many threads.
+fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads").install(|| {
+        let mut simulation = scene.simulation().expect("a proper scene");
+        let sweeps = [(); 3].map(|()| simulation.step().expect("a finite state").sweeps);
+        (sweeps, simulation.contacts().impulses().to_vec(), simulation.world().grains.clone())
+    })
+}
+
+/// One after the other, in the order of the colours, it is a sweep like any other.
+fn assert_a_sweep_like_any_other(mut scene: Scene) {
+    (scene.solver.method, scene.solver.stop) = (Method::NsgsParallel, StopTest::Residual);
+    let parallel = three_steps(&scene, 2);
+    scene.solver.method = Method::Nsgs;
+    assert!(three_steps(&scene, 1) != parallel, "another order");
+    scene.solver.ordering = Ordering::Coloured;
+    assert!(three_steps(&scene, 1) == parallel, "{:?}", scene.physics);
+}
+
 #[test]
 fn colours_on_any_number_of_threads_give_bitwise_the_sweeps_of_one() {
     let parameters = common::parameters(20.0, 1e-3, 0.3, 0.5);
-    let mut scene = common::pressed_pile(12_000, 0.1, 5, parameters);
+    let mut scene = common::pressed_pile(40_000, 0.1, 5, parameters);
     scene.solver = SolverSettings {
         method: Method::NsgsParallel,
         stop: StopTest::RelativeChange,
@@ -261,26 +281,31 @@ fn colours_on_any_number_of_threads_give_bitwise_the_sweeps_of_one() {
         max_sweeps: 60,
         ..SolverSettings::default()
     };
-    let run = |scene: &Scene, threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads").install(|| {
-            let mut simulation = scene.simulation().expect("a proper scene");
-            let sweeps = [(); 3].map(|()| simulation.step().expect("a finite state").sweeps);
-            (sweeps, simulation.contacts().impulses().to_vec(), simulation.world().grains.clone())
-        })
-    };
-    let alone = run(&scene, 1);
-    assert!(alone.0[0] > 10 && alone.1.len() > 12_000, "{:?} sweeps", alone.0);
+    let alone = three_steps(&scene, 1);
+    assert!(alone.0[0] > 10 && alone.1.len() > 40_000, "{:?} sweeps", alone.0);
     for threads in [2, 4] {
-        assert!(run(&scene, threads) == alone, "{threads} threads");
+        assert!(three_steps(&scene, threads) == alone, "{threads} threads");
     }
-    // One after the other, in the order of the colours, it is a sweep like any other.
-    (scene.solver.stop, scene.solver.tolerance) = (StopTest::Residual, 1e-2);
-    let parallel = run(&scene, 2);
-    scene.solver.method = Method::Nsgs;
-    assert!(run(&scene, 1) != parallel, "another order");
-    scene.solver.ordering = Ordering::Coloured;
-    assert!(run(&scene, 1) == parallel);
+    scene.solver.tolerance = 1e-2;
+    assert_a_sweep_like_any_other(scene);
+}
+
+#[test]
+fn colours_give_bitwise_the_sweeps_of_one_in_every_model() {
+    for physics in [common::SMOOTH, common::UNTURNING, Physics::FULL] {
+        for (cone, law) in [
+            (FrictionCone::Shifted, ContactLaw::Moreau),
+            (FrictionCone::Compressive, ContactLaw::Moreau),
+            (FrictionCone::Shifted, ContactLaw::Range),
+        ] {
+            let mut parameters = common::parameters(20.0, 1e-3, 0.3, 0.5);
+            (parameters.cone, parameters.law) = (cone, law);
+            let mut scene = common::pressed_pile(300, 0.1, 7, parameters);
+            scene.physics = physics;
+            (scene.solver.tolerance, scene.solver.max_sweeps) = (1e-6, 200);
+            assert_a_sweep_like_any_other(scene);
+        }
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use super::{Feature, Grid, Tree};
 use crate::error::Result;
-use crate::world::World;
+use crate::world::{Boundary, World};
 
 /// How far the candidate search looks, m.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +38,10 @@ enum BroadPhase {
 pub struct Candidates {
     reach: Reach,
     features: Vec<Feature>,
+    /// Boundaries that can move, each with the number of its feature.
+    pistons: Vec<(usize, usize)>,
+    /// Longest way that a feature can have gone since the last build, m.
+    way_of_features: f64,
     cell_width: f64,
     broad_phase: BroadPhase,
     /// Radii of grains, then of fixed discs.
@@ -57,8 +61,11 @@ impl Candidates {
     /// # Errors
     /// Where a boundary makes no shape.
     pub fn new(world: &World, reach: Reach) -> Result<Self> {
-        let mut features = Vec::new();
+        let (mut features, mut pistons) = (Vec::new(), Vec::new());
         for (index, boundary) in world.boundaries.iter().enumerate() {
+            if matches!(boundary, Boundary::Piston { .. }) {
+                pistons.push((index, features.len()));
+            }
             Feature::collect(boundary, &format!("boundaries[{index}]"), &mut features)?;
         }
         let fixed = world.fixed_discs.iter().map(|disc| disc.radius);
@@ -68,6 +75,8 @@ impl Candidates {
         Ok(Self {
             reach,
             features,
+            pistons,
+            way_of_features: 0.0,
             cell_width: 2.0 * largest + reach.skin,
             broad_phase: if largest > SIZE_RATIO_OF_TREE * smallest {
                 BroadPhase::Tree(Box::default())
@@ -85,6 +94,21 @@ impl Candidates {
     /// The boundaries' features, numbered after grains and fixed discs.
     pub fn features(&self) -> &[Feature] {
         &self.features
+    }
+
+    /// The boundaries that can move, by their number, each with the number of its feature.
+    pub fn pistons(&self) -> &[(usize, usize)] {
+        &self.pistons
+    }
+
+    /// Moves features, given by their numbers, each by its way, m.
+    pub fn shift_features(&mut self, ways: impl Iterator<Item = (usize, DVec2)>) {
+        let mut longest = 0f64;
+        for (feature, way) in ways {
+            self.features[feature].shift(way);
+            longest = longest.max(way.length());
+        }
+        self.way_of_features += longest;
     }
 
     /// The gap below which a pair touches, m.
@@ -124,6 +148,7 @@ impl Candidates {
         let allowed = 0.5 * (self.reach.skin - look_ahead);
         let positions = &world.grains.positions;
         let still_good = self.starts.len() == positions.len() + 1
+            && self.way_of_features <= allowed
             && positions
                 .iter()
                 .zip(&self.centres)
@@ -136,6 +161,7 @@ impl Candidates {
 
     fn rebuild<const AXES: usize>(&mut self, world: &World) {
         let grain_count = world.grains.len();
+        self.way_of_features = 0.0;
         let skin = self.reach.skin;
         self.centres.clone_from(&world.grains.positions);
         self.centres.extend(world.fixed_discs.iter().map(|disc| disc.position));

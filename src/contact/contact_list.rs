@@ -56,6 +56,8 @@ pub struct LookAhead {
     pub distance: f64,
     /// Farther pairs are none, m.
     pub reach: f64,
+    /// Whether pairs that have touched are bonded from then on, and contacts until the bond breaks.
+    pub bonds: bool,
 }
 
 /// What is kept of a contact as long as it lives.
@@ -113,6 +115,11 @@ impl ContactList {
         &mut self.now.bonds
     }
 
+    /// Whether pairs with a gap are among the contacts.
+    pub fn looks_ahead(&self) -> bool {
+        self.looks_ahead
+    }
+
     /// Whether the pair of a contact touches or is bonded, and does not just come near.
     pub fn is_in_touch(&self, index: usize) -> bool {
         !self.looks_ahead || self.now.bonds[index].alive
@@ -156,8 +163,7 @@ impl ContactList {
         self.find::<AXES>(world, candidates, |contact, _| contact.gap < gap_tolerance);
     }
 
-    /// Finds the contacts of the law `range`: pairs that touch, that are bonded, or that may come to
-    /// touch within the step. Those that touch are bonded from now on.
+    /// Finds the pairs that touch, that are bonded, or that may come to touch within the step.
     pub fn detect_ahead<const AXES: usize>(
         &mut self,
         world: &World,
@@ -169,7 +175,9 @@ impl ContactList {
         let velocities = &world.grains.velocities;
         self.find::<AXES>(world, candidates, |contact, bond| {
             let gap = contact.gap;
-            if gap <= gap_tolerance && !bond.alive {
+            if !ahead.bonds {
+                *bond = Bond { alive: gap < gap_tolerance, stretch: 0.0 };
+            } else if gap <= gap_tolerance && !bond.alive {
                 *bond = Bond { alive: true, stretch: 0.0 };
             }
             if bond.alive {

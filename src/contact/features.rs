@@ -52,6 +52,15 @@ impl Feature {
                 let shape = HalfSpace::new(*normal / length);
                 features.push(Feature::HalfSpace { point: *point, shape });
             }
+            Boundary::Piston { point, normal, speed, travel } => {
+                if !(speed.is_finite() && *travel >= 0.0 && travel.is_finite()) {
+                    let found = format!("speed {speed}, travel {travel}");
+                    let allowed = "finite with a travel of at least 0 m";
+                    return Err(Error::value(field, found, allowed));
+                }
+                let at_rest = Boundary::HalfSpace { point: *point, normal: *normal };
+                Self::collect(&at_rest, field, features)?;
+            }
             Boundary::Segment { from, to } => {
                 Self::collect_chain(&[*from, *to], field, features)?;
             }
@@ -94,6 +103,13 @@ impl Feature {
             before = Some(shape);
         }
         Ok(())
+    }
+
+    /// Moves a half-space, m. Other shapes stay.
+    pub fn shift(&mut self, by: DVec2) {
+        if let Feature::HalfSpace { point, .. } = self {
+            *point += by;
+        }
     }
 
     /// Distance of `centre` from the surface (m), corners that another feature tells of included:

@@ -12,6 +12,8 @@
 //! that with a capture speed of 0. Coulomb's law in the shifted cone is |λ_t| ≤ μσ; on the compressive
 //! part alone it is |λ_t| ≤ μ max(σ − capture speed, 0).
 
+use super::Lanes;
+
 /// C₀ = Bond · m_ij · g, newton (paper eq. 10).
 pub fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: f64) -> f64 {
     bond * effective_mass * gravity_magnitude
@@ -19,41 +21,29 @@ pub fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: f64) ->
 
 /// Projects σ (m/s) on σ ≥ 0.
 #[inline(always)]
-pub fn signorini(shifted_impulse: f64) -> f64 {
-    larger(shifted_impulse, 0.0)
+pub fn signorini<T: Lanes>(shifted_impulse: T) -> T {
+    shifted_impulse.larger(shifted_impulse.same(0.0))
 }
 
 /// The largest |λ_t| that a shifted normal impulse allows, m/s.
 #[inline(always)]
-pub fn friction_bound<const COMPRESSIVE_CONE: bool>(
+pub fn friction_bound<const COMPRESSIVE_CONE: bool, T: Lanes>(
     friction: f64,
-    shifted_impulse: f64,
+    shifted_impulse: T,
     capture_speed: f64,
-) -> f64 {
+) -> T {
     let rubbing = if COMPRESSIVE_CONE {
-        larger(shifted_impulse - capture_speed, 0.0)
+        signorini(shifted_impulse - shifted_impulse.same(capture_speed))
     } else {
         shifted_impulse
     };
-    friction * rubbing
+    rubbing.same(friction) * rubbing
 }
 
 /// Projects a tangential impulse on its absolute value ≤ `bound`, any unit.
 #[inline(always)]
-pub fn coulomb(tangential_impulse: f64, bound: f64) -> f64 {
-    smaller(larger(tangential_impulse, -bound), bound)
-}
-
-/// The larger of two numbers as one machine instruction; `second` where `first` is NaN.
-#[inline(always)]
-fn larger(first: f64, second: f64) -> f64 {
-    if first > second { first } else { second }
-}
-
-/// The smaller of two numbers as one machine instruction; `second` where `first` is NaN.
-#[inline(always)]
-fn smaller(first: f64, second: f64) -> f64 {
-    if first < second { first } else { second }
+pub fn coulomb<T: Lanes>(tangential_impulse: T, bound: T) -> T {
+    tangential_impulse.larger(-bound).smaller(bound)
 }
 
 #[cfg(test)]
@@ -73,8 +63,8 @@ mod tests {
     #[test]
     fn the_two_cones_differ_where_the_contact_pulls() {
         let (pulling, capture_speed) = (1.0, 2.0);
-        assert_eq!(friction_bound::<false>(0.5, pulling, capture_speed), 0.5);
-        assert_eq!(friction_bound::<true>(0.5, pulling, capture_speed), 0.0);
+        assert_eq!(friction_bound::<false, _>(0.5, pulling, capture_speed), 0.5);
+        assert_eq!(friction_bound::<true, _>(0.5, pulling, capture_speed), 0.0);
         assert_eq!(coulomb(-3.0, 0.5), -0.5);
     }
 }

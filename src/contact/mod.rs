@@ -4,6 +4,7 @@ mod candidates;
 mod contact_list;
 mod features;
 mod grid;
+mod lanes;
 pub mod law;
 pub mod range;
 mod tree;
@@ -12,4 +13,7 @@ pub use candidates::{Candidates, Reach};
 pub use contact_list::{Contact, ContactList, ContactMemory, Impulse, LookAhead};
 pub use features::Feature;
 pub use grid::Grid;
+pub use lanes::Lanes;
+#[cfg(test)]
+pub(crate) use lanes::levels;
 pub use tree::Tree;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::ProblemFile;
@@ -148,7 +147,7 @@ impl BodyForm {
                 let row = Row {
                     i,
                     j: j.unwrap_or(0),
-                    normal: M::Kinematics::normal(DVec2::from_array(self.normal[contact])),
+                    normal: M::Kinematics::normal(self.normal[contact]),
                     share,
                     restitution_velocity: self.restitution_velocity[contact],
                     shifted_impulse: normal / effective_mass + self.capture_speed,

@@ -52,7 +52,7 @@ pub(super) fn boundary_links(
 impl Walls<'_> {
     fn draw(&mut self, boundary: &Boundary) {
         match boundary {
-            Boundary::HalfSpace { point, normal } => {
+            Boundary::HalfSpace { point, normal } | Boundary::Piston { point, normal, .. } => {
                 let along = -normal.normalize_or_zero().perp();
                 // Long enough to cross the picture from any point of the line nearest to it.
                 let anchor = self.camera.offset_px(*point);

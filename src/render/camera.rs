@@ -94,7 +94,7 @@ pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
 
 fn corners(boundary: &Boundary) -> Vec<DVec2> {
     match boundary {
-        Boundary::HalfSpace { .. } => Vec::new(),
+        Boundary::HalfSpace { .. } | Boundary::Piston { .. } => Vec::new(),
         Boundary::Segment { from, to } => vec![*from, *to],
         Boundary::Polyline { points } | Boundary::ConvexPolygon { points } => points.clone(),
     }

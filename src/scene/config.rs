@@ -120,6 +120,14 @@ pub struct Config {
     #[arg(long, value_name = "BOOL", help_heading = "Solver")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calm_unsolved: Option<bool>,
+    /// Have shocks run through touching grains one after the other, as in Newton's cradle; not with cohesion
+    #[arg(long, value_name = "BOOL", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sequential_impacts: Option<bool>,
+    /// Let pairs that would close their gap within a step close it and no more, so that nothing tunnels; it costs bounces
+    #[arg(long, value_name = "BOOL", help_heading = "Solver")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speculative: Option<bool>,
 }
 
 impl Config {
@@ -223,6 +231,8 @@ impl Config {
             push_out: Some(scene.solver.remedies.push_out),
             max_travel: Some(scene.solver.remedies.max_travel),
             calm_unsolved: Some(scene.solver.remedies.calm_unsolved),
+            sequential_impacts: Some(scene.solver.remedies.sequential_impacts),
+            speculative: Some(scene.solver.remedies.speculative),
             ..self.clone()
         }
     }
@@ -248,6 +258,8 @@ impl Config {
                 *place = value;
             }
         }
+        // A preset leaves out what the law does not take.
+        set(&mut scene.parameters.law, self.law);
         if let Some(preset) = self.preset {
             preset.apply(scene);
         }
@@ -257,7 +269,6 @@ impl Config {
         set(&mut scene.parameters.friction, self.mu);
         set(&mut scene.parameters.cone, self.cone);
         set(&mut scene.parameters.restitution_threshold, self.restitution_threshold);
-        set(&mut scene.parameters.law, self.law);
         set(&mut scene.parameters.debonding_distance, self.debonding_distance);
         set(&mut scene.duration_secs, self.duration);
         set(&mut scene.solver.method, self.solver);
@@ -270,6 +281,8 @@ impl Config {
         set(&mut scene.solver.remedies.push_out, self.push_out);
         set(&mut scene.solver.remedies.max_travel, self.max_travel);
         set(&mut scene.solver.remedies.calm_unsolved, self.calm_unsolved);
+        set(&mut scene.solver.remedies.sequential_impacts, self.sequential_impacts);
+        set(&mut scene.solver.remedies.speculative, self.speculative);
         scene.validate()
     }
 }

@@ -94,6 +94,7 @@ impl Scene {
         self.physics.validate()?;
         self.parameters.validate()?;
         self.solver.validate()?;
+        self.solver.remedies.validate_under(self.parameters.law)?;
         positive("areal_density", self.areal_density, " kg/m²")?;
         positive("duration", self.duration_secs, " s")?;
         positive("mean_diameter", self.mean_diameter, " m")?;
@@ -150,8 +151,11 @@ impl Scene {
             let field = format!("fixed_discs[{index}]");
             return Err(Error::value(field, self.fixed_discs[index].position, allowed));
         }
-        let across = |boundary: &Boundary| !matches!(boundary, Boundary::HalfSpace { normal, .. } if normal.y == 0.0);
-        if let Some(index) = self.boundaries.iter().position(across) {
+        let across = |boundary: &Boundary| match boundary {
+            Boundary::HalfSpace { normal, .. } | Boundary::Piston { normal, .. } => normal.y == 0.0,
+            _ => false,
+        };
+        if let Some(index) = self.boundaries.iter().position(|boundary| !across(boundary)) {
             let field = format!("boundaries[{index}]");
             let allowed = "a half-space across the x axis where physics.axes is 1";
             return Err(Error::value(field, format!("{:?}", self.boundaries[index]), allowed));

@@ -16,6 +16,16 @@ const MAX_SWEEPS: u32 = 5_000;
 /// Furthest way of a grain in a piece of a step, in d: half of what could jump a wall.
 const MAX_TRAVEL: f64 = 0.25;
 
+/// Each for a failure of its own. Fast grains are cut into pieces of a step and not looked ahead for,
+/// which would cost them their bounce (`sim::speculative`).
+const ALL_REMEDIES: Remedies = Remedies {
+    push_out: true,
+    max_travel: MAX_TRAVEL,
+    calm_unsolved: true,
+    sequential_impacts: true,
+    speculative: false,
+};
+
 /// Settings that go together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
@@ -42,7 +52,7 @@ impl Preset {
             tolerance: TOLERANCE,
             max_sweeps: MAX_SWEEPS,
             warm_start: true,
-            remedies: Remedies { push_out: true, max_travel: MAX_TRAVEL, calm_unsolved: true },
+            remedies: ALL_REMEDIES.under(parameters.law),
             ..*solver
         };
     }

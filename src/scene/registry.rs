@@ -39,7 +39,7 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 17] = [
+pub const SCENES: [SceneInfo; 20] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
@@ -101,10 +101,26 @@ pub const SCENES: [SceneInfo; 17] = [
         make: || Ok(stability::squeeze(1e-2)),
     },
     SceneInfo {
+        name: "moving-walls",
+        group: SceneGroup::Stability,
+        summary: "18 discs between two walls that move in: each has one place to be",
+        make: || Ok(stability::press()),
+    },
+    SceneInfo {
         name: "logs",
         group: SceneGroup::Stability,
         summary: "a disc 20 times as large on two small ones",
         make: || Ok(stability::logs(20.0)),
+    },
+    SceneInfo {
+        name: "arch",
+        group: SceneGroup::Stability,
+        summary: "an arch of three discs at 1.05 times the least friction that holds it",
+        make: || {
+            let mut scene = stability::arch();
+            scene.parameters.friction = 1.05 * stability::FRICTION_OF_ARCH;
+            Ok(scene)
+        },
     },
     SceneInfo {
         name: "repose",
@@ -113,9 +129,15 @@ pub const SCENES: [SceneInfo; 17] = [
         make: || Ok(stability::heap(6)),
     },
     SceneInfo {
+        name: "repose-angle",
+        group: SceneGroup::Stability,
+        summary: "the same heap on a slope of 29 degrees: from 30 on it must slide",
+        make: || Ok(stability::heap_on_slope(6, 29.0)),
+    },
+    SceneInfo {
         name: "far",
         group: SceneGroup::Stability,
-        summary: "the same heap, a thousand million diameters away",
+        summary: "the heap of 21 discs, a thousand million diameters away",
         make: || Ok(stability::heap_far_away(6, 1e9)),
     },
     SceneInfo {

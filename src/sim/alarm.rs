@@ -91,8 +91,6 @@ pub(super) struct Watch {
     alarms: Vec<Alarm>,
     /// Corners of the world, m; none where nothing is fixed and grains may fly where they like.
     corners: Option<[DVec2; 2]>,
-    /// Shapes that have an inside to be lost in.
-    solids: Vec<Feature>,
 }
 
 impl Watch {
@@ -100,7 +98,6 @@ impl Watch {
     pub fn new(world: &World, features: &[Feature]) -> Self {
         let is_half_space = |feature: &&Feature| matches!(feature, Feature::HalfSpace { .. });
         let open_ground = features.iter().any(|feature| is_half_space(&feature));
-        let has_inside = |feature: &&Feature| !matches!(feature, Feature::Segment { .. });
         // On open ground grains may roll as far as they like.
         let corners = (!world.fixed_discs.is_empty() && !open_ground).then(|| {
             let fixed = world.fixed_discs.iter().map(|disc| disc.position);
@@ -110,8 +107,7 @@ impl Watch {
             let side = (max - min).max_element() + world.mean_diameter;
             [min - ROOM_IN_SIDES * side, max + ROOM_IN_SIDES * side]
         });
-        let solids = features.iter().filter(has_inside).cloned().collect();
-        Self { corners, solids, ..Self::default() }
+        Self { corners, ..Self::default() }
     }
 
     /// The alarms so far, one of a kind.
@@ -119,8 +115,14 @@ impl Watch {
         &self.alarms
     }
 
-    /// Looks at the state after a step.
-    pub fn look(&mut self, world: &World, observables: &Observables, finite: bool) {
+    /// Looks at the state after a step; `features` are those of the boundaries where they are now.
+    pub fn look(
+        &mut self,
+        world: &World,
+        features: &[Feature],
+        observables: &Observables,
+        finite: bool,
+    ) {
         self.unfinished_in_a_row =
             if observables.converged { 0 } else { self.unfinished_in_a_row + 1 };
         if !finite {
@@ -133,17 +135,18 @@ impl Watch {
         if observables.max_overlap > LARGEST_OVERLAP {
             self.raise(AlarmKind::Overlap, observables);
         }
-        if !self.has(AlarmKind::GrainLost) && self.any_lost(world) {
+        if !self.has(AlarmKind::GrainLost) && self.any_lost(world, features) {
             self.raise(AlarmKind::GrainLost, observables);
         }
     }
 
-    fn any_lost(&self, world: &World) -> bool {
+    fn any_lost(&self, world: &World, features: &[Feature]) -> bool {
+        let has_inside = |feature: &&Feature| !matches!(feature, Feature::Segment { .. });
         let deep = -LOST_DEPTH * world.mean_diameter;
         let outside = |place: DVec2| {
             self.corners
                 .is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
-                || self.solids.iter().any(|feature| {
+                || features.iter().filter(has_inside).any(|feature| {
                     feature.distance(place).is_some_and(|(_, distance)| distance < deep)
                 })
         };

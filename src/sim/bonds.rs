@@ -137,7 +137,8 @@ pub(super) fn solve_range<M: Model>(
     for_each_row(problem, |number, row, motion| {
         let bond = &mut bonds[problem.contact_of_row[number] as usize];
         let cohesion_force = row.effective_mass * problem.capture_speed / time_step_secs;
-        let opening_speed = 0.5 * (speeds[number] + motion.now[0]);
+        let now = motion.now[0] - problem.wall_speed(number);
+        let opening_speed = 0.5 * (speeds[number] + now);
         let was_alive = bond.alive;
         let before = if was_alive { cohesion_force * bond.stretch } else { 0.0 };
         // A pair that was to meet may have been kept apart by the step after all.
@@ -194,7 +195,8 @@ impl Limits<'_> {
             let [impulse, _] = problem.reduced_impulse(number, row);
             let stretch = self.bonds[problem.contact_of_row[number] as usize].stretch;
             let left = (self.debonding_distance - stretch).max(0.0);
-            let opening = Opening { left, speed, load: motion.now[0] - speed - impulse };
+            let now = motion.now[0] - problem.wall_speed(number);
+            let opening = Opening { left, speed, load: now - speed - impulse };
             let bound = opening.bound(strength * problem.capture_speed, self.time_step_secs);
             if before > 0.0 && bound < (1.0 - FALL) * before {
                 falls.push((number, bound));

@@ -2,6 +2,7 @@
 
 mod alarm;
 mod bonds;
+mod bounces;
 pub mod live;
 mod observables;
 mod pull;
@@ -11,9 +12,11 @@ mod schemes;
 mod shocks;
 mod simulation;
 mod snapshot;
+mod speculative;
 mod step;
 mod tally;
 mod travel;
+mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
 pub use observables::Observables;

@@ -70,9 +70,9 @@ impl Simulation {
 
 /// Adds the push of a spring to bodies.
 pub(super) fn apply<K: Kinematics>(
-    bodies: &mut [K::Body],
+    bodies: &mut [K::Body<f64>],
     (grain, direction, speed): (usize, DVec2, f64),
 ) {
     // A normal impulse against a fixed body changes the velocity by just itself.
-    K::push_single(&mut bodies[grain], K::normal(direction), [speed, 0.0]);
+    K::push_single(&mut bodies[grain], K::normal(direction.to_array()), [speed, 0.0]);
 }

@@ -36,9 +36,9 @@ struct Row {
 
 /// Moves the grains after a step of that length, whose contacts are still those of its beginning.
 pub(super) fn push_out(simulation: &mut Simulation, time_step_secs: f64) {
-    let Simulation { world, contacts, .. } = simulation;
+    let Simulation { world, contacts, walls, .. } = simulation;
     let left = LEFT * world.mean_diameter;
-    let grains = &mut world.grains;
+    let grains = &world.grains;
     let mut rows = Vec::with_capacity(contacts.contacts().len());
     let mut deepest = 0f64;
     for contact in contacts.contacts() {
@@ -46,6 +46,7 @@ pub(super) fn push_out(simulation: &mut Simulation, time_step_secs: f64) {
         let j = (other < grains.len()).then_some(other);
         let velocity_of_other = j.map_or(DVec2::ZERO, |j| grains.velocities[j]);
         let approach = (grains.velocities[i] - velocity_of_other).dot(contact.normal);
+        let approach = approach - walls.speed(world, contact);
         let depth = -(contact.gap + time_step_secs * approach) - left;
         deepest = deepest.max(depth);
         let inverse = 1.0 / grains.masses[i] + j.map_or(0.0, |j| 1.0 / grains.masses[j]);
@@ -69,7 +70,7 @@ pub(super) fn push_out(simulation: &mut Simulation, time_step_secs: f64) {
             }
         }
     }
-    for (position, by) in grains.positions.iter_mut().zip(moves) {
+    for (position, by) in world.grains.positions.iter_mut().zip(moves) {
         *position += by;
     }
 }

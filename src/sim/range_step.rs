@@ -40,14 +40,13 @@ const MOST_SUBSTEPS: f64 = 16.0;
 /// layer of grains at the least.
 const PASSES_OF_PUSHING: u32 = 8;
 
-/// Finds the contacts that a step of that length may have to do with.
+/// Finds the contacts that a step may have to do with.
 pub(super) fn detect<M: Model>(
     world: &World,
     candidates: &mut Candidates,
     contacts: &mut ContactList,
-    time_step_secs: f64,
+    ahead: LookAhead,
 ) {
-    let ahead = look_ahead(world, time_step_secs);
     if M::Kinematics::AXES == 1 {
         candidates.update_ahead::<1>(world, ahead.reach);
         contacts.detect_ahead::<1>(world, candidates, ahead);
@@ -57,28 +56,34 @@ pub(super) fn detect<M: Model>(
     }
 }
 
-/// How far a step has to look: the fastest grain tells what any of them may come to.
-fn look_ahead(world: &World, time_step_secs: f64) -> LookAhead {
-    let travel = travel(world, time_step_secs);
+/// How far a step has to look, with the speed of the fastest grain or wall (m/s): it tells what any
+/// grain may come to.
+pub(super) fn look_ahead(world: &World, fastest: f64, time_step_secs: f64) -> LookAhead {
+    let travel = travel(world, fastest, time_step_secs);
     let [near, far] = AHEAD_IN_DIAMETERS.map(|most| most * world.mean_diameter);
     let distance = travel.min(near);
     let reach = (distance + 2.0 * travel).min(far);
-    LookAhead { time_step_secs, distance, reach }
+    LookAhead { time_step_secs, distance, reach, bonds: true }
 }
 
-/// How far a grain may go in a step, m.
-fn travel(world: &World, time_step_secs: f64) -> f64 {
+/// Speed of the fastest grain or wall, m/s, with that of the fastest wall.
+pub(super) fn fastest(world: &World, fastest_wall: f64) -> f64 {
     let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
-    let fastest = speeds.fold(0.0, f64::max) + 2.0 * world.gravity.magnitude() * time_step_secs;
-    fastest * time_step_secs
+    speeds.fold(fastest_wall, f64::max)
+}
+
+/// How far a grain may go in a step where the fastest has that speed (m/s), m.
+fn travel(world: &World, fastest: f64, time_step_secs: f64) -> f64 {
+    (fastest + 2.0 * world.gravity.magnitude() * time_step_secs) * time_step_secs
 }
 
 /// A step under the law `range`: as a whole, or in substeps (see the module).
 pub(super) fn take<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
-    let Simulation { world, parameters, .. } = simulation;
+    let Simulation { world, parameters, walls, .. } = simulation;
     let whole = parameters.time_step_secs;
     let distance = parameters.debonding_distance * world.mean_diameter;
-    let of_travel = (travel(world, whole) / (MOST_TRAVEL * world.mean_diameter)).ceil();
+    let travel = travel(world, fastest(world, walls.fastest()), whole);
+    let of_travel = (travel / (MOST_TRAVEL * world.mean_diameter)).ceil();
     let bond_time = bond_time_secs(parameters.bond, world.gravity.magnitude(), distance);
     let of_bonds = (whole / (SUBSTEP_IN_BOND_TIMES * bond_time)).ceil();
     let substeps = of_travel.max(of_bonds).clamp(1.0, MOST_SUBSTEPS) as u32;

@@ -56,7 +56,7 @@ pub(super) fn pass<M: Model>(
 ) -> Result<Option<Shocks>> {
     workspace.struck.clear();
     relative_velocities(problem, &problem.before, &mut workspace.speeds);
-    if !any::<M::Kinematics>(problem, &workspace.speeds, settings.tolerance) {
+    if !any::<M::Kinematics>(problem, settings.tolerance) {
         return Ok(None);
     }
     let Workspace { speeds, captures, rows, struck } = workspace;
@@ -66,15 +66,19 @@ pub(super) fn pass<M: Model>(
     std::mem::swap(&mut problem.captures, captures);
     problem.captures.clear();
     problem.captures.resize(captures.len(), 0.0);
-    let all = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
-    for (row, &speed) in all.zip(&*speeds) {
-        let closing_gap = row.restitution_velocity;
-        rows.push([row.shifted_impulse, row.tangential_impulse, closing_gap]);
+    let StepProblem { fixed_rows, pair_rows, wall_speeds, .. } = &mut *problem;
+    let all = fixed_rows.iter_mut().chain(pair_rows).enumerate();
+    for ((number, row), &speed) in all.zip(&*speeds) {
+        // Speeds are those relative to a wall that moves; what a row adds is to v_n itself.
+        let wall_speed = wall_speeds.get(number).copied().unwrap_or(0.0);
+        let closing_gap = row.restitution_velocity + wall_speed;
+        rows.push([row.shifted_impulse, row.tangential_impulse, row.restitution_velocity]);
         row.shifted_impulse = 0.0;
         row.tangential_impulse = 0.0;
         let bounce = restitution * speed;
         let touches = closing_gap * time_step_secs <= touch;
-        row.restitution_velocity = if touches { bounce } else { closing_gap.max(bounce) };
+        let allowed = if touches { bounce } else { closing_gap.max(bounce) };
+        row.restitution_velocity = allowed - wall_speed;
     }
     problem.bodies.clone_from(&problem.free);
     let report = solve::<M>(problem, settings);
@@ -83,11 +87,11 @@ pub(super) fn pass<M: Model>(
     let measures = Measures { residual, ..measure::<M>(problem) };
     std::mem::swap(&mut problem.captures, captures);
     let all = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
-    for (row, &[shifted, tangential, closing_gap]) in all.zip(&*rows) {
+    for (row, &[shifted, tangential, restitution_velocity]) in all.zip(&*rows) {
         struck.push(row.shifted_impulse);
         row.shifted_impulse = shifted;
         row.tangential_impulse = tangential;
-        row.restitution_velocity = closing_gap;
+        row.restitution_velocity = restitution_velocity;
     }
     let StepProblem { bodies, before, free, .. } = problem;
     for ((now, before), free) in bodies.iter().zip(before).zip(free) {
@@ -104,11 +108,11 @@ pub(super) fn pass<M: Model>(
 
 /// Whether any contact closes faster than it may, measured against the step's own scale, as its
 /// residual is.
-fn any<K: Kinematics>(problem: &StepProblem<K>, speeds: &[f64], tolerance: f64) -> bool {
+fn any<K: Kinematics>(problem: &StepProblem<K>, tolerance: f64) -> bool {
     let (mut violated, mut scale) = (0.0, 0.0);
-    for_each_row(problem, |number, row, motion| {
+    for_each_row(problem, |_, row, motion| {
         let squared_mass = row.effective_mass * row.effective_mass;
-        let closing = (speeds[number] + row.restitution_velocity).min(0.0);
+        let closing = (motion.before[0] + row.restitution_velocity).min(0.0);
         let free = motion.free[0] + row.restitution_velocity;
         violated += squared_mass * closing * closing;
         scale += squared_mass * free * free;

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::alarm::Watch;
 use super::snapshot::{ContactView, GrainView, Snapshot, Surroundings};
+use super::walls::Walls;
 use super::{Alarm, Observables, ProblemVisitor, Pull, bonds, schemes, step, travel};
 use crate::contact::{Candidates, ContactList, Feature, Reach};
 use crate::error::{Error, Result};
@@ -39,6 +40,8 @@ pub struct Simulation {
     pub(super) method_of_memories: Option<Method>,
     /// A spring on one grain, from the next step on.
     pub(super) pull: Option<Pull>,
+    /// Walls that move.
+    pub(super) walls: Walls,
     watch: Watch,
     surroundings: Arc<Surroundings>,
 }
@@ -81,6 +84,7 @@ impl Simulation {
         });
         let mut simulation = Self {
             initial_heights: world.grains.positions.iter().map(|position| position.y).sum(),
+            walls: Walls::default(),
             watch: Watch::new(&world, candidates.features()),
             world,
             physics,
@@ -111,7 +115,7 @@ impl Simulation {
             pieces => travel::take(self, pieces)?,
         }
         let finite = self.is_finite();
-        self.watch.look(&self.world, &self.observables, finite);
+        self.watch.look(&self.world, self.candidates.features(), &self.observables, finite);
         if finite {
             return Ok(&self.observables);
         }
@@ -293,8 +297,17 @@ impl Simulation {
             observables: self.observables,
             grains: views,
             contacts,
-            surroundings: Arc::clone(&self.surroundings),
+            surroundings: self.surroundings(),
         }
+    }
+
+    /// What no grain moves, where it is now.
+    fn surroundings(&self) -> Arc<Surroundings> {
+        if self.candidates.pistons().is_empty() {
+            return Arc::clone(&self.surroundings);
+        }
+        let boundaries = self.world.boundaries.clone();
+        Arc::new(Surroundings { boundaries, ..Surroundings::clone(&self.surroundings) })
     }
 
     /// Centre of another disc, or the nearest point of another shape, m.

@@ -16,11 +16,11 @@ pub struct Snapshot {
     pub grains: Vec<GrainView>,
     /// The contacts of the last step.
     pub contacts: Vec<ContactView>,
-    /// What never moves.
+    /// What no grain moves.
     pub surroundings: Arc<Surroundings>,
 }
 
-/// The part of a picture that no step changes.
+/// The part of a picture that grains do not change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
     /// Fixed discs.

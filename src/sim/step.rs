@@ -1,12 +1,12 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
 use super::bonds::BondEnergies;
-use super::{Observables, Simulation, pull, push_out, range_step, schemes};
+use super::{Observables, Simulation, bounces, pull, push_out, range_step, schemes, speculative};
 use crate::contact::ContactList;
 use crate::error::Result;
 use crate::solver::{
     Kinematics, Measures, MethodKind, Model, ModelVisitor, SolveReport, SolverSettings,
-    StepProblem, measure, solve, visit_leanest,
+    StepProblem, measure, visit_leanest,
 };
 use crate::world::{ContactLaw, Parameters};
 
@@ -64,6 +64,8 @@ impl<V: ProblemVisitor> ModelVisitor for Show<'_, V> {
 
     fn visit<M: Model>(self) -> V::Output {
         prepare::<M>(self.simulation);
+        // A scheme, which alone could be refused, has none.
+        let _ = bounces::follow_impacts::<M>(self.simulation);
         let Simulation { problems, contacts, .. } = self.simulation;
         self.visitor.visit::<M>(M::Kinematics::problem(problems), contacts)
     }
@@ -77,12 +79,17 @@ pub(super) fn prepare<M: Model>(simulation: &mut Simulation) {
         simulation.contacts.scale_impulses(time_step_secs / time_step_before);
         simulation.time_step_of_impulses_secs = time_step_secs;
     }
+    simulation.walls.begin(&simulation.world, &simulation.candidates, time_step_secs);
     detect::<M>(simulation);
     let push = simulation.push_of_pull(M::Kinematics::AXES, time_step_secs);
-    let Simulation { world, physics, parameters, solver, contacts, problems, .. } = simulation;
+    let Simulation { world, physics, parameters, solver, contacts, problems, walls, .. } =
+        simulation;
     let problem = M::Kinematics::problem(problems);
     let parameters = Parameters { law: law(parameters, solver), ..*parameters };
     problem.prepare::<M>(world, contacts, &parameters, physics.cohesion, solver);
+    if walls.any_move() {
+        problem.drive(world, contacts, &parameters, |contact| walls.speed(world, contact));
+    }
     if let Some(push) = push {
         pull::apply::<M::Kinematics>(&mut problem.free, push);
         pull::apply::<M::Kinematics>(&mut problem.bodies, push);
@@ -90,7 +97,7 @@ pub(super) fn prepare<M: Model>(simulation: &mut Simulation) {
 }
 
 /// The law of a step: a scheme has its own.
-fn law(parameters: &Parameters, solver: &SolverSettings) -> ContactLaw {
+pub(super) fn law(parameters: &Parameters, solver: &SolverSettings) -> ContactLaw {
     match solver.method.kind() {
         MethodKind::Problem => parameters.law,
         MethodKind::Scheme(_) => ContactLaw::Moreau,
@@ -149,18 +156,10 @@ impl ModelVisitor for Step<'_> {
 
 /// Solves the prepared problem and moves the grains.
 fn solve_and_move<M: Model>(simulation: &mut Simulation) -> Result<Taken> {
-    let Simulation { solver, problems, parameters, .. } = simulation;
-    if parameters.law == ContactLaw::Range {
+    if simulation.parameters.law == ContactLaw::Range {
         return range_step::take::<M>(simulation);
     }
-    let problem = M::Kinematics::problem(problems);
-    let mut report = solve::<M>(problem, solver)?;
-    if !report.converged && solver.remedies.calm_unsolved {
-        let first = report;
-        report = solve_without_bounces::<M>(simulation)?;
-        report.sweeps += first.sweeps;
-        report.factorisations += first.factorisations;
-    }
+    let report = bounces::solve_step::<M>(simulation)?;
     let taken = move_by::<M>(simulation, report);
     if simulation.solver.remedies.push_out {
         push_out::push_out(simulation, simulation.parameters.time_step_secs);
@@ -183,17 +182,6 @@ pub(super) fn move_by<M: Model>(simulation: &mut Simulation, report: SolveReport
     }
     integrate::<M>(simulation, simulation.parameters.time_step_secs);
     Taken { report, measures, gravity_work, bonds: None }
-}
-
-/// Solves the step anew with ρ = 0, from the impulses of the step before. What it measures is the
-/// residual of that problem.
-fn solve_without_bounces<M: Model>(simulation: &mut Simulation) -> Result<SolveReport> {
-    let restitution = std::mem::take(&mut simulation.parameters.restitution);
-    // Detection at the same places finds the same contacts, and their impulses with them.
-    prepare::<M>(simulation);
-    simulation.parameters.restitution = restitution;
-    let Simulation { solver, problems, .. } = simulation;
-    solve::<M>(M::Kinematics::problem(problems), solver)
 }
 
 struct Start<'a>(&'a mut Simulation);
@@ -225,9 +213,16 @@ impl ModelVisitor for Start<'_> {
 
 /// Finds the contacts at the present positions.
 pub(super) fn detect<M: Model>(simulation: &mut Simulation) {
-    let Simulation { world, candidates, contacts, parameters, solver, .. } = simulation;
+    let Simulation { world, candidates, contacts, parameters, solver, walls, .. } = simulation;
+    let time_step_secs = parameters.time_step_secs;
     if law(parameters, solver) == ContactLaw::Range {
-        range_step::detect::<M>(world, candidates, contacts, parameters.time_step_secs);
+        let fastest = range_step::fastest(world, walls.fastest());
+        let ahead = range_step::look_ahead(world, fastest, time_step_secs);
+        range_step::detect::<M>(world, candidates, contacts, ahead);
+    } else if solver.remedies.speculative && solver.method.kind() == MethodKind::Problem {
+        let fastest = range_step::fastest(world, walls.fastest());
+        let ahead = speculative::look_ahead(world, fastest, time_step_secs);
+        range_step::detect::<M>(world, candidates, contacts, ahead);
     } else if M::Kinematics::AXES == 1 {
         candidates.update::<1>(world);
         contacts.detect::<1>(world, candidates);
@@ -252,6 +247,10 @@ pub(super) fn integrate<M: Model>(simulation: &mut Simulation, time_step_secs: f
         for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
             *angle += time_step_secs * spin;
         }
+    }
+    let Simulation { world, candidates, walls, .. } = simulation;
+    if walls.any_move() {
+        walls.advance(world, candidates, time_step_secs);
     }
 }
 

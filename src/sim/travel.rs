@@ -1,5 +1,6 @@
 //! A step cut into pieces, so that no grain jumps over what it should hit.
 
+use super::range_step::fastest;
 use super::{Observables, Simulation, step};
 use crate::error::Result;
 use crate::solver::MethodKind;
@@ -15,8 +16,7 @@ pub(super) fn pieces(simulation: &Simulation) -> u32 {
         return 1;
     }
     let time_step_secs = parameters.time_step_secs;
-    let fastest = world.grains.velocities.iter().map(|velocity| velocity.length());
-    let mut travel = fastest.fold(0.0, f64::max) * time_step_secs
+    let mut travel = fastest(world, simulation.fastest_wall()) * time_step_secs
         + world.gravity.magnitude() * time_step_secs * time_step_secs;
     if let Some(pull) = simulation.pull {
         travel += world.grains.positions[pull.grain as usize].distance(pull.target);

@@ -230,9 +230,9 @@ impl<const D: usize> Workspace<D> {
             if M::FRICTION {
                 let softness = compliance * M::Kinematics::TANGENTIAL_COMPLIANCE;
                 let bound = if M::COMPRESSIVE_CONE {
-                    law::friction_bound::<true>(friction, shifted, capture_speed)
+                    law::friction_bound::<true, _>(friction, shifted, capture_speed)
                 } else {
-                    law::friction_bound::<false>(friction, shifted, 0.0)
+                    law::friction_bound::<false, _>(friction, shifted, 0.0)
                 };
                 let moved = law::coulomb(row.tangential_impulse - tangential / softness, bound);
                 let change = softness * (moved - row.tangential_impulse);

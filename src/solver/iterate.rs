@@ -29,7 +29,7 @@ pub(super) fn sweep_until_settled<P>(
     problem: &mut P,
     settings: &SolverSettings,
     mut sweep: impl FnMut(&mut P, u32) -> bool,
-    residual: impl Fn(&P) -> f64,
+    residual: impl Fn(&mut P) -> f64,
 ) -> SolveReport {
     let mut watch = StallWatch::default();
     let mut sweeps = 0;

@@ -76,12 +76,12 @@ pub fn for_each_row<K: Kinematics>(
     mut visit: impl FnMut(usize, &Row<K>, Motion),
 ) {
     for (number, row) in problem.fixed_rows.iter().enumerate() {
-        let of = |bodies: &[K::Body]| K::velocity(row.normal, &bodies[row.i as usize]);
+        let of = |bodies: &[K::Body<f64>]| K::velocity(row.normal, &bodies[row.i as usize]);
         let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
         visit(number, row, Motion { now, before, free });
     }
     for (number, row) in (problem.fixed_rows.len()..).zip(&problem.pair_rows) {
-        let of = |bodies: &[K::Body]| {
+        let of = |bodies: &[K::Body<f64>]| {
             K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])
         };
         let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
@@ -89,10 +89,10 @@ pub fn for_each_row<K: Kinematics>(
     }
 }
 
-/// v_n of every row among `bodies`, m/s; `speeds` is cleared first.
+/// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
 pub fn relative_velocities<K: Kinematics>(
     problem: &StepProblem<K>,
-    bodies: &[K::Body],
+    bodies: &[K::Body<f64>],
     speeds: &mut Vec<f64>,
 ) {
     let StepProblem { fixed_rows, pair_rows, .. } = problem;
@@ -101,6 +101,9 @@ pub fn relative_velocities<K: Kinematics>(
     speeds.extend(pair_rows.iter().map(|row| {
         K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])[0]
     }));
+    for (speed, wall_speed) in speeds.iter_mut().zip(&problem.wall_speeds) {
+        *speed -= wall_speed;
+    }
 }
 
 #[derive(Default)]

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 pub enum Method {
     /// Non-linear Gauss–Seidel.
     Nsgs,
-    /// Non-linear Gauss–Seidel by colours, on several threads.
+    /// Non-linear Gauss–Seidel by colours, in vector registers and on several threads.
     NsgsParallel,
     /// Semi-smooth Newton with a sparse factorisation.
     Newton,
@@ -110,7 +110,7 @@ pub const METHODS: [MethodInfo; 10] = [
     MethodInfo {
         method: Method::NsgsParallel,
         name: "nsgs-parallel",
-        summary: "Gauss-Seidel by colours on several threads: for large piles on idle cores",
+        summary: "Gauss-Seidel by colours: four contacts at a time, large piles on several threads",
         solves: COULOMB,
         source: "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
     },

@@ -4,9 +4,11 @@ mod admm;
 mod apgd;
 mod auto;
 mod delassus;
+mod impacts;
 mod iterate;
 mod jacobi;
 mod kinematics;
+mod lane_blocks;
 mod measure;
 mod method;
 mod model;
@@ -20,9 +22,11 @@ mod remedies;
 mod settings;
 mod stall;
 mod system;
+mod update;
 
 pub use auto::picked;
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
+pub use impacts::{Bounces, follow_impacts, gains_energy, scale_rebounds};
 pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
 pub use measure::{Measures, Motion, for_each_row, measure, relative_velocities, residual};
 pub use method::{

@@ -1,21 +1,28 @@
-//! Gauss–Seidel by colours, on several threads.
+//! Gauss–Seidel by colours, on vector registers and several threads.
 //!
 //! Contacts of one colour share no grain (`solver::order`), so none of them sees what another does:
-//! a colour's contacts can be solved in any order, at the same time, to bitwise the same result. The
-//! colours follow each other. Few contacts are not worth waking threads for, and are solved by the
-//! one at hand, in the same portions: what is summed over a sweep is summed in one order whatever
-//! the number of threads.
+//! a colour's contacts can be solved in any order, at the same time, to bitwise the same result: four
+//! side by side (`solver::lane_blocks`), and portions of them on several threads. The colours follow
+//! each other. Few contacts are not worth waking threads for, and are solved by the one at hand, in
+//! the same portions: what is summed over a sweep is summed in one order whatever the number of
+//! threads.
 
+use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::iterate::{is_tested, sweep_until_settled};
+use super::lane_blocks::{Block, Bodies, LANES, solve_apart, sum};
 use super::measure::residual;
-use super::nsgs::{self, Change, Law, is_settled};
-use super::{Kinematics, Model, Row, SolveReport, SolverSettings, StepProblem, StopTest};
+use super::nsgs::{self, is_settled};
+use super::update::{Change, Law, squared_impulse};
+use super::{Model, SolveReport, SolverSettings, StepProblem, StopTest};
 
-/// Contacts that a thread takes at a time.
-const PORTION: usize = 512;
-/// Contacts of a colour from which on threads are woken: some 10 µs of work, about what waking costs.
+#[cfg(test)]
+mod tests;
+
+/// Blocks that a thread takes at a time.
+const PORTION: usize = 256;
+/// Blocks of a colour from which on threads are woken: some 10 µs of work, about what waking costs.
 const WORTH_THREADS: usize = 4 * PORTION;
 
 /// The colours of a problem's rows. Memory is kept between steps.
@@ -26,6 +33,8 @@ pub(super) struct Colouring {
     pub ends: [Vec<usize>; 2],
     /// The last colour that each grain was seen in.
     seen: Vec<usize>,
+    /// Colour by colour the blocks of its rows; the last rows of a colour may fill none.
+    blocks: Vec<Block>,
     /// What the portions of a colour changed.
     changes: Vec<Change>,
 }
@@ -35,8 +44,19 @@ pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> SolveReport {
+    solve_at::<M>(Level::new(), problem, settings)
+}
+
+/// Solves with the vector instructions of a level.
+fn solve_at<M: Model>(
+    level: Level,
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+) -> SolveReport {
     let mut colouring = std::mem::take(&mut problem.colouring);
-    let report = match Coloured::<M>::new(problem, &mut colouring) {
+    let report = match Coloured::<M>::new(level, problem, &mut colouring) {
+        // Inside the pool a colour is handed out without a call from outside it each time.
+        Some(mut coloured) if coloured.threads => rayon::scope(|_| coloured.run(settings)),
         Some(mut coloured) => coloured.run(settings),
         None => nsgs::solve::<M>(problem, settings),
     };
@@ -45,22 +65,30 @@ pub(super) fn solve<M: Model>(
 }
 
 /// A problem whose rows' grains all exist and whose colours are none that share a grain.
+///
+/// While it lives, impulses of rows in blocks are the blocks'.
 struct Coloured<'a, M: Model> {
+    level: Level,
+    /// Whether there are several threads, and a colour that is worth waking them.
+    threads: bool,
     problem: &'a mut StepProblem<M::Kinematics>,
     ends: &'a [Vec<usize>; 2],
+    blocks: &'a mut [Block],
     changes: &'a mut Vec<Change>,
 }
 
 impl<'a, M: Model> Coloured<'a, M> {
     /// Nothing where the problem is not such a one.
     fn new(
+        level: Level,
         problem: &'a mut StepProblem<M::Kinematics>,
         colouring: &'a mut Colouring,
     ) -> Option<Self> {
-        let Colouring { ends, seen, changes } = colouring;
+        let Colouring { ends, seen, blocks, changes } = colouring;
         seen.clear();
         seen.resize(problem.bodies.len(), 0);
-        let mut colour = 0;
+        blocks.clear();
+        let (mut colour, mut threads) = (0, false);
         let mut is_first_in_colour = |grain: u32, colour: usize| {
             seen.get_mut(grain as usize)
                 .is_some_and(|seen| std::mem::replace(seen, colour) != colour)
@@ -71,20 +99,24 @@ impl<'a, M: Model> Coloured<'a, M> {
             let mut start = 0;
             for &end in ends {
                 colour += 1;
-                for row in rows.get(start..end)? {
+                let rows = rows.get(start..end)?;
+                for row in rows {
                     let is_free = is_first_in_colour(row.i, colour)
                         && (!is_pair || is_first_in_colour(row.j, colour));
                     if !is_free {
                         return None;
                     }
                 }
+                blocks.extend(rows.as_chunks::<LANES>().0.iter().map(Block::of));
+                threads |= rows.len() / LANES >= WORTH_THREADS;
                 start = end;
             }
             if start != rows.len() {
                 return None;
             }
         }
-        Some(Self { problem, ends, changes })
+        threads &= rayon::current_num_threads() > 1;
+        Some(Self { level, threads, problem, ends, blocks, changes })
     }
 
     fn run(&mut self, settings: &SolverSettings) -> SolveReport {
@@ -97,127 +129,124 @@ impl<'a, M: Model> Coloured<'a, M> {
                 StopTest::Residual => coloured.sweep::<false>(),
                 _ => coloured.sweep::<true>(),
             };
-            is_settled::<M>(coloured.problem, change, settings)
+            let change = (change, coloured.problem.mean_mass);
+            is_settled(coloured, change, settings, Self::squared_impulses, Self::residual)
         };
-        sweep_until_settled(self, settings, sweep, |coloured| residual::<M>(coloured.problem))
+        let report = sweep_until_settled(self, settings, sweep, Self::residual);
+        self.store();
+        report
+    }
+
+    fn residual(&mut self) -> f64 {
+        self.store();
+        residual::<M>(self.problem)
+    }
+
+    /// Σ P², (N·s)².
+    fn squared_impulses(&mut self) -> f64 {
+        let StepProblem { fixed_rows, pair_rows, captures, capture_speed, .. } = &mut *self.problem;
+        let capture = |number: usize| *captures.get(number).unwrap_or(capture_speed);
+        let (mut in_lanes, mut left_over, mut number) = ([0.0; LANES], 0.0, 0);
+        let mut blocks = &mut *self.blocks;
+        for (rows, ends) in [(fixed_rows, &self.ends[0]), (pair_rows, &self.ends[1])] {
+            for_each_colour(&mut blocks, rows, ends, |blocks, rows| {
+                let first = number;
+                number += rows.len();
+                for (at, block) in blocks.iter().enumerate() {
+                    let captures = std::array::from_fn(|lane| capture(first + LANES * at + lane));
+                    let squares = block.squared_impulses(captures);
+                    in_lanes.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
+                }
+                for (at, row) in rows.iter().enumerate().skip(LANES * blocks.len()) {
+                    let impulse =
+                        [row.shifted_impulse - capture(first + at), row.tangential_impulse];
+                    left_over += squared_impulse(row.effective_mass, impulse);
+                }
+            });
+        }
+        sum(in_lanes) + left_over
     }
 
     /// One pass over all contacts.
     fn sweep<const MEASURE: bool>(&mut self) -> Change {
         let law = Law::of(self.problem);
         let StepProblem { bodies, fixed_rows, pair_rows, .. } = &mut *self.problem;
-        let bodies = Bodies::<M>(bodies.as_mut_ptr());
+        let (level, bodies) = (self.level, Bodies::<M>::new(bodies));
         let mut change = Change::default();
-        let mut start = 0;
-        for &end in &self.ends[0] {
-            change.add_all(sweep_colour(&mut fixed_rows[start..end], self.changes, |rows| {
-                // SAFETY: as `Bodies` says.
-                unsafe { solve_apart::<M, MEASURE, false>(&law, rows, bodies) }
-            }));
-            start = end;
-        }
-        start = 0;
-        for &end in &self.ends[1] {
-            change.add_all(sweep_colour(&mut pair_rows[start..end], self.changes, |rows| {
-                // SAFETY: as `Bodies` says.
-                unsafe { solve_apart::<M, MEASURE, true>(&law, rows, bodies) }
-            }));
-            start = end;
-        }
+        let mut changes = self.threads.then_some(&mut *self.changes);
+        // SAFETY: `Coloured::new` has looked at every row. Its grains are among the bodies, and no
+        // other row of its colour has one of them: while a colour is solved, each body is touched
+        // from one place only.
+        let single = |blocks: &mut [_], rows: &mut [_]| unsafe {
+            solve_apart::<M, MEASURE, false>(level, &law, (blocks, rows), bodies)
+        };
+        // SAFETY: as above.
+        let pair = |blocks: &mut [_], rows: &mut [_]| unsafe {
+            solve_apart::<M, MEASURE, true>(level, &law, (blocks, rows), bodies)
+        };
+        let [fixed_ends, pair_ends] = self.ends;
+        let mut blocks = &mut *self.blocks;
+        for_each_colour(&mut blocks, fixed_rows, fixed_ends, |blocks, rows| {
+            change.add_all(solve_colour(blocks, rows, changes.as_deref_mut(), single));
+        });
+        for_each_colour(&mut blocks, pair_rows, pair_ends, |blocks, rows| {
+            change.add_all(solve_colour(blocks, rows, changes.as_deref_mut(), pair));
+        });
         change
     }
-}
 
-/// Solves a colour's portions, on several threads where it pays.
-fn sweep_colour<K: Kinematics>(
-    rows: &mut [Row<K>],
-    changes: &mut Vec<Change>,
-    solve: impl Fn(&mut [Row<K>]) -> Change + Send + Sync,
-) -> Change {
-    let mut change = Change::default();
-    if rows.len() < WORTH_THREADS {
-        rows.chunks_mut(PORTION).for_each(|portion| change.add_all(solve(portion)));
-    } else {
-        rows.par_chunks_mut(PORTION).map(solve).collect_into_vec(changes);
-        changes.iter().for_each(|&portion| change.add_all(portion));
-    }
-    change
-}
-
-/// The bodies, to be reached from several threads.
-///
-/// [`Coloured`] has looked at every row: its grains are among the bodies, and no other row of its
-/// colour has one of them. While a colour is solved each body is thus touched from one place only.
-struct Bodies<M: Model>(*mut <M::Kinematics as Kinematics>::Body);
-
-impl<M: Model> Clone for Bodies<M> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<M: Model> Copy for Bodies<M> {}
-
-// SAFETY: bodies are plain numbers (`Kinematics::Body` is `Send`), and no two threads touch the same
-// one (see the type).
-unsafe impl<M: Model> Send for Bodies<M> {}
-// SAFETY: as for `Send`.
-unsafe impl<M: Model> Sync for Bodies<M> {}
-
-/// Solves rows that share no grain, in the three-operand encoding where the processor has it.
-///
-/// # Safety
-/// The rows' grains must be among the bodies, and nothing else may touch those meanwhile.
-unsafe fn solve_apart<M: Model, const MEASURE: bool, const PAIR: bool>(
-    law: &Law,
-    rows: &mut [Row<M::Kinematics>],
-    bodies: Bodies<M>,
-) -> Change {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx") {
-        // SAFETY: the processor has just been asked; for the rest as for this function.
-        return unsafe { solve_with_avx::<M, MEASURE, PAIR>(law, rows, bodies) };
-    }
-    // SAFETY: as for this function.
-    unsafe { pass::<M, MEASURE, PAIR>(law, rows, bodies) }
-}
-
-/// See [`solve_apart`].
-///
-/// # Safety
-/// As for that function.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx")]
-unsafe fn solve_with_avx<M: Model, const MEASURE: bool, const PAIR: bool>(
-    law: &Law,
-    rows: &mut [Row<M::Kinematics>],
-    bodies: Bodies<M>,
-) -> Change {
-    // SAFETY: as for this function.
-    unsafe { pass::<M, MEASURE, PAIR>(law, rows, bodies) }
-}
-
-/// See [`solve_apart`].
-///
-/// # Safety
-/// As for that function.
-#[inline(always)]
-unsafe fn pass<M: Model, const MEASURE: bool, const PAIR: bool>(
-    law: &Law,
-    rows: &mut [Row<M::Kinematics>],
-    bodies: Bodies<M>,
-) -> Change {
-    let mut change = Change::default();
-    for row in rows {
-        // SAFETY: the grain is among the bodies, and only this row has it.
-        let i = unsafe { &mut *bodies.0.add(row.i as usize) };
-        if PAIR {
-            // SAFETY: as for i, from which it differs.
-            let j = unsafe { &mut *bodies.0.add(row.j as usize) };
-            law.solve_pair::<M, MEASURE>(row, i, j, &mut change);
-        } else {
-            law.solve_single::<M, MEASURE>(row, i, &mut change);
+    /// Gives the rows the impulses of their blocks.
+    fn store(&mut self) {
+        let StepProblem { fixed_rows, pair_rows, .. } = &mut *self.problem;
+        let mut blocks = &mut *self.blocks;
+        for (rows, ends) in [(fixed_rows, &self.ends[0]), (pair_rows, &self.ends[1])] {
+            for_each_colour(&mut blocks, rows, ends, |blocks, rows| {
+                for (block, rows) in blocks.iter().zip(rows.as_chunks_mut().0) {
+                    block.store::<M>(rows);
+                }
+            });
         }
     }
+}
+
+/// Takes from `blocks` those of each colour, and hands them on with all the colour's rows.
+fn for_each_colour<R>(
+    blocks: &mut &mut [Block],
+    rows: &mut [R],
+    ends: &[usize],
+    mut visit: impl FnMut(&mut [Block], &mut [R]),
+) {
+    let mut start = 0;
+    for &end in ends {
+        let (of_colour, rest) = std::mem::take(blocks).split_at_mut((end - start) / LANES);
+        visit(of_colour, &mut rows[start..end]);
+        *blocks = rest;
+        start = end;
+    }
+}
+
+/// Solves a colour's contacts in portions. With a place for what they change, they are solved on several threads
+/// where it pays.
+fn solve_colour<R: Send>(
+    blocks: &mut [Block],
+    rows: &mut [R],
+    changes: Option<&mut Vec<Change>>,
+    solve: impl Fn(&mut [Block], &mut [R]) -> Change + Send + Sync,
+) -> Change {
+    let mut change = Change::default();
+    let left_over = blocks.len() * LANES;
+    match changes.filter(|_| blocks.len() >= WORTH_THREADS) {
+        Some(changes) => {
+            let portions = blocks.par_chunks_mut(PORTION);
+            portions.map(|portion| solve(portion, &mut [])).collect_into_vec(changes);
+            changes.iter().for_each(|&portion| change.add_all(portion));
+        }
+        None => {
+            for portion in blocks.chunks_mut(PORTION) {
+                change.add_all(solve(portion, &mut []));
+            }
+        }
+    }
+    change.add_all(solve(&mut [], &mut rows[left_over..]));
     change
 }

@@ -59,9 +59,7 @@ impl Sorter {
         rows: &mut Vec<u32>,
         ends: &mut Vec<usize>,
     ) {
-        self.detected.clear();
-        self.detected.extend(numbers);
-        ends.clear();
+        self.begin(numbers, ends);
         match ordering {
             Ordering::Detected => rows.extend(&self.detected),
             Ordering::Interleaved | Ordering::Symmetric => self.interleave(rows),
@@ -79,10 +77,14 @@ impl Sorter {
         rows: &mut Vec<u32>,
         ends: &mut Vec<usize>,
     ) {
+        self.begin(numbers, ends);
+        self.colour(grains, contacts, rows, ends);
+    }
+
+    fn begin(&mut self, numbers: impl Iterator<Item = u32>, ends: &mut Vec<usize>) {
         self.detected.clear();
         self.detected.extend(numbers);
         ends.clear();
-        self.colour(grains, contacts, rows, ends);
     }
 
     fn interleave(&self, rows: &mut Vec<u32>) {

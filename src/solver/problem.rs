@@ -25,10 +25,11 @@ pub struct Row<K: Kinematics> {
     /// Grain j; unused in a row against a fixed body.
     pub j: u32,
     /// n, from j to i.
-    pub normal: K::Normal,
+    pub normal: K::Normal<f64>,
     /// g_i = m_ij/m_i; 1 against a fixed body.
     pub share: f64,
-    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold.
+    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold, and less
+    /// the speed of a wall that comes ([`StepProblem::drive`]).
     pub restitution_velocity: f64,
     /// σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
@@ -45,11 +46,11 @@ pub struct Row<K: Kinematics> {
 #[derive(Clone, Debug)]
 pub struct StepProblem<K: Kinematics> {
     /// Bodies as the sweep moves them.
-    pub bodies: Vec<K::Body>,
+    pub bodies: Vec<K::Body<f64>>,
     /// Bodies at the beginning of the step.
-    pub before: Vec<K::Body>,
+    pub before: Vec<K::Body<f64>>,
     /// Bodies at the end of the step if no contact acted.
-    pub free: Vec<K::Body>,
+    pub free: Vec<K::Body<f64>>,
     /// Rows against fixed bodies.
     pub fixed_rows: Vec<Row<K>>,
     /// Rows between grains.
@@ -63,6 +64,8 @@ pub struct StepProblem<K: Kinematics> {
     /// The same row by row, where rows differ in it (law `range`); else empty. Sweeps need it not:
     /// they see σ alone.
     pub captures: Vec<f64>,
+    /// How fast the wall of each fixed row comes along the normal, m/s; empty where no wall moves.
+    pub wall_speeds: Vec<f64>,
     /// Masses of the bodies, kg.
     pub masses: Vec<f64>,
     /// Mean mass of the grains, kg.
@@ -88,6 +91,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             friction: 0.0,
             capture_speed: 0.0,
             captures: Vec::new(),
+            wall_speeds: Vec::new(),
             masses: Vec::new(),
             mean_mass: 0.0,
             newton: Workspaces::default(),
@@ -116,8 +120,8 @@ impl<K: Kinematics> StepProblem<K> {
         self.friction = parameters.friction;
         self.capture_speed =
             if cohesion { parameters.capture_speed(gravity_magnitude) } else { 0.0 };
-        let range = parameters.law == ContactLaw::Range;
         self.captures.clear();
+        self.wall_speeds.clear();
         self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
         self.masses.clone_from(&grains.masses);
         self.before.clear();
@@ -144,16 +148,12 @@ impl<K: Kinematics> StepProblem<K> {
         let fixed_count = rows.len();
         self.sorter.append(ordering, (world, list), pairs, rows, pair_ends);
 
-        let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
-        let rebound = |velocity: f64, contact: &Contact| {
-            if !range {
-                return parameters.restitution_velocity(velocity, gravity_magnitude);
-            }
-            // A gap must not close by more than itself. Bounces are part of the shocks (`sim::shocks`).
-            (contact.gap - touch).max(0.0) / parameters.time_step_secs
+        let rebound = |velocity: f64, index: u32, contact: &Contact| {
+            let in_touch = contacts.is_in_touch(index as usize);
+            rebound(world, parameters, velocity, contact.gap, in_touch)
         };
-        if range && self.capture_speed > 0.0 {
-            let capture = |&index: &u32| match contacts.bonds()[index as usize].alive {
+        if contacts.looks_ahead() && self.capture_speed > 0.0 {
+            let capture = |&index: &u32| match contacts.is_in_touch(index as usize) {
                 true => self.capture_speed,
                 false => 0.0,
             };
@@ -165,9 +165,9 @@ impl<K: Kinematics> StepProblem<K> {
             let index = self.contact_of_row[at];
             let contact = &list[index as usize];
             let i = contact.grain as usize;
-            let [velocity, _] = K::velocity(K::normal(contact.normal), &self.before[i]);
+            let [velocity, _] = K::velocity(K::normal(contact.normal.to_array()), &self.before[i]);
             let masses = (grains.masses[i], 1.0);
-            let velocity = rebound(velocity, contact);
+            let velocity = rebound(velocity, index, contact);
             let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
             self.fixed_rows.push(row);
         }
@@ -177,10 +177,11 @@ impl<K: Kinematics> StepProblem<K> {
             let contact = &list[index as usize];
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let (before_i, before_j) = (&self.before[i], &self.before[j]);
-            let [velocity, _] = K::relative_velocity(K::normal(contact.normal), before_i, before_j);
+            let [velocity, _] =
+                K::relative_velocity(K::normal(contact.normal.to_array()), before_i, before_j);
             let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
             let masses = (grains.masses[i] * share, share);
-            let velocity = rebound(velocity, contact);
+            let velocity = rebound(velocity, index, contact);
             let row = self.row::<M>(contact, masses, velocity, self.capture(at), start(index));
             self.pair_rows.push(row);
         }
@@ -208,13 +209,44 @@ impl<K: Kinematics> StepProblem<K> {
         Row {
             i: contact.grain,
             j: contact.other,
-            normal: K::normal(contact.normal),
+            normal: K::normal(contact.normal.to_array()),
             share,
             restitution_velocity,
             shifted_impulse,
             tangential_impulse,
             effective_mass,
         }
+    }
+
+    /// Tells a problem that has just been prepared of walls that move along their normal: `speed` gives
+    /// how fast the wall of a contact comes, m/s.
+    ///
+    /// Relative to a wall of speed V a grain has v_n − V and, since the wall is a plane, the same v_t
+    /// as ever. So the law's v_n + ρ v_n^{n−1} becomes v_n − V + ρ (v_n^{n−1} − V): what is added to v_n
+    /// is another number, and no method has to know.
+    pub fn drive(
+        &mut self,
+        world: &World,
+        contacts: &ContactList,
+        parameters: &Parameters,
+        speed: impl Fn(&Contact) -> f64,
+    ) {
+        let Self { fixed_rows, before, contact_of_row, wall_speeds, .. } = self;
+        for (row, &index) in fixed_rows.iter_mut().zip(&*contact_of_row) {
+            let contact = &contacts.contacts()[index as usize];
+            let speed = speed(contact);
+            let [velocity, _] = K::velocity(row.normal, &before[row.i as usize]);
+            let in_touch = contacts.is_in_touch(index as usize);
+            let rebound = rebound(world, parameters, velocity - speed, contact.gap, in_touch);
+            row.restitution_velocity = rebound - speed;
+            wall_speeds.push(speed);
+        }
+    }
+
+    /// How fast the wall of a row comes, by the row's number (fixed rows, then pair rows), m/s.
+    #[inline(always)]
+    pub fn wall_speed(&self, number: usize) -> f64 {
+        self.wall_speeds.get(number).copied().unwrap_or(0.0)
     }
 
     /// Moves the bodies from their free velocities by the rows' impulses.
@@ -281,9 +313,9 @@ impl<K: Kinematics> StepProblem<K> {
     #[inline(always)]
     pub fn friction_bound<M: Model>(&self, shifted_impulse: f64) -> f64 {
         if M::COMPRESSIVE_CONE {
-            law::friction_bound::<true>(self.friction, shifted_impulse, self.capture_speed)
+            law::friction_bound::<true, _>(self.friction, shifted_impulse, self.capture_speed)
         } else {
-            law::friction_bound::<false>(self.friction, shifted_impulse, 0.0)
+            law::friction_bound::<false, _>(self.friction, shifted_impulse, 0.0)
         }
     }
 
@@ -309,6 +341,23 @@ impl<K: Kinematics> StepProblem<K> {
             row.tangential_impulse = tangential / row.effective_mass;
         }
     }
+}
+
+/// What the law adds to v_n, m/s, where it was `velocity` before the step, the gap is `gap` (m), and
+/// the pair is known to touch or not.
+#[inline(always)]
+fn rebound(world: &World, parameters: &Parameters, velocity: f64, gap: f64, in_touch: bool) -> f64 {
+    let gravity_magnitude = world.gravity.magnitude();
+    let touch = TOUCH_IN_DIAMETERS * world.mean_diameter;
+    if parameters.law != ContactLaw::Range {
+        if in_touch {
+            return parameters.restitution_velocity(velocity, gravity_magnitude);
+        }
+        // It lands in touch, so that the next step knows it.
+        return (gap + touch) / parameters.time_step_secs;
+    }
+    // A gap must not close by more than itself. Bounces are part of the shocks (`sim::shocks`).
+    (gap - touch).max(0.0) / parameters.time_step_secs
 }
 
 /// A problem for each kind of motion; those that a scene never uses hold no memory.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::world::ContactLaw;
 
 /// Remedies that the step of a method that solves its problem can take. A scheme that replaces the
 /// step has its own ways.
@@ -16,12 +17,60 @@ pub struct Remedies {
     /// Solve a step that did not converge once more without bounces: restitution can ask wedged
     /// contacts for what contradicts itself, and then a step has no solution with them.
     pub calm_unsolved: bool,
+    /// Have shocks run through touching grains one after the other (`solver::impacts`), in scenes
+    /// without cohesion.
+    pub sequential_impacts: bool,
+    /// Let pairs with a gap that would close within the step close that gap and no more
+    /// (`sim::speculative`).
+    pub speculative: bool,
 }
 
 impl Remedies {
+    /// No remedy: the paper's scheme.
+    pub const NONE: Self = Self {
+        push_out: false,
+        max_travel: 0.0,
+        calm_unsolved: false,
+        sequential_impacts: false,
+        speculative: false,
+    };
+
     /// Whether there are none.
     pub fn is_none(&self) -> bool {
-        *self == Self::default()
+        *self == Self::NONE
+    }
+
+    /// Those of them that go with a law. The law `range` pushes overlap out by itself, and solves a
+    /// step more than once, shocks apart from loads: it has its own ways for all but fast grains.
+    pub fn under(self, law: ContactLaw) -> Self {
+        match law {
+            ContactLaw::Moreau => self,
+            ContactLaw::Range => Self { max_travel: self.max_travel, ..Self::NONE },
+        }
+    }
+
+    /// Checks that a law takes them all.
+    ///
+    /// # Errors
+    /// Names the first that it does not take.
+    pub fn validate_under(&self, law: ContactLaw) -> Result<()> {
+        let taken = self.under(law);
+        let refuse = |field: &str, why: &str| {
+            Err(Error::value(field, true, format!("false where law is range, {why}")))
+        };
+        if self.push_out != taken.push_out {
+            return refuse("push-out", "which pushes overlap out by itself");
+        }
+        if self.calm_unsolved != taken.calm_unsolved {
+            return refuse("calm-unsolved", "which solves shocks and loads apart");
+        }
+        if self.sequential_impacts != taken.sequential_impacts {
+            return refuse("sequential-impacts", "which solves shocks and loads apart");
+        }
+        if self.speculative != taken.speculative {
+            return refuse("speculative", "which looks ahead by itself");
+        }
+        Ok(())
     }
 
     /// Checks the numbers against their ranges.

@@ -22,7 +22,7 @@ const ADVANCE: SolverSettings = SolverSettings {
     max_sweeps: 1000,
     warm_start: true,
     substeps: 0,
-    remedies: Remedies { push_out: false, max_travel: 0.0, calm_unsolved: false },
+    remedies: Remedies::NONE,
 };
 
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.

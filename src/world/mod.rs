@@ -17,7 +17,7 @@ pub struct World {
     pub grains: Grains,
     /// Discs that never move, such as the rough base of the pile.
     pub fixed_discs: Vec<Disc>,
-    /// Other shapes that never move.
+    /// Other shapes that no grain moves.
     pub boundaries: Vec<Boundary>,
     /// The field that accelerates the grains.
     pub gravity: Gravity,

@@ -19,8 +19,10 @@ fn there_is_no_remedy_unless_asked_for() {
     assert!(SolverSettings::default().remedies.is_none());
     let mut robust = heap(2);
     Preset::Robust.apply(&mut robust);
-    let Remedies { push_out, max_travel, calm_unsolved } = robust.solver.remedies;
-    assert!(push_out && calm_unsolved && max_travel > 0.0);
+    let Remedies { push_out, max_travel, calm_unsolved, sequential_impacts, speculative } =
+        robust.solver.remedies;
+    assert!(push_out && calm_unsolved && sequential_impacts && max_travel > 0.0);
+    assert!(!speculative, "pieces of a step keep bounces");
 }
 
 #[test]
@@ -51,8 +53,11 @@ fn a_step_that_bounces_contradict_is_solved_without_them() {
     let mut scene = squeeze(1e-2);
     Preset::Robust.apply(&mut scene);
     scene.solver.max_sweeps = 1000;
-    for (calm_unsolved, all) in [(false, false), (true, true)] {
+    // Shocks in sequence leave bounces that do not contradict each other.
+    for (calm_unsolved, sequential_impacts) in [(false, false), (true, false), (false, true)] {
         scene.solver.remedies.calm_unsolved = calm_unsolved;
+        scene.solver.remedies.sequential_impacts = sequential_impacts;
+        let all = calm_unsolved || sequential_impacts;
         let mut simulation = start(&scene);
         let steps = (0..20).map(|_| simulation.step().expect("a finite state").converged);
         let solved = steps.filter(|converged| *converged).count();
@@ -82,9 +87,10 @@ fn a_step_in_pieces_is_one_step_that_keeps_the_balance_of_energy() {
     assert!(touched, "it has bounced");
 }
 
-/// What no remedy mends: the law of impacts itself, and numbers that have no digits left.
-const UNMENDED: [(&str, f64); 3] =
-    [("newtons-cradle", 3.0), ("newtons-cradle", 20.0), ("far", 1e13)];
+/// What no remedy mends: places that have no digits left (so far out they are 2·10⁻³ d apart), and
+/// contacts that slide open. Each step along a curved surface opens a gap by (Δt v_t)²/2d; below the
+/// tolerance it is neither closed nor does it count, until all contacts are beyond it at once.
+const UNMENDED: [(&str, f64); 2] = [("far", 1e13), ("moving-walls", 2e-2)];
 
 #[test]
 fn the_robust_preset_holds_everywhere_but_where_nothing_could() {

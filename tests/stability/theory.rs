@@ -1,7 +1,10 @@
 //! Borders that theory gives, against those that are measured.
 
 use slump::scene::Scene;
-use slump::scene::stability::{WALL_DISTANCE, balls, column_on_line, mass_ratio, thin_wall};
+use slump::scene::stability::{
+    FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, breaking_bond_of_cantilever, cantilever,
+    column_on_line, mass_ratio, thin_wall,
+};
 use slump::sim::Simulation;
 use slump::solver::{Method, SolverSettings};
 use slump::study::stability::contraction_of_column;
@@ -141,4 +144,47 @@ fn springs_blow_up_at_their_critical_time_step() {
         *(if stays_at_rest(middle) { &mut low } else { &mut high }) = middle;
     }
     assert!((0.995..1.03).contains(&low), "stable up to {low} of the critical time step");
+}
+
+#[test]
+fn a_cantilever_without_friction_tears_at_the_bond_number_of_statics_at_every_time_step() {
+    for length in [2, 4, 6] {
+        let right = breaking_bond_of_cantilever(length);
+        for (part, torn) in [(0.99, true), (1.01, false)] {
+            for time_step_secs in [2e-4, 1e-3, 1e-2] {
+                let mut scene = cantilever(length);
+                scene.parameters.friction = 0.0;
+                scene.parameters.bond = part * right;
+                scene.parameters.time_step_secs = time_step_secs;
+                scene.solver.tolerance = 1e-9;
+                scene.solver.max_sweeps = 20_000;
+                let mut simulation = scene.simulation().expect("a sound scene");
+                for _ in 0..(0.1 / time_step_secs) as u32 {
+                    simulation.step().expect("a finite state");
+                }
+                let bonds = 4 * length as u32;
+                let found = simulation.observables().contacts < bonds;
+                assert_eq!(found, torn, "{length} discs, {part} of {right}, {time_step_secs} s");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_contacts_of_an_arch_carry_what_statics_says() {
+    let mut scene = arch();
+    scene.solver.tolerance = 1e-12;
+    let mut simulation = scene.simulation().expect("a sound scene");
+    for _ in 0..3 {
+        simulation.step().expect("a finite state");
+    }
+    let list = simulation.contacts();
+    assert_eq!(list.contacts().len(), 4);
+    let spring = (2f64.sqrt() - 1.0) / (2f64.sqrt() + 3.0);
+    for (contact, impulse) in list.contacts().iter().zip(list.impulses()) {
+        let crown = contact.other < 3;
+        let expected = if crown { FRICTION_OF_ARCH } else { spring };
+        let found = impulse.tangential.abs() / impulse.normal;
+        assert!((found - expected).abs() < 1e-5, "crown {crown}: {found} for {expected}");
+    }
 }

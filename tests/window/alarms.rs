@@ -37,6 +37,20 @@ fn the_robust_button_pushes_the_overlap_out() {
 }
 
 #[test]
+fn the_law_range_takes_the_remedies_that_it_has_its_own_ways_for_away() {
+    let mut robot = Robot::open(scene("pile"));
+    robot.click("Solver");
+    robot.click("Robust");
+    assert!(robot.world().settings.solver.remedies.sequential_impacts);
+    robot.click("range");
+    robot.settle();
+    let settings = robot.world().settings;
+    let left = settings.solver.remedies;
+    assert_eq!(left, left.under(settings.parameters.law), "{settings:?}");
+    assert!(!left.push_out && left.max_travel > 0.0);
+}
+
+#[test]
 fn every_scene_made_to_break_methods_opens_and_steps() {
     for info in SCENES.iter().filter(|info| info.group == SceneGroup::Stability) {
         let mut robot = Robot::open(scene(info.name));

@@ -99,6 +99,7 @@ fn presets(ui: &mut Ui, state: &mut AppState) {
                 LAW_TIME_STEPS.map(|time| {
                     let mut variant = with(20.0, time);
                     variant.parameters.law = law;
+                    variant.solver.remedies = variant.solver.remedies.under(law);
                     variant.parameters.cone = FrictionCone::Shifted;
                     variant
                 })

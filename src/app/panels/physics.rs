@@ -7,6 +7,7 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::contact::range::escape_speed;
 use crate::render::numbers::si_prefix;
+use crate::solver::SolverSettings;
 use crate::world::{ContactLaw, FrictionCone, Parameters};
 
 /// The paper's time steps, s.
@@ -104,6 +105,11 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     }
     if parameters != before {
         state.set_parameters(index, parameters);
+        let solver = state.wanted[index].solver;
+        let remedies = solver.remedies.under(parameters.law);
+        if remedies != solver.remedies {
+            state.set_solver(index, SolverSettings { remedies, ..solver });
+        }
     }
     ui.add_space(2.0);
     derived(ui, state, &parameters);

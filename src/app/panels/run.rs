@@ -97,6 +97,9 @@ fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
         rho: parameters.map(|parameters| parameters.restitution),
         mu: parameters.map(|parameters| parameters.friction),
         cone: parameters.map(|parameters| parameters.cone),
+        restitution_threshold: parameters.map(|parameters| parameters.restitution_threshold),
+        law: parameters.map(|parameters| parameters.law),
+        debonding_distance: parameters.map(|parameters| parameters.debonding_distance),
         solver: solver.map(|solver| solver.method),
         ordering: solver.map(|solver| solver.ordering),
         stop: solver.map(|solver| solver.stop),
@@ -107,6 +110,8 @@ fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
         push_out: solver.map(|solver| solver.remedies.push_out),
         max_travel: solver.map(|solver| solver.remedies.max_travel),
         calm_unsolved: solver.map(|solver| solver.remedies.calm_unsolved),
+        sequential_impacts: solver.map(|solver| solver.remedies.sequential_impacts),
+        speculative: solver.map(|solver| solver.remedies.speculative),
         ..state.config.clone()
     }
 }

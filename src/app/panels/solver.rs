@@ -8,8 +8,9 @@ use crate::app::theme;
 use crate::scene::Preset;
 use crate::sim::live::StartInfo;
 use crate::solver::{
-    MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, SolverSettings, StopTest, picked,
+    MAX_SUBSTEPS, METHODS, Method, MethodKind, Ordering, Remedies, SolverSettings, StopTest, picked,
 };
+use crate::world::ContactLaw;
 
 /// The stopping tests, as the panel calls them.
 const STOP_TESTS: [(StopTest, &str, &str); 3] = [
@@ -64,18 +65,12 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
             .on_hover_text("Each step starts from the impulses of the one before.");
     }
     if before.method.kind() == MethodKind::Problem {
-        ui.checkbox(&mut solver.remedies.push_out, "Push overlap out")
-            .on_hover_text("Grains that overlap are moved apart after each step, without speed.");
-    }
-    if before.method.kind() == MethodKind::Problem {
-        ui.checkbox(&mut solver.remedies.calm_unsolved, "Calm unsolved steps").on_hover_text(
-            "A step that did not converge is solved once more without bounces, which may \
-             contradict each other.",
-        );
+        let law = wanted.parameters.law;
+        ui.add_enabled_ui(law == ContactLaw::Moreau, |ui| remedy_boxes(ui, &mut solver.remedies));
     }
     let robust = ui.button("Robust").on_hover_text(
-        "Newton to 1e-8, overlap pushed out, no bounce below 2 g Δt, fast grains in pieces of a \
-         step: hard scenes hold, and the paper's effects of Δt go.",
+        "Newton to 1e-8, overlap pushed out, shocks in sequence, no bounce below 2 g Δt, fast grains \
+         in pieces of a step: hard scenes hold, and the paper's effects of Δt go.",
     );
     if robust.clicked() {
         let mut parameters = state.wanted[index].parameters;
@@ -86,6 +81,39 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
         state.set_solver(index, solver);
     }
     readings(ui, state);
+}
+
+/// Known remedies for known failures. The law range has its own ways.
+fn remedy_boxes(ui: &mut Ui, remedies: &mut Remedies) {
+    let no_need = "The law range has its own way for this.";
+    let Remedies { push_out, calm_unsolved, sequential_impacts, speculative, .. } = remedies;
+    for (on, name, hint) in [
+        (
+            push_out,
+            "Push overlap out",
+            "Grains that overlap are moved apart after each step, without speed.",
+        ),
+        (
+            calm_unsolved,
+            "Calm unsolved steps",
+            "A step that did not converge is solved once more without bounces, which may contradict \
+             each other.",
+        ),
+        (
+            sequential_impacts,
+            "Shocks in sequence",
+            "Shocks run through touching grains one after the other, as in Newton's cradle; not \
+             where Bond is above 0.",
+        ),
+        (
+            speculative,
+            "Look ahead",
+            "Pairs that would meet within a step close their gap and no more: nothing tunnels, but \
+             they hardly bounce.",
+        ),
+    ] {
+        ui.checkbox(on, name).on_hover_text(hint).on_disabled_hover_text(no_need);
+    }
 }
 
 /// When a method that solves the step's problem is done.

@@ -1,6 +1,7 @@
 //! Scenes made to break methods: each drives one known weakness and has a right answer. What is
 //! measured on them is in `study::stability`.
 
+mod arch;
 mod balls;
 mod bounce;
 mod column;
@@ -10,12 +11,15 @@ mod lift_off;
 mod logs;
 mod mass_ratio;
 mod overlapped;
+mod press;
+mod slope;
 mod squeeze;
 mod thin_wall;
 mod truss;
 
 use glam::DVec2;
 
+pub use arch::{FRICTION_OF_ARCH, arch};
 pub use balls::balls;
 pub use bounce::bounce;
 pub use column::{column, column_on_line};
@@ -25,9 +29,11 @@ pub use lift_off::lift_off;
 pub use logs::logs;
 pub use mass_ratio::mass_ratio;
 pub use overlapped::overlapped;
+pub use press::{press, pressed_places, pressing_secs};
+pub use slope::{STEEPEST_DEGREES, heap_on_slope};
 pub use squeeze::squeeze;
 pub use thin_wall::{WALL_DISTANCE, thin_wall};
-pub use truss::{bridge, cantilever};
+pub use truss::{breaking_bond_of_cantilever, bridge, cantilever};
 
 use super::Scene;
 use crate::solver::SolverSettings;

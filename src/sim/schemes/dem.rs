@@ -186,8 +186,8 @@ pub(super) fn advance<M: Model>(
 
 /// (v_n, v_t) of a contact, m/s.
 #[inline(always)]
-fn velocity<K: Kinematics>(contact: &Contact, bodies: &[K::Body]) -> [f64; 2] {
-    let (normal, i) = (K::normal(contact.normal), &bodies[contact.grain as usize]);
+fn velocity<K: Kinematics>(contact: &Contact, bodies: &[K::Body<f64>]) -> [f64; 2] {
+    let (normal, i) = (K::normal(contact.normal.to_array()), &bodies[contact.grain as usize]);
     match bodies.get(contact.other as usize) {
         Some(j) => K::relative_velocity(normal, i, j),
         None => K::velocity(normal, i),
@@ -209,12 +209,12 @@ impl Elements {
     fn push<M: Model>(
         &self,
         simulation: &mut Simulation,
-        start: &[<M::Kinematics as Kinematics>::Body],
+        start: &[<M::Kinematics as Kinematics>::Body<f64>],
         totals: &mut Totals,
         pushes: &mut Vec<(f64, [f64; 2])>,
     ) {
         let h = self.substep_secs;
-        let Simulation { world, contacts, problems, .. } = simulation;
+        let Simulation { world, contacts, problems, walls, .. } = simulation;
         let bodies = &mut M::Kinematics::problem(problems).bodies;
         let masses = &world.grains.masses;
         let (list, impulses, memories) = contacts.parts_mut();
@@ -225,6 +225,7 @@ impl Elements {
             let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
             let mass = masses[i] * share;
             let [normal_velocity, tangential_velocity] = velocity::<M::Kinematics>(contact, start);
+            let normal_velocity = normal_velocity - walls.speed(world, contact);
 
             let stiffness = self.springs.stiffness;
             let damping = self.springs.damping(mass);
@@ -234,9 +235,9 @@ impl Elements {
             if M::FRICTION {
                 let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
                 let bound = if M::COMPRESSIVE_CONE {
-                    law::friction_bound::<true>(self.friction, push, cohesion)
+                    law::friction_bound::<true, _>(self.friction, push, cohesion)
                 } else {
-                    law::friction_bound::<false>(self.friction, push, 0.0)
+                    law::friction_bound::<false, _>(self.friction, push, 0.0)
                 };
                 let dashpot = part * damping * tangential_velocity;
                 let spring = part * stiffness;
@@ -255,7 +256,7 @@ impl Elements {
             totals.add(contact, impulse);
             let reduced = [impulse.normal / mass, impulse.tangential / mass];
             pushes.push((mass, reduced));
-            let normal = M::Kinematics::normal(contact.normal);
+            let normal = M::Kinematics::normal(contact.normal.to_array());
             if j < bodies.len() {
                 let (mut one, mut other) = (bodies[i], bodies[j]);
                 M::Kinematics::push_pair(&mut one, &mut other, normal, reduced, share);

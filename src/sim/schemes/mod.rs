@@ -55,9 +55,9 @@ struct Course<K: Kinematics> {
     /// h, s.
     substep_secs: f64,
     /// Bodies at the beginning of the substep.
-    start: Vec<K::Body>,
+    start: Vec<K::Body<f64>>,
     /// Bodies at the end of the substep if no contact acted.
-    free: Vec<K::Body>,
+    free: Vec<K::Body<f64>>,
     works: Works,
 }
 
@@ -113,7 +113,7 @@ impl<K: Kinematics> Course<K> {
     }
 
     /// Counts the work of gravity and of the spring in the substep that ends with `bodies`.
-    fn add_gravity_work(&mut self, bodies: &[K::Body], masses: &[f64]) {
+    fn add_gravity_work(&mut self, bodies: &[K::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
             self.works.gravity += K::work_of_gravity(start, body, free, masses[index]);

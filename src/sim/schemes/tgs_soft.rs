@@ -50,6 +50,8 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 struct SoftContact {
     /// Gap, m.
     gap: f64,
+    /// How fast its wall comes, m/s.
+    wall_speed: f64,
     /// Bond·g·h where it is cohesive in this substep, else 0, m/s.
     capture_speed: f64,
     /// (λ_n, λ_t) of this substep, m/s.
@@ -95,7 +97,7 @@ pub(super) fn advance<M: Model>(
         let problem = M::Kinematics::problem(&mut simulation.problems);
         let velocities = velocities(problem, &problem.bodies);
         for (contact, [normal_velocity, _]) in contacts.iter_mut().zip(velocities) {
-            contact.gap += course.substep_secs * normal_velocity;
+            contact.gap += course.substep_secs * (normal_velocity - contact.wall_speed);
         }
         update(problem, &mut contacts, |_, contact, velocity| {
             softness.solve::<M, false>(contact, velocity)
@@ -124,12 +126,13 @@ pub(super) fn advance<M: Model>(
 fn soft_contacts<M: Model>(simulation: &mut Simulation, substep_secs: f64) -> Vec<SoftContact> {
     let Simulation { contacts, problems, solver, .. } = simulation;
     let problem = M::Kinematics::problem(problems);
-    let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-    let soft = |(row, &index): (&Row<M::Kinematics>, &u32)| {
+    let rows = problem.rows();
+    let soft = |((number, row), &index): ((usize, &Row<M::Kinematics>), &u32)| {
         let memory = contacts.memories()[index as usize];
         let per_mass = if solver.warm_start { substep_secs / row.effective_mass } else { 0.0 };
         SoftContact {
             gap: contacts.contacts()[index as usize].gap,
+            wall_speed: problem.wall_speed(number),
             capture_speed: 0.0,
             impulse: [per_mass * memory.normal_force, per_mass * memory.tangential_force],
             total: [0.0; 2],
@@ -234,7 +237,8 @@ impl Softness {
         };
         let before = contact.impulse;
         let shifted = before[0] + contact.capture_speed;
-        let change = (1.0 - compliance) * (normal_velocity + bias) + compliance * shifted;
+        let closing = normal_velocity - contact.wall_speed + bias;
+        let change = (1.0 - compliance) * closing + compliance * shifted;
         let shifted = law::signorini(shifted - change);
         contact.impulse[0] = shifted - contact.capture_speed;
         if M::FRICTION {
@@ -250,9 +254,9 @@ impl Softness {
         if !M::FRICTION {
             0.0
         } else if M::COMPRESSIVE_CONE {
-            law::friction_bound::<true>(self.friction, shifted, capture_speed)
+            law::friction_bound::<true, _>(self.friction, shifted, capture_speed)
         } else {
-            law::friction_bound::<false>(self.friction, shifted, 0.0)
+            law::friction_bound::<false, _>(self.friction, shifted, 0.0)
         }
     }
 }
@@ -284,7 +288,7 @@ fn update<K: Kinematics>(
 /// The relative velocities of all rows with the given bodies, m/s.
 fn velocities<'a, K: Kinematics>(
     problem: &'a StepProblem<K>,
-    bodies: &'a [K::Body],
+    bodies: &'a [K::Body<f64>],
 ) -> impl Iterator<Item = [f64; 2]> + 'a {
     let of_fixed = |row: &Row<K>| K::velocity(row.normal, &bodies[row.i as usize]);
     let of_pair = |row: &Row<K>| {

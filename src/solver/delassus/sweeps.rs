@@ -48,7 +48,7 @@ fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveRepo
             || sweeps == settings.max_sweeps;
         is_tested && problem.is_solved(settings)
     };
-    sweep_until_settled(problem, settings, sweep, DelassusProblem::residual)
+    sweep_until_settled(problem, settings, sweep, |problem| problem.residual())
 }
 
 impl DelassusProblem {

@@ -1,16 +1,15 @@
 //! Motion on the x axis.
 
-use glam::DVec2;
-
 use super::Kinematics;
+use crate::contact::Lanes;
 use crate::solver::{Problems, StepProblem};
 use crate::world::World;
 
 /// A body on the x axis.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct LineBody {
+pub struct LineBody<T = f64> {
     /// m/s.
-    pub velocity: f64,
+    pub velocity: T,
 }
 
 /// One axis: no tangent, no rotation.
@@ -18,20 +17,28 @@ pub struct LineBody {
 pub struct Line;
 
 impl Kinematics for Line {
-    type Body = LineBody;
-    type Normal = f64;
+    type Body<T: Lanes> = LineBody<T>;
+    type Normal<T: Lanes> = T;
     const AXES: usize = 1;
     const ROTATION: bool = false;
     const TANGENTIAL_COMPLIANCE: f64 = 1.0;
     const DEGREES: usize = 1;
     const INERTIA_OVER_MASS: [f64; 3] = [1.0, 0.0, 0.0];
 
-    fn coordinates(body: &LineBody) -> [f64; 3] {
-        [body.velocity, 0.0, 0.0]
+    #[inline(always)]
+    fn coordinates<T: Lanes>(body: &LineBody<T>) -> [T; 3] {
+        let none = body.velocity.same(0.0);
+        [body.velocity, none, none]
     }
 
-    fn from_coordinates([velocity, ..]: [f64; 3]) -> LineBody {
+    #[inline(always)]
+    fn from_coordinates<T: Lanes>([velocity, ..]: [T; 3]) -> LineBody<T> {
         LineBody { velocity }
+    }
+
+    #[inline(always)]
+    fn set(body: &mut LineBody, [velocity, ..]: [f64; 3]) {
+        body.velocity = velocity;
     }
 
     fn gradients(normal: f64) -> [[[f64; 3]; 2]; 2] {
@@ -52,27 +59,32 @@ impl Kinematics for Line {
         LineBody { velocity: body.velocity + change }
     }
 
-    fn normal(normal: DVec2) -> f64 {
-        normal.x
+    #[inline(always)]
+    fn normal<T: Lanes>([normal, _]: [T; 2]) -> T {
+        normal
+    }
+
+    fn components(normal: f64) -> [f64; 2] {
+        [normal, 0.0]
     }
 
     #[inline(always)]
-    fn relative_velocity(normal: f64, i: &LineBody, j: &LineBody) -> [f64; 2] {
-        [normal * (i.velocity - j.velocity), 0.0]
+    fn relative_velocity<T: Lanes>(normal: T, i: &LineBody<T>, j: &LineBody<T>) -> [T; 2] {
+        [normal * (i.velocity - j.velocity), normal.same(0.0)]
     }
 
     #[inline(always)]
-    fn velocity(normal: f64, i: &LineBody) -> [f64; 2] {
-        [normal * i.velocity, 0.0]
+    fn velocity<T: Lanes>(normal: T, i: &LineBody<T>) -> [T; 2] {
+        [normal * i.velocity, normal.same(0.0)]
     }
 
     #[inline(always)]
-    fn push_pair(
-        i: &mut LineBody,
-        j: &mut LineBody,
-        normal: f64,
-        [along_normal, _]: [f64; 2],
-        share: f64,
+    fn push_pair<T: Lanes>(
+        i: &mut LineBody<T>,
+        j: &mut LineBody<T>,
+        normal: T,
+        [along_normal, _]: [T; 2],
+        share: T,
     ) {
         let whole = normal * along_normal;
         let part = share * whole;
@@ -81,7 +93,7 @@ impl Kinematics for Line {
     }
 
     #[inline(always)]
-    fn push_single(i: &mut LineBody, normal: f64, [along_normal, _]: [f64; 2]) {
+    fn push_single<T: Lanes>(i: &mut LineBody<T>, normal: T, [along_normal, _]: [T; 2]) {
         i.velocity += normal * along_normal;
     }
 

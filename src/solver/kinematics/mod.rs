@@ -15,20 +15,19 @@
 mod line;
 mod plane;
 
-use glam::DVec2;
-
 pub use self::line::{Line, LineBody};
 pub use self::plane::{Plane, PlaneBody, SpinningPlane};
 
 use super::{Problems, StepProblem};
+use crate::contact::Lanes;
 use crate::world::World;
 
 /// The ways in which the bodies of a scene can move.
 pub trait Kinematics: Copy + Send + Sync + 'static {
-    /// A body as the sweep sees it.
-    type Body: Copy + Default + Send + Sync + std::fmt::Debug + 'static;
+    /// A body as the sweep sees it; with several lanes, a body a lane.
+    type Body<T: Lanes>: Copy + Send + Sync + std::fmt::Debug + 'static;
     /// A contact's normal as the sweep sees it.
-    type Normal: Copy + Send + Sync + std::fmt::Debug + 'static;
+    type Normal<T: Lanes>: Copy + Send + Sync + std::fmt::Debug + 'static;
     /// Number of axes.
     const AXES: usize;
     /// Whether grains turn.
@@ -42,49 +41,61 @@ pub trait Kinematics: Copy + Send + Sync + 'static {
     const INERTIA_OVER_MASS: [f64; 3];
 
     /// Packs grain `index` of a world.
-    fn body(world: &World, index: usize) -> Self::Body;
+    fn body(world: &World, index: usize) -> Self::Body<f64>;
     /// Writes a body's velocity back to grain `index`.
-    fn store(body: &Self::Body, world: &mut World, index: usize);
+    fn store(body: &Self::Body<f64>, world: &mut World, index: usize);
     /// The body after an acceleration during `time_step_secs` at its present place.
     fn accelerated(
-        body: &Self::Body,
+        body: &Self::Body<f64>,
         world: &World,
         index: usize,
         time_step_secs: f64,
-    ) -> Self::Body;
-    /// Packs a normal.
-    fn normal(normal: DVec2) -> Self::Normal;
+    ) -> Self::Body<f64>;
+    /// Packs a normal, given along x and y.
+    fn normal<T: Lanes>(normal: [T; 2]) -> Self::Normal<T>;
+    /// A packed normal along x and y; along axes that there are not, 0.
+    fn components(normal: Self::Normal<f64>) -> [f64; 2];
     /// (v_n, v_t) of body i relative to body j, m/s.
-    fn relative_velocity(normal: Self::Normal, i: &Self::Body, j: &Self::Body) -> [f64; 2];
+    fn relative_velocity<T: Lanes>(
+        normal: Self::Normal<T>,
+        i: &Self::Body<T>,
+        j: &Self::Body<T>,
+    ) -> [T; 2];
     /// (v_n, v_t) of body i relative to a body at rest, m/s.
-    fn velocity(normal: Self::Normal, i: &Self::Body) -> [f64; 2];
+    fn velocity<T: Lanes>(normal: Self::Normal<T>, i: &Self::Body<T>) -> [T; 2];
     /// Applies λ_n and λ_t (m/s) to bodies i and j, `share` being g_i.
-    fn push_pair(
-        i: &mut Self::Body,
-        j: &mut Self::Body,
-        normal: Self::Normal,
-        reduced_impulse: [f64; 2],
-        share: f64,
+    fn push_pair<T: Lanes>(
+        i: &mut Self::Body<T>,
+        j: &mut Self::Body<T>,
+        normal: Self::Normal<T>,
+        reduced_impulse: [T; 2],
+        share: T,
     );
     /// Applies λ_n and λ_t (m/s) to body i, which touches a fixed body.
-    fn push_single(i: &mut Self::Body, normal: Self::Normal, reduced_impulse: [f64; 2]);
+    fn push_single<T: Lanes>(
+        i: &mut Self::Body<T>,
+        normal: Self::Normal<T>,
+        reduced_impulse: [T; 2],
+    );
     /// Kinetic energy, J, of a body of `mass` (kg).
-    fn kinetic_energy(body: &Self::Body, mass: f64) -> f64;
+    fn kinetic_energy(body: &Self::Body<f64>, mass: f64) -> f64;
     /// A body's velocity, an entry a degree of freedom; the rest is 0.
-    fn coordinates(body: &Self::Body) -> [f64; 3];
+    fn coordinates<T: Lanes>(body: &Self::Body<T>) -> [T; 3];
     /// The body of which these are the coordinates.
-    fn from_coordinates(coordinates: [f64; 3]) -> Self::Body;
+    fn from_coordinates<T: Lanes>(coordinates: [T; 3]) -> Self::Body<T>;
+    /// Gives a body these coordinates; what is none of its degrees of freedom stays.
+    fn set(body: &mut Self::Body<f64>, coordinates: [f64; 3]);
     /// How the coordinates of i, then of j, enter (v_n, v_t): v_n = Σ \[body\]\[0\]·coordinates,
     /// v_t = Σ \[body\]\[1\]·coordinates.
-    fn gradients(normal: Self::Normal) -> [[[f64; 3]; 2]; 2];
+    fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2];
     /// The stored problem of this kind of motion.
     fn problem(problems: &mut Problems) -> &mut StepProblem<Self>;
     /// Work of the gravity impulse M(`free` − `before`) in a step that ends as `after`, J: the
     /// impulse times the mean velocity (see `solver::measure`).
     fn work_of_gravity(
-        before: &Self::Body,
-        after: &Self::Body,
-        free: &Self::Body,
+        before: &Self::Body<f64>,
+        after: &Self::Body<f64>,
+        free: &Self::Body<f64>,
         mass: f64,
     ) -> f64;
 }

@@ -3,17 +3,18 @@
 use glam::DVec2;
 
 use super::Kinematics;
+use crate::contact::Lanes;
 use crate::solver::{Problems, StepProblem};
 use crate::world::World;
 
 /// A body in the plane, aligned so that it never straddles two cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
-pub struct PlaneBody {
+pub struct PlaneBody<T = f64> {
     /// m/s.
-    pub velocity: [f64; 2],
+    pub velocity: [T; 2],
     /// s = r·ω, m/s.
-    pub spin: f64,
+    pub spin: T,
 }
 
 /// Two axes, no rotation.
@@ -28,20 +29,30 @@ pub struct SpinningPlane;
 macro_rules! plane_kinematics {
     ($name:ident, $problem:ident, rotation: $rotation:literal) => {
         impl Kinematics for $name {
-            type Body = PlaneBody;
-            type Normal = [f64; 2];
+            type Body<T: Lanes> = PlaneBody<T>;
+            type Normal<T: Lanes> = [T; 2];
             const AXES: usize = 2;
             const ROTATION: bool = $rotation;
             const TANGENTIAL_COMPLIANCE: f64 = if $rotation { 3.0 } else { 1.0 };
             const DEGREES: usize = if $rotation { 3 } else { 2 };
             const INERTIA_OVER_MASS: [f64; 3] = [1.0, 1.0, 0.5];
 
-            fn coordinates(body: &PlaneBody) -> [f64; 3] {
+            #[inline(always)]
+            fn coordinates<T: Lanes>(body: &PlaneBody<T>) -> [T; 3] {
                 [body.velocity[0], body.velocity[1], body.spin]
             }
 
-            fn from_coordinates([x, y, spin]: [f64; 3]) -> PlaneBody {
+            #[inline(always)]
+            fn from_coordinates<T: Lanes>([x, y, spin]: [T; 3]) -> PlaneBody<T> {
                 PlaneBody { velocity: [x, y], spin }
+            }
+
+            #[inline(always)]
+            fn set(body: &mut PlaneBody, [x, y, spin]: [f64; 3]) {
+                body.velocity = [x, y];
+                if Self::ROTATION {
+                    body.spin = spin;
+                }
             }
 
             #[inline(always)]
@@ -79,36 +90,45 @@ macro_rules! plane_kinematics {
                 PlaneBody { velocity, spin: body.spin }
             }
 
-            fn normal(normal: DVec2) -> [f64; 2] {
-                normal.to_array()
+            #[inline(always)]
+            fn normal<T: Lanes>(normal: [T; 2]) -> [T; 2] {
+                normal
+            }
+
+            fn components(normal: [f64; 2]) -> [f64; 2] {
+                normal
             }
 
             #[inline(always)]
-            fn relative_velocity([nx, ny]: [f64; 2], i: &PlaneBody, j: &PlaneBody) -> [f64; 2] {
+            fn relative_velocity<T: Lanes>(
+                [nx, ny]: [T; 2],
+                i: &PlaneBody<T>,
+                j: &PlaneBody<T>,
+            ) -> [T; 2] {
                 let x = i.velocity[0] - j.velocity[0];
                 let y = i.velocity[1] - j.velocity[1];
-                let spin = if Self::ROTATION { i.spin + j.spin } else { 0.0 };
+                let spin = if Self::ROTATION { i.spin + j.spin } else { nx.same(0.0) };
                 [nx * x + ny * y, nx * y - ny * x - spin]
             }
 
             #[inline(always)]
-            fn velocity([nx, ny]: [f64; 2], i: &PlaneBody) -> [f64; 2] {
+            fn velocity<T: Lanes>([nx, ny]: [T; 2], i: &PlaneBody<T>) -> [T; 2] {
                 let [x, y] = i.velocity;
-                let spin = if Self::ROTATION { i.spin } else { 0.0 };
+                let spin = if Self::ROTATION { i.spin } else { nx.same(0.0) };
                 [nx * x + ny * y, nx * y - ny * x - spin]
             }
 
             #[inline(always)]
-            fn push_pair(
-                i: &mut PlaneBody,
-                j: &mut PlaneBody,
-                [nx, ny]: [f64; 2],
-                [along_normal, along_tangent]: [f64; 2],
-                share: f64,
+            fn push_pair<T: Lanes>(
+                i: &mut PlaneBody<T>,
+                j: &mut PlaneBody<T>,
+                [nx, ny]: [T; 2],
+                [along_normal, along_tangent]: [T; 2],
+                share: T,
             ) {
                 let x = nx * along_normal - ny * along_tangent;
                 let y = ny * along_normal + nx * along_tangent;
-                let other_share = 1.0 - share;
+                let other_share = share.same(1.0) - share;
                 i.velocity[0] += share * x;
                 i.velocity[1] += share * y;
                 j.velocity[0] -= other_share * x;
@@ -121,10 +141,10 @@ macro_rules! plane_kinematics {
             }
 
             #[inline(always)]
-            fn push_single(
-                i: &mut PlaneBody,
-                [nx, ny]: [f64; 2],
-                [along_normal, along_tangent]: [f64; 2],
+            fn push_single<T: Lanes>(
+                i: &mut PlaneBody<T>,
+                [nx, ny]: [T; 2],
+                [along_normal, along_tangent]: [T; 2],
             ) {
                 i.velocity[0] += nx * along_normal - ny * along_tangent;
                 i.velocity[1] += ny * along_normal + nx * along_tangent;

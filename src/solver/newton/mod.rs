@@ -267,9 +267,9 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
             row.shifted_impulse = shifted;
             if M::FRICTION {
                 let bound = if M::COMPRESSIVE_CONE {
-                    law::friction_bound::<true>(*friction, shifted, *capture_speed)
+                    law::friction_bound::<true, _>(*friction, shifted, *capture_speed)
                 } else {
-                    law::friction_bound::<false>(*friction, shifted, 0.0)
+                    law::friction_bound::<false, _>(*friction, shifted, 0.0)
                 };
                 let softness = M::Kinematics::TANGENTIAL_COMPLIANCE * compliance;
                 row.tangential_impulse = match guess {

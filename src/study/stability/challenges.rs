@@ -62,7 +62,7 @@ const fn limits(holds: f64, fails: f64) -> Limits {
 }
 
 /// All challenges.
-pub static CHALLENGES: [Challenge; 21] = [
+pub static CHALLENGES: [Challenge; 24] = [
     Challenge {
         name: "column",
         driver: "discs",
@@ -154,6 +154,15 @@ pub static CHALLENGES: [Challenge; 21] = [
         error: measures::squeeze,
     },
     Challenge {
+        name: "moving-walls",
+        driver: "time step (s)",
+        quick: &[5e-4, 3e-3, 2e-2],
+        further: &[],
+        measure: "distance from the right place / d, or speed left / √(g d)",
+        limits: limits(0.05, 0.5),
+        error: measures::moving_walls,
+    },
+    Challenge {
         name: "friction-limit",
         driver: "time step (s)",
         quick: &[1e-3, 5e-3, 2e-2],
@@ -163,6 +172,15 @@ pub static CHALLENGES: [Challenge; 21] = [
         error: measures::friction_limit,
     },
     Challenge {
+        name: "arch",
+        driver: "time step (s)",
+        quick: &[1e-3, 5e-3, 2e-2],
+        further: &[],
+        measure: "relative error of the least friction of an arch of three",
+        limits: limits(0.05, 0.3),
+        error: measures::arch,
+    },
+    Challenge {
         name: "repose",
         driver: "time step (s)",
         quick: &[1e-3, 5e-3, 2e-2],
@@ -170,6 +188,15 @@ pub static CHALLENGES: [Challenge; 21] = [
         measure: "longest way / d in 0.2 s",
         limits: limits(0.01, 0.2),
         error: measures::repose,
+    },
+    Challenge {
+        name: "repose-angle",
+        driver: "rows",
+        quick: &[2.0, 6.0, 12.0],
+        further: &[24.0],
+        measure: "relative error of a heap's steepest slope, 100 sweeps a step",
+        limits: limits(0.02, 0.2),
+        error: measures::repose_angle,
     },
     Challenge {
         name: "rest",

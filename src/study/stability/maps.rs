@@ -9,6 +9,12 @@
 //! where A = 4/π is the slowest mode's part at the top of a column of many (1 for two discs) and ρ is
 //! what `scene::stability` derives for each scene. In T it sinks by v T = 0.01 d where
 //! s = ln(q/(1 + q)) / ln ρ, q = 0.01 d/(A g Δt T). The border of springs is their critical time step.
+//!
+//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever, and Δt does
+//! not enter. One might fear another where bonds are strong and steps long, with C₀Δt²/m_ij = Bond·g·Δt²
+//! a hundredth of d: an impulse of cohesion, left alone for a step, would pull two grains into each other
+//! by that much. There is none. In the map's corner of Bond 500 and Δt = 0.01 s that is 49 d, and where
+//! steps are solved nothing overlaps: a bond pulls no more than is asked of it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -20,7 +26,9 @@ use super::picture::colour;
 use super::trial::jitter;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::scene::stability::{cantilever, column_on_line, mass_ratio};
+use crate::scene::stability::{
+    breaking_bond_of_cantilever, cantilever, column_on_line, mass_ratio,
+};
 use crate::solver::METHODS;
 use crate::study::chart::{Axis, Cell, Chart, Corner, INK, Layer, Look, Sheet, points};
 
@@ -37,6 +45,8 @@ const SPRINGS_SHAKE: f64 = 4e-3;
 const TOP_OF_COLUMN: f64 = 4.0 / PI;
 /// Discs of the column whose size is not varied.
 const DISCS: usize = 20;
+/// Discs in a row of the cantilever.
+const CANTILEVER: i32 = 4;
 /// Width of a chart, pixels.
 const CHART_WIDTH: u32 = 500;
 /// Charts side by side.
@@ -78,6 +88,8 @@ struct Map {
     border: Option<fn(f64) -> f64>,
     /// Substeps at the border of springs, against x.
     border_of_springs: Option<fn(f64) -> Result<f64>>,
+    /// Border of statics, the same for all methods, against x.
+    border_of_statics: Option<fn(f64) -> f64>,
 }
 
 const fn sweeps(to: f64) -> Parameter {
@@ -96,13 +108,14 @@ const MAPS: [Map; 4] = [
         x: time_step(),
         y: Parameter { label: "Bond", from: 5.0, to: 500.0, count: 12, whole: false },
         scene: |time_step_secs, bond| {
-            let mut scene = cantilever(4);
+            let mut scene = cantilever(CANTILEVER);
             scene.parameters.time_step_secs = time_step_secs;
             scene.parameters.bond = bond;
             scene
         },
         border: None,
         border_of_springs: None,
+        border_of_statics: Some(|_| breaking_bond_of_cantilever(CANTILEVER)),
     },
     Map {
         name: "map-dt-sweeps",
@@ -114,6 +127,7 @@ const MAPS: [Map; 4] = [
             sweeps_at_border(TOP_OF_COLUMN, time_step_secs, contraction_of_column(DISCS as f64))
         }),
         border_of_springs: Some(|time_step_secs| substeps_at_border(DISCS, time_step_secs)),
+        border_of_statics: None,
     },
     Map {
         name: "map-mass-sweeps",
@@ -127,6 +141,7 @@ const MAPS: [Map; 4] = [
         },
         border: Some(|ratio| sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0))),
         border_of_springs: None,
+        border_of_statics: None,
     },
     Map {
         name: "map-discs-sweeps",
@@ -136,6 +151,7 @@ const MAPS: [Map; 4] = [
         scene: |count, sweeps| sagging_on_line(count as usize, 1e-3, sweeps),
         border: Some(|count| sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count))),
         border_of_springs: Some(|count| substeps_at_border(count as usize, 1e-3)),
+        border_of_statics: None,
     },
 ];
 
@@ -213,6 +229,9 @@ pub fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>>
             if map.border.is_some() {
                 caption.push("Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs.".into());
             }
+            if map.border_of_statics.is_some() {
+                caption.push("Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %.".into());
+            }
             let size = (CHART_WIDTH * charts.len() as u32, 620);
             let sheet = Sheet { size, charts: charts.to_vec(), caption };
             sheets.push((format!("{}-{}", map.name, number + 1), sheet));
@@ -257,6 +276,10 @@ impl Map {
         if let (Some(border), "nsgs") = (self.border, contender.name) {
             let curve = on_chart(places.iter().map(|&x| (x, border(x))).collect());
             chart.layers.push(Layer::quiet("theory", curve, INK, Look::Dashes(3)));
+        }
+        if let Some(border) = self.border_of_statics {
+            let curve = on_chart(places.iter().map(|&x| (x, border(x))).collect());
+            chart.layers.push(Layer::quiet("statics", curve, INK, Look::Dashes(3)));
         }
         if let (Some(border), "dem") = (self.border_of_springs, contender.name) {
             let curve: Result<Vec<_>> = places.iter().map(|&x| Ok((x, border(x)?))).collect();

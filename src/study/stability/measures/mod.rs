@@ -12,6 +12,6 @@ pub(super) use cohesion::{bridge, cantilever, chain, shock};
 pub(super) use columns::{column, mass_ratio, sag, sagging, size_ratio, sunk};
 pub(super) use impacts::{bounce, newtons_cradle, thin_wall};
 pub(super) use numbering::{far, shuffle};
-pub(super) use piles::{friction_limit, repose, rest};
-pub(super) use squeezed::{overlap, squeeze};
+pub(super) use piles::{arch, friction_limit, repose, repose_angle, rest};
+pub(super) use squeezed::{moving_walls, overlap, squeeze};
 pub(super) use sudden::{lift_off, sliders, time_step_switch};

@@ -1,8 +1,10 @@
 //! Too little room.
 
 use crate::error::Result;
-use crate::scene::stability::{overlapped, squeeze as squeeze_of};
-use crate::study::stability::trial::{Trial, jitter};
+use crate::scene::stability::{
+    overlapped, press, pressed_places, pressing_secs, squeeze as squeeze_of,
+};
+use crate::study::stability::trial::{Trial, advance, jitter};
 
 const RECOVERY_SECS: f64 = 0.3;
 const SETTLING_SECS: f64 = 0.2;
@@ -37,4 +39,19 @@ pub fn squeeze(trial: &Trial) -> Result<f64> {
     }
     let share = unsolved as f64 / (settling + WATCHED_STEPS) as f64;
     Ok(share.max(speeds / WATCHED_STEPS as f64))
+}
+
+/// When walls have moved in and the grains had time to come to rest: how far the grain that is furthest
+/// from its place is from it, in d, or the speed that is left, in √(g d), whichever is larger.
+pub fn moving_walls(trial: &Trial) -> Result<f64> {
+    let mut scene = press();
+    scene.parameters.time_step_secs = trial.level;
+    let mut simulation = trial.start(scene)?;
+    advance(&mut simulation, pressing_secs() + SETTLING_SECS)?;
+    let world = simulation.world();
+    let places = pressed_places();
+    let errors =
+        world.grains.positions.iter().zip(&places).map(|(now, right)| now.distance(*right));
+    let furthest = errors.fold(0.0, f64::max) / world.mean_diameter;
+    Ok(furthest.max(jitter(&simulation)))
 }

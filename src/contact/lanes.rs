@@ -1,0 +1,126 @@
+//! The numbers that a contact's arithmetic is written for.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+use fearless_simd::{Select, Simd, SimdBase, f64x4};
+
+/// A number, or one a lane of a vector register. Every lane does just what the number alone does,
+/// to the last bit, signed zeros and NaN included: the order of operations is the code's, and none
+/// are fused.
+pub trait Lanes:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + 'static
+{
+    /// `number` in as many lanes as `self` has.
+    fn same(self, number: f64) -> Self;
+    /// The larger of two numbers as one machine instruction; `other` where `self` is NaN.
+    fn larger(self, other: Self) -> Self;
+    /// The smaller of two numbers as one machine instruction; `other` where `self` is NaN.
+    fn smaller(self, other: Self) -> Self;
+    /// The number without its sign.
+    fn magnitude(self) -> Self;
+}
+
+impl Lanes for f64 {
+    #[inline(always)]
+    fn same(self, number: f64) -> Self {
+        number
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+}
+
+impl<S: Simd> Lanes for f64x4<S> {
+    #[inline(always)]
+    fn same(self, number: f64) -> Self {
+        Self::splat(self.simd, number)
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if SECOND_WHERE_UNDECIDED {
+            self.max(other)
+        } else {
+            self.simd_gt(other).select(self, other)
+        }
+    }
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        if SECOND_WHERE_UNDECIDED {
+            self.min(other)
+        } else {
+            self.simd_lt(other).select(self, other)
+        }
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+}
+
+/// Whether the processor's own larger and smaller of two are the second where either is NaN, and of
+/// two zeros.
+const SECOND_WHERE_UNDECIDED: bool = cfg!(any(target_arch = "x86_64", target_arch = "x86"));
+
+/// Levels of vector instructions that this processor has.
+#[cfg(test)]
+pub(crate) fn levels() -> Vec<fearless_simd::Level> {
+    let best = fearless_simd::Level::new();
+    #[cfg(target_arch = "x86_64")]
+    let lower = [best.as_sse2().map(Simd::level), best.as_avx2().map(Simd::level)];
+    #[cfg(not(target_arch = "x86_64"))]
+    let lower = [None; 0];
+    lower.into_iter().flatten().chain([best]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{SimdFrom, dispatch};
+
+    use super::*;
+
+    #[test]
+    fn a_lane_does_just_what_a_number_does() {
+        let numbers = [0.0, -0.0, 1.0, -1.0, 1e-310, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+        let bits = |numbers: [f64; 4]| numbers.map(f64::to_bits);
+        for level in levels() {
+            for a in numbers {
+                let b = [0, 4].map(|at| [0, 1, 2, 3].map(|lane| numbers[at + lane]));
+                for b in b {
+                    dispatch!(level, simd => {
+                        let (left, right) = (f64x4::simd_from(simd, [a; 4]), f64x4::simd_from(simd, b));
+                        let what = format!("{level:?}, {a} and {b:?}");
+                        let found = [left.larger(right), left.smaller(right), right.magnitude()];
+                        let wanted = [b.map(|b| a.larger(b)), b.map(|b| a.smaller(b)), b.map(f64::abs)];
+                        assert_eq!(found.map(|found| bits(found.to_array())), wanted.map(bits), "{what}");
+                    });
+                }
+            }
+        }
+    }
+}

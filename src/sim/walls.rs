@@ -1,0 +1,80 @@
+//! Walls that move along their normal (`Boundary::Piston`).
+//!
+//! In a step each has one velocity: its own, or in its last step what is left of its way over Δt. The
+//! contacts see it (`StepProblem::drive`), and with the grains the wall is moved by it.
+
+use glam::DVec2;
+
+use super::Simulation;
+use crate::contact::{Candidates, Contact};
+use crate::world::World;
+
+/// The walls that move in the present step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Walls {
+    moving: Vec<Wall>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Wall {
+    /// Its number among the boundaries.
+    boundary: usize,
+    /// Its number among their features.
+    feature: usize,
+    /// m/s.
+    velocity: DVec2,
+}
+
+impl Walls {
+    /// Begins a step of that length.
+    pub fn begin(&mut self, world: &World, candidates: &Candidates, time_step_secs: f64) {
+        let walls = candidates.pistons().iter().map(|&(boundary, feature)| Wall {
+            boundary,
+            feature,
+            velocity: world.boundaries[boundary].velocity(time_step_secs),
+        });
+        self.moving.clear();
+        self.moving.extend(walls.filter(|wall| wall.velocity != DVec2::ZERO));
+    }
+
+    /// Whether any wall moves.
+    pub fn any_move(&self) -> bool {
+        !self.moving.is_empty()
+    }
+
+    /// Speed of the fastest, m/s.
+    pub fn fastest(&self) -> f64 {
+        self.moving.iter().map(|wall| wall.velocity.length()).fold(0.0, f64::max)
+    }
+
+    /// How fast the other body of a contact comes along its normal, m/s, if it is such a wall.
+    #[inline]
+    pub fn speed(&self, world: &World, contact: &Contact) -> f64 {
+        if self.moving.is_empty() {
+            return 0.0;
+        }
+        let first = world.grains.len() + world.fixed_discs.len();
+        let is_other = |wall: &&Wall| first + wall.feature == contact.other as usize;
+        let wall = self.moving.iter().find(is_other);
+        wall.map_or(0.0, |wall| wall.velocity.dot(contact.normal))
+    }
+
+    /// Moves the walls for `secs`.
+    pub fn advance(&self, world: &mut World, candidates: &mut Candidates, secs: f64) {
+        for wall in &self.moving {
+            world.boundaries[wall.boundary].advance(secs * wall.velocity);
+        }
+        let ways = self.moving.iter().map(|wall| (wall.feature, secs * wall.velocity));
+        candidates.shift_features(ways);
+    }
+}
+
+impl Simulation {
+    /// Speed of the fastest wall in the next step, m/s.
+    pub(super) fn fastest_wall(&self) -> f64 {
+        let secs = self.parameters.time_step_secs;
+        let walls = self.candidates.pistons().iter();
+        let speeds = walls.map(|&(wall, _)| self.world.boundaries[wall].velocity(secs).length());
+        speeds.fold(0.0, f64::max)
+    }
+}

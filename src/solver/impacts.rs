@@ -1,0 +1,265 @@
+//! Shocks that run through touching grains one after the other, in one step.
+//!
+//! **What is wrong.** The term ρ v_n^{n−1} of the paper's law settles all shocks of a step at once, and
+//! knows what a contact does before the step alone. A ball that hits a row of balls at rest sends all
+//! of them off together, whatever ρ is: contacts within the row do not close beforehand, so they may
+//! not open afterwards either. In truth the shock travels, and the last ball alone flies off.
+//!
+//! **The remedy.** The shocks are followed first, without gravity, which does nothing in no time, and
+//! without friction. A pass takes the contacts that close, and those alone, and solves
+//!
+//! > 0 ≤ P_k ⟂ u_k⁺ + ρ u_k⁻ ≥ 0 for each k with u_k⁻ < 0,  u⁺ = u⁻ + W P.
+//!
+//! That makes other contacts close, which are the next pass, until none is left. With ρ = 1 these are
+//! the generalized reflections of B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf and E. Grinspun,
+//! *Reflections on simultaneous impact* (2012); where the contacts of a pass share no grain, they are
+//! binary impacts in sequence (A. Chatterjee and A. Ruina, 1998). Contacts that close together are
+//! solved together, so that the outcome is as symmetric as its start and does not depend on how grains
+//! are numbered, as it would if one of them had to come first.
+//!
+//! **No energy is gained.** Where P_k > 0, u_k⁺ = −ρ u_k⁻, so (WP)_k = u_k⁺ − u_k⁻ = (1+ρ)|u_k⁻| > 0. A
+//! pass changes the kinetic energy by
+//!
+//! > ½P·(u⁺ + u⁻) = −½ (1−ρ) Σ P_k |u_k⁻| = −½ (1−ρ)/(1+ρ) Σ P_k (WP)_k ≤ 0.
+//!
+//! Contacts that still close after the last pass, slower than anything that is to bounce, are stopped
+//! by the projection of the velocities on those that close no contact. That takes energy too. Impulses
+//! act on pairs, so momentum stays.
+//!
+//! **The step itself** then asks each contact that was struck to open with the speed û_k ≥ 0 that the
+//! shocks have left it: u_k^n − û_k takes the place of u_k^n + ρ u_k^{n−1} in its law. Without gravity
+//! and friction the impulses of the shocks solve that step as they are: they are ≥ 0, and where
+//! they are not 0, u_k^n = û_k. With friction it rubs by the whole normal impulse, shocks included.
+//! A single contact has û = −ρ u^{n−1}: nothing changes for it.
+//!
+//! **Friction.** With it bounces may gain energy, here as in the paper's scheme (T. R. Kane, 1984).
+//! Where the contacts of a step have done positive work, its û_k are halved and it is solved again. With
+//! û_k = 0 that work is, without gravity, P_t·u_t − ½P·WP ≤ 0, so this ends.
+//!
+//! **Not with cohesion.** In the paper's law what touches is bonded, and a bond takes part in a shock.
+//! Then all contacts belong to the first pass, which is the law as it was.
+
+use super::{
+    Kinematics, Measures, Method, Model, Ordering, Remedies, Row, SolveReport, SolverSettings,
+    StepProblem, StopTest, measure, relative_velocities, solve,
+};
+use crate::contact::ContactList;
+use crate::error::Result;
+
+/// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
+/// resting contact do that. Less, and a pile at rest would be shaken in each step.
+const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
+/// The same in the fastest closing speed of the step, for scenes without gravity. For ρ < 1 a chain
+/// closes infinitely often; smaller: more passes for what cannot be seen.
+const LEAST_IN_FASTEST: f64 = 1e-6;
+/// Most passes, so that a step ends. A row of n balls needs n − 1 of them.
+const MOST_PASSES: u32 = 2000;
+
+/// Part of the kinetic energy that a step may gain by rounding and by the tolerance of its solution.
+const GAIN_OF_ROUNDING: f64 = 1e-9;
+
+/// How a pass is solved, whatever the step's own method: contacts that close together are few.
+const PASS: SolverSettings = SolverSettings {
+    method: Method::Nsgs,
+    ordering: Ordering::Interleaved,
+    stop: StopTest::Residual,
+    tolerance: 1e-12,
+    max_sweeps: 1000,
+    warm_start: true,
+    substeps: 0,
+    remedies: Remedies::NONE,
+};
+
+/// What bounces.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounces {
+    /// ρ.
+    pub restitution: f64,
+    /// Closing speed below which nothing does, in g·Δt; at least 2 of them are taken.
+    pub threshold: f64,
+    /// g·Δt, m/s.
+    pub step_of_gravity: f64,
+}
+
+/// Follows the shocks of a prepared step, and has its contacts open as they say. Reports the work that
+/// took; whether the step is solved is for the step to say. Leaves a problem with cohesion, or without
+/// shocks that bounce, as it is, and reports nothing.
+///
+/// # Errors
+/// Where the method of `settings` is a scheme.
+pub fn follow_impacts<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    contacts: &ContactList,
+    bounces: Bounces,
+    settings: &SolverSettings,
+) -> Result<Option<SolveReport>> {
+    let mut report = SolveReport::default();
+    if problem.capture_speed > 0.0 || bounces.restitution == 0.0 {
+        return Ok(None);
+    }
+    let mut shocks = Shocks::new(problem, contacts);
+    let fastest = shocks.fastest_closing();
+    let threshold = bounces.threshold.max(LEAST_IN_STEPS_OF_GRAVITY);
+    let least = (threshold * bounces.step_of_gravity).max(LEAST_IN_FASTEST * fastest);
+    if fastest <= least {
+        return Ok(None);
+    }
+    let mut pass = StepProblem::default();
+    for _ in 0..MOST_PASSES {
+        if !shocks.select(problem, &mut pass, bounces.restitution, least) {
+            break;
+        }
+        report.add(solve::<M>(&mut pass, &PASS)?);
+        shocks.take(problem, &mut pass);
+    }
+    if shocks.fastest_closing() > LEAST_IN_FASTEST * fastest {
+        report.add(shocks.stop_the_rest::<M>(problem, settings)?);
+    }
+    shocks.set_rebounds(problem);
+    Ok(Some(report))
+}
+
+/// Whether the contacts of a solved step have done work on the grains, beyond rounding.
+pub fn gains_energy<M: Model>(problem: &StepProblem<M::Kinematics>) -> bool {
+    let Measures { normal_work, tangential_work, .. } = measure::<M>(problem);
+    let moving = problem.before.iter().zip(&problem.masses);
+    let energy: f64 = moving.map(|(body, &mass)| M::Kinematics::kinetic_energy(body, mass)).sum();
+    normal_work + tangential_work > GAIN_OF_ROUNDING * energy
+}
+
+/// Multiplies the speeds that contacts are asked to open with.
+pub fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
+    let StepProblem { fixed_rows, pair_rows, .. } = problem;
+    for row in fixed_rows.iter_mut().chain(pair_rows) {
+        if row.restitution_velocity < 0.0 {
+            row.restitution_velocity *= factor;
+        }
+    }
+}
+
+/// How far the shocks have gone.
+struct Shocks<K: Kinematics> {
+    /// Velocities by now.
+    bodies: Vec<K::Body<f64>>,
+    /// u of each row, m/s.
+    speeds: Vec<f64>,
+    /// P/m_ij of each row so far, m/s.
+    impulses: Vec<f64>,
+    /// Whether a row's pair touches: one that will do so within the step only has no shock yet.
+    touching: Vec<bool>,
+    /// As `StepProblem::wall_speeds`.
+    wall_speeds: Vec<f64>,
+}
+
+impl<K: Kinematics> Shocks<K> {
+    /// Nothing has happened yet.
+    fn new(problem: &StepProblem<K>, contacts: &ContactList) -> Self {
+        let bodies = problem.before.clone();
+        let mut speeds = Vec::new();
+        relative_velocities(problem, &bodies, &mut speeds);
+        let impulses = vec![0.0; speeds.len()];
+        let touches = |&index: &u32| contacts.is_in_touch(index as usize);
+        let touching = problem.contact_of_row.iter().map(touches).collect();
+        Self { bodies, speeds, impulses, touching, wall_speeds: problem.wall_speeds.clone() }
+    }
+
+    /// max(−u), m/s, or 0.
+    fn fastest_closing(&self) -> f64 {
+        let all = self.speeds.iter().zip(&self.touching);
+        all.filter(|(_, touches)| **touches).fold(0.0, |fastest, (speed, _)| fastest.max(-speed))
+    }
+
+    /// Sets `pass` up with the rows that close faster than `least` (m/s). Whether there are any.
+    fn select(
+        &self,
+        problem: &StepProblem<K>,
+        pass: &mut StepProblem<K>,
+        restitution: f64,
+        least: f64,
+    ) -> bool {
+        let StepProblem { fixed_rows, pair_rows, contact_of_row, before, free, bodies, .. } = pass;
+        fixed_rows.clear();
+        pair_rows.clear();
+        contact_of_row.clear();
+        for (number, row) in problem.rows() {
+            let speed = self.speeds[number];
+            if speed >= -least || !self.touching[number] {
+                continue;
+            }
+            let rows =
+                if number < problem.fixed_rows.len() { &mut *fixed_rows } else { &mut *pair_rows };
+            rows.push(Row {
+                restitution_velocity: restitution * speed - problem.wall_speed(number),
+                shifted_impulse: 0.0,
+                tangential_impulse: 0.0,
+                ..*row
+            });
+            contact_of_row.push(number as u32);
+        }
+        for copy in [before, free, bodies] {
+            copy.clone_from(&self.bodies);
+        }
+        !contact_of_row.is_empty()
+    }
+
+    /// Takes over what a pass has led to.
+    fn take(&mut self, problem: &StepProblem<K>, pass: &mut StepProblem<K>) {
+        for ((_, row), &number) in pass.rows().zip(&pass.contact_of_row) {
+            self.impulses[number as usize] += row.shifted_impulse;
+        }
+        std::mem::swap(&mut self.bodies, &mut pass.bodies);
+        relative_velocities(problem, &self.bodies, &mut self.speeds);
+    }
+
+    /// Stops all contacts that still close, by the step's own method: there may be many of them.
+    fn stop_the_rest<M: Model<Kinematics = K>>(
+        &mut self,
+        problem: &mut StepProblem<K>,
+        settings: &SolverSettings,
+    ) -> Result<SolveReport> {
+        let free = std::mem::replace(&mut problem.free, self.bodies.clone());
+        let friction = std::mem::take(&mut problem.friction);
+        let (fixed, pairs) = (problem.fixed_rows.clone(), problem.pair_rows.clone());
+        let rows = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
+        let walls = self.wall_speeds.iter().copied().chain(std::iter::repeat(0.0));
+        for ((row, &touches), wall_speed) in rows.zip(&self.touching).zip(walls) {
+            if touches {
+                row.restitution_velocity = -wall_speed;
+            }
+            row.shifted_impulse = 0.0;
+            row.tangential_impulse = 0.0;
+        }
+        problem.form_velocities();
+        let report = solve::<M>(problem, settings);
+        for (number, row) in problem.rows() {
+            self.impulses[number] += row.shifted_impulse;
+        }
+        self.bodies.clone_from(&problem.bodies);
+        relative_velocities(problem, &self.bodies, &mut self.speeds);
+        problem.free = free;
+        problem.friction = friction;
+        problem.fixed_rows = fixed;
+        problem.pair_rows = pairs;
+        report
+    }
+
+    /// Asks each contact that was struck for the speed that it has come to. One that was not may not
+    /// bounce. The step starts from the impulses of the shocks.
+    fn set_rebounds(&self, problem: &mut StepProblem<K>) {
+        let StepProblem { fixed_rows, pair_rows, .. } = problem;
+        for (number, row) in fixed_rows.iter_mut().chain(pair_rows).enumerate() {
+            let impulse = self.impulses[number];
+            // The law speaks of velocities relative to a wall that moves.
+            let wall_speed = self.wall_speeds.get(number).copied().unwrap_or(0.0);
+            row.restitution_velocity = if !self.touching[number] {
+                row.restitution_velocity
+            } else if impulse > 0.0 {
+                -self.speeds[number].max(0.0) - wall_speed
+            } else {
+                (row.restitution_velocity + wall_speed).max(0.0) - wall_speed
+            };
+            row.shifted_impulse += impulse;
+        }
+        problem.form_velocities();
+    }
+}
