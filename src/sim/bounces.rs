@@ -19,7 +19,7 @@ pub(super) fn solve_step<M: Model>(simulation: &mut Simulation) -> Result<SolveR
     let mut report = solve::<M>(problem, solver)?;
     let mut earlier = followed.unwrap_or_default();
     let mut halvings = 0;
-    while M::FRICTION && followed.is_some() && halvings < HALVINGS && gains_energy::<M>(problem) {
+    while M::FRICTION && followed.is_some() && halvings < HALVINGS && gains_energy(problem) {
         halvings += 1;
         scale_rebounds(problem, if halvings < HALVINGS { 0.5 } else { 0.0 });
         earlier.add(report);

@@ -33,15 +33,16 @@
 //! A single contact has û = −ρ u^{n−1}: nothing changes for it.
 //!
 //! **Friction.** With it bounces may gain energy, here as in the paper's scheme (T. R. Kane, 1984).
-//! Where the contacts of a step have done positive work, its û_k are halved and it is solved again. With
+//! Where the contacts of a step have done positive work, beside that of walls that move, its û_k are
+//! halved and it is solved again. With
 //! û_k = 0 that work is, without gravity, P_t·u_t − ½P·WP ≤ 0, so this ends.
 //!
 //! **Not with cohesion.** In the paper's law what touches is bonded, and a bond takes part in a shock.
 //! Then all contacts belong to the first pass, which is the law as it was.
 
 use super::{
-    Kinematics, Measures, Method, Model, Ordering, Remedies, Row, SolveReport, SolverSettings,
-    StepProblem, StopTest, measure, relative_velocities, solve,
+    Kinematics, Method, Model, Ordering, Remedies, Row, SolveReport, SolverSettings, StepProblem,
+    StopTest, for_each_row, relative_velocities, solve,
 };
 use crate::contact::ContactList;
 use crate::error::Result;
@@ -55,8 +56,8 @@ const LEAST_IN_FASTEST: f64 = 1e-6;
 /// Most passes, so that a step ends. A row of n balls needs n − 1 of them.
 const MOST_PASSES: u32 = 2000;
 
-/// Part of the kinetic energy that a step may gain by rounding and by the tolerance of its solution.
-const GAIN_OF_ROUNDING: f64 = 1e-9;
+/// Part of what goes through the contacts that they may gain by rounding and by a step's tolerance.
+const LEAST_GAIN: f64 = 1e-6;
 
 /// How a pass is solved, whatever the step's own method: contacts that close together are few.
 const PASS: SolverSettings = SolverSettings {
@@ -119,20 +120,29 @@ pub fn follow_impacts<M: Model>(
     Ok(Some(report))
 }
 
-/// Whether the contacts of a solved step have done work on the grains, beyond rounding.
-pub fn gains_energy<M: Model>(problem: &StepProblem<M::Kinematics>) -> bool {
-    let Measures { normal_work, tangential_work, .. } = measure::<M>(problem);
-    let moving = problem.before.iter().zip(&problem.masses);
-    let energy: f64 = moving.map(|(body, &mass)| M::Kinematics::kinetic_energy(body, mass)).sum();
-    normal_work + tangential_work > GAIN_OF_ROUNDING * energy
+/// Whether the contacts of a solved step have done work on the grains, beyond rounding and beyond what
+/// the walls that move have put in: velocities are taken relative to those.
+pub fn gains_energy<K: Kinematics>(problem: &StepProblem<K>) -> bool {
+    let (mut gain, mut scale) = (0.0, 0.0);
+    for_each_row(problem, |number, row, motion| {
+        let [normal, tangential] =
+            problem.reduced_impulse(number, row).map(|impulse| 0.5 * row.effective_mass * impulse);
+        let [now, before] =
+            [motion.now[0], motion.before[0]].map(|v| v - problem.wall_speed(number));
+        gain += normal * (now + before) + tangential * (motion.now[1] + motion.before[1]);
+        scale += normal.abs() * (now.abs() + before.abs());
+    });
+    gain > LEAST_GAIN * scale
 }
 
-/// Multiplies the speeds that contacts are asked to open with.
+/// Multiplies the speeds that contacts are asked to open with, relative to walls that move.
 pub fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
-    let StepProblem { fixed_rows, pair_rows, .. } = problem;
-    for row in fixed_rows.iter_mut().chain(pair_rows) {
-        if row.restitution_velocity < 0.0 {
-            row.restitution_velocity *= factor;
+    let StepProblem { fixed_rows, pair_rows, wall_speeds, .. } = problem;
+    let walls = wall_speeds.iter().copied().chain(std::iter::repeat(0.0));
+    for (row, wall_speed) in fixed_rows.iter_mut().chain(pair_rows).zip(walls) {
+        let rebound = row.restitution_velocity + wall_speed;
+        if rebound < 0.0 {
+            row.restitution_velocity = factor * rebound - wall_speed;
         }
     }
 }
