@@ -84,6 +84,8 @@ struct Map {
     x: Parameter,
     y: Parameter,
     scene: fn(f64, f64) -> Scene,
+    /// Whether springs swing in it for longer than a run.
+    may_swing: bool,
     /// Sweeps at the border of Gauss–Seidel, against x.
     border: Option<fn(f64) -> f64>,
     /// Substeps at the border of springs, against x.
@@ -113,6 +115,7 @@ const MAPS: [Map; 4] = [
             scene.parameters.bond = bond;
             scene
         },
+        may_swing: true,
         border: None,
         border_of_springs: None,
         border_of_statics: Some(|_| breaking_bond_of_cantilever(CANTILEVER)),
@@ -123,6 +126,7 @@ const MAPS: [Map; 4] = [
         x: time_step(),
         y: sweeps(1e3),
         scene: |time_step_secs, sweeps| sagging_on_line(DISCS, time_step_secs, sweeps),
+        may_swing: false,
         border: Some(|time_step_secs| {
             sweeps_at_border(TOP_OF_COLUMN, time_step_secs, contraction_of_column(DISCS as f64))
         }),
@@ -139,6 +143,7 @@ const MAPS: [Map; 4] = [
             scene.solver = sagging(1, sweeps as u32).solver;
             scene
         },
+        may_swing: false,
         border: Some(|ratio| sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0))),
         border_of_springs: None,
         border_of_statics: None,
@@ -149,6 +154,7 @@ const MAPS: [Map; 4] = [
         x: Parameter { label: "discs", from: 2.0, to: 100.0, count: 12, whole: true },
         y: sweeps(1e4),
         scene: |count, sweeps| sagging_on_line(count as usize, 1e-3, sweeps),
+        may_swing: false,
         border: Some(|count| sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count))),
         border_of_springs: Some(|count| substeps_at_border(count as usize, 1e-3)),
         border_of_statics: None,
@@ -183,8 +189,9 @@ fn substeps_at_border(count: usize, time_step_secs: f64) -> Result<f64> {
     Ok(time_step_secs / critical_secs)
 }
 
-/// 0 where the contender holds, 1 where it sinks or overlaps, 2 where it is lost.
-fn class(contender: &Contender, scene: &Scene) -> Result<f64> {
+/// 0 where the contender holds, 1 where it sinks or overlaps, 2 where it is lost. `may_swing`: what
+/// stands on springs has not come to rest by the end, and is not lost for that.
+fn class(contender: &Contender, scene: &Scene, may_swing: bool) -> Result<f64> {
     let mut scene = scene.clone();
     contender.apply(&mut scene);
     let mut simulation = scene.simulation()?;
@@ -199,7 +206,12 @@ fn class(contender: &Contender, scene: &Scene) -> Result<f64> {
     let way = sunk(&simulation, &scene);
     // A step left unsolved sinks steadily; stiff springs that are stable have come to rest.
     let springs = simulation.critical_time_step_secs().is_some();
-    let shakes = jitter(&simulation) > if springs { SPRINGS_SHAKE } else { SHAKES };
+    let calm = match (springs, may_swing) {
+        (false, _) => SHAKES,
+        (true, false) => SPRINGS_SHAKE,
+        (true, true) => f64::INFINITY,
+    };
+    let shakes = jitter(&simulation) > calm;
     Ok(if way > LOST || shakes {
         2.0
     } else if way.max(overlap) > COUNTS {
@@ -230,7 +242,7 @@ pub fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>>
                 caption.push("Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs.".into());
             }
             if map.border_of_statics.is_some() {
-                caption.push("Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %.".into());
+                caption.push("Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing.".into());
             }
             let size = (CHART_WIDTH * charts.len() as u32, 620);
             let sheet = Sheet { size, charts: charts.to_vec(), caption };
@@ -256,7 +268,10 @@ impl Map {
             .values(quick)
             .into_par_iter()
             .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
-            .map(|(x, y)| Ok(Cell { x, y, value: class(contender, &(self.scene)(x.0, y.0))? }))
+            .map(|(x, y)| {
+                let value = class(contender, &(self.scene)(x.0, y.0), self.may_swing)?;
+                Ok(Cell { x, y, value })
+            })
             .collect::<Result<Vec<_>>>()?;
         let mut chart = Chart::new(
             format!("{}: {}", self.title, contender.name),

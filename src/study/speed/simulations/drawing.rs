@@ -88,7 +88,7 @@ pub(super) fn draw(
         size: (1900, 820),
         charts,
         caption: bench.caption(&[&format!(
-            "A point for each method, effort and Δt (the larger the dot, the larger: {}); means over {} piles of 138 grains.",
+            "A point for each method, effort and Δt (the larger the dot, the larger: {}); means over {} piles of 138 grains. On the lower edge: the reference itself.",
             said(plan.time_steps_secs.iter().map(|step| format!("{step:e} s"))),
             plan.piles.len()
         )]),
