@@ -17,6 +17,7 @@ mod nncg;
 mod nsgs;
 mod nsgs_parallel;
 mod order;
+mod prepare;
 mod problem;
 mod remedies;
 mod settings;
