@@ -39,7 +39,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     let mut sheet = Sheet { size: (2000, 760), charts, caption: Vec::new() };
     sheet.caption = vec![format!(
         "Means over {} initial states of 138 grains with 95 % intervals. Error: mean over the Bonds of the \
-         difference of slump from that at Δt = {:e} s.",
+         difference of slump from that at Δt = {:e} s; a dot for each larger Δt.",
         rows.seeds().len(),
         steps[0]
     )];
@@ -135,7 +135,7 @@ fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
         Chart::new("Cost at equal error", x, Axis::log("seconds per simulated second", low, high));
     chart.legend = Corner::UpperRight;
     for ((name, points), colour) in curves.into_iter().zip([PALETTE[6], PALETTE[1]]) {
-        chart.layers.push(Layer::curve(name, points, colour, Look::LineAndDots));
+        chart.layers.push(Layer::curve(name, points, colour, Look::Dots(6)));
     }
     Ok(chart)
 }

@@ -180,7 +180,8 @@ fn residuals(bench: &Bench, all: &[Raced], course: &Course) -> Part {
         charts.push(chart);
     }
     let count = charts.len() as u32;
-    let legend = Chart::legend_of(&mut charts, 0.3);
+    // Each panel has its share of solved steps in the legend.
+    let legend = Chart::legend_of(&mut charts, 0.18 + 0.06 * f64::from(count));
     charts.push(legend);
     let sheet = Sheet {
         size: (760 * count + 280, 820),
