@@ -3,6 +3,7 @@
 mod alarm;
 mod bonds;
 mod bounces;
+mod detection;
 pub mod live;
 mod observables;
 mod pull;

@@ -14,9 +14,10 @@
 
 use super::Simulation;
 use super::bonds::{BondEnergies, Solved, StepNumbers, solve_range};
+use super::detection::fastest;
 use super::step::{Taken, move_by, prepare};
+use crate::contact::LookAhead;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
-use crate::contact::{Candidates, ContactList, LookAhead};
 use crate::error::Result;
 use crate::solver::{Kinematics, Measures, Model, SolveReport};
 use crate::world::World;
@@ -40,22 +41,6 @@ const MOST_SUBSTEPS: f64 = 16.0;
 /// layer of grains at the least.
 const PASSES_OF_PUSHING: u32 = 8;
 
-/// Finds the contacts that a step may have to do with.
-pub(super) fn detect<M: Model>(
-    world: &World,
-    candidates: &mut Candidates,
-    contacts: &mut ContactList,
-    ahead: LookAhead,
-) {
-    if M::Kinematics::AXES == 1 {
-        candidates.update_ahead::<1>(world, ahead.reach);
-        contacts.detect_ahead::<1>(world, candidates, ahead);
-    } else {
-        candidates.update_ahead::<2>(world, ahead.reach);
-        contacts.detect_ahead::<2>(world, candidates, ahead);
-    }
-}
-
 /// How far a step has to look, with the speed of the fastest grain or wall (m/s): it tells what any
 /// grain may come to.
 pub(super) fn look_ahead(world: &World, fastest: f64, time_step_secs: f64) -> LookAhead {
@@ -64,12 +49,6 @@ pub(super) fn look_ahead(world: &World, fastest: f64, time_step_secs: f64) -> Lo
     let distance = travel.min(near);
     let reach = (distance + 2.0 * travel).min(far);
     LookAhead { time_step_secs, distance, reach, bonds: true }
-}
-
-/// Speed of the fastest grain or wall, m/s, with that of the fastest wall.
-pub(super) fn fastest(world: &World, fastest_wall: f64) -> f64 {
-    let speeds = world.grains.velocities.iter().map(|velocity| velocity.length());
-    speeds.fold(fastest_wall, f64::max)
 }
 
 /// How far a grain may go in a step where the fastest has that speed (m/s), m.

@@ -67,11 +67,8 @@ pub(super) fn pass<M: Model>(
     std::mem::swap(&mut problem.captures, captures);
     problem.captures.clear();
     problem.captures.resize(captures.len(), 0.0);
-    let StepProblem { fixed_rows, pair_rows, wall_speeds, .. } = &mut *problem;
-    let all = fixed_rows.iter_mut().chain(pair_rows).enumerate();
-    for ((number, row), &speed) in all.zip(&*speeds) {
+    for ((row, wall_speed), &speed) in problem.rows_with_walls().zip(&*speeds) {
         // Speeds are those relative to a wall that moves; what a row adds is to v_n itself.
-        let wall_speed = wall_speeds.get(number).copied().unwrap_or(0.0);
         let closing_gap = row.restitution_velocity + wall_speed;
         rows.push([row.shifted_impulse, row.tangential_impulse, row.restitution_velocity]);
         row.shifted_impulse = 0.0;

@@ -1,7 +1,8 @@
 //! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau).
 
 use super::bonds::BondEnergies;
-use super::{Observables, Simulation, bounces, pull, push_out, range_step, schemes, speculative};
+use super::detection::detect;
+use super::{Observables, Simulation, bounces, pull, push_out, range_step, schemes};
 use crate::contact::ContactList;
 use crate::error::Result;
 use crate::solver::{
@@ -208,27 +209,6 @@ impl ModelVisitor for Start<'_> {
             broken_bond_energy: none_yet,
             ..geometry::<M>(simulation)
         };
-    }
-}
-
-/// Finds the contacts at the present positions.
-pub(super) fn detect<M: Model>(simulation: &mut Simulation) {
-    let Simulation { world, candidates, contacts, parameters, solver, walls, .. } = simulation;
-    let time_step_secs = parameters.time_step_secs;
-    if law(parameters, solver) == ContactLaw::Range {
-        let fastest = range_step::fastest(world, walls.fastest());
-        let ahead = range_step::look_ahead(world, fastest, time_step_secs);
-        range_step::detect::<M>(world, candidates, contacts, ahead);
-    } else if solver.remedies.speculative && solver.method.kind() == MethodKind::Problem {
-        let fastest = range_step::fastest(world, walls.fastest());
-        let ahead = speculative::look_ahead(world, fastest, time_step_secs);
-        range_step::detect::<M>(world, candidates, contacts, ahead);
-    } else if M::Kinematics::AXES == 1 {
-        candidates.update::<1>(world);
-        contacts.detect::<1>(world, candidates);
-    } else {
-        candidates.update::<2>(world);
-        contacts.detect::<2>(world, candidates);
     }
 }
 

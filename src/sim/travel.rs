@@ -1,6 +1,6 @@
 //! A step cut into pieces, so that no grain jumps over what it should hit.
 
-use super::range_step::fastest;
+use super::detection::fastest;
 use super::{Observables, Simulation, step};
 use crate::error::Result;
 use crate::solver::MethodKind;

@@ -137,9 +137,7 @@ pub fn gains_energy<K: Kinematics>(problem: &StepProblem<K>) -> bool {
 
 /// Multiplies the speeds that contacts are asked to open with, relative to walls that move.
 pub fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
-    let StepProblem { fixed_rows, pair_rows, wall_speeds, .. } = problem;
-    let walls = wall_speeds.iter().copied().chain(std::iter::repeat(0.0));
-    for (row, wall_speed) in fixed_rows.iter_mut().chain(pair_rows).zip(walls) {
+    for (row, wall_speed) in problem.rows_with_walls() {
         let rebound = row.restitution_velocity + wall_speed;
         if rebound < 0.0 {
             row.restitution_velocity = factor * rebound - wall_speed;
@@ -157,8 +155,6 @@ struct Shocks<K: Kinematics> {
     impulses: Vec<f64>,
     /// Whether a row's pair touches: one that will do so within the step only has no shock yet.
     touching: Vec<bool>,
-    /// As `StepProblem::wall_speeds`.
-    wall_speeds: Vec<f64>,
 }
 
 impl<K: Kinematics> Shocks<K> {
@@ -170,7 +166,7 @@ impl<K: Kinematics> Shocks<K> {
         let impulses = vec![0.0; speeds.len()];
         let touches = |&index: &u32| contacts.is_in_touch(index as usize);
         let touching = problem.contact_of_row.iter().map(touches).collect();
-        Self { bodies, speeds, impulses, touching, wall_speeds: problem.wall_speeds.clone() }
+        Self { bodies, speeds, impulses, touching }
     }
 
     /// max(−u), m/s, or 0.
@@ -230,9 +226,7 @@ impl<K: Kinematics> Shocks<K> {
         let free = std::mem::replace(&mut problem.free, self.bodies.clone());
         let friction = std::mem::take(&mut problem.friction);
         let (fixed, pairs) = (problem.fixed_rows.clone(), problem.pair_rows.clone());
-        let rows = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
-        let walls = self.wall_speeds.iter().copied().chain(std::iter::repeat(0.0));
-        for ((row, &touches), wall_speed) in rows.zip(&self.touching).zip(walls) {
+        for ((row, wall_speed), &touches) in problem.rows_with_walls().zip(&self.touching) {
             if touches {
                 row.restitution_velocity = -wall_speed;
             }
@@ -256,11 +250,9 @@ impl<K: Kinematics> Shocks<K> {
     /// Asks each contact that was struck for the speed that it has come to. One that was not may not
     /// bounce. The step starts from the impulses of the shocks.
     fn set_rebounds(&self, problem: &mut StepProblem<K>) {
-        let StepProblem { fixed_rows, pair_rows, .. } = problem;
-        for (number, row) in fixed_rows.iter_mut().chain(pair_rows).enumerate() {
+        for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];
             // The law speaks of velocities relative to a wall that moves.
-            let wall_speed = self.wall_speeds.get(number).copied().unwrap_or(0.0);
             row.restitution_velocity = if !self.touching[number] {
                 row.restitution_velocity
             } else if impulse > 0.0 {

@@ -163,6 +163,13 @@ impl<K: Kinematics> StepProblem<K> {
         self.fixed_rows.iter().chain(&self.pair_rows).enumerate()
     }
 
+    /// Every row, to be changed, with how fast its wall comes, m/s: 0 where that does not move.
+    pub fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<K>, f64)> {
+        let Self { fixed_rows, pair_rows, wall_speeds, .. } = self;
+        let walls = wall_speeds.iter().copied().chain(std::iter::repeat(0.0));
+        fixed_rows.iter_mut().chain(pair_rows).zip(walls)
+    }
+
     /// The largest |λ_t| that a shifted normal impulse allows, m/s.
     #[inline(always)]
     pub fn friction_bound<M: Model>(&self, shifted_impulse: f64) -> f64 {

@@ -30,8 +30,8 @@
 use super::Course;
 use crate::contact::{Contact, Impulse, law};
 use crate::sim::Simulation;
+use crate::sim::detection::detect;
 use crate::sim::pull::GRAVITY_IF_NONE;
-use crate::sim::step::detect;
 use crate::solver::{Kinematics, MAX_SUBSTEPS, Model};
 use crate::world::World;
 

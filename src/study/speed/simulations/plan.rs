@@ -10,9 +10,6 @@ const MOST_SWEEPS: u32 = 5_000;
 /// Contacts slower than this many g·Δt do not bounce.
 const THRESHOLD: f64 = 2.0;
 
-/// The law that all methods are charted with, and the one that has its own entrant.
-const LAWS: [ContactLaw; 2] = [ContactLaw::Moreau, ContactLaw::Range];
-
 /// One entrant, and how well it is to solve its steps.
 pub(super) struct Effort {
     /// Number in `Plan::entrants`.
@@ -46,20 +43,24 @@ impl Plan {
             if quick { &[1e-2, 1e-4, 1e-6] } else { &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8] };
         let sweeps: &[u32] = if quick { &[20] } else { &[10, 40] };
         let substeps: &[u32] = if quick { &[0] } else { &[0, 16, 64] };
-        let mut entrants = entrants::all();
-        let own_laws = entrants.len();
-        // What the other law costs is told by one good method, and by long runs.
-        entrants.extend(entrants::all().into_iter().filter_map(|entrant| {
-            (!quick && entrant.method == Method::Newton).then(|| Entrant {
-                name: format!("{} (law range)", entrant.name),
-                look: METHODS.len() + entrant.look,
-                ..entrant
-            })
-        }));
-        let laws: &[ContactLaw] = if entrants.len() == own_laws { &LAWS[..1] } else { &LAWS };
+        // What the law range costs is told by one good method, and by long runs.
+        let laws = if quick {
+            vec![ContactLaw::Moreau]
+        } else {
+            vec![ContactLaw::Moreau, ContactLaw::Range]
+        };
+        let mut entrants: Vec<Entrant> = Vec::new();
         let mut efforts = Vec::new();
-        for (number, entrant) in entrants.iter().enumerate() {
-            let law = LAWS[usize::from(number >= own_laws)];
+        let of_law = |law| entrants::all().into_iter().map(move |entrant| (law, entrant));
+        for (law, mut entrant) in laws.iter().copied().flat_map(of_law) {
+            if law == ContactLaw::Range {
+                if entrant.method != Method::Newton {
+                    continue;
+                }
+                entrant.name.push_str(" (law range)");
+                entrant.look += METHODS.len();
+            }
+            let number = entrants.len();
             let mut add = |name: String, settings| {
                 efforts.push(Effort { entrant: number, law, name, settings });
             };
@@ -83,6 +84,7 @@ impl Plan {
                     }
                 }
             }
+            entrants.push(entrant);
         }
         // Bond numbers are dealt out to the seeds: each is met by several, and each meets several.
         let piles = if quick {
@@ -97,7 +99,7 @@ impl Plan {
             time_steps_secs: if quick { vec![1e-3, 5e-3] } else { vec![1e-3, 2e-3, 5e-3] },
             piles,
             entrants,
-            laws: laws.to_vec(),
+            laws,
             efforts,
             repeats: if quick { 1 } else { 2 },
             limit_secs: if quick { 0.8 } else { 10.0 },
