@@ -1,13 +1,15 @@
 //! Candidate pairs: the program's own search (which takes the grid or the tree by the discs' size
-//! ratio), the hashed cell grid alone, and parry's bounding volume hierarchy walked against itself: built anew every time, or kept and refitted to the moved grains, with
-//! or without its own upkeep. All give the same sorted list, which is checked first; the time is that
-//! of bringing the structure up to date and of listing the pairs, on one thread.
+//! ratio), the hashed cell grid alone, and parry's bounding volume hierarchy walked against itself:
+//! built anew every time, or kept and refitted to the moved grains, with or without its own upkeep. All
+//! give the same sorted list, which is checked first; the time is that of bringing the structure up to
+//! date and of listing the pairs, on one thread.
 
 mod common;
 
 use std::hint::black_box;
 
 use common::timing::{criterion, least_secs};
+use criterion::Criterion;
 use glam::DVec2;
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
@@ -107,92 +109,114 @@ fn walk(
     pairs.sort_unstable();
 }
 
+fn build(world: &World, skin: f64) -> Bvh {
+    Bvh::from_iter(BvhBuildStrategy::Binned, boxes(world, skin).enumerate())
+}
+
+fn refit(tree: &mut Bvh, world: &World, skin: f64) {
+    for (index, reach) in (0..).zip(boxes(world, skin)) {
+        tree.insert_or_update_partially(reach, index, 0.0);
+    }
+    tree.refit_without_opt();
+}
+
+/// A state so different that the grid's list has to be built anew: single grains have moved by more
+/// than half the skin.
+fn moved(world: &World, skin: f64) -> World {
+    let mut moved = world.clone();
+    let mut random = Pcg64::seed_from_u64(1);
+    for place in &mut moved.grains.positions {
+        let mut along = || 0.6 * skin * random.random_range(-1.0..1.0);
+        *place += DVec2::new(along(), along());
+    }
+    moved
+}
+
+/// Checks that all searches give the same list on two states, the second being that of the tree;
+/// gives the list.
+fn checked_pairs(
+    states: [&World; 2],
+    skin: f64,
+    candidates: &mut Candidates,
+    tree: &mut Bvh,
+) -> Vec<(u32, u32)> {
+    let (mut workspace, mut pairs) = (BvhWorkspace::default(), Vec::new());
+    for state in states {
+        assert!(candidates.update::<2>(state), "built anew");
+        let list = |i: u32| candidates.of(i as usize).iter().map(move |&j| (i, j));
+        let expected: Vec<(u32, u32)> = (0..state.grains.len() as u32).flat_map(list).collect();
+        walk(&build(state, skin), &mut workspace, state, skin, &mut pairs);
+        assert_eq!(pairs, expected);
+        refit(tree, state, skin);
+        walk(tree, &mut workspace, state, skin, &mut pairs);
+        assert_eq!(pairs, expected);
+    }
+    pairs
+}
+
+/// Times all searches on so many discs, and gives a line that sums it up.
+fn compare(criterion: &mut Criterion, kind: &str, count: usize) -> String {
+    let world = packed(kind, count);
+    let skin = 0.2 * world.mean_diameter;
+    let moved = moved(&world, skin);
+    let mut states = [&world, &moved].into_iter().cycle();
+    let mut next = || states.next().expect("they go round");
+
+    let reach = Reach { skin, gap_tolerance: 0.0 };
+    let mut candidates = Candidates::new(&world, reach).expect("no boundaries");
+    let (mut tree, mut kept) = (build(&world, skin), build(&world, skin));
+    let mut pairs = checked_pairs([&moved, &world], skin, &mut candidates, &mut tree);
+    let (mut workspace, pair_count) = (BvhWorkspace::default(), pairs.len());
+
+    let mut time = |method: &str, routine: &mut dyn FnMut()| {
+        1e3 * least_secs(criterion, &format!("{kind}/{count}/{method}"), routine)
+    };
+    next();
+    let of_ours = time("as the program does it", &mut || {
+        assert!(black_box(&mut candidates).update::<2>(next()), "built anew");
+    });
+    let mut grid = Grid::default();
+    let width = 2.0 * world.grains.radii.iter().copied().fold(0.0, f64::max) + skin;
+    let of_grid = time("grid", &mut || {
+        let world = next();
+        grid.rebuild::<2>(&world.grains.positions, width);
+        pairs.clear();
+        grid.pairs::<2>(|i, j| {
+            if near(world, i, j, skin) {
+                pairs.push((i.min(j), i.max(j)));
+            }
+        });
+        pairs.sort_unstable();
+    });
+    let of_new = time("parry, built anew", &mut || {
+        let world = next();
+        walk(black_box(&build(world, skin)), &mut workspace, world, skin, &mut pairs);
+    });
+    let of_kept = time("parry, refitted and optimised", &mut || {
+        let world = next();
+        refit(&mut kept, world, skin);
+        kept.optimize_incremental(&mut workspace);
+        walk(black_box(&kept), &mut workspace, world, skin, &mut pairs);
+    });
+    let of_refit = time("parry, refitted", &mut || {
+        let world = next();
+        refit(&mut tree, world, skin);
+        walk(black_box(&tree), &mut workspace, world, skin, &mut pairs);
+    });
+    let [new, kept, refit] = [of_new, of_kept, of_refit].map(|of_parry| of_grid / of_parry);
+    format!(
+        "{kind}, {count} discs, {pair_count} pairs: the program {of_ours:.2} ms; grid {of_grid:.2}; parry \
+         built anew {of_new:.2}, refitted and optimised {of_kept:.2}, refitted {of_refit:.2}; \
+         grid / parry {new:.2}, {kept:.2}, {refit:.2}"
+    )
+}
+
 fn main() {
     let mut criterion = criterion();
     let mut summary = Vec::new();
     for kind in ["0.8-1.2 d", "1:20 log-uniform", "1:20, one large for 200 small"] {
         for count in [2_000, 10_000] {
-            let world = packed(kind, count);
-            let skin = 0.2 * world.mean_diameter;
-            // Two states in turn that differ by as much as it takes for the grid's list to be built
-            // anew: single grains have moved by more than half the skin.
-            let mut moved = world.clone();
-            let mut random = Pcg64::seed_from_u64(1);
-            for place in &mut moved.grains.positions {
-                let mut along = || 0.6 * skin * random.random_range(-1.0..1.0);
-                *place += DVec2::new(along(), along());
-            }
-            let mut states = [&world, &moved].into_iter().cycle();
-            let mut next = || states.next().expect("they go round");
-
-            let reach = Reach { skin, gap_tolerance: 0.0 };
-            let mut candidates = Candidates::new(&world, reach).expect("no boundaries");
-            let build = |world: &World| {
-                Bvh::from_iter(BvhBuildStrategy::Binned, boxes(world, skin).enumerate())
-            };
-            let refit = |tree: &mut Bvh, world: &World| {
-                for (index, reach) in (0..).zip(boxes(world, skin)) {
-                    tree.insert_or_update_partially(reach, index, 0.0);
-                }
-                tree.refit_without_opt();
-            };
-            let (mut workspace, mut pairs) = (BvhWorkspace::default(), Vec::new());
-            let (mut tree, mut kept) = (build(&world), build(&world));
-            for state in [&moved, &world] {
-                assert!(candidates.update::<2>(state), "built anew");
-                let list = |i: u32| candidates.of(i as usize).iter().map(move |&j| (i, j));
-                let expected: Vec<(u32, u32)> = (0..count as u32).flat_map(list).collect();
-                walk(&build(state), &mut workspace, state, skin, &mut pairs);
-                assert_eq!(pairs, expected);
-                refit(&mut tree, state);
-                walk(&tree, &mut workspace, state, skin, &mut pairs);
-                assert_eq!(pairs, expected);
-            }
-            let pair_count = pairs.len();
-
-            let mut time = |method: &str, routine: &mut dyn FnMut()| {
-                1e3 * least_secs(&mut criterion, &format!("{kind}/{count}/{method}"), routine)
-            };
-            next();
-            let of_ours = time("as the program does it", &mut || {
-                assert!(black_box(&mut candidates).update::<2>(next()), "built anew");
-            });
-            let mut grid = Grid::default();
-            let width = 2.0 * world.grains.radii.iter().copied().fold(0.0, f64::max) + skin;
-            let of_grid = time("grid", &mut || {
-                let world = next();
-                grid.rebuild::<2>(&world.grains.positions, width);
-                pairs.clear();
-                grid.pairs::<2>(|i, j| {
-                    if near(world, i, j, skin) {
-                        pairs.push((i.min(j), i.max(j)));
-                    }
-                });
-                pairs.sort_unstable();
-            });
-            let of_new = time("parry, built anew", &mut || {
-                let world = next();
-                walk(black_box(&build(world)), &mut workspace, world, skin, &mut pairs);
-            });
-            let of_kept = time("parry, refitted and optimised", &mut || {
-                let world = next();
-                refit(&mut kept, world);
-                kept.optimize_incremental(&mut workspace);
-                walk(black_box(&kept), &mut workspace, world, skin, &mut pairs);
-            });
-            let of_refit = time("parry, refitted", &mut || {
-                let world = next();
-                refit(&mut tree, world);
-                walk(black_box(&tree), &mut workspace, world, skin, &mut pairs);
-            });
-            summary.push(format!(
-                "{kind}, {count} discs, {pair_count} pairs: the program {of_ours:.2} ms; grid {of_grid:.2}; parry built anew \
-                 {of_new:.2}, refitted and optimised {of_kept:.2}, refitted {of_refit:.2}; \
-                 grid / parry {:.2}, {:.2}, {:.2}",
-                of_grid / of_new,
-                of_grid / of_kept,
-                of_grid / of_refit
-            ));
+            summary.push(compare(&mut criterion, kind, count));
         }
     }
     println!("\nleast over all repeats:\n{}", summary.join("\n"));

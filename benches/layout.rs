@@ -137,10 +137,8 @@ fn main() {
     for count in [138, 2_000, 10_000] {
         let mut simulation = common::with(&common::settled(count), |numbers| numbers.bond = 20.0);
         simulation.step().expect("a finite state");
-        let (world, contacts) = (simulation.world(), simulation.contacts());
         let cold = SolverSettings { warm_start: false, ..SolverSettings::default() };
-        let mut structures = StepProblem::<SpinningPlane>::default();
-        structures.prepare::<Full>(world, contacts, simulation.parameters(), true, &cold);
+        let mut structures = common::problem(&simulation, &cold);
         let mut lists = Lists::of(&structures);
         for _ in 0..20 {
             sweep::<Full, false>(&mut structures);

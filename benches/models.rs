@@ -6,7 +6,7 @@ use std::hint::black_box;
 
 use common::timing::{criterion, least_secs};
 use slump::scene::{Scene, cradle};
-use slump::sim::Simulation;
+use slump::sim::{Settings, Simulation};
 use slump::solver::StopTest;
 use slump::world::{Parameters, Physics};
 
@@ -32,7 +32,8 @@ fn pile_with(physics: Physics) -> Simulation {
     let mut settings = *settled.solver();
     (settings.stop, settings.tolerance) = (StopTest::RelativeChange, 1e-15);
     (settings.max_sweeps, settings.warm_start) = (50, false);
-    Simulation::new(world, physics, *settled.parameters(), settings, 0.0).expect("a proper scene")
+    let settings = Settings { solver: settings, ..*settled.settings() };
+    Simulation::new(world, physics, settings, 0.0).expect("a proper scene")
 }
 
 fn main() {

@@ -10,7 +10,7 @@ use criterion::Criterion;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use slump::sim::Simulation;
 use slump::solver::{
-    Method, Ordering, SolverSettings, SpinningPlane, StepModel, StepProblem, StopTest, solve, sweep,
+    Memory, Method, Ordering, SolverSettings, SpinningPlane, StepModel, StopTest, solve, sweep,
 };
 
 type Full = StepModel<SpinningPlane, true, false>;
@@ -31,12 +31,11 @@ fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) 
     let coloured = SolverSettings { ordering: Ordering::Coloured, ..one_by_one };
     let side_by_side = SolverSettings { method: Method::NsgsParallel, ..one_by_one };
     let mut time = |name: &str, settings: SolverSettings, pool: Option<&ThreadPool>| {
-        let (world, contacts) = (simulation.world(), simulation.contacts());
-        let mut problem = StepProblem::<SpinningPlane>::default();
-        problem.prepare::<Full>(world, contacts, simulation.parameters(), true, &settings);
+        let mut problem = common::problem(simulation, &settings);
+        let mut memory = Memory::default();
         let updates = problem.contact_of_row.len() * settings.max_sweeps as usize;
         let mut run = || {
-            let report = solve::<Full>(&mut problem, &settings).expect("a method for problems");
+            let report = solve::<Full>(&mut problem, &mut memory, &settings);
             assert_eq!(black_box(report).sweeps, settings.max_sweeps);
         };
         let name = format!("{name}/{count} discs");
@@ -73,10 +72,7 @@ fn main() {
         simulation.set_solver(settings).expect("proper settings");
         simulation.step().expect("a finite state");
 
-        let (world, contacts) = (simulation.world(), simulation.contacts());
-        let warm = SolverSettings::default();
-        let mut problem = StepProblem::<SpinningPlane>::default();
-        problem.prepare::<Full>(world, contacts, simulation.parameters(), true, &warm);
+        let mut problem = common::problem(&simulation, &SolverSettings::default());
         let updates = problem.contact_of_row.len();
         let of_sweep = least_secs(&mut criterion, &format!("sweep/{count} discs"), || {
             black_box(sweep::<Full, false>(&mut problem));

@@ -84,7 +84,8 @@ fn load(simulation: Simulation) -> Command {
 }
 
 fn pile() -> Simulation {
-    let config = Config { tolerance: Some(1e-5), max_sweeps: Some(2000), ..Config::default() };
+    let mut config = Config::default();
+    (config.solver.tolerance, config.solver.max_sweeps) = (Some(1e-5), Some(2000));
     config.scene(|_| true).and_then(|scene| scene.simulation()).expect("the paper's pile")
 }
 
@@ -176,15 +177,15 @@ fn latency() {
     live.send(load(pile()));
     live.send(Command::SetPace(Pace::Max));
     live.send(Command::Play);
-    let mut parameters = *pile().parameters();
+    let mut settings = *pile().settings();
     let mut millis: Vec<f64> = (0..CHANGES)
         .map(|change| {
             std::thread::sleep(Duration::from_millis(37));
-            parameters.time_step_secs = 1e-3 * (1.0 + 1e-3 * change as f64);
+            settings.parameters.time_step_secs = 1e-3 * (1.0 + 1e-3 * change as f64);
             let start = Instant::now();
-            live.send(Command::SetParameters(0, parameters));
+            live.send(Command::Change(0, settings));
             while live.latest().worlds.first().is_none_or(|world| {
-                world.snapshot.observables.time_step_secs != parameters.time_step_secs
+                world.snapshot.observables.time_step_secs != settings.parameters.time_step_secs
             }) {
                 std::thread::sleep(Duration::from_micros(100));
             }

@@ -2,10 +2,15 @@
 //!
 //! The source is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics
 //! Algorithm* (2020, hal-02570097), "the paper" throughout. Modules depend downward only: [`world`] ←
-//! [`contact`] ← [`solver`] ← [`sim`] ← [`scene`] ← [`study`], [`interchange`]; [`render`] sees `world` and the
-//! snapshots of `sim`; [`headless`] sees all. The physics knows no screen.
+//! [`contact`] ← [`solver`] ← [`sim`] ← [`scene`] ← [`render`], [`interchange`] ← [`study`] ← [`headless`] ← the
+//! window (`app`, feature `window`) ← [`cli`]; `tests/house` checks it. The physics knows no screen.
+//! Without the feature `gpu` pictures are drawn by the processor alone.
 
+#![warn(missing_docs)]
+
+#[cfg(feature = "window")]
 pub mod app;
+pub mod cli;
 pub mod contact;
 pub mod error;
 pub mod headless;
@@ -13,6 +18,7 @@ pub mod interchange;
 pub mod output;
 pub mod render;
 pub mod scene;
+pub mod setting;
 pub mod sim;
 pub mod solver;
 pub mod study;

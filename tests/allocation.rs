@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use common::{start, take_steps};
 use glam::DVec2;
 use slump::scene::paper_pile;
-use slump::world::{Boundary, ContactLaw};
+use slump::sim::Stepper;
+use slump::world::Boundary;
 
 /// The system's allocator, counting.
 struct Counting;
@@ -51,8 +52,8 @@ fn a_step_at_rest_allocates_nothing() {
     scene.boundaries = vec![wall(-1.0), wall(1.0)];
     scene.parameters.bond = 5.0;
     scene.solver.tolerance = 1e-4;
-    for law in [ContactLaw::Moreau, ContactLaw::Range] {
-        scene.parameters.law = law;
+    for law in [Stepper::Moreau, Stepper::Range] {
+        scene.stepper = law;
         let mut simulation = start(&scene);
         take_steps(&mut simulation, 50);
         let before = ALLOCATIONS.load(Ordering::Relaxed);

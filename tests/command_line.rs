@@ -51,9 +51,17 @@ fn a_value_outside_its_range_is_named_with_its_range_and_nothing_is_written() {
         (&["--max-sweeps", "0"], "max-sweeps is 0", "at least 1"),
         (&["--scene", "heap"], "scene is heap", "pile, cradle, collision"),
         (&["--max-travel", "-1"], "max-travel is -1", "0 never cuts a step"),
-        (&["--law", "range", "--push-out", "true"], "push-out is true", "false where law is range"),
-        (&["--law", "range", "--calm-unsolved", "true"], "calm-unsolved is true", "law is range"),
-        (&["--law", "range", "--sequential-impacts", "true"], "sequential-imp", "law is range"),
+        (&["--stepper", "range", "--push-out", "true"], "push-out is given", "it goes with moreau"),
+        (
+            &["--stepper", "range", "--calm-unsolved", "true"],
+            "calm-unsolved is given",
+            "stepper is range",
+        ),
+        (
+            &["--stepper", "range", "--sequential-impacts", "true"],
+            "sequential-imp",
+            "stepper is range",
+        ),
         (&["--scene", "none.toml"], "none.toml", "No such file"),
         (&["--initial", "none.csv"], "none.csv", "No such file"),
         (&["--solver", "magic"], "magic", "nsgs"),
@@ -159,6 +167,23 @@ fn pictures_are_drawn_without_any_gpu() {
     assert!(manifest.contains("\"renderer\": \"cpu\""), "{manifest}");
 }
 
+#[cfg(not(feature = "window"))]
+#[test]
+fn a_build_without_window_or_gpu_says_which_feature_brings_it() {
+    assert!(refusal(&[]).contains("no window: build it with the feature window"));
+    if cfg!(feature = "gpu") {
+        return;
+    }
+    let folder = folder();
+    let out = folder.path().to_str().expect("UTF-8");
+    let frames = ["--headless", "--scene", "collision", "--frames", out, "--renderer"];
+    for kind in ["vulkan", "gl"] {
+        let said = refusal(&[&frames[..], &[kind]].concat());
+        assert!(said.contains(&format!("nothing by {kind}: build it with the feature gpu")));
+    }
+    slump().args(frames).arg("auto").assert().success();
+}
+
 #[test]
 fn a_printed_scene_is_a_scene_file_that_gives_the_same_run() {
     let folder = folder();
@@ -196,7 +221,7 @@ fn a_run_that_blows_up_leaves_its_frames_and_says_so_in_its_manifest() {
     let folder = folder();
     // Springs in a box, with a substep far beyond the critical one.
     let output = slump()
-        .args(["--headless", "--scene", "squeeze", "--solver", "dem", "--substeps", "1"])
+        .args(["--headless", "--scene", "squeeze", "--stepper", "dem", "--substeps", "1"])
         .args(["--dt", "0.02", "--duration", "20", "--times", "0,0.02,0.04,20"])
         .args(["--size", "100x100", "--renderer", "cpu", "--frames"])
         .arg(folder.path())

@@ -26,13 +26,56 @@ fn scenes() -> Vec<(Scene, usize)> {
     scenes
 }
 
+/// Rows a contact has.
+fn entries<M: Model>() -> usize {
+    if M::FRICTION { 2 } else { 1 }
+}
+
+/// The operator of a system, column by column, from its answers to unit impulses.
+fn matrix<M: Model>(system: &mut BodySystem<'_, M>, origin: &[[f64; 2]]) -> Vec<Vec<f64>> {
+    let entries = entries::<M>();
+    let size = entries * origin.len();
+    let mut answer = Vec::new();
+    let mut matrix = vec![vec![0.0; size]; size];
+    for column in 0..size {
+        let mut unit = vec![[0.0; 2]; origin.len()];
+        unit[column / entries][column % entries] = 1.0;
+        system.write(&unit);
+        system.velocities(&mut answer);
+        for (row, numbers) in matrix.iter_mut().enumerate() {
+            let (contact, entry) = (row / entries, row % entries);
+            numbers[column] = answer[contact][entry] - origin[contact][entry];
+        }
+    }
+    matrix
+}
+
+/// The largest eigenvalue of a matrix whose rows and columns are scaled, by power iteration.
+fn largest_eigenvalue(matrix: &[Vec<f64>], scale: impl Fn(usize) -> f64) -> f64 {
+    let size = matrix.len();
+    let mut vector: Vec<f64> = (0..size).map(|index| 1.0 + (index % 7) as f64).collect();
+    let mut largest = 0.0;
+    for _ in 0..300 {
+        let next: Vec<f64> = (0..size)
+            .map(|row| {
+                let sum = |column: usize| matrix[row][column] * scale(column) * vector[column];
+                scale(row) * (0..size).map(sum).sum::<f64>()
+            })
+            .collect();
+        largest = next.iter().map(|x| x * x).sum::<f64>().sqrt();
+        vector = next.iter().map(|x| x / largest).collect();
+    }
+    largest
+}
+
 struct Check(usize);
 
 impl ProblemVisitor for Check {
     type Output = ();
 
     fn visit<M: Model>(self, problem: &mut StepProblem<M::Kinematics>, _: &ContactList) {
-        let mut system = BodySystem::<M>::new(problem);
+        let mut root_masses = Vec::new();
+        let mut system = BodySystem::<M>::new(problem, &mut root_masses);
         let count = system.len();
         assert!(count >= self.0, "{count} contacts");
         let (mut origin, mut answer, mut weights) = (Vec::new(), Vec::new(), Vec::new());
@@ -42,19 +85,8 @@ impl ProblemVisitor for Check {
         system.splitting(&mut weights);
         assert_eq!(weights.len(), count);
 
-        let entries = if M::FRICTION { 2 } else { 1 };
-        let size = entries * count;
-        let mut matrix = vec![vec![0.0; size]; size];
-        for column in 0..size {
-            let mut unit = zero.clone();
-            unit[column / entries][column % entries] = 1.0;
-            system.write(&unit);
-            system.velocities(&mut answer);
-            for (row, numbers) in matrix.iter_mut().enumerate() {
-                let (contact, entry) = (row / entries, row % entries);
-                numbers[column] = answer[contact][entry] - origin[contact][entry];
-            }
-        }
+        let matrix = matrix(&mut system, &origin);
+        let entries = entries::<M>();
         let diagonal = |index: usize| match index % entries {
             0 => 1.0,
             _ => system.tangential_diagonal(index / entries),
@@ -65,21 +97,9 @@ impl ProblemVisitor for Check {
                 assert!((number - mirrored).abs() < 1e-11, "{number} and {mirrored}");
             }
         }
-
-        // A ⪯ D⁻¹: the largest eigenvalue of D^½ A D^½ is at most 1 (power iteration).
+        // A ⪯ D⁻¹: the largest eigenvalue of D^½ A D^½ is at most 1.
         let scale = |index: usize| (weights[index / entries] / diagonal(index)).sqrt();
-        let mut vector: Vec<f64> = (0..size).map(|index| 1.0 + (index % 7) as f64).collect();
-        let mut largest = 0.0;
-        for _ in 0..300 {
-            let next: Vec<f64> = (0..size)
-                .map(|row| {
-                    let sum = |column: usize| matrix[row][column] * scale(column) * vector[column];
-                    scale(row) * (0..size).map(sum).sum::<f64>()
-                })
-                .collect();
-            largest = next.iter().map(|x| x * x).sum::<f64>().sqrt();
-            vector = next.iter().map(|x| x / largest).collect();
-        }
+        let largest = largest_eigenvalue(&matrix, scale);
         assert!(largest < 1.0 + 1e-9, "{largest}");
         assert!(largest > 0.5, "the bound is not idle: {largest}");
 

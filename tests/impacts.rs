@@ -20,7 +20,7 @@ const SPEED: f64 = 2.0;
 /// Grains without gravity, cohesion and friction, whose shocks run one after the other.
 fn struck(physics: Physics, restitution: f64, grains: Vec<Grain>) -> Scene {
     let mut scene = scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), grains);
-    scene.solver.remedies.sequential_impacts = true;
+    scene.remedies.sequential_impacts = true;
     scene
 }
 
@@ -235,7 +235,7 @@ fn a_wall_that_moves_strikes_twice_and_its_work_is_no_gain_of_the_bounces() {
 fn difference(scene: &Scene, steps: usize) -> f64 {
     let mut runs = [false, true].map(|sequential_impacts| {
         let mut scene = scene.clone();
-        scene.solver.remedies.sequential_impacts = sequential_impacts;
+        scene.remedies.sequential_impacts = sequential_impacts;
         start(&scene)
     });
     let (mut off, mut largest) = (0f64, 0f64);

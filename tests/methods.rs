@@ -2,15 +2,14 @@
 
 mod common;
 
-use clap::ValueEnum;
-use slump::contact::{ContactList, Impulse};
+use slump::contact::ContactList;
 use slump::scene::{Rain, Scene, cradle, pile_of, settle};
 use slump::sim::{ProblemVisitor, Simulation};
 use slump::solver::{
-    METHODS, Method, MethodInfo, MethodKind, Model, Ordering, SolveReport, SolverSettings,
-    StepProblem, StopTest, residual, solve,
+    METHODS, Memory, Method, Model, Ordering, SolveReport, SolverSettings, StepProblem, StopTest,
+    residual, solve,
 };
-use slump::world::{ContactLaw, FrictionCone, Grains, Physics};
+use slump::world::{FrictionCone, Physics};
 
 /// A small pile that has begun to fall.
 fn falling_pile(seed: u64) -> Scene {
@@ -48,8 +47,8 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
             // From one state each: a difference would grow in a pile.
             let mut by_sweeps = with(&scene, Method::Nsgs, 1e-10);
             assert!(by_sweeps.step().expect("a finite state").converged);
-            let orders = Ordering::value_variants().iter().map(|order| (Method::Nsgs, *order));
-            let methods = methods_for_problems().map(|info| (info.method, Ordering::default()));
+            let orders = Ordering::ALL.iter().map(|order| (Method::Nsgs, *order));
+            let methods = METHODS.iter().map(|info| (info.method, Ordering::default()));
             for (method, ordering) in orders.chain(methods) {
                 let tolerance = if method == Method::Jacobi { 1e-8 } else { 1e-10 };
                 let mut other = with(&scene, method, tolerance);
@@ -110,11 +109,6 @@ fn newton_solves_nearly_all_steps_of_a_moving_pile_in_less_than_half_the_sweeps(
     }
 }
 
-/// All methods but those that replace the whole step.
-fn methods_for_problems() -> impl Iterator<Item = MethodInfo> {
-    METHODS.into_iter().filter(|info| info.method.kind() == MethodKind::Problem)
-}
-
 /// How a problem was solved, with its residual.
 struct Solve(SolverSettings);
 
@@ -126,7 +120,7 @@ impl ProblemVisitor for Solve {
         problem: &mut StepProblem<M::Kinematics>,
         _: &ContactList,
     ) -> Self::Output {
-        let report = solve::<M>(problem, &self.0).expect("a method for problems");
+        let report = solve::<M>(problem, &mut Memory::default(), &self.0);
         (report, residual::<M>(problem))
     }
 }
@@ -142,8 +136,8 @@ impl ProblemVisitor for SolveTwice {
         problem: &mut StepProblem<M::Kinematics>,
         _: &ContactList,
     ) -> Self::Output {
-        [self.0, self.1]
-            .map(|settings| solve::<M>(problem, &settings).expect("a method for problems"))
+        let mut memory = Memory::default();
+        [self.0, self.1].map(|settings| solve::<M>(problem, &mut memory, &settings))
     }
 }
 
@@ -186,7 +180,7 @@ fn tight_for(method: Method) -> f64 {
 #[test]
 fn every_method_solves_nearly_all_steps_of_moving_piles() {
     let moments = moments();
-    for info in methods_for_problems() {
+    for info in METHODS.iter() {
         let tolerance = tight_for(info.method);
         let mut solved = 0;
         for moment in &moments {
@@ -205,7 +199,7 @@ fn every_method_solves_nearly_all_steps_of_moving_piles() {
 fn every_method_honours_every_stopping_test_and_the_limit() {
     let moments = moments();
     for moment in moments.iter().step_by(5) {
-        for info in methods_for_problems() {
+        for info in METHODS.iter() {
             for (stop, tolerance) in [
                 (StopTest::RelativeChange, 1e-5),
                 (StopTest::ImpulsePerMass, 1e-4),
@@ -242,69 +236,11 @@ fn every_method_honours_every_stopping_test_and_the_limit() {
 fn a_step_without_contacts_is_solved_by_every_method() {
     let mut scene = cradle();
     scene.grains.truncate(1);
-    for info in methods_for_problems() {
+    for info in METHODS.iter() {
         scene.solver.method = info.method;
         let mut simulation = scene.simulation().expect("a proper scene");
         let step = *simulation.step().expect("a finite state");
         assert!(step.converged && step.sweeps == 0 && step.contacts == 0, "{}", info.name);
-    }
-}
-
-/// Sweeps, impulses and grains after three steps on so many threads.
-fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.expect("threads").install(|| {
-        let mut simulation = scene.simulation().expect("a proper scene");
-        let sweeps = [(); 3].map(|()| simulation.step().expect("a finite state").sweeps);
-        (sweeps, simulation.contacts().impulses().to_vec(), simulation.world().grains.clone())
-    })
-}
-
-/// One after the other, in the order of the colours, it is a sweep like any other.
-fn assert_a_sweep_like_any_other(mut scene: Scene) {
-    (scene.solver.method, scene.solver.stop) = (Method::NsgsParallel, StopTest::Residual);
-    let parallel = three_steps(&scene, 2);
-    scene.solver.method = Method::Nsgs;
-    assert!(three_steps(&scene, 1) != parallel, "another order");
-    scene.solver.ordering = Ordering::Coloured;
-    assert!(three_steps(&scene, 1) == parallel, "{:?}", scene.physics);
-}
-
-#[test]
-fn colours_on_any_number_of_threads_give_bitwise_the_sweeps_of_one() {
-    let parameters = common::parameters(20.0, 1e-3, 0.3, 0.5);
-    let mut scene = common::pressed_pile(40_000, 0.1, 5, parameters);
-    scene.solver = SolverSettings {
-        method: Method::NsgsParallel,
-        stop: StopTest::RelativeChange,
-        tolerance: 1e-3,
-        max_sweeps: 60,
-        ..SolverSettings::default()
-    };
-    let alone = three_steps(&scene, 1);
-    assert!(alone.0[0] > 10 && alone.1.len() > 40_000, "{:?} sweeps", alone.0);
-    for threads in [2, 4] {
-        assert!(three_steps(&scene, threads) == alone, "{threads} threads");
-    }
-    scene.solver.tolerance = 1e-2;
-    assert_a_sweep_like_any_other(scene);
-}
-
-#[test]
-fn colours_give_bitwise_the_sweeps_of_one_in_every_model() {
-    for physics in [common::SMOOTH, common::UNTURNING, Physics::FULL] {
-        for (cone, law) in [
-            (FrictionCone::Shifted, ContactLaw::Moreau),
-            (FrictionCone::Compressive, ContactLaw::Moreau),
-            (FrictionCone::Shifted, ContactLaw::Range),
-        ] {
-            let mut parameters = common::parameters(20.0, 1e-3, 0.3, 0.5);
-            (parameters.cone, parameters.law) = (cone, law);
-            let mut scene = common::pressed_pile(300, 0.1, 7, parameters);
-            scene.physics = physics;
-            (scene.solver.tolerance, scene.solver.max_sweeps) = (1e-6, 200);
-            assert_a_sweep_like_any_other(scene);
-        }
     }
 }
 
@@ -317,7 +253,7 @@ fn settings_from_before_there_were_orders_are_read() {
 
 #[test]
 fn every_method_keeps_the_cradle_closed_where_the_exact_answer_is_closed() {
-    for info in methods_for_problems() {
+    for info in METHODS.iter() {
         let mut scene = cradle();
         scene.solver.method = info.method;
         scene.solver.tolerance = 1e-12;

@@ -53,8 +53,8 @@ fn parameters_outside_their_range_are_named_with_value_and_range() {
     check(|s| s.solver.tolerance = 0.0, "tolerance is 0, but must be a finite number > 0");
     check(|s| s.solver.max_sweeps = 0, "max-sweeps is 0, but must be at least 1");
     check(
-        |s| s.solver.substeps = 100_001,
-        "substeps is 100001, but must be at most 100000; 0 leaves it to the scheme",
+        |s| s.parameters.substeps = 100_001,
+        "substeps is 100001, but must be at most 100000; 0 leaves it to the stepper",
     );
 }
 

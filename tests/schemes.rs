@@ -2,94 +2,17 @@
 
 mod common;
 
+use common::schemes::{SCHEMES, by, effective_mass, meeting, momentum, relative_velocity};
 use common::{
     G, LINE, SMOOTH, UNTURNING, assert_close, fixed, moving, parameters, pressed_pile, scene,
     start, take_steps,
 };
 use glam::DVec2;
 use rayon::prelude::*;
-use slump::contact::{ContactList, ContactMemory};
-use slump::error::{Error, Result};
+use slump::contact::ContactMemory;
 use slump::scene::{Rain, Scene, paper_pile, pile_of, settle};
-use slump::sim::{ProblemVisitor, Pull, Simulation, SpringDashpot};
-use slump::solver::{Method, Model, SolveReport, SolverSettings, StepProblem, solve};
-use slump::world::{Boundary, FrictionCone, Grain, Physics};
-
-const SCHEMES: [Method; 2] = [Method::TgsSoft, Method::Dem];
-
-fn by(method: Method, substeps: u32, scene: Scene) -> Scene {
-    Scene { solver: SolverSettings { method, substeps, ..scene.solver }, ..scene }
-}
-
-/// Two unequal discs that are about to meet, tilted against the axes unless they are on a line.
-fn meeting(physics: Physics, restitution: f64, dt: f64) -> Scene {
-    let direction = if physics.axes == 1 { DVec2::X } else { DVec2::new(0.6, 0.8) };
-    let grains = [(0.0, 0.15, 0.7), (0.25 + 1e-9, 0.1, -0.3)].map(|(place, radius, speed)| Grain {
-        feels_gravity: false,
-        ..moving(place * direction, radius, speed * direction)
-    });
-    scene(physics, -G * direction, parameters(0.0, dt, restitution, 0.5), grains.into())
-}
-
-fn relative_velocity(simulation: &Simulation) -> DVec2 {
-    let velocities = &simulation.world().grains.velocities;
-    velocities[1] - velocities[0]
-}
-
-fn momentum(simulation: &Simulation) -> DVec2 {
-    let grains = &simulation.world().grains;
-    grains.masses.iter().zip(&grains.velocities).map(|(&mass, &velocity)| mass * velocity).sum()
-}
-
-/// m_ij of the first two grains.
-fn effective_mass(simulation: &Simulation) -> f64 {
-    let masses = &simulation.world().grains.masses;
-    1.0 / (1.0 / masses[0] + 1.0 / masses[1])
-}
-
-fn springs(simulation: &Simulation) -> SpringDashpot {
-    let physics = simulation.physics();
-    SpringDashpot::of(simulation.world(), physics.axes, simulation.parameters().restitution)
-}
-
-/// Steps until two discs that meet have parted, and gives speed after over speed before.
-fn measured_restitution(scene: &Scene) -> f64 {
-    let mut simulation = start(scene);
-    let (before, carried) = (relative_velocity(&simulation), momentum(&simulation));
-    let mut touched = false;
-    for _ in 0..1_000_000 {
-        simulation.step().expect("a finite state");
-        let off = momentum(&simulation).distance(carried);
-        assert!(off < 1e-12 * carried.length(), "momentum is kept");
-        let now = simulation.observables().contacts > 0;
-        if touched && !now {
-            return -relative_velocity(&simulation).dot(before) / before.length_squared();
-        }
-        touched |= now;
-    }
-    panic!("they never parted");
-}
-
-#[test]
-fn springs_and_dashpots_give_the_restitution_that_is_asked_for() {
-    for physics in [LINE, SMOOTH, Physics::FULL] {
-        for (restitution, expected) in
-            [(0.0, 0.02), (0.02, 0.02), (0.1, 0.1), (0.3, 0.3), (0.5, 0.5), (0.8, 0.8), (1.0, 1.0)]
-        {
-            let probe = start(&meeting(physics, restitution, 1e-3));
-            let critical = springs(&probe).critical_time_step_secs(effective_mass(&probe), 1.0);
-            let mut errors = [200.0, 800.0].map(|parts| {
-                let scene = by(Method::Dem, 1, meeting(physics, restitution, critical / parts));
-                measured_restitution(&scene) - expected
-            });
-            println!("ρ {restitution}: off by {errors:?}");
-            // First order in h: a quarter of h, about a quarter of the error.
-            assert!(errors[0].abs() < 1e-2, "ρ {restitution}: off by {errors:?}");
-            errors.iter_mut().for_each(|error| *error = error.abs());
-            assert!(errors[1] < 0.3 * errors[0] + 2e-4, "ρ {restitution}: off by {errors:?}");
-        }
-    }
-}
+use slump::sim::{Pull, Settings, Stepper};
+use slump::world::{Grain, Physics};
 
 #[test]
 fn soft_substeps_part_a_pair_with_the_restitution_that_is_asked_for() {
@@ -97,7 +20,7 @@ fn soft_substeps_part_a_pair_with_the_restitution_that_is_asked_for() {
         for restitution in [0.0, 0.1, 0.5, 1.0] {
             for substeps in [1, 4, 16] {
                 let scene = meeting(physics, restitution, 1e-3);
-                let mut simulation = start(&by(Method::TgsSoft, substeps, scene));
+                let mut simulation = start(&by(Stepper::TgsSoft, substeps, scene));
                 let (before, carried) = (relative_velocity(&simulation), momentum(&simulation));
                 take_steps(&mut simulation, 2);
                 assert_eq!(simulation.observables().contacts, 1, "they met");
@@ -114,7 +37,7 @@ fn soft_substeps_part_a_pair_with_the_restitution_that_is_asked_for() {
 fn a_threshold_of_restitution_holds_for_soft_substeps() {
     // They meet with 1 m/s: 102 g·Δt.
     for (threshold, parts) in [(90.0, true), (110.0, false)] {
-        let mut scene = by(Method::TgsSoft, 0, meeting(LINE, 0.5, 1e-3));
+        let mut scene = by(Stepper::TgsSoft, 0, meeting(LINE, 0.5, 1e-3));
         scene.parameters.restitution_threshold = threshold;
         let mut simulation = start(&scene);
         take_steps(&mut simulation, 2);
@@ -123,7 +46,7 @@ fn a_threshold_of_restitution_holds_for_soft_substeps() {
 }
 
 /// A disc that gravity pulls off the fixed disc above it, or off a free one.
-fn pulled(method: Method, bond: f64, dt: f64, free: bool) -> Scene {
+fn pulled(stepper: Stepper, bond: f64, dt: f64, free: bool) -> Scene {
     let (radius, other) = (0.15, 0.1);
     let hanging = Grain::at_rest(DVec2::new(0.0, -(radius + other) * (1.0 - 1e-9)), radius);
     let mut grains = vec![hanging];
@@ -132,7 +55,7 @@ fn pulled(method: Method, bond: f64, dt: f64, free: bool) -> Scene {
     }
     let fixed_discs = if free { Vec::new() } else { vec![fixed(DVec2::ZERO, other)] };
     let scene = scene(Physics::FULL, -G * DVec2::Y, parameters(bond, dt, 0.2, 0.5), grains);
-    by(method, 0, Scene { fixed_discs, ..scene })
+    by(stepper, 0, Scene { fixed_discs, ..scene })
 }
 
 #[test]
@@ -143,7 +66,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
             for free in [false, true] {
                 let run = |bond: f64| {
                     let mut scene = pulled(method, bond, dt, free);
-                    scene.solver.substeps = substeps;
+                    scene.parameters.substeps = substeps;
                     let mut simulation = start(&scene);
                     take_steps(&mut simulation, (0.5 / dt) as usize);
                     simulation
@@ -166,61 +89,6 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
                 assert_close(force, -mass * G, 1e-6, "the force that holds it");
                 assert!(held.observables().tensile_contacts == 1);
             }
-        }
-    }
-}
-
-/// A disc on a level half-space, under a gravity that leans by `slope` = tanθ.
-fn on_slope(method: Method, physics: Physics, slope: f64, bond: f64, cone: FrictionCone) -> Scene {
-    let radius = 0.1;
-    let grain = Grain::at_rest(DVec2::new(0.0, radius * (1.0 - 1e-10)), radius);
-    let gravity = G * DVec2::new(slope, -1.0).normalize();
-    let mut parameters = parameters(bond, 1e-3, 0.1, 0.3);
-    parameters.cone = cone;
-    let level = Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y };
-    let scene = scene(physics, gravity, parameters, vec![grain]);
-    by(method, 0, Scene { boundaries: vec![level], ..scene })
-}
-
-/// Its velocity and its acceleration once it lies on the slope.
-fn slides(scene: &Scene) -> (f64, f64) {
-    let mut simulation = start(scene);
-    take_steps(&mut simulation, 500);
-    let velocity = simulation.world().grains.velocities[0].x;
-    take_steps(&mut simulation, 200);
-    let later = simulation.world().grains.velocities[0].x;
-    assert_eq!(simulation.observables().contacts, 1);
-    (later, (later - velocity) / 0.2)
-}
-
-#[test]
-fn friction_keeps_to_coulombs_cone() {
-    let mu = 0.3;
-    for method in SCHEMES {
-        let shifted = FrictionCone::Shifted;
-        let (velocity, _) = slides(&on_slope(method, UNTURNING, 0.999 * mu, 0.0, shifted));
-        assert!(velocity.abs() < 1e-9, "{method:?} sticks: {velocity:e} m/s");
-        for slope in [1.001 * mu, 0.5, 1.0] {
-            let along = G / slope.hypot(1.0) * (slope - mu);
-            let (_, found) = slides(&on_slope(method, UNTURNING, slope, 0.0, shifted));
-            assert_close(found, along, 1e-6, "how it slides");
-        }
-        // A disc rolls up to tanθ = 3μ, with two thirds of g sinθ, and slides above.
-        let slope: f64 = 0.8;
-        let (_, found) = slides(&on_slope(method, Physics::FULL, slope, 0.0, shifted));
-        assert_close(found, 2.0 / 3.0 * G * slope / slope.hypot(1.0), 1e-6, "how it rolls");
-        let slope: f64 = 1.0;
-        let (_, found) = slides(&on_slope(method, Physics::FULL, slope, 0.0, shifted));
-        assert_close(found, G / slope.hypot(1.0) * (slope - mu), 1e-6, "how it slides and turns");
-        // Cohesion holds where sinθ ≤ μ (cosθ + Bond), with the shifted cone alone.
-        for (bond, sticks) in [(1.01, true), (0.99, false)] {
-            let slope: f64 = 0.75;
-            let bond = bond * (slope / mu - 1.0) / slope.hypot(1.0);
-            let (velocity, _) = slides(&on_slope(method, UNTURNING, slope, bond, shifted));
-            assert_eq!(velocity.abs() < 1e-9, sticks, "{method:?}, Bond {bond}: {velocity} m/s");
-            let compressive = FrictionCone::Compressive;
-            let (_, found) = slides(&on_slope(method, UNTURNING, slope, bond, compressive));
-            assert_close(found, G / slope.hypot(1.0) * (slope - mu), 1e-6, "without C₀");
         }
     }
 }
@@ -273,126 +141,18 @@ fn every_step_closes_its_energy_budget() {
     }
 }
 
-/// Whether a pair that rests at its cohesive overlap shakes itself up from a small push.
-fn shakes_up(restitution: f64, dt_over_critical: f64) -> bool {
-    let probe = start(&meeting(LINE, restitution, 1e-3));
-    let (mass, springs) = (effective_mass(&probe), springs(&probe));
-    let mut scene = meeting(LINE, restitution, 1e-3);
-    scene.parameters.time_step_secs = dt_over_critical * springs.critical_time_step_secs(mass, 1.0);
-    scene.parameters.bond = 1.0;
-    let overlap = mass * G / springs.stiffness;
-    scene.grains[1].position.x = 0.25 - overlap;
-    scene.grains[0].velocity.x = 0.0;
-    let push = 1e-3 * overlap * (springs.stiffness / mass).sqrt();
-    scene.grains[1].velocity.x = push;
-    let mut simulation = start(&by(Method::Dem, 1, scene));
-    (0..3000).any(|_| {
-        simulation.step().expect("a finite state");
-        relative_velocity(&simulation).length() > 10.0 * push
-    })
-}
-
-#[test]
-fn a_pair_of_elements_blows_up_above_its_critical_step_and_not_below() {
-    for restitution in [0.0, 0.1, 0.5, 1.0] {
-        let (mut stable, mut unstable) = (0.5, 2.0);
-        assert!(!shakes_up(restitution, stable) && shakes_up(restitution, unstable));
-        for _ in 0..8 {
-            let middle = 0.5 * (stable + unstable);
-            let place = if shakes_up(restitution, middle) { &mut unstable } else { &mut stable };
-            *place = middle;
-        }
-        println!("ρ {restitution}: {stable} to {unstable} of the critical step");
-        assert!((stable - 1.0).abs() < 0.02, "ρ {restitution}: {stable} of the critical step");
-    }
-    // Without damping the critical step is 2/ω.
-    let probe = start(&meeting(LINE, 1.0, 1e-3));
-    let (mass, springs) = (effective_mass(&probe), springs(&probe));
-    let critical = springs.critical_time_step_secs(mass, 1.0);
-    assert_close(critical, 2.0 * (mass / springs.stiffness).sqrt(), 1e-12, "2/ω");
-}
-
-#[test]
-fn a_step_that_blows_up_ends_in_an_error() {
-    // Between walls the disc cannot get away from its own energy.
-    let mut scene = meeting(LINE, 0.5, 1e-3);
-    scene.grains.truncate(1);
-    let wall = |x: f64| Boundary::HalfSpace { point: x * DVec2::X, normal: -x * DVec2::X };
-    scene.boundaries = vec![wall(-0.1499), wall(0.1499)];
-    let critical = by(Method::Dem, 1, scene.clone()).simulation().expect("sound");
-    let critical = critical.critical_time_step_secs().expect("springs");
-    for (times, blows_up) in [(0.5, false), (3.0, true)] {
-        scene.parameters.time_step_secs = times * critical;
-        for substeps in [1, 10] {
-            scene.parameters.time_step_secs = times * critical * f64::from(substeps);
-            let mut simulation = start(&by(Method::Dem, substeps, scene.clone()));
-            let failure = (0..2000).find_map(|_| simulation.step().err());
-            assert_eq!(matches!(failure, Some(Error::NonFinite { .. })), blows_up, "{failure:?}");
-        }
-    }
-    // A pile blows up too, and comes to an end without a panic, finite or not.
-    let mut pile = by(Method::Dem, 1, paper_pile().expect("the shipped state"));
-    pile.parameters.time_step_secs = 2e-3;
-    let mut simulation = start(&pile);
-    let failed = (0..200).any(|_| simulation.step().is_err());
-    let Observed { kinetic, potential } = observed(&simulation);
-    assert!(failed || kinetic > 10.0 * potential.abs(), "{kinetic} J");
-    pile.solver.substeps = 0;
-    let mut simulation = start(&pile);
-    take_steps(&mut simulation, 100);
-    let Observed { kinetic, potential } = observed(&simulation);
-    assert!(kinetic < 0.5 * potential, "{kinetic} J of {potential} J");
-}
-
-struct Observed {
-    kinetic: f64,
-    potential: f64,
-}
-
-fn observed(simulation: &Simulation) -> Observed {
-    let last = simulation.observables();
-    Observed { kinetic: last.kinetic_energy, potential: last.potential_energy }
-}
-
 #[test]
 fn the_substeps_left_to_the_scheme_are_stable_and_counted() {
     let pile = paper_pile().expect("the shipped state");
-    let soft = start(&by(Method::TgsSoft, 0, pile.clone()));
+    let soft = start(&by(Stepper::TgsSoft, 0, pile.clone()));
     assert_eq!((soft.substeps(), soft.critical_time_step_secs()), (4, None));
-    let mut dem = start(&by(Method::Dem, 0, pile.clone()));
+    let mut dem = start(&by(Stepper::Dem, 0, pile.clone()));
     let critical = dem.critical_time_step_secs().expect("springs");
     let substep = 1e-3 / f64::from(dem.substeps());
     assert!((0.45..=0.5).contains(&(substep / critical)), "{substep} of {critical}");
     let substeps = dem.substeps();
     assert_eq!(dem.step().expect("a finite state").sweeps, substeps);
     assert_eq!(start(&pile).substeps(), 1);
-}
-
-/// What a visitor of a step's problem finds when it asks a scheme to solve it.
-struct Solve(SolverSettings);
-
-impl ProblemVisitor for Solve {
-    type Output = Result<SolveReport>;
-
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Result<SolveReport> {
-        solve::<M>(problem, &self.0)
-    }
-}
-
-#[test]
-fn a_scheme_refuses_to_solve_a_problem() {
-    let simulation = start(&paper_pile().expect("the shipped state"));
-    for method in SCHEMES {
-        let settings = SolverSettings { method, ..*simulation.solver() };
-        let refusal = simulation.next_problem(Solve(settings)).expect_err("no method").to_string();
-        let expected = format!("solver is {}, but must be a method", method.name());
-        assert!(refusal.starts_with(&expected), "{refusal}");
-        assert!(refusal.contains("nsgs"), "{refusal}");
-    }
 }
 
 #[test]
@@ -418,13 +178,13 @@ fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
 
 #[test]
 fn what_a_scheme_remembers_is_for_itself_alone() {
-    let pile = by(Method::Dem, 0, paper_pile().expect("the shipped state"));
+    let pile = by(Stepper::Dem, 0, paper_pile().expect("the shipped state"));
     let mut simulation = start(&pile);
     take_steps(&mut simulation, 5);
     let blank = |memory: &ContactMemory| *memory == ContactMemory::default();
     assert!(!simulation.contacts().memories().iter().all(blank));
-    let settings = SolverSettings { method: Method::Nsgs, ..*simulation.solver() };
-    simulation.set_solver(settings).expect("sound");
+    let settings = Settings { stepper: Stepper::Moreau, ..*simulation.settings() };
+    simulation.change(settings).expect("sound");
     take_steps(&mut simulation, 1);
     assert!(simulation.contacts().memories().iter().all(blank));
 }

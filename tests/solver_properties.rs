@@ -14,7 +14,8 @@ use slump::contact::Contact;
 use slump::scene::Scene;
 use slump::sim::Simulation;
 use slump::solver::{
-    Plane, SolverSettings, SpinningPlane, StepModel, StepProblem, StopTest, solve,
+    Approach, Memory, Plane, ProblemNumbers, SolverSettings, SpinningPlane, StepModel, StepProblem,
+    StopTest, solve,
 };
 use slump::world::{FrictionCone, Grains, Parameters, Physics};
 
@@ -147,6 +148,8 @@ fn a_step_that_needs_more_sweeps_than_allowed_says_so() {
 
 #[test]
 fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
+    type Full = StepModel<SpinningPlane, true, false>;
+    type Lean = StepModel<Plane, false, false>;
     for_random_piles(16, |mut scene| {
         scene.parameters.friction = 0.0;
         let mut simulation = start(&scene);
@@ -155,14 +158,18 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
         let (world, contacts) = (simulation.world(), simulation.contacts());
         let mut full = StepProblem::<SpinningPlane>::default();
         let mut lean = StepProblem::<Plane>::default();
-        let numbers = &scene.parameters;
+        let parameters = &scene.parameters;
+        let numbers = ProblemNumbers {
+            time_step_secs: parameters.time_step_secs,
+            friction: parameters.friction,
+            capture_speed: parameters.capture_speed(world.gravity.magnitude()),
+        };
+        let rebound = |approach: Approach| parameters.restitution * approach.velocity;
         let settings = SolverSettings { tolerance: 1e-6, max_sweeps: 50, ..scene.solver };
-        full.prepare::<StepModel<SpinningPlane, true, false>>(
-            world, contacts, numbers, true, &settings,
-        );
-        lean.prepare::<StepModel<Plane, false, false>>(world, contacts, numbers, true, &settings);
-        solve::<StepModel<SpinningPlane, true, false>>(&mut full, &settings).expect("no scheme");
-        solve::<StepModel<Plane, false, false>>(&mut lean, &settings).expect("no scheme");
+        full.prepare::<Full>(world, contacts, numbers, &settings, rebound);
+        lean.prepare::<Lean>(world, contacts, numbers, &settings, rebound);
+        solve::<Full>(&mut full, &mut Memory::default(), &settings);
+        solve::<Lean>(&mut lean, &mut Memory::default(), &settings);
         for (a, b) in full.bodies.iter().zip(&lean.bodies) {
             prop_assert_eq!(a.velocity, b.velocity);
         }

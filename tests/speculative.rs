@@ -30,12 +30,12 @@ fn rebounds(travel: f64, restitution: f64, mend: impl Fn(&mut Scene)) -> Vec<f64
 fn nothing_goes_through_a_wall_but_the_bounce_is_half_lost() {
     let restitution = 0.8;
     for travel in [0.4, 1.0, 4.0] {
-        let ahead = rebounds(travel, restitution, |scene| scene.solver.remedies.speculative = true);
+        let ahead = rebounds(travel, restitution, |scene| scene.remedies.speculative = true);
         // What is left of the speed is spread evenly between none and all.
         let mean = ahead.iter().sum::<f64>() / f64::from(PHASES);
         assert!((mean + 0.5 * restitution).abs() < 0.08, "travel {travel}: {mean}");
         let in_pieces = rebounds(travel, restitution, |scene| {
-            scene.solver.remedies.max_travel = 0.25;
+            scene.remedies.max_travel = 0.25;
         });
         for speed in in_pieces {
             assert!((speed + restitution).abs() < 1e-9, "travel {travel}: {speed}");
@@ -51,7 +51,7 @@ fn a_falling_disc_lands_in_touch_and_rests() {
         let mut fall =
             scene(Physics::FULL, -G * DVec2::Y, parameters(bond, 5e-3, 0.0, 0.5), grains);
         fall.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }];
-        fall.solver.remedies.speculative = true;
+        fall.remedies.speculative = true;
         let mut simulation = start(&fall);
         let mut deepest = 0f64;
         for _ in 0..200 {
@@ -72,7 +72,7 @@ fn cohesion_does_not_pull_across_a_gap() {
     ];
     let mut scene =
         scene(Physics::FULL, DVec2::new(0.0, -G), parameters(50.0, 1e-3, 0.0, 0.5), pair);
-    scene.solver.remedies.speculative = true;
+    scene.remedies.speculative = true;
     let mut simulation = start(&scene);
     take_steps(&mut simulation, 1);
     assert_eq!(
@@ -89,7 +89,7 @@ fn cohesion_does_not_pull_across_a_gap() {
 #[test]
 fn a_heap_at_rest_stays_as_it_is() {
     let mut scene = heap(5);
-    scene.solver.remedies.speculative = true;
+    scene.remedies.speculative = true;
     let mut simulation = start(&scene);
     take_steps(&mut simulation, 300);
     let now = &simulation.world().grains.positions;

@@ -7,10 +7,31 @@ pub mod timing;
 use glam::DVec2;
 use slump::scene::{Scene, pile_of};
 use slump::sim::Simulation;
+use slump::solver::{
+    Approach, ProblemNumbers, SolverSettings, SpinningPlane, StepModel, StepProblem,
+};
 use slump::world::{Boundary, Grain, Parameters};
 
 /// d of the pile's scene, m.
 const DIAMETER: f64 = 5e-3;
+
+/// The simulation's next problem.
+pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProblem<SpinningPlane> {
+    let (world, parameters) = (simulation.world(), simulation.parameters());
+    let Parameters { time_step_secs, friction, restitution, .. } = *parameters;
+    let capture_speed = parameters.capture_speed(world.gravity.magnitude());
+    let numbers = ProblemNumbers { time_step_secs, friction, capture_speed };
+    let rebound = |approach: Approach| restitution * approach.velocity;
+    let mut problem = StepProblem::default();
+    problem.prepare::<StepModel<SpinningPlane, true, false>>(
+        world,
+        simulation.contacts(),
+        numbers,
+        settings,
+        rebound,
+    );
+    problem
+}
 
 /// `count` discs, settled in a box as wide as the pile is high, without cohesion. Their contacts
 /// are those of a pile; how they fell matters to no bench, so they fall quickly.

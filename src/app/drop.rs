@@ -5,7 +5,7 @@ use std::path::Path;
 use egui::Context;
 
 use super::state::AppState;
-use crate::scene::Config;
+use crate::scene::{Config, Origin};
 
 /// Opens the last file that was dropped in this frame.
 pub fn take_files(context: &Context, state: &mut AppState) {
@@ -24,8 +24,11 @@ pub fn take_files(context: &Context, state: &mut AppState) {
 fn config_of(path: &Path) -> Option<Config> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
     match ending.as_str() {
-        "toml" => Some(Config { scene: path.to_str().map(str::to_owned), ..Config::default() }),
-        "csv" => Some(Config { initial: Some(path.to_owned()), ..Config::default() }),
+        "toml" => path.to_str().map(Config::of_scene),
+        "csv" => {
+            let origin = Origin { initial: Some(path.to_owned()), ..Origin::default() };
+            Some(Config { origin, ..Config::default() })
+        }
         _ => None,
     }
 }
@@ -37,9 +40,9 @@ mod tests {
     #[test]
     fn endings_tell_scenes_from_discs() {
         let scene = config_of("a/Box.TOML".as_ref()).unwrap();
-        assert_eq!(scene.scene.as_deref(), Some("a/Box.TOML"));
+        assert_eq!(scene.origin.scene.as_deref(), Some("a/Box.TOML"));
         let discs = config_of("a/pile.csv".as_ref()).unwrap();
-        assert_eq!(discs.initial.as_deref(), Some("a/pile.csv".as_ref()));
+        assert_eq!(discs.origin.initial.as_deref(), Some("a/pile.csv".as_ref()));
         assert_eq!(config_of("a/pile.png".as_ref()), None);
     }
 }

@@ -4,7 +4,7 @@ use image::RgbaImage;
 
 use super::canvas::Canvas;
 use super::fill::fill;
-use super::panels::plots::{PlotData, draw};
+use super::plots::{PlotData, draw};
 use super::theme;
 use crate::error::Result;
 

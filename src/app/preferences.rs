@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::panels::plots::Quantity;
+use super::quantity::Quantity;
 use crate::error::Result;
 use crate::headless::{HeadlessOptions, PictureSize};
 use crate::render::{Style, Theme};

@@ -11,9 +11,8 @@ use super::loader::loader;
 use super::preferences::Preferences;
 use super::scene_legend::LegendCache;
 use crate::scene::Config;
-use crate::sim::live::{Command, Frame, Live, Settings, WorldFrame};
-use crate::solver::SolverSettings;
-use crate::world::Parameters;
+use crate::sim::Settings;
+use crate::sim::live::{Command, Controls, Frame, Live, WorldFrame};
 
 /// How long a notice stays, s.
 const NOTICE_SECS: f32 = 8.0;
@@ -44,7 +43,7 @@ pub struct AppState {
     /// Its newest frame.
     pub frame: Frame,
     /// What the controls show, one entry a world: ahead of the frame by what is on its way.
-    pub wanted: Vec<Settings>,
+    pub wanted: Vec<Controls>,
     /// The world that the controls are about.
     pub selected: usize,
     /// What was loaded last.
@@ -122,7 +121,7 @@ impl AppState {
         }
         let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
         if in_step || self.wanted.len() != self.frame.worlds.len() {
-            self.wanted = self.frame.worlds.iter().map(|world| world.settings).collect();
+            self.wanted = self.frame.worlds.iter().map(|world| world.controls).collect();
         }
         let worlds = self.frame.worlds.len();
         self.selected = self.selected.min(worlds.saturating_sub(1));
@@ -148,19 +147,11 @@ impl AppState {
         self.frame.worlds.len() > 1
     }
 
-    /// Changes the parameters of a world.
-    pub fn set_parameters(&mut self, world: usize, parameters: Parameters) {
+    /// Changes the settings of a world.
+    pub fn change(&mut self, world: usize, settings: Settings) {
         if let Some(wanted) = self.wanted.get_mut(world) {
-            wanted.parameters = parameters;
-            self.live.send(Command::SetParameters(world, parameters));
-        }
-    }
-
-    /// Changes the solver of a world.
-    pub fn set_solver(&mut self, world: usize, solver: SolverSettings) {
-        if let Some(wanted) = self.wanted.get_mut(world) {
-            wanted.solver = solver;
-            self.live.send(Command::SetSolver(world, solver));
+            wanted.settings = settings;
+            self.live.send(Command::Change(world, settings));
         }
     }
 

@@ -7,7 +7,10 @@
 
 use glam::DVec2;
 
-use super::{Feature, Grid, Tree};
+use super::features::Feature;
+use super::grid::Grid;
+use super::numbering::{Numbering, Other};
+use super::tree::Tree;
 use crate::error::Result;
 use crate::world::{Boundary, World};
 
@@ -32,8 +35,7 @@ enum BroadPhase {
     Tree(Box<Tree>),
 }
 
-/// Candidate pairs of a world. "Other" bodies are numbered through: grains, then fixed discs, then
-/// features of the boundaries.
+/// Candidate pairs of a world.
 #[derive(Clone, Debug)]
 pub struct Candidates {
     reach: Reach,
@@ -91,7 +93,7 @@ impl Candidates {
         })
     }
 
-    /// The boundaries' features, numbered after grains and fixed discs.
+    /// The boundaries' features.
     pub fn features(&self) -> &[Feature] {
         &self.features
     }
@@ -228,7 +230,7 @@ impl Candidates {
             return;
         }
         let grains = &world.grains;
-        let first_feature = self.radii.len() as u32;
+        let numbering = Numbering::of(world);
         let within_reach = |index: usize, feature: &Feature| {
             let reach = grains.radii[index] + self.reach.skin;
             feature.distance_to_any_point(grains.positions[index]) < reach
@@ -239,9 +241,9 @@ impl Candidates {
             let grain = index as u32;
             let discs = self.starts[index] as usize..self.starts[index + 1] as usize;
             self.pairs.extend(self.others[discs].iter().map(|&other| (grain, other)));
-            for (number, feature) in (first_feature..).zip(&self.features) {
+            for (number, feature) in self.features.iter().enumerate() {
                 if within_reach(index, feature) {
-                    self.pairs.push((grain, number));
+                    self.pairs.push((grain, numbering.number(Other::Feature(number))));
                 }
             }
         }

@@ -2,7 +2,9 @@
 
 use glam::DVec2;
 
-use super::Candidates;
+use super::approach::approach;
+use super::candidates::Candidates;
+use super::numbering::{Numbering, Other};
 use super::range::Bond;
 use crate::world::World;
 
@@ -11,7 +13,7 @@ use crate::world::World;
 pub struct Contact {
     /// Grain i.
     pub grain: u32,
-    /// Body j, numbered through: grains, fixed discs, features of boundaries.
+    /// Body j, numbered through ([`Numbering`]).
     pub other: u32,
     /// n, from j to i. On a line its y component is 0.
     pub normal: DVec2,
@@ -172,6 +174,7 @@ impl ContactList {
     ) {
         self.looks_ahead = true;
         let gap_tolerance = candidates.gap_tolerance();
+        let numbering = Numbering::of(world);
         let velocities = &world.grains.velocities;
         self.find::<AXES>(world, candidates, |contact, bond| {
             let gap = contact.gap;
@@ -183,7 +186,10 @@ impl ContactList {
             if bond.alive {
                 return true;
             }
-            let other = velocities.get(contact.other as usize).copied().unwrap_or_default();
+            let other = match numbering.other(contact.other) {
+                Other::Grain(j) => velocities[j],
+                Other::FixedDisc(_) | Other::Feature(_) => DVec2::ZERO,
+            };
             let opening = contact.normal.dot(velocities[contact.grain as usize] - other);
             gap < ahead.reach && gap + ahead.time_step_secs * opening.min(0.0) < ahead.distance
         });
@@ -203,13 +209,14 @@ impl ContactList {
         now.impulses.clear();
         now.memories.clear();
         now.bonds.clear();
-        let grains = &world.grains;
+        let (grains, numbering) = (&world.grains, Numbering::of(world));
         let mut before = 0;
         for index in 0..grains.len() {
             let (position, radius) = (grains.positions[index], grains.radii[index]);
             for &other in candidates.of(index) {
+                let body = numbering.other(other);
                 let Some((normal, gap)) =
-                    approach::<AXES>(world, candidates, position, radius, other as usize)
+                    approach::<AXES>(world, candidates, (position, radius), body)
                 else {
                     continue;
                 };
@@ -235,81 +242,4 @@ impl ContactList {
             }
         }
     }
-}
-
-impl ContactList {
-    /// Moves grains that overlap by more than `allowed` (m) apart, pair by pair, each grain by the
-    /// other's share of the mass. Velocities, and so kinetic energy, stay as they are. Whether there
-    /// were any: one pass opens a pair and may close the next.
-    pub fn push_out<const AXES: usize>(
-        &self,
-        world: &mut World,
-        candidates: &Candidates,
-        allowed: f64,
-    ) -> bool {
-        let mut found = false;
-        for contact in &self.now.contacts {
-            let (i, j) = (contact.grain as usize, contact.other as usize);
-            let (position, radius) = (world.grains.positions[i], world.grains.radii[i]);
-            let Some((normal, gap)) = approach::<AXES>(world, candidates, position, radius, j)
-            else {
-                continue;
-            };
-            if gap >= -allowed {
-                continue;
-            }
-            found = true;
-            let push = -gap * normal;
-            let grains = &mut world.grains;
-            if j < grains.len() {
-                let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
-                grains.positions[i] += share * push;
-                grains.positions[j] -= (1.0 - share) * push;
-            } else {
-                grains.positions[i] += push;
-            }
-        }
-        found
-    }
-}
-
-/// Normal and gap between a disc and another body, or nothing where another feature tells of the
-/// touched point.
-#[inline(always)]
-fn approach<const AXES: usize>(
-    world: &World,
-    candidates: &Candidates,
-    position: DVec2,
-    radius: f64,
-    other: usize,
-) -> Option<(DVec2, f64)> {
-    let grains = &world.grains;
-    if other < grains.len() {
-        return Some(disc_gap::<AXES>(
-            position,
-            grains.positions[other],
-            radius + grains.radii[other],
-        ));
-    }
-    let fixed = other - grains.len();
-    if fixed < world.fixed_discs.len() {
-        let disc = world.fixed_discs[fixed];
-        return Some(disc_gap::<AXES>(position, disc.position, radius + disc.radius));
-    }
-    let feature = &candidates.features()[fixed - world.fixed_discs.len()];
-    feature.distance(position).map(|(normal, distance)| (normal, distance - radius))
-}
-
-/// Normal (from j to i) and gap of two discs. Centres that coincide are told apart along x, so that
-/// the step stays finite.
-#[inline(always)]
-fn disc_gap<const AXES: usize>(i: DVec2, j: DVec2, radii: f64) -> (DVec2, f64) {
-    if AXES == 1 {
-        let offset = i.x - j.x;
-        return (DVec2::new(1f64.copysign(offset), 0.0), offset.abs() - radii);
-    }
-    let offset = i - j;
-    let distance = offset.length();
-    let normal = if distance > 0.0 { offset / distance } else { DVec2::X };
-    (normal, distance - radii)
 }

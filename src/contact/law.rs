@@ -12,7 +12,7 @@
 //! that with a capture speed of 0. Coulomb's law in the shifted cone is |λ_t| ≤ μσ; on the compressive
 //! part alone it is |λ_t| ≤ μ max(σ − capture speed, 0).
 
-use super::Lanes;
+use super::lanes::Lanes;
 
 /// C₀ = Bond · m_ij · g, newton (paper eq. 10).
 pub fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: f64) -> f64 {

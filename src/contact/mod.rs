@@ -1,12 +1,15 @@
 //! Which bodies touch, and what a contact may transmit.
 
+mod approach;
 mod candidates;
 mod contact_list;
 mod features;
 mod grid;
 mod lanes;
 pub mod law;
+mod numbering;
 pub mod range;
+mod separate;
 mod tree;
 
 pub use candidates::{Candidates, Reach};
@@ -16,4 +19,5 @@ pub use grid::Grid;
 pub use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;
+pub use numbering::{Numbering, Other};
 pub use tree::Tree;

@@ -31,7 +31,7 @@
 //! work C₀·s is then that of the impulses, and a pair that turns about itself, whose gap opens in every
 //! step by (Δt v_t)²/2d and closes in the next, does not tear its bond.
 
-use crate::contact::law;
+use super::law;
 
 /// Gaps and overlaps below this many diameters are the rounding and the solver's tolerance. A contact
 /// with less neither has its gap closed nor its overlap pushed out, and it bounces. Without that room

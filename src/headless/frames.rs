@@ -33,17 +33,8 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions) -> Result<()> {
     let times = options.picture_times(scene.duration_secs)?;
     eprintln!("drawing with {}", renderer.name());
 
-    let View { min, max } = scene.view();
-    let style = options.style();
-    let mut studio = Studio {
-        options,
-        camera: style.camera(min, max, size.width, size.height),
-        style,
-        manifest: Manifest::new(renderer.name()),
-        renderer,
-        animation: options.gif.as_deref().map(Animation::start).transpose()?,
-    };
-    let steps = (scene.duration_secs / scene.parameters.time_step_secs).round() as u64;
+    let mut studio = Studio::open(options, renderer, &scene)?;
+    let steps = scene.parameters.steps_in(scene.duration_secs);
     let progress = Progress::new(&scene.name, steps);
     let mut table = options.frames.as_deref().map(ObservablesTable::start).transpose()?;
 
@@ -93,7 +84,7 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions) -> Result<()> {
 /// ends the run with an error of its own.
 pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
     for alarm in alarms.iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite) {
-        eprintln!("{}: {}", scene.name, alarm.message(&scene.parameters, &scene.solver));
+        eprintln!("{}: {}", scene.name, alarm.message(&scene.settings()));
     }
 }
 
@@ -142,7 +133,21 @@ struct Studio<'a> {
     manifest: Manifest,
 }
 
-impl Studio<'_> {
+impl<'a> Studio<'a> {
+    fn open(options: &'a HeadlessOptions, renderer: Renderer, scene: &Scene) -> Result<Self> {
+        let size = options.size()?;
+        let View { min, max } = scene.view();
+        let style = options.style();
+        Ok(Self {
+            options,
+            camera: style.camera(min, max, size.width, size.height),
+            style,
+            manifest: Manifest::new(renderer.name()),
+            renderer,
+            animation: options.gif.as_deref().map(Animation::start).transpose()?,
+        })
+    }
+
     fn needs_common_scale(&self) -> bool {
         let by_state =
             !matches!(self.style.colour_by, ColourBy::PaperGreys | ColourBy::Coordination);

@@ -111,7 +111,7 @@ impl RunEntry {
                 .iter()
                 .map(|alarm| AlarmEntry {
                     alarm: *alarm,
-                    message: alarm.message(&scene.parameters, &scene.solver),
+                    message: alarm.message(&scene.settings()),
                 })
                 .collect(),
             cohesive_time: scene.parameters.cohesive_time(scene.mean_diameter, gravity),

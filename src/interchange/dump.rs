@@ -1,10 +1,12 @@
 //! A problem file from a running simulation.
 
+use std::ops::ControlFlow;
+
 use super::{BodyForm, Friction, ProblemFile};
 use crate::contact::ContactList;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::sim::ProblemVisitor;
+use crate::sim::{ProblemVisitor, RunEnding};
 use crate::solver::{Assembled, Kinematics, Model, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
@@ -18,10 +20,12 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
         return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
     }
     let mut simulation = scene.simulation()?;
-    let steps = (at_secs / scene.parameters.time_step_secs).round() as u64;
-    for _ in 0..steps {
-        simulation.step()?;
+    let ended = simulation.run(scene.parameters.steps_in(at_secs), |simulation| {
         progress(simulation.time_secs());
+        Ok(ControlFlow::Continue(()))
+    })?;
+    if let RunEnding::NotFinite(failure) = ended {
+        return Err(failure);
     }
     let grains = &simulation.world().grains;
     let file = simulation.next_problem(Dump { grains });

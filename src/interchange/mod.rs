@@ -11,12 +11,14 @@
 //! This stands beside `study`, above the scenes: a problem is taken from a simulation.
 
 mod bodies;
+mod body_form;
 mod dump;
 mod problem_file;
+mod reading;
 pub mod siconos;
 mod solution;
 
-pub use bodies::BodyForm;
+pub use body_form::BodyForm;
 pub use dump::problem_file_at;
 pub use problem_file::{Friction, ProblemFile};
 pub use solution::{Solution, solve_file};

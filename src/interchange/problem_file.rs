@@ -1,10 +1,8 @@
-//! A problem file: reading, checking, writing.
-
-use std::path::Path;
+//! What stands in a problem file.
 
 use serde::{Deserialize, Serialize};
 
-use super::{BodyForm, siconos};
+use super::BodyForm;
 use crate::error::{Error, Result};
 use crate::solver::{DelassusProblem, Triplets};
 use crate::world::FrictionCone;
@@ -50,39 +48,6 @@ pub struct ProblemFile {
 }
 
 impl ProblemFile {
-    /// Reads a problem file, or a text file of Siconos', and checks it.
-    ///
-    /// # Errors
-    /// In one sentence that names the file and what is wrong in it.
-    pub fn read(path: &Path) -> Result<Self> {
-        let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
-        let text = String::from_utf8(bytes).map_err(|error| Error::file(path, error))?;
-        Self::parse(&text).map_err(|error| Error::file(path, error))
-    }
-
-    /// Reads the text of a problem file, or of one of Siconos', and checks it.
-    ///
-    /// # Errors
-    /// In one sentence that names what is wrong.
-    pub fn parse(text: &str) -> Result<Self> {
-        let file: Self = if text.trim_start().starts_with('{') {
-            serde_json::from_str(text).map_err(|error| {
-                Error::value(
-                    "the problem",
-                    format!("not readable ({error})"),
-                    "the JSON of a contact problem",
-                )
-            })?
-        } else {
-            siconos::parse(text)?
-        };
-        file.delassus()?;
-        if let Some(bodies) = &file.bodies {
-            bodies.check(&file)?;
-        }
-        Ok(file)
-    }
-
     /// The file's text. Numbers are as short as they can be and still read back bit for bit.
     pub fn text(&self) -> String {
         // Strings, numbers and lists of them have no way to fail.

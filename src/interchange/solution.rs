@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::{BodyForm, ProblemFile};
 use crate::error::Result;
 use crate::solver::{
-    Kinematics, METHODS, Method, Model, ModelVisitor, SolveReport, SolverSettings, solve,
-    solve_delassus, visit_model,
+    Kinematics, Memory, MethodOrder, Model, ModelVisitor, Ordering, SolveReport, SolverSettings,
+    solve, solve_delassus, visit_model,
 };
 
 /// What a method made of a problem.
@@ -73,10 +73,9 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
     };
     let Solved { seconds, report, impulses, velocities } = solved;
     delassus.set_impulses(impulses.iter().copied());
-    let method = METHODS.iter().find(|info| info.method == settings.method);
     Ok(Solution {
         contacts: file.nc,
-        method: method.map_or_else(String::new, |info| info.name.into()),
+        method: settings.method.name().into(),
         on_bodies: file.bodies.is_some(),
         sweeps: report.sweeps,
         factorisations: report.factorisations,
@@ -133,11 +132,12 @@ impl ModelVisitor for OnBodies<'_> {
     fn visit<M: Model>(self) -> Result<Solved> {
         let Self { bodies, file, settings, repeats } = self;
         let mut start = bodies.step_problem::<M>(file);
-        if settings.method == Method::NsgsParallel {
+        if settings.method.info().order == MethodOrder::Always(Ordering::Coloured) {
             start.sort_by_colours();
         }
-        let ((seconds, report), problem) =
-            least_time(repeats, &start, |problem| solve::<M>(problem, settings));
+        let ((seconds, report), problem) = least_time(repeats, &start, |problem| {
+            solve::<M>(problem, &mut Memory::default(), settings)
+        });
         let mut impulses = vec![[0.0; 2]; file.nc];
         for ((number, row), &contact) in problem.rows().zip(&problem.contact_of_row) {
             impulses[contact as usize] =
@@ -148,6 +148,6 @@ impl ModelVisitor for OnBodies<'_> {
             [x, y, spin / radius]
         };
         let velocities = problem.bodies.iter().zip(&bodies.radius).map(velocity).collect();
-        Ok(Solved { seconds, report: report?, impulses, velocities: Some(velocities) })
+        Ok(Solved { seconds, report, impulses, velocities: Some(velocities) })
     }
 }

@@ -5,44 +5,8 @@
 
 use std::sync::{Arc, Mutex};
 
+use super::drivers::{Kind, RendererChoice};
 use crate::error::{Error, Result};
-
-/// Which renderer to use.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    Default,
-    PartialEq,
-    Eq,
-    serde::Serialize,
-    serde::Deserialize,
-    clap::ValueEnum,
-)]
-#[serde(rename_all = "kebab-case")]
-pub enum RendererChoice {
-    /// Vulkan if there is a driver, else OpenGL, else the processor.
-    #[default]
-    Auto,
-    /// Vulkan.
-    Vulkan,
-    /// OpenGL, without a window through EGL.
-    Gl,
-    /// The processor alone.
-    Cpu,
-}
-
-/// Keeps a layer of Mesa's Vulkan from writing to stderr where there is no desktop: it asks for a
-/// Wayland display, which complains if `XDG_RUNTIME_DIR` is not set. With a desktop nothing changes.
-///
-/// # Safety
-/// Changes the environment, so it must run before the program starts its second thread.
-pub unsafe fn quieten_drivers() {
-    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        // SAFETY: the caller states that no other thread can be reading the environment.
-        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
-    }
-}
 
 /// An opened GPU.
 pub(crate) struct Gpu {
@@ -52,41 +16,6 @@ pub(crate) struct Gpu {
     pub name: String,
     /// Message of the first failure that no call reported directly.
     failure: Arc<Mutex<Option<String>>>,
-}
-
-/// The kinds of GPU that can be asked for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Vulkan,
-    Gl,
-}
-
-impl Kind {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Vulkan => "vulkan",
-            Self::Gl => "gl",
-        }
-    }
-
-    fn backends(self) -> wgpu::Backends {
-        match self {
-            Self::Vulkan => wgpu::Backends::VULKAN,
-            Self::Gl => wgpu::Backends::GL,
-        }
-    }
-
-    /// What is missing and what brings it, as one sentence.
-    fn missing(self) -> Error {
-        let (driver, packages) = match self {
-            Self::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
-            Self::Gl => ("OpenGL (EGL)", "libegl1 and libgl1-mesa-dri"),
-        };
-        Error::Renderer(format!(
-            "no {driver} driver was found: install the Debian packages {packages}, or use \
-             --renderer cpu, which needs no driver"
-        ))
-    }
 }
 
 impl Gpu {
@@ -104,7 +33,7 @@ impl Gpu {
     /// Opens the strongest device of one kind.
     pub(super) fn open(kind: Kind) -> Result<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: kind.backends(),
+            backends: backends(kind),
             // Debug builds would otherwise load validation layers and let them write to stderr.
             flags: wgpu::InstanceFlags::empty(),
             ..wgpu::InstanceDescriptor::new_without_display_handle()
@@ -114,7 +43,7 @@ impl Gpu {
             ..wgpu::RequestAdapterOptions::default()
         };
         let adapter =
-            pollster::block_on(instance.request_adapter(&options)).map_err(|_| kind.missing())?;
+            pollster::block_on(instance.request_adapter(&options)).map_err(|_| missing(kind))?;
         let available = adapter.limits();
         let limits = wgpu::Limits {
             max_buffer_size: available.max_buffer_size,
@@ -151,4 +80,23 @@ impl Gpu {
             None => Ok(()),
         }
     }
+}
+
+fn backends(kind: Kind) -> wgpu::Backends {
+    match kind {
+        Kind::Vulkan => wgpu::Backends::VULKAN,
+        Kind::Gl => wgpu::Backends::GL,
+    }
+}
+
+/// What is missing and what brings it, as one sentence.
+fn missing(kind: Kind) -> Error {
+    let (driver, packages) = match kind {
+        Kind::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
+        Kind::Gl => ("OpenGL (EGL)", "libegl1 and libgl1-mesa-dri"),
+    };
+    Error::Renderer(format!(
+        "no {driver} driver was found: install the Debian packages {packages}, or use \
+         --renderer cpu, which needs no driver"
+    ))
 }

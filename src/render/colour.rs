@@ -7,17 +7,8 @@ use serde::{Deserialize, Serialize};
 
 /// Red, green, blue and opacity, each 0 … 1, not premultiplied.
 #[repr(C)]
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    Default,
-    PartialEq,
-    Serialize,
-    Deserialize,
-    bytemuck::Pod,
-    bytemuck::Zeroable,
-)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Colour {
     /// Red.
     pub red: f32,

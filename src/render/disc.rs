@@ -6,15 +6,17 @@
 use glam::Vec2;
 
 use super::Colour;
-use super::cpu::{Shade, coverage, mix, scale_colour};
+#[cfg(feature = "gpu")]
 use super::primitive::Instance;
+use super::shade::{Shade, coverage, mix, scale_colour};
 
 /// A disc thinner than a pixel is drawn one pixel wide and fainter instead.
 const LEAST_RADIUS_PX: f32 = 0.5;
 
 /// One disc. Lengths in pixels; positions relative to the middle of the picture, y up.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscInstance {
     /// Centre.
     pub centre: [f32; 2],
@@ -47,6 +49,7 @@ impl DiscInstance {
     }
 }
 
+#[cfg(feature = "gpu")]
 impl Instance for DiscInstance {
     const NAME: &'static str = "disc";
     const SHADER: &'static str = include_str!("../../shaders/disc.wgsl");

@@ -7,7 +7,6 @@
 use image::RgbaImage;
 
 use super::Theme;
-use super::figure_layout::Layout;
 use crate::error::{Error, Result};
 
 /// A grid of panels, filled row by row.
@@ -58,22 +57,8 @@ impl Figure {
         }
     }
 
-    /// Draws the figure. Its size follows from the panels and the labels.
-    ///
-    /// # Errors
-    /// Names the list that does not fit the grid, or the panel of another size.
-    pub fn draw(&self) -> Result<RgbaImage> {
-        let panel = self.validate()?;
-        let palette = self.theme.palette();
-        let layout = Layout::new(self, panel, &palette);
-        let (width, height) = layout.size(self);
-        let mut image = RgbaImage::from_pixel(width, height, palette.ground.to_rgba8());
-        layout.draw(self, &palette, &mut image);
-        Ok(image)
-    }
-
     /// Checks the lists against the grid; gives the size of a panel.
-    fn validate(&self) -> Result<(u32, u32)> {
+    pub(super) fn validate(&self) -> Result<(u32, u32)> {
         let places = self.rows * self.columns;
         let Some(first) = self.panels.first() else {
             return Err(Error::value("panels", "empty", "at least one picture"));

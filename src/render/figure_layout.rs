@@ -4,10 +4,28 @@
 use image::{RgbaImage, imageops};
 
 use super::Palette;
+use super::align::Align;
 use super::figure::Figure;
 use super::font::TextStyle;
 use super::legend::fill;
-use super::text::{Align, TextBlock};
+use super::text::TextBlock;
+use crate::error::Result;
+
+impl Figure {
+    /// Draws the figure. Its size follows from the panels and the labels.
+    ///
+    /// # Errors
+    /// Names the list that does not fit the grid, or the panel of another size.
+    pub fn draw(&self) -> Result<RgbaImage> {
+        let panel = self.validate()?;
+        let palette = self.theme.palette();
+        let layout = Layout::new(self, panel, &palette);
+        let (width, height) = layout.size(self);
+        let mut image = RgbaImage::from_pixel(width, height, palette.ground.to_rgba8());
+        layout.draw(self, &palette, &mut image);
+        Ok(image)
+    }
+}
 
 /// The blocks of a figure, laid out, and the room they take. Lengths in pixels.
 pub(super) struct Layout {

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use ab_glyph::{Font, FontRef, Glyph, OutlinedGlyph, PxScale, PxScaleFont, ScaleFont, point};
 
 use super::Colour;
-use super::text::Align;
+use super::align::Align;
 
 static REGULAR: LazyLock<FontRef> =
     LazyLock::new(|| embedded(include_bytes!("../../assets/fonts/DejaVuSansCondensed.ttf")));

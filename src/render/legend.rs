@@ -4,12 +4,13 @@
 
 use image::RgbaImage;
 
+use super::align::Align;
 use super::arrows::{full_length, speed_reference};
 use super::colour_scale::{ColourScale, MOST_CONTACTS, contact_colour, map_colour};
 use super::font::TextStyle;
 use super::forces::{force_reference, full_half_width_px};
 use super::numbers::{decimal, round_below, si_prefix, ticks};
-use super::text::{Align, TextBlock};
+use super::text::TextBlock;
 use super::{Camera, Colour, ColourBy, LinkInstance, Palette, Picture, Style, cpu};
 use crate::sim::Snapshot;
 

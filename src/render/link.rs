@@ -6,15 +6,17 @@
 use glam::Vec2;
 
 use super::Colour;
-use super::cpu::{Shade, coverage, scale_colour};
+#[cfg(feature = "gpu")]
 use super::primitive::Instance;
+use super::shade::{Shade, coverage, scale_colour};
 
 /// A link thinner than a pixel is drawn one pixel wide and fainter instead.
 const LEAST_HALF_WIDTH_PX: f32 = 0.5;
 
 /// One link. Lengths in pixels; positions relative to the middle of the picture, y up.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkInstance {
     /// One end, in the middle of its round cap.
     pub start: [f32; 2],
@@ -26,6 +28,7 @@ pub struct LinkInstance {
     pub colour: Colour,
 }
 
+#[cfg(feature = "gpu")]
 impl Instance for LinkInstance {
     const NAME: &'static str = "link";
     const SHADER: &'static str = include_str!("../../shaders/link.wgsl");

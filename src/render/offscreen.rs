@@ -6,6 +6,7 @@
 use image::RgbaImage;
 
 use super::backend::Gpu;
+use super::drivers::Kind;
 use super::painter::Painter;
 use super::primitive::Frame;
 use super::{Colour, Picture};
@@ -32,7 +33,9 @@ pub(crate) struct Target {
 }
 
 impl Offscreen {
-    pub fn new(gpu: Gpu) -> Result<Self> {
+    /// Opens the strongest device of one kind.
+    pub fn open(kind: Kind) -> Result<Self> {
+        let gpu = Gpu::open(kind)?;
         let painter = Painter::new(&gpu.device, FORMAT);
         gpu.check()?;
         Ok(Self { gpu, painter, target: None })

@@ -3,8 +3,11 @@
 use image::RgbaImage;
 
 use super::Picture;
-use super::backend::{Gpu, Kind, RendererChoice};
 use super::cpu;
+use super::drivers::{Kind, RendererChoice};
+#[cfg(not(feature = "gpu"))]
+use super::no_gpu::Offscreen;
+#[cfg(feature = "gpu")]
 use super::offscreen::Offscreen;
 use crate::error::{Error, Result};
 
@@ -30,8 +33,7 @@ impl Renderer {
     /// Says which driver is missing and which package brings it. `Auto` and `Cpu` cannot fail.
     pub fn new(choice: RendererChoice) -> Result<Self> {
         let open = |kind| -> Result<Self> {
-            let offscreen = Offscreen::new(Gpu::open(kind)?)?;
-            Ok(Self { engine: Engine::Gpu(Box::new(offscreen)) })
+            Ok(Self { engine: Engine::Gpu(Box::new(Offscreen::open(kind)?)) })
         };
         let cpu = Self { engine: Engine::Cpu };
         match choice {

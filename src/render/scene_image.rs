@@ -3,11 +3,12 @@
 use image::RgbaImage;
 use image::imageops;
 
+use super::align::Align;
 use super::font::TextStyle;
 use super::layers::scene_picture;
 use super::legend::Legend;
 use super::scale_bar::ScaleBar;
-use super::text::{Align, TextBlock};
+use super::text::TextBlock;
 use super::{Camera, Renderer, Style};
 use crate::error::Result;
 use crate::sim::Snapshot;

@@ -5,33 +5,9 @@
 
 use image::RgbaImage;
 
-use super::Colour;
-use super::colour::blend_pixel;
+use super::align::Align;
+use super::colour::{Colour, blend_pixel};
 use super::font::TextStyle;
-
-/// Where a block lies relative to the point at which it is drawn, along one direction. Also how
-/// the lines of a block lie relative to each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Align {
-    /// The point is at the left or top edge.
-    #[default]
-    Start,
-    /// The point is in the middle.
-    Centre,
-    /// The point is at the right or bottom edge.
-    End,
-}
-
-impl Align {
-    /// Distance from the start of something `length` long to its point.
-    fn share(self, length: u32) -> u32 {
-        match self {
-            Self::Start => 0,
-            Self::Centre => length / 2,
-            Self::End => length,
-        }
-    }
-}
 
 /// Text laid out: a mask of pixel coverage and a colour.
 #[derive(Clone, Debug)]

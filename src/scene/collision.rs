@@ -7,6 +7,7 @@
 use glam::DVec2;
 
 use super::{Scene, View};
+use crate::sim::{Remedies, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 
@@ -24,6 +25,7 @@ pub fn collision() -> Scene {
         duration_secs: 1.5,
         physics: Physics { axes: 1, friction: false, rotation: false, cohesion: true },
         gravity: Gravity::Uniform { acceleration: DVec2::new(-2.0, 0.0) },
+        stepper: Stepper::Moreau,
         parameters: Parameters {
             bond: 3.0,
             time_step_secs: 1e-3,
@@ -32,6 +34,7 @@ pub fn collision() -> Scene {
             ..Parameters::default()
         },
         solver: SolverSettings::default(),
+        remedies: Remedies::default(),
         view: Some(View {
             min: DIAMETER * DVec2::new(-0.7, -0.7),
             max: DIAMETER * DVec2::new(2.7, 0.7),

@@ -7,6 +7,7 @@
 use glam::DVec2;
 
 use super::{Scene, View};
+use crate::sim::{Remedies, Stepper};
 use crate::solver::{Method, Ordering, SolverSettings, StopTest};
 use crate::world::{Grain, Gravity, Parameters, Physics};
 
@@ -38,6 +39,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
         duration_secs: 2.5,
         physics: Physics { axes: 1, friction: false, rotation: false, cohesion: true },
         gravity: Gravity::Attraction { centre: DVec2::ZERO, magnitude: 2.0 },
+        stepper: Stepper::Moreau,
         parameters: Parameters {
             bond: 3.0,
             time_step_secs: 5e-4,
@@ -52,8 +54,8 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             tolerance: 2.2e-3,
             max_sweeps: 20_000,
             warm_start: false,
-            ..SolverSettings::default()
         },
+        remedies: Remedies::default(),
         view: Some(View {
             min: DIAMETER * DVec2::new(-9.0, -1.2),
             max: DIAMETER * DVec2::new(5.0, 1.2),

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Rain;
 use crate::error::{Error, Result};
-use crate::sim::Simulation;
+use crate::sim::{Remedies, Settings, Simulation, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{Boundary, Disc, Grain, Grains, Gravity, Parameters, Physics, World};
 
@@ -29,11 +29,17 @@ pub struct Scene {
     pub physics: Physics,
     /// The field that accelerates the grains.
     pub gravity: Gravity,
+    /// The way to step, with its contact law.
+    #[serde(default)]
+    pub stepper: Stepper,
     /// Numbers that may change during a run.
     pub parameters: Parameters,
     /// How well each step is solved.
     #[serde(default)]
     pub solver: SolverSettings,
+    /// Remedies for known failures.
+    #[serde(default, skip_serializing_if = "Remedies::is_none")]
+    pub remedies: Remedies,
     /// What its pictures show; chosen from the grains' start where it is left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<View>,
@@ -79,6 +85,19 @@ fn one() -> f64 {
 }
 
 impl Scene {
+    /// How it is stepped.
+    pub fn settings(&self) -> Settings {
+        let Self { stepper, parameters, solver, remedies, .. } = *self;
+        Settings { stepper, parameters, solver, remedies }
+    }
+
+    /// Has it stepped otherwise.
+    pub fn set_settings(&mut self, settings: Settings) {
+        let Settings { stepper, parameters, solver, remedies } = settings;
+        (self.stepper, self.parameters, self.solver, self.remedies) =
+            (stepper, parameters, solver, remedies);
+    }
+
     /// Checks all that the scene says, but for the shapes of its boundaries.
     ///
     /// # Errors
@@ -92,9 +111,7 @@ impl Scene {
             }
         };
         self.physics.validate()?;
-        self.parameters.validate()?;
-        self.solver.validate()?;
-        self.solver.remedies.validate_under(self.parameters.law)?;
+        self.settings().validate()?;
         positive("areal_density", self.areal_density, " kg/m²")?;
         positive("duration", self.duration_secs, " s")?;
         positive("mean_diameter", self.mean_diameter, " m")?;
@@ -200,6 +217,6 @@ impl Scene {
             gravity: self.gravity,
             mean_diameter: self.mean_diameter,
         };
-        Simulation::new(world, self.physics, self.parameters, self.solver, self.gap_tolerance)
+        Simulation::new(world, self.physics, self.settings(), self.gap_tolerance)
     }
 }

@@ -3,23 +3,30 @@
 
 mod collision;
 mod config;
+mod config_file;
+mod config_options;
 mod cradle;
 mod csv_states;
 mod description;
 mod file;
+mod origin;
 mod pile;
 mod preset;
 mod rain;
 mod registry;
+mod settling;
 pub mod stability;
 
 pub use collision::collision;
 pub use config::Config;
+pub use config_options::parser_of;
 pub use cradle::{cradle, cradle_from};
 pub use csv_states::{parse_discs, read_discs, write_discs};
 pub use description::{GrainSource, Scene, View};
 pub use file::{read_scene, scene_to_toml};
+pub use origin::Origin;
 pub use pile::{paper_pile, pile_of, rough_base, tone_in_layers};
 pub use preset::Preset;
-pub use rain::{Rain, Settling, settle, walls};
+pub use rain::Rain;
 pub use registry::{SCENES, SceneGroup, SceneInfo, built_in, scene_names};
+pub use settling::{Settling, settle, walls};

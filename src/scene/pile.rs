@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
-use super::{GrainSource, Rain, Scene, csv_states};
+use super::{Rain, Scene, csv_states};
 use crate::error::Result;
+use crate::sim::{Remedies, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 
@@ -44,6 +45,7 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
         duration_secs: 1.0,
         physics: Physics::FULL,
         gravity: Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) },
+        stepper: Stepper::Moreau,
         parameters: Parameters {
             bond: 20.0,
             time_step_secs: 1e-3,
@@ -52,6 +54,7 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
             ..Parameters::default()
         },
         solver: SolverSettings::default(),
+        remedies: Remedies::default(),
         view: None,
         source: None,
         boundaries: Vec::new(),
@@ -74,18 +77,5 @@ pub fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
     for grain in grains {
         let layer = (grain.position.y / (LAYER_IN_DIAMETERS * diameter)).floor() as i64;
         grain.tone = LAYER_TONES[layer.rem_euclid(LAYER_TONES.len() as i64) as usize];
-    }
-}
-
-impl GrainSource {
-    /// The grains, read or made.
-    ///
-    /// # Errors
-    /// Where the file cannot be read, or a value is outside its range.
-    pub fn grains(&self) -> Result<Vec<Grain>> {
-        match self {
-            Self::Csv { path } => csv_states::read_discs(path),
-            Self::Rain(rain) => super::settle(rain, |_| true),
-        }
     }
 }

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Scene;
-use crate::solver::{Method, Remedies, SolverSettings, StopTest};
-use crate::world::Parameters;
+use crate::sim::{Remedies, Settings};
+use crate::solver::{Method, SolverSettings, StopTest};
 
 /// Gap below which grains touch, in d: contacts that a step opens by its rounding live on.
 const GAP_TOLERANCE: f64 = 1e-3;
@@ -17,7 +17,7 @@ const MAX_SWEEPS: u32 = 5_000;
 const MAX_TRAVEL: f64 = 0.25;
 
 /// Each for a failure of its own. Fast grains are cut into pieces of a step and not looked ahead for,
-/// which would cost them their bounce (`sim::speculative`).
+/// which would cost them their bounce (`sim::remedies::speculative`).
 const ALL_REMEDIES: Remedies = Remedies {
     push_out: true,
     max_travel: MAX_TRAVEL,
@@ -38,22 +38,25 @@ impl Preset {
     /// Changes a scene.
     pub fn apply(self, scene: &mut Scene) {
         scene.gap_tolerance = scene.gap_tolerance.max(GAP_TOLERANCE * scene.mean_diameter);
-        self.apply_to_settings(&mut scene.parameters, &mut scene.solver);
+        let mut settings = scene.settings();
+        self.apply_to_settings(&mut settings);
+        scene.set_settings(settings);
     }
 
     /// Changes what can be changed during a run.
-    pub fn apply_to_settings(self, parameters: &mut Parameters, solver: &mut SolverSettings) {
+    pub fn apply_to_settings(self, settings: &mut Settings) {
         let Self::Robust = self;
-        parameters.restitution_threshold =
-            parameters.restitution_threshold.max(RESTITUTION_THRESHOLD);
-        *solver = SolverSettings {
+        let threshold = &mut settings.parameters.restitution_threshold;
+        *threshold = threshold.max(RESTITUTION_THRESHOLD);
+        settings.solver = SolverSettings {
             method: Method::Newton,
             stop: StopTest::Residual,
             tolerance: TOLERANCE,
             max_sweeps: MAX_SWEEPS,
             warm_start: true,
-            remedies: ALL_REMEDIES.under(parameters.law),
-            ..*solver
+            ..settings.solver
         };
+        settings.remedies = ALL_REMEDIES;
+        *settings = settings.with_remedies_taken();
     }
 }

@@ -4,10 +4,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::{Observables, Settings};
 use crate::contact::Feature;
-use crate::sim::Observables;
-use crate::solver::{Method, MethodKind, SolverSettings};
-use crate::world::{Parameters, World};
+use crate::solver::Method;
+use crate::world::World;
 
 /// Steps in a row at the sweep limit that raise an alarm. Fewer: single hard steps, which do no
 /// harm, would raise it.
@@ -46,7 +46,7 @@ pub struct Alarm {
 
 impl Alarm {
     /// What happened, since when, and what is most likely to help, in one sentence.
-    pub fn message(&self, parameters: &Parameters, solver: &SolverSettings) -> String {
+    pub fn message(&self, settings: &Settings) -> String {
         let what = match self.kind {
             AlarmKind::NotFinite => "the state is no longer finite",
             AlarmKind::GrainLost => "a grain has left the world",
@@ -54,18 +54,18 @@ impl Alarm {
             AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
         };
         let Self { step, time_secs, .. } = self;
-        format!("{what} (step {step}, t = {time_secs:.4} s): {}", self.advice(parameters, solver))
+        format!("{what} (step {step}, t = {time_secs:.4} s): {}", self.advice(settings))
     }
 
     /// The change that is most likely to help.
-    fn advice(&self, parameters: &Parameters, solver: &SolverSettings) -> String {
-        let scheme = matches!(solver.method.kind(), MethodKind::Scheme(_));
+    fn advice(&self, settings: &Settings) -> String {
+        let Settings { stepper, parameters, solver, .. } = settings;
         let smaller = format!("try a time step below {} s", parameters.time_step_secs);
         match self.kind {
-            AlarmKind::NotFinite if scheme && solver.substeps > 0 => {
+            AlarmKind::NotFinite if stepper.reads("substeps") && parameters.substeps > 0 => {
                 format!(
                     "try more than {} substeps, or 0 for as many as are stable",
-                    solver.substeps
+                    parameters.substeps
                 )
             }
             AlarmKind::NotFinite | AlarmKind::GrainLost | AlarmKind::Overlap => smaller,

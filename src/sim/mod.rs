@@ -1,29 +1,32 @@
 //! The step, what it measures, and what it shows.
 
 mod alarm;
-mod bonds;
-mod bounces;
-mod detection;
+mod check;
 pub mod live;
 mod observables;
 mod pull;
-mod push_out;
-mod range_step;
-mod schemes;
-mod shocks;
+mod remedies;
+mod run;
+mod settings;
 mod simulation;
 mod snapshot;
-mod speculative;
-mod step;
+mod state;
+mod steppers;
+mod stepping;
 mod tally;
-mod travel;
+mod views;
+mod visits;
 mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
 pub use observables::Observables;
 pub use pull::Pull;
-pub use schemes::SpringDashpot;
+pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};
+pub use run::RunEnding;
+pub use settings::Settings;
 pub use simulation::Simulation;
 pub use snapshot::{ContactView, GrainView, Snapshot, Surroundings};
-pub use step::ProblemVisitor;
+pub use steppers::{SpringDashpot, Stepper, StepperInfo};
+pub use stepping::{Advance, BondEnergies, Outcome, Stage};
 pub use tally::Tally;
+pub use visits::ProblemVisitor;

@@ -5,45 +5,35 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::alarm::Watch;
-use super::snapshot::{ContactView, GrainView, Snapshot, Surroundings};
+use super::remedies::max_travel;
+use super::snapshot::Surroundings;
+use super::state::{SKIN_IN_DIAMETERS, State};
+use super::steppers::{Memory, Stepper};
+use super::stepping::Advance;
+use super::visits::{ProblemVisitor, Show, Start, Step};
 use super::walls::Walls;
-use super::{Alarm, Observables, ProblemVisitor, Pull, bonds, schemes, step, travel};
-use crate::contact::{Candidates, ContactList, Feature, Reach};
+use super::{Alarm, Observables, Pull, Settings};
+use crate::contact::{Candidates, ContactList, Reach};
 use crate::error::{Error, Result};
-use crate::solver::{Method, Problems, SolverSettings};
+use crate::solver::{ModelParts, Slots, SolverSettings};
 use crate::world::{Gravity, Parameters, Physics, World};
-
-/// Skin of the candidate search, in units of d. Smaller: the list is built more often; larger: more
-/// pairs are looked at in vain. Does not change any result.
-const SKIN_IN_DIAMETERS: f64 = 0.2;
 
 /// A world in motion.
 ///
 /// Cloning it gives a second simulation that goes on bitwise as the first one would.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    pub(super) world: World,
-    pub(super) physics: Physics,
-    pub(super) parameters: Parameters,
-    pub(super) solver: SolverSettings,
-    pub(super) candidates: Candidates,
-    pub(super) contacts: ContactList,
-    pub(super) problems: Problems,
-    /// Of the law `range`.
-    pub(super) bonds: bonds::Workspace,
-    pub(super) observables: Observables,
+    pub(super) state: State,
+    settings: Settings,
+    slots: Slots,
+    memory: Memory,
+    observables: Observables,
     /// Σ y_i(0), m, of eq. 11.
-    pub(super) initial_heights: f64,
-    /// Δt of the impulses in `contacts`, s.
-    pub(super) time_step_of_impulses_secs: f64,
-    /// The method of the last step: the contacts' memories are its own.
-    pub(super) method_of_memories: Option<Method>,
-    /// A spring on one grain, from the next step on.
-    pub(super) pull: Option<Pull>,
-    /// Walls that move.
-    pub(super) walls: Walls,
+    initial_heights: f64,
+    /// The way that the last step was taken: the contacts' memories are its own.
+    last_stepper: Option<Stepper>,
     watch: Watch,
-    surroundings: Arc<Surroundings>,
+    pub(super) surroundings: Arc<Surroundings>,
 }
 
 impl Simulation {
@@ -51,17 +41,15 @@ impl Simulation {
     /// for rounding alone.
     ///
     /// # Errors
-    /// Names the first field that is outside its range.
+    /// Names the first field that is outside its range, or that does not go with the others.
     pub fn new(
         world: World,
         physics: Physics,
-        parameters: Parameters,
-        solver: SolverSettings,
+        settings: Settings,
         gap_tolerance: f64,
     ) -> Result<Self> {
         physics.validate()?;
-        parameters.validate()?;
-        solver.validate()?;
+        settings.validate()?;
         let diameter = world.mean_diameter;
         if !(diameter > 0.0 && diameter.is_finite()) {
             return Err(Error::value("mean_diameter", diameter, "a finite length > 0 m"));
@@ -84,23 +72,24 @@ impl Simulation {
         });
         let mut simulation = Self {
             initial_heights: world.grains.positions.iter().map(|position| position.y).sum(),
-            walls: Walls::default(),
             watch: Watch::new(&world, candidates.features()),
-            world,
-            physics,
-            parameters,
-            solver,
-            candidates,
-            contacts: ContactList::default(),
-            problems: Problems::default(),
-            bonds: bonds::Workspace::default(),
+            state: State {
+                world,
+                physics,
+                candidates,
+                contacts: ContactList::default(),
+                walls: Walls::default(),
+                pull: None,
+                time_step_of_impulses_secs: settings.parameters.time_step_secs,
+            },
+            settings,
+            slots: Slots::default(),
+            memory: Memory::default(),
             observables: Observables::default(),
-            time_step_of_impulses_secs: parameters.time_step_secs,
-            method_of_memories: None,
-            pull: None,
+            last_stepper: None,
             surroundings,
         };
-        step::measure_start(&mut simulation);
+        simulation.observe_start();
         Ok(simulation)
     }
 
@@ -110,95 +99,154 @@ impl Simulation {
     /// [`Error::NonFinite`] where a position or velocity is no longer a number; the state is then
     /// left as it is, for looking at.
     pub fn step(&mut self) -> Result<&Observables> {
-        match travel::pieces(self) {
-            1 => step::take(self)?,
-            pieces => travel::take(self, pieces)?,
+        self.become_of(Some(self.settings.stepper));
+        let mut memory = std::mem::take(&mut self.memory);
+        let pieces = max_travel::pieces(&self.state, &self.settings);
+        self.take_step(pieces, &mut memory);
+        self.memory = memory;
+        self.look()
+    }
+
+    /// Takes one step in a way of your own, in place of the settings' stepper.
+    ///
+    /// # Errors
+    /// As [`Simulation::step`].
+    pub fn step_by(&mut self, own: &mut impl Advance) -> Result<&Observables> {
+        self.become_of(None);
+        self.take_step(1, own);
+        self.look()
+    }
+
+    /// The contacts' memories are of one way to step alone.
+    fn become_of(&mut self, stepper: Option<Stepper>) {
+        if self.last_stepper != stepper {
+            self.state.contacts.forget();
+            self.last_stepper = stepper;
         }
-        let finite = self.is_finite();
-        self.watch.look(&self.world, self.candidates.features(), &self.observables, finite);
+    }
+
+    fn take_step(&mut self, pieces: u32, advance: &mut impl Advance) {
+        let Self { state, settings, slots, observables, initial_heights, .. } = self;
+        let parts = ModelParts::leanest(state.physics, &settings.parameters);
+        let initial_heights = *initial_heights;
+        let step = Step { state, settings, pieces, advance, observables, initial_heights };
+        slots.visit(parts, step);
+    }
+
+    fn look(&mut self) -> Result<&Observables> {
+        let finite = self.state.is_finite();
+        let State { world, candidates, .. } = &self.state;
+        self.watch.look(world, candidates.features(), &self.observables, finite);
         if finite {
             return Ok(&self.observables);
         }
-        let Parameters { bond, time_step_secs, restitution, friction, .. } = self.parameters;
-        Err(Error::NonFinite {
-            step: self.observables.step,
-            time_secs: self.observables.time_secs,
-            bond,
-            time_step_secs,
-            restitution,
-            friction,
-        })
+        let Observables { step, time_secs, .. } = self.observables;
+        let Parameters { bond, time_step_secs, restitution, friction, .. } =
+            self.settings.parameters;
+        let failure =
+            Error::NonFinite { step, time_secs, bond, time_step_secs, restitution, friction };
+        Err(failure)
     }
 
-    /// Shows the problem of the next step, as its method would get it, to `visitor`; this simulation
-    /// stays as it is.
+    /// Measures the initial state.
+    fn observe_start(&mut self) {
+        let Self { state, settings, slots, memory, observables, initial_heights, .. } = self;
+        let parts = ModelParts::leanest(state.physics, &settings.parameters);
+        *observables = slots
+            .visit(parts, Start { state, settings, memory, initial_heights: *initial_heights });
+    }
+
+    /// Shows the first problem of the next step, as its method would get it, to `visitor`: that of the
+    /// first piece where the step is cut, with its shocks passed where they are solved apart. This
+    /// simulation stays as it is.
     pub fn next_problem<V: ProblemVisitor>(&self, visitor: V) -> V::Output {
-        step::show_problem(&mut self.clone(), visitor)
-    }
-
-    pub(super) fn is_finite(&self) -> bool {
-        let grains = &self.world.grains;
-        // A sum is finite only where every term is (or where an overflow is close enough to count).
-        let total = |vectors: &[DVec2]| vectors.iter().sum::<DVec2>().is_finite();
-        total(&grains.positions)
-            && total(&grains.velocities)
-            && grains.angular_velocities.iter().sum::<f64>().is_finite()
+        let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
+        let parts = ModelParts::leanest(state.physics, &settings.parameters);
+        let pieces = max_travel::pieces(&state, &settings);
+        let piece = settings.over(settings.parameters.time_step_secs / f64::from(pieces));
+        let (state, memory) = (&mut state, &mut memory);
+        slots.visit(parts, Show { state, memory, settings: &piece, visitor })
     }
 
     /// The world as it is now.
     pub fn world(&self) -> &World {
-        &self.world
+        &self.state.world
     }
 
     /// The contacts of the last step.
     pub fn contacts(&self) -> &ContactList {
-        &self.contacts
+        &self.state.contacts
     }
 
     /// The physics that this simulation computes.
     pub fn physics(&self) -> Physics {
-        self.physics
+        self.state.physics
+    }
+
+    /// How the next step is taken.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The parameters of the next step.
     pub fn parameters(&self) -> &Parameters {
-        &self.parameters
+        &self.settings.parameters
+    }
+
+    /// How well the next step is solved.
+    pub fn solver(&self) -> &SolverSettings {
+        &self.settings.solver
+    }
+
+    /// Changes the settings from the next step on.
+    ///
+    /// # Errors
+    /// Names the first one outside its range, or that does not go with the others, and changes none.
+    pub fn change(&mut self, settings: Settings) -> Result<()> {
+        settings.validate()?;
+        self.settings = settings;
+        Ok(())
     }
 
     /// Changes the parameters from the next step on.
     ///
     /// # Errors
-    /// Names the first one outside its range, and changes none.
+    /// As [`Self::change`].
     pub fn set_parameters(&mut self, parameters: Parameters) -> Result<()> {
-        parameters.validate()?;
-        self.parameters = parameters;
-        Ok(())
+        self.change(Settings { parameters, ..self.settings })
     }
 
-    /// The solver settings of the next step.
-    pub fn solver(&self) -> &SolverSettings {
-        &self.solver
-    }
-
-    /// Changes the solver settings from the next step on.
+    /// Changes how well steps are solved, from the next one on.
     ///
     /// # Errors
-    /// Names the first one outside its range, and changes none.
+    /// As [`Simulation::change`].
     pub fn set_solver(&mut self, solver: SolverSettings) -> Result<()> {
-        solver.validate()?;
-        self.solver = solver;
-        Ok(())
+        self.change(Settings { solver, ..self.settings })
+    }
+
+    /// The spring that acts on a grain in the next step, if there is one.
+    pub fn pull(&self) -> Option<Pull> {
+        self.state.pull
+    }
+
+    /// Ties a spring to a grain from the next step on, or takes it away. A spring to a grain that
+    /// does not exist is none.
+    pub fn set_pull(&mut self, pull: Option<Pull>) {
+        let exists = |pull: &Pull| (pull.grain as usize) < self.state.world.grains.len();
+        self.state.pull = pull.filter(|pull| exists(pull) && pull.target.is_finite());
     }
 
     /// Substeps of the next step: 1 where its problem is solved as a whole.
     pub fn substeps(&self) -> u32 {
-        schemes::substeps(self)
+        let Settings { stepper, parameters, .. } = &self.settings;
+        (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)
     }
 
     /// The longest substep, s, with which the springs of the next step are surely stable; none
     /// where there are no springs.
     pub fn critical_time_step_secs(&self) -> Option<f64> {
-        schemes::critical_time_step_secs(self)
+        let Settings { stepper, parameters, .. } = &self.settings;
+        (stepper.info().critical_time_step_secs)(&self.state.world, self.state.physics, parameters)
     }
 
     /// What the last step measured; before the first step, the initial state.
@@ -221,107 +269,31 @@ impl Simulation {
     /// # Errors
     /// Where it is the only one.
     pub fn remove_last_grain(&mut self) -> Result<()> {
-        let last = self.world.grains.len() - 1;
+        let last = self.state.world.grains.len() - 1;
         if last == 0 {
             return Err(Error::value("grains", 1, "more than one where one is taken away"));
         }
-        self.initial_heights -= self.world.grains.positions[last].y;
-        self.world.grains.truncate(last);
-        self.contacts.remove_body(last as u32);
-        let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
-        let gap_tolerance = self.candidates.gap_tolerance();
-        self.candidates = Candidates::new(&self.world, Reach { skin, gap_tolerance })?;
-        self.pull = self.pull.filter(|pull| (pull.grain as usize) < last);
-        Ok(())
+        self.initial_heights -= self.state.world.grains.positions[last].y;
+        self.state.remove_last_grain()
     }
 
     /// Sets all velocities to zero and forgets the contacts' impulses.
     pub fn bring_to_rest(&mut self) {
-        self.world.grains.velocities.fill(DVec2::ZERO);
-        self.world.grains.angular_velocities.fill(0.0);
-        self.contacts.scale_impulses(0.0);
-        self.contacts.forget();
+        let State { world, contacts, .. } = &mut self.state;
+        world.grains.velocities.fill(DVec2::ZERO);
+        world.grains.angular_velocities.fill(0.0);
+        contacts.scale_impulses(0.0);
+        contacts.forget();
     }
 
     /// Multiplies all velocities, as a drag during the last step would have.
     pub fn scale_velocities(&mut self, factor: f64) {
-        for velocity in &mut self.world.grains.velocities {
+        let grains = &mut self.state.world.grains;
+        for velocity in &mut grains.velocities {
             *velocity *= factor;
         }
-        for spin in &mut self.world.grains.angular_velocities {
+        for spin in &mut grains.angular_velocities {
             *spin *= factor;
         }
-    }
-
-    /// This moment, for pictures.
-    pub fn snapshot(&self) -> Snapshot {
-        let grains = &self.world.grains;
-        let mut views: Vec<GrainView> = (0..grains.len())
-            .map(|index| GrainView {
-                position: grains.positions[index],
-                radius: grains.radii[index],
-                angle: grains.angles[index],
-                velocity: grains.velocities[index],
-                angular_velocity: grains.angular_velocities[index],
-                overlap: 0.0,
-                force: 0.0,
-                coordination: 0,
-                tone: grains.tones[index],
-            })
-            .collect();
-        let per_time_step = 1.0 / self.time_step_of_impulses_secs;
-        let list = self.contacts.contacts().iter().zip(self.contacts.impulses());
-        let shown = list.enumerate().filter(|&(index, _)| self.contacts.is_in_touch(index));
-        let contacts = shown.map(|(_, (contact, impulse))| {
-            let normal_force = impulse.normal * per_time_step;
-            let other = contact.other as usize;
-            for index in [contact.grain as usize, other] {
-                if let Some(view) = views.get_mut(index) {
-                    view.overlap = view.overlap.max(-contact.gap);
-                    view.force += normal_force.abs();
-                    view.coordination += 1;
-                }
-            }
-            ContactView {
-                grain: contact.grain,
-                other_grain: (other < grains.len()).then_some(contact.other),
-                from: grains.positions[contact.grain as usize],
-                to: self.far_end(contact.grain as usize, other),
-                normal_force,
-                tangential_force: impulse.tangential * per_time_step,
-                gap: contact.gap,
-            }
-        });
-        let contacts = contacts.collect();
-        Snapshot {
-            observables: self.observables,
-            grains: views,
-            contacts,
-            surroundings: self.surroundings(),
-        }
-    }
-
-    /// What no grain moves, where it is now.
-    fn surroundings(&self) -> Arc<Surroundings> {
-        if self.candidates.pistons().is_empty() {
-            return Arc::clone(&self.surroundings);
-        }
-        let boundaries = self.world.boundaries.clone();
-        Arc::new(Surroundings { boundaries, ..Surroundings::clone(&self.surroundings) })
-    }
-
-    /// Centre of another disc, or the nearest point of another shape, m.
-    fn far_end(&self, grain: usize, other: usize) -> DVec2 {
-        let grains = &self.world.grains;
-        if let Some(&centre) = grains.positions.get(other) {
-            return centre;
-        }
-        let fixed = other - grains.len();
-        if let Some(disc) = self.world.fixed_discs.get(fixed) {
-            return disc.position;
-        }
-        let feature: &Feature = &self.candidates.features()[fixed - self.world.fixed_discs.len()];
-        let centre = grains.positions[grain];
-        feature.distance(centre).map_or(centre, |(normal, distance)| centre - distance * normal)
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::Observables;
+use super::observables::Observables;
 use crate::world::{Boundary, Disc};
 
 /// One moment of a run.

@@ -5,13 +5,12 @@
 
 use glam::DVec2;
 
-use super::Simulation;
-use crate::contact::{Candidates, Contact};
+use crate::contact::{Candidates, Contact, Numbering, Other};
 use crate::world::World;
 
 /// The walls that move in the present step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Walls {
+pub(crate) struct Walls {
     moving: Vec<Wall>,
 }
 
@@ -53,9 +52,8 @@ impl Walls {
         if self.moving.is_empty() {
             return 0.0;
         }
-        let first = world.grains.len() + world.fixed_discs.len();
-        let is_other = |wall: &&Wall| first + wall.feature == contact.other as usize;
-        let wall = self.moving.iter().find(is_other);
+        let Other::Feature(feature) = Numbering::of(world).other(contact.other) else { return 0.0 };
+        let wall = self.moving.iter().find(|wall| wall.feature == feature);
         wall.map_or(0.0, |wall| wall.velocity.dot(contact.normal))
     }
 
@@ -67,14 +65,11 @@ impl Walls {
         let ways = self.moving.iter().map(|wall| (wall.feature, secs * wall.velocity));
         candidates.shift_features(ways);
     }
-}
 
-impl Simulation {
-    /// Speed of the fastest wall in the next step, m/s.
-    pub(super) fn fastest_wall(&self) -> f64 {
-        let secs = self.parameters.time_step_secs;
-        let walls = self.candidates.pistons().iter();
-        let speeds = walls.map(|&(wall, _)| self.world.boundaries[wall].velocity(secs).length());
+    /// Speed of the fastest wall in a next step of that length, m/s.
+    pub fn fastest_in(world: &World, candidates: &Candidates, secs: f64) -> f64 {
+        let walls = candidates.pistons().iter();
+        let speeds = walls.map(|&(wall, _)| world.boundaries[wall].velocity(secs).length());
         speeds.fold(0.0, f64::max)
     }
 }

@@ -1,44 +1,31 @@
 //! One step's contact problem, the methods that solve it, and the residual that judges them all.
+//!
+//! * `problem/`: the problem's data, how it is set up, and its residual.
+//! * `methods/`: what solves it, a file or folder a method, and the registry of all.
+//! * `linear/`: the sparse factorisation that some of them use.
+//! * `delassus/`: problems in the Delassus operator alone.
 
-mod admm;
-mod apgd;
-mod auto;
 mod delassus;
-mod impacts;
-mod iterate;
-mod jacobi;
-mod kinematics;
-mod lane_blocks;
-mod measure;
-mod method;
-mod model;
-mod newton;
-mod nncg;
-mod nsgs;
-mod nsgs_parallel;
-mod order;
-mod prepare;
+mod linear;
+mod methods;
+mod ordering;
 mod problem;
-mod remedies;
 mod settings;
-mod stall;
-mod system;
-mod update;
+mod slots;
 
-pub use auto::picked;
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
-pub use impacts::{Bounces, follow_impacts, gains_energy, scale_rebounds};
-pub use kinematics::{Kinematics, Line, LineBody, Plane, PlaneBody, SpinningPlane};
-pub use measure::{Measures, Motion, for_each_row, measure, relative_velocities, residual};
-pub use method::{
-    METHODS, Method, MethodInfo, MethodKind, Scheme, SolveReport, solve, solve_system,
-};
-pub use model::{Model, ModelParts, ModelVisitor, StepModel, visit_leanest, visit_model};
-pub use order::Ordering;
-pub use problem::{Problems, Row, StepProblem};
-pub use remedies::Remedies;
-pub use settings::{MAX_SUBSTEPS, SolverSettings, StopTest};
-pub use system::{BodySystem, ContactSystem, Pairs, Vectors};
-
 #[doc(hidden)]
-pub use nsgs::sweep;
+pub use methods::sweep;
+pub use methods::{
+    BodySystem, ContactSystem, METHODS, Memory, Method, MethodInfo, MethodOrder, Pairs,
+    SolveReport, Vectors, picked, solve, solve_system,
+};
+pub use ordering::Ordering;
+pub use problem::prepare::{Approach, ProblemNumbers};
+pub use problem::{
+    Kinematics, Line, LineBody, Measures, Model, ModelParts, ModelVisitor, Motion, Plane,
+    PlaneBody, Row, SpinningPlane, StepModel, StepProblem, for_each_row, measure,
+    relative_velocities, residual,
+};
+pub use settings::{SolverChanges, SolverSettings, StopTest};
+pub use slots::{Slot, SlotVisitor, Slots, visit_model};

@@ -1,5 +1,7 @@
 //! One varied parameter of a study: a list of values or a range.
 
+use std::fmt::Display;
+
 use toml::Value;
 
 use crate::error::{Error, Result};
@@ -74,28 +76,10 @@ fn of_range(field: &str, range: &toml::Table) -> Result<Vec<Value>> {
         })
     };
     let (from, to) = (bound("from")?, bound("to")?);
-    let refuse_order = |least: &str| {
-        Err(Error::value(format!("{field}.to"), to, format!("{least} from, which is {from}")))
-    };
-    let Some(count) = range.get("count") else {
-        return match (range.get("from"), range.get("to")) {
-            (Some(Value::Integer(from)), Some(Value::Integer(to))) => {
-                if to < from {
-                    return refuse_order("at least");
-                }
-                if to.saturating_sub(*from) >= MOST_VALUES {
-                    let allowed = format!("no more than {MOST_VALUES} above from");
-                    return Err(Error::value(format!("{field}.to"), to, allowed));
-                }
-                Ok((*from..=*to).map(Value::Integer).collect())
-            }
-            _ => {
-                let allowed = "a number of values, as the bounds are not both whole numbers";
-                Err(Error::value(format!("{field}.count"), "missing", allowed))
-            }
-        };
-    };
-    let count = match count {
+    if !range.contains_key("count") {
+        return whole_numbers(field, range);
+    }
+    let count = match &range["count"] {
         Value::Integer(count @ 2..=MOST_VALUES) => *count,
         other => {
             let allowed = format!("a whole number between 2 and {MOST_VALUES}");
@@ -103,20 +87,9 @@ fn of_range(field: &str, range: &toml::Table) -> Result<Vec<Value>> {
         }
     };
     if to <= from {
-        return refuse_order("above");
+        return Err(not_above(field, "above", from, to));
     }
-    let logarithmic = match range.get("scale").and_then(Value::as_str) {
-        None if !range.contains_key("scale") => false,
-        Some("linear") => false,
-        Some("log") if from > 0.0 => true,
-        Some("log") => {
-            return Err(Error::value(format!("{field}.from"), from, "> 0 where scale is log"));
-        }
-        _ => {
-            let found = &range["scale"];
-            return Err(Error::value(format!("{field}.scale"), found, "\"linear\" or \"log\""));
-        }
-    };
+    let logarithmic = is_logarithmic(field, range, from)?;
     let value = |index: i64| {
         let share = index as f64 / (count - 1) as f64;
         let exact = match (index, logarithmic) {
@@ -128,6 +101,37 @@ fn of_range(field: &str, range: &toml::Table) -> Result<Vec<Value>> {
         Value::Float(rounded(exact))
     };
     Ok((0..count).map(value).collect())
+}
+
+/// A range that says no number of values: whole numbers one by one.
+fn whole_numbers(field: &str, range: &toml::Table) -> Result<Vec<Value>> {
+    let (Value::Integer(from), Value::Integer(to)) = (&range["from"], &range["to"]) else {
+        let allowed = "a number of values, as the bounds are not both whole numbers";
+        return Err(Error::value(format!("{field}.count"), "missing", allowed));
+    };
+    if to < from {
+        return Err(not_above(field, "at least", from, to));
+    }
+    if to.saturating_sub(*from) >= MOST_VALUES {
+        let allowed = format!("no more than {MOST_VALUES} above from");
+        return Err(Error::value(format!("{field}.to"), to, allowed));
+    }
+    Ok((*from..=*to).map(Value::Integer).collect())
+}
+
+fn not_above(field: &str, least: &str, from: impl Display, to: impl Display) -> Error {
+    Error::value(format!("{field}.to"), to, format!("{least} from, which is {from}"))
+}
+
+/// Whether values are evenly spaced in ratio.
+fn is_logarithmic(field: &str, range: &toml::Table, from: f64) -> Result<bool> {
+    let Some(scale) = range.get("scale") else { return Ok(false) };
+    match scale.as_str() {
+        Some("linear") => Ok(false),
+        Some("log") if from > 0.0 => Ok(true),
+        Some("log") => Err(Error::value(format!("{field}.from"), from, "> 0 where scale is log")),
+        _ => Err(Error::value(format!("{field}.scale"), scale, "\"linear\" or \"log\"")),
+    }
 }
 
 fn rounded(exact: f64) -> f64 {

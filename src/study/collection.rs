@@ -8,9 +8,10 @@ use rayon::prelude::*;
 use super::states::States;
 use crate::error::Result;
 use crate::output::Progress;
-use crate::scene::{Config, Rain};
+use crate::scene::{Config, Origin, Rain};
 use crate::sim::Simulation;
-use crate::solver::{Method, Ordering, Remedies, SolverSettings, StopTest};
+use crate::solver::{Method, Ordering, SolverSettings, StopTest};
+use crate::world::ParameterChanges;
 
 /// How the piles get to the steps that are collected: far better solved than any claim about a pile
 /// needs, so that a collection does not favour the errors of the methods it is to compare.
@@ -21,8 +22,6 @@ const ADVANCE: SolverSettings = SolverSettings {
     tolerance: 1e-8,
     max_sweeps: 1000,
     warm_start: true,
-    substeps: 0,
-    remedies: Remedies::NONE,
 };
 
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.
@@ -94,15 +93,19 @@ impl CollectionPlan {
         let mut configs = Vec::new();
         for (row, &bond) in self.bonds.iter().enumerate() {
             for (column, &time_step_secs) in self.time_steps_secs.iter().enumerate() {
-                configs.push(Config {
+                let origin = Origin {
                     grains: Some(self.grains),
                     box_width: Some(self.box_width_in_diameters),
                     seed: Some(self.seeds[(row + column) % self.seeds.len()]),
+                    ..Origin::default()
+                };
+                let parameters = ParameterChanges {
                     bond: Some(bond),
-                    dt: Some(time_step_secs),
+                    time_step_secs: Some(time_step_secs),
                     restitution_threshold: Some(self.restitution_threshold),
-                    ..Config::default()
-                });
+                    ..ParameterChanges::default()
+                };
+                configs.push(Config { origin, parameters, ..Config::default() });
             }
         }
         configs
@@ -134,7 +137,7 @@ pub fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Collec
     let states = States::of(states_folder.to_owned(), configs.iter())?;
     let last_secs = plan.times_secs.last().copied().unwrap_or(0.0);
     let steps_of = |time_secs: f64, config: &Config| {
-        (time_secs / config.dt.unwrap_or(f64::INFINITY)).round() as u64
+        (time_secs / config.parameters.time_step_secs.unwrap_or(f64::INFINITY)).round() as u64
     };
     let total = configs.iter().map(|config| steps_of(last_secs, config)).sum();
     let progress = Progress::new("steps to collect", total);
@@ -233,8 +236,11 @@ mod tests {
         assert!(plan.len() >= 40);
         let configs = plan.configs();
         for bond in &plan.bonds {
-            let seeds: std::collections::HashSet<_> =
-                configs.iter().filter(|c| c.bond == Some(*bond)).map(|c| c.seed).collect();
+            let seeds: std::collections::HashSet<_> = configs
+                .iter()
+                .filter(|c| c.parameters.bond == Some(*bond))
+                .map(|c| c.origin.seed)
+                .collect();
             assert!(seeds.len() > 1);
         }
     }

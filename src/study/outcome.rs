@@ -1,11 +1,13 @@
 //! What one run of a study comes to.
 
+use std::ops::ControlFlow;
+
 use serde::{Deserialize, Serialize};
 
 use super::SeriesSettings;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::sim::{Simulation, Tally};
+use crate::sim::{RunEnding, Simulation, Tally};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,9 +56,8 @@ pub fn run_to_end(
 ) -> Result<Outcome> {
     let mut simulation = scene.simulation()?;
     let time_step_secs = scene.parameters.time_step_secs;
-    let steps = (scene.duration_secs / time_step_secs).round() as u64;
+    let steps = scene.parameters.steps_in(scene.duration_secs);
     let mut tally = Tally::default();
-    let mut status = Status::Done;
     let mut rows = 0;
     // The row of a moment is that of the first step that reaches it, but for rounding.
     let mut tell = |simulation: &Simulation| {
@@ -69,17 +70,15 @@ pub fn run_to_end(
         row(simulation)
     };
     tell(&simulation)?;
-    for _ in 0..steps {
-        match simulation.step() {
-            Ok(observables) => tally.add(observables),
-            Err(Error::NonFinite { .. }) => {
-                status = Status::NotFinite;
-                break;
-            }
-            Err(error) => return Err(error),
-        }
-        tell(&simulation)?;
-    }
+    let ended = simulation.run(steps, |simulation| {
+        tally.add(simulation.observables());
+        tell(simulation)?;
+        Ok(ControlFlow::Continue(()))
+    })?;
+    let status = match ended {
+        RunEnding::NotFinite(_) => Status::NotFinite,
+        RunEnding::Done | RunEnding::Stopped => Status::Done,
+    };
     // What is not finite has no place in a table of numbers.
     let finite = |number: f64| if number.is_finite() { number } else { 0.0 };
     Ok(Outcome {

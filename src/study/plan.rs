@@ -8,7 +8,6 @@ use toml::{Table, Value};
 use super::axis;
 use crate::error::{Error, Result};
 use crate::scene::Config;
-use crate::solver::SolverSettings;
 
 /// More runs than this are a mistake rather than a wish.
 const MOST_RUNS: usize = 10_000_000;
@@ -236,20 +235,13 @@ impl PlannedRun {
     fn new(config: &Config, series: Option<&SeriesSettings>) -> Result<Self> {
         let scene = config.without_settling()?;
         let config = config.resolved(&scene);
-        let grains = config.grains.unwrap_or(scene.grains.len());
+        let grains = config.origin.grains.unwrap_or(scene.grains.len());
         if let Some(grain) = series.and_then(|series| series.grains.iter().find(|&&g| g >= grains))
         {
             return Err(Error::value("series.grains", grain, format!("below {grains}")));
         }
-        // The scene stands in for the files that it may have been read from. What came after the
-        // first studies names a run only where it is not left at its default.
-        let default = SolverSettings::default();
-        let named = Config {
-            ordering: config.ordering.filter(|&ordering| ordering != default.ordering),
-            substeps: config.substeps.filter(|&substeps| substeps != default.substeps),
-            ..config.clone()
-        };
-        let said = serde_json::to_vec(&(env!("CARGO_PKG_VERSION"), &named, &scene, series))
+        // The scene stands in for the files that it may have been read from.
+        let said = serde_json::to_vec(&(env!("CARGO_PKG_VERSION"), &config, &scene, series))
             .map_err(|error| Error::value("scene", &scene.name, error.to_string()))?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(&said);

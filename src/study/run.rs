@@ -1,8 +1,10 @@
 //! One run of a scene, with snapshots at given times.
 
+use std::ops::ControlFlow;
+
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::sim::{Observables, Simulation, Snapshot, Tally};
+use crate::sim::{Observables, RunEnding, Simulation, Snapshot, Tally};
 
 /// What a run leaves.
 #[derive(Debug)]
@@ -36,17 +38,15 @@ pub fn record(
             let allowed = format!("between 0 and the duration of {} s", scene.duration_secs);
             return Err(Error::value("times", time_secs, allowed));
         }
-        let step = (time_secs / time_step_secs).round() as u64;
-        while simulation.observables().step < step {
-            let observables = match simulation.step() {
-                Ok(observables) => observables,
-                Err(failure @ Error::NonFinite { .. }) => {
-                    return Ok(Recorded { simulation, tally, failure: Some(failure) });
-                }
-                Err(error) => return Err(error),
-            };
-            tally.add(observables);
-            after_step(observables)?;
+        let step = scene.parameters.steps_in(time_secs);
+        let steps = step.saturating_sub(simulation.observables().step);
+        let ended = simulation.run(steps, |simulation| {
+            tally.add(simulation.observables());
+            after_step(simulation.observables())?;
+            Ok(ControlFlow::Continue(()))
+        })?;
+        if let RunEnding::NotFinite(failure) = ended {
+            return Ok(Recorded { simulation, tally, failure: Some(failure) });
         }
         picture(number, simulation.snapshot())?;
     }

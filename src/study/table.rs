@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use clap::Args;
 use serde_json::Value;
 
 use super::journal::Entry;
@@ -61,7 +60,7 @@ impl RunsTable {
     /// Where a row cannot be said in CSV.
     pub fn to_csv(&self) -> Result<Vec<u8>> {
         let refuse = |error: csv::Error| Error::file("runs.csv", error);
-        let fields = config_fields();
+        let fields = Config::names();
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut names = vec!["run".to_owned(), "key".to_owned()];
         names.extend(fields.iter().cloned());
@@ -83,10 +82,4 @@ impl RunsTable {
         }
         writer.into_inner().map_err(|error| Error::file("runs.csv", error.error()))
     }
-}
-
-/// The names of all parameters, as command line and study files write them.
-fn config_fields() -> Vec<String> {
-    let command = Config::augment_args(clap::Command::new("config"));
-    command.get_arguments().filter_map(|argument| argument.get_long()).map(str::to_owned).collect()
 }

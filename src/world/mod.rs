@@ -4,11 +4,15 @@ mod boundary;
 mod grains;
 mod gravity;
 mod parameters;
+mod physics;
 
 pub use boundary::{Boundary, Disc};
 pub use grains::{Grain, Grains};
 pub use gravity::Gravity;
-pub use parameters::{ContactLaw, DEBONDING_DISTANCE, FrictionCone, Parameters, Physics};
+pub use parameters::{
+    DEBONDING_DISTANCE, FrictionCone, MAX_SUBSTEPS, ParameterChanges, Parameters,
+};
+pub use physics::Physics;
 
 /// Everything that a step reads and moves.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,126 +1,158 @@
-//! What a scene can do, and the numbers that may change between any two steps.
+//! The numbers of the contact laws and the time step, which may change between any two steps.
 
-use serde::{Deserialize, Serialize};
+use crate::error::Result;
+use crate::setting::{Group, settings, words};
 
-use crate::error::{Error, Result};
-
-/// The physics that a scene needs. A step is compiled for just that.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Physics {
-    /// 1 (all on the x axis) or 2.
-    pub axes: u8,
-    /// Whether contacts carry tangential impulses.
-    pub friction: bool,
-    /// Whether grains turn. Without friction nothing changes a disc's spin, so this asks for
-    /// friction.
-    pub rotation: bool,
-    /// Whether contacts can pull.
-    pub cohesion: bool,
-}
-
-impl Physics {
-    /// Two axes, friction, rotation and cohesion.
-    pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
-
-    /// Checks that the parts fit each other.
-    ///
-    /// # Errors
-    /// Names the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
-        match (self.axes, self.friction, self.rotation) {
-            (1 | 2, false, true) => {
-                Err(Error::value("physics.rotation", true, "false where physics.friction is false"))
-            }
-            (1, true, _) => Err(Error::value(
-                "physics.friction",
-                true,
-                "false where physics.axes is 1: a line has no tangent",
-            )),
-            (1 | 2, ..) => Ok(()),
-            (axes, ..) => Err(Error::value("physics.axes", axes, "1 or 2")),
-        }
+words! {
+    /// Which part of the normal force bounds friction (the paper leaves both readings open).
+    #[derive(Default)]
+    pub enum FrictionCone {
+        /// |T| ≤ μ (N + C₀): the cone's apex is at −C₀.
+        #[default]
+        Shifted = "shifted", "|T| ≤ μ (N + C₀): the cone's apex is at −C₀";
+        /// |T| ≤ μ max(N, 0).
+        Compressive = "compressive", "|T| ≤ μ max(N, 0)";
     }
-}
-
-/// Which part of the normal force bounds friction (the paper leaves both readings open).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "kebab-case")]
-pub enum FrictionCone {
-    /// |T| ≤ μ (N + C₀): the cone's apex is at −C₀.
-    #[default]
-    Shifted,
-    /// |T| ≤ μ max(N, 0).
-    Compressive,
-}
-
-/// How long a bond lives, and what a contact sees of its gap.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
-)]
-#[serde(rename_all = "kebab-case")]
-pub enum ContactLaw {
-    /// The paper's: a contact and its cohesion live while the gap is negative.
-    #[default]
-    Moreau,
-    /// A bond lives until it has been stretched by the debonding distance (`contact::range`).
-    Range,
-}
-
-/// Numbers that may change between any two steps.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Parameters {
-    /// Bond number: C₀ = Bond · m_ij · g (paper eq. 10).
-    pub bond: f64,
-    /// Δt, s.
-    pub time_step_secs: f64,
-    /// ρ, 0 … 1.
-    pub restitution: f64,
-    /// μ.
-    pub friction: f64,
-    /// Which part of the normal force bounds friction.
-    #[serde(default)]
-    pub cone: FrictionCone,
-    /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
-    ///
-    /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step
-    /// then has no solution. Below about 2 g·Δt it stands for no bounce that anyone could see.
-    /// Without effect under the law `range`, whose shocks have a solution always.
-    #[serde(default)]
-    pub restitution_threshold: f64,
-    /// How long a bond lives.
-    #[serde(default)]
-    pub law: ContactLaw,
-    /// δ_c of the law `range`, in mean diameters.
-    #[serde(default = "default_debonding_distance")]
-    pub debonding_distance: f64,
 }
 
 /// δ_c where none is given, in mean diameters.
 pub const DEBONDING_DISTANCE: f64 = 0.01;
 
-/// The largest δ_c, in mean diameters: within it no third grain fits between two bonded ones.
-const LARGEST_DEBONDING_DISTANCE: f64 = 0.1;
+/// More substeps than this are a mistake: a single step of a pile would take many seconds.
+pub const MAX_SUBSTEPS: u32 = 100_000;
+
+settings! {
+    /// Numbers that may change between any two steps.
+    ///
+    /// The default is the paper's scheme at Δt = 1e-3 s, with contacts that neither pull, bounce nor rub.
+    pub struct Parameters, changes ParameterChanges, heading "Physics" {
+        /// Bond number: C₀ = Bond · m_ij · g (paper eq. 10).
+        bond: f64 = 0.0, {
+            name: "bond",
+            value_name: "BOND",
+            help: "Bond number: cohesion force over effective weight, at least 0",
+            allowed: "a finite number ≥ 0",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "Bond",
+                symbol: "Bond",
+                hint: "Cohesion: how many times its own weight a contact can pull before it opens.",
+                range: [0.0, 200.0],
+                ..Control::PLAIN
+            }),
+        }
+        /// Δt, s.
+        time_step_secs: f64 = 1e-3, {
+            name: "dt",
+            value_name: "SECONDS",
+            help: "Time step, seconds",
+            allowed: "a finite number of seconds > 0",
+            holds: |value| value > 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "Δt, time step",
+                symbol: "Δt",
+                unit: "s",
+                hint: "One step of the computation; cohesion cancels the opening speed Bond·g·Δt \
+                       in each.",
+                range: [1e-5, 1e-2],
+                logarithmic: true,
+            }),
+        }
+        /// ρ, 0 … 1.
+        restitution: f64 = 0.0, {
+            name: "rho",
+            value_name: "RHO",
+            help: "Restitution, 0 to 1",
+            allowed: "between 0 and 1",
+            holds: |value| (0.0..=1.0).contains(&value),
+            control: Some(Control {
+                label: "ρ, restitution",
+                symbol: "ρ",
+                hint: "Part of the approach speed with which grains bounce apart.",
+                ..Control::PLAIN
+            }),
+        }
+        /// μ.
+        friction: f64 = 0.0, {
+            name: "mu",
+            value_name: "MU",
+            help: "Friction, at least 0",
+            allowed: "a finite number ≥ 0",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            needs: Needs::Friction,
+            control: Some(Control {
+                label: "μ, friction",
+                symbol: "μ",
+                hint: "Largest tangential force, in units of the normal force plus cohesion.",
+                range: [0.0, 2.0],
+                ..Control::PLAIN
+            }),
+        }
+        /// Which part of the normal force bounds friction.
+        #[serde(default)]
+        cone: FrictionCone = FrictionCone::Shifted, {
+            name: "cone",
+            value_name: "CONE",
+            help: "Which part of the normal force bounds friction",
+            needs: Needs::Friction,
+        }
+        /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
+        ///
+        /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step
+        /// then has no solution. Below about 2 g·Δt it stands for no bounce that anyone could see.
+        #[serde(default)]
+        restitution_threshold: f64 = 0.0, {
+            name: "restitution-threshold",
+            value_name: "X",
+            help: "Contacts slower than this many g·dt do not bounce; 0 in the paper's scheme, 2 lets \
+                   nearly every step be solved",
+            allowed: "a finite number ≥ 0",
+            holds: |value| value >= 0.0 && value.is_finite(),
+        }
+        /// δ_c of the law `range`, in mean diameters. Within the largest no third grain fits between
+        /// two bonded ones.
+        #[serde(default = "default_debonding_distance")]
+        debonding_distance: f64 = DEBONDING_DISTANCE, {
+            name: "debonding-distance",
+            value_name: "D",
+            help: "Debonding distance of the stepper range, in mean diameters",
+            allowed: "above 0 and at most 0.1 diameters",
+            holds: |value| value > 0.0 && value <= 0.1,
+            needs: Needs::Cohesion,
+            control: Some(Control {
+                label: "δc, debonding distance",
+                symbol: "δc",
+                unit: "d",
+                hint: "How far a bond is opened before it breaks, in mean diameters.",
+                range: [1e-3, 0.1],
+                logarithmic: true,
+            }),
+        }
+        /// Substeps of a stepper that cuts every step; 0 leaves their number to it.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        substeps: u32 = 0, {
+            name: "substeps",
+            value_name: "N",
+            help: "Substeps of a step; 0 takes 4 for tgs-soft, and as many as keep dem stable",
+            allowed: "at most 100000; 0 leaves it to the stepper",
+            holds: |value| value <= MAX_SUBSTEPS,
+            control: Some(Control {
+                label: "Substeps",
+                symbol: "substeps",
+                hint: "Substeps of each step; 0 takes 4 for tgs-soft, and as many as keep dem stable.",
+                range: [0.0, 100.0],
+                ..Control::PLAIN
+            }),
+        }
+    }
+}
 
 fn default_debonding_distance() -> f64 {
     DEBONDING_DISTANCE
 }
 
-impl Default for Parameters {
-    /// The paper's scheme at Δt = 1e-3 s, with contacts that neither pull, bounce nor rub.
-    fn default() -> Self {
-        Self {
-            bond: 0.0,
-            time_step_secs: 1e-3,
-            restitution: 0.0,
-            friction: 0.0,
-            cone: FrictionCone::Shifted,
-            restitution_threshold: 0.0,
-            law: ContactLaw::Moreau,
-            debonding_distance: DEBONDING_DISTANCE,
-        }
-    }
+fn is_zero(count: &u32) -> bool {
+    *count == 0
 }
 
 impl Parameters {
@@ -129,42 +161,17 @@ impl Parameters {
     /// # Errors
     /// Names the first field outside its range, its value and the range.
     pub fn validate(&self) -> Result<()> {
-        let Self {
-            bond,
-            time_step_secs,
-            restitution,
-            friction,
-            cone,
-            restitution_threshold,
-            law,
-            debonding_distance,
-        } = *self;
-        // Written so that NaN fails each of them.
-        if !(bond >= 0.0 && bond.is_finite()) {
-            return Err(Error::value("bond", bond, "a finite number ≥ 0"));
-        }
-        if !(time_step_secs > 0.0 && time_step_secs.is_finite()) {
-            return Err(Error::value("dt", time_step_secs, "a finite number of seconds > 0"));
-        }
-        if !(0.0..=1.0).contains(&restitution) {
-            return Err(Error::value("rho", restitution, "between 0 and 1"));
-        }
-        if !(friction >= 0.0 && friction.is_finite()) {
-            return Err(Error::value("mu", friction, "a finite number ≥ 0"));
-        }
-        if !(restitution_threshold >= 0.0 && restitution_threshold.is_finite()) {
-            let field = "restitution-threshold";
-            return Err(Error::value(field, restitution_threshold, "a finite number ≥ 0"));
-        }
-        if !(debonding_distance > 0.0 && debonding_distance <= LARGEST_DEBONDING_DISTANCE) {
-            let allowed = format!("above 0 and at most {LARGEST_DEBONDING_DISTANCE} diameters");
-            return Err(Error::value("debonding-distance", debonding_distance, allowed));
-        }
-        // In the compressive cone the sweep needs the capture speed, which differs between contacts.
-        if law == ContactLaw::Range && cone == FrictionCone::Compressive {
-            return Err(Error::value("cone", "compressive", "shifted where law is range"));
-        }
-        Ok(())
+        self.validate_each()
+    }
+
+    /// The same numbers with another Δt, s.
+    pub fn over(self, time_step_secs: f64) -> Self {
+        Self { time_step_secs, ..self }
+    }
+
+    /// Steps that a simulated time takes.
+    pub fn steps_in(&self, secs: f64) -> u64 {
+        (secs / self.time_step_secs).round() as u64
     }
 
     /// ρ v_n^{n−1}, m/s, of a contact with that normal velocity at the beginning of the step.

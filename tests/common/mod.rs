@@ -4,13 +4,14 @@
 #![allow(dead_code, reason = "every test binary uses its own part of this")]
 
 pub mod natural_map;
+pub mod schemes;
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use slump::scene::{Scene, rough_base};
-use slump::sim::Simulation;
-use slump::solver::{Method, Ordering, SolverSettings, StopTest};
+use slump::sim::{Remedies, Simulation, Stepper};
+use slump::solver::{METHODS, Method, Ordering, SolverSettings, StopTest};
 use slump::world::{Disc, Grain, Gravity, Parameters, Physics};
 
 /// g of the scenes made here, m/s².
@@ -28,6 +29,17 @@ pub fn parameters(bond: f64, time_step_secs: f64, restitution: f64, friction: f6
     Parameters { bond, time_step_secs, restitution, friction, ..Parameters::default() }
 }
 
+/// δ_c of [`range`], in mean diameters.
+pub const DISTANCE_IN_DIAMETERS: f64 = 0.01;
+
+/// Parameters for the stepper `range`, without restitution.
+pub fn range(bond: f64, time_step_secs: f64) -> Parameters {
+    Parameters {
+        debonding_distance: DISTANCE_IN_DIAMETERS,
+        ..parameters(bond, time_step_secs, 0.0, 0.5)
+    }
+}
+
 /// As far as rounding allows.
 pub fn tight() -> SolverSettings {
     to_residual(1e-12)
@@ -42,7 +54,6 @@ pub fn to_residual(tolerance: f64) -> SolverSettings {
         tolerance,
         max_sweeps: 20_000,
         warm_start: true,
-        ..SolverSettings::default()
     }
 }
 
@@ -61,14 +72,25 @@ pub fn scene(
         duration_secs: 1.0,
         physics,
         gravity: Gravity::Uniform { acceleration: gravity },
+        stepper: Stepper::Moreau,
         parameters,
         solver: tight(),
+        remedies: Remedies::default(),
         view: None,
         source: None,
         boundaries: Vec::new(),
         fixed_discs: Vec::new(),
         grains,
     }
+}
+
+/// Every stepper, with every method where it takes one.
+pub fn every_way() -> Vec<(Stepper, Method)> {
+    let of = |&stepper: &Stepper| {
+        let count = if stepper.uses_method() { METHODS.len() } else { 1 };
+        METHODS.iter().take(count).map(move |info| (stepper, info.method))
+    };
+    Stepper::ALL.iter().flat_map(of).collect()
 }
 
 /// A simulation of a scene that has no fault.

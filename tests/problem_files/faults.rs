@@ -35,22 +35,28 @@ fn solved(text: &str) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
 }
 
+/// A problem, spoilt.
+fn spoilt(mut problem: serde_json::Value, change: fn(&mut serde_json::Value)) -> String {
+    change(&mut problem);
+    problem.to_string()
+}
+
+/// Fails unless each of the texts is refused in one sentence that holds what is expected.
+fn assert_refused(cases: &[(String, &str)]) {
+    for (text, expected) in cases {
+        let (code, said) = solved(text);
+        assert_eq!(code, Some(2), "{expected}: {said}");
+        assert_eq!(said.trim_end().lines().count(), 1, "more than a sentence: {said}");
+        assert!(said.contains(expected), "\"{expected}\" is not in: {said}");
+        assert!(said.contains("problem.json"), "{said}");
+    }
+}
+
 #[test]
-fn a_faulty_file_is_refused_in_one_sentence() {
-    let json = |change: fn(&mut serde_json::Value)| {
-        let mut value = sound();
-        change(&mut value);
-        value.to_string()
-    };
-    let whole = std::fs::read_to_string(folder().join("bond_0_smooth.json")).expect("a problem");
-    let bodies = |change: fn(&mut serde_json::Value)| {
-        let mut value: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
-        change(&mut value);
-        value.to_string()
-    };
-    let siconos = std::fs::read_to_string(folder().join(SICONOS)).expect("a problem");
-    let siconos_with = |from: &str, to: &str| siconos.replacen(from, to, 1);
-    let cases: Vec<(String, &str)> = vec![
+fn a_faulty_problem_is_refused_in_one_sentence() {
+    assert_eq!(solved(&sound().to_string()).0, Some(0), "the sound problem is solved");
+    let json = |change| spoilt(sound(), change);
+    assert_refused(&[
         (json(|p| p["nc"] = 0.into()), "nc is 0"),
         (json(|p| p["nc"] = 3.into()), "the length of q is 4, but must be 6"),
         (json(|p| p["q"] = serde_json::json!([1.0])), "the length of q is 1"),
@@ -85,6 +91,14 @@ fn a_faulty_file_is_refused_in_one_sentence() {
         (sound().to_string()[..60].to_owned(), "EOF"),
         (String::new(), "the dimension is missing"),
         ("[1, 2]".into(), "the dimension is \"[1, 2]\""),
+    ]);
+}
+
+#[test]
+fn a_faulty_file_of_siconos_is_refused_in_one_sentence() {
+    let siconos = std::fs::read_to_string(folder().join(SICONOS)).expect("a problem");
+    let siconos_with = |from: &str, to: &str| siconos.replacen(from, to, 1);
+    assert_refused(&[
         (siconos_with("2\n667", "3\n667"), "the dimension is 3, but must be 2"),
         (siconos_with("667\n2\n", "667\n0\n"), "the kind of storage is 0"),
         (siconos_with("\n1334\n", "\n1333\n"), "the number of rows is 1333"),
@@ -93,6 +107,15 @@ fn a_faulty_file_is_refused_in_one_sentence() {
         (siconos_with("649 : -454.43", "648 : -454.43"), "W is symmetric"),
         (siconos[..20_000].to_owned(), "of W"),
         (siconos[..siconos.len() - 100].to_owned(), "mu["),
+    ]);
+}
+
+#[test]
+fn bodies_that_are_not_those_of_the_problem_are_refused_in_one_sentence() {
+    let whole = std::fs::read_to_string(folder().join("bond_0_smooth.json")).expect("a problem");
+    let whole: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
+    let bodies = |change| spoilt(whole.clone(), change);
+    assert_refused(&[
         (bodies(|p| p["bodies"]["mass"][0] = 1.0.into()), "bodies.inertia[0]"),
         (bodies(|p| p["bodies"]["pair"][0][0] = 900.into()), "bodies.pair[0]"),
         (
@@ -103,15 +126,7 @@ fn a_faulty_file_is_refused_in_one_sentence() {
         (bodies(|p| p["q"][2] = 1.0.into()), "the bodies'"),
         (bodies(|p| p["c0"] = serde_json::json!(vec![1.0; 77])), "the bodies'"),
         (bodies(|p| p["bodies"]["axes"] = 3.into()), "bodies.axes is 3"),
-    ];
-    assert_eq!(solved(&sound().to_string()).0, Some(0), "the sound problem is solved");
-    for (text, expected) in cases {
-        let (code, said) = solved(&text);
-        assert_eq!(code, Some(2), "{expected}: {said}");
-        assert_eq!(said.trim_end().lines().count(), 1, "more than a sentence: {said}");
-        assert!(said.contains(expected), "\"{expected}\" is not in: {said}");
-        assert!(said.contains("problem.json"), "{said}");
-    }
+    ]);
 }
 
 #[test]

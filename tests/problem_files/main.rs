@@ -14,7 +14,7 @@ use slump::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use slump::scene::{Scene, cradle};
 use slump::sim::ProblemVisitor;
 use slump::solver::{
-    DelassusProblem, METHODS, Method, MethodKind, Model, SolverSettings, StepProblem, StopTest,
+    DelassusProblem, METHODS, Memory, Method, Model, SolverSettings, StepProblem, StopTest,
     Triplets, residual, solve, solve_delassus,
 };
 use slump::world::{FrictionCone, Physics};
@@ -94,7 +94,7 @@ impl ProblemVisitor for Swept {
     ) -> Self::Output {
         if self.0 > 0 {
             let never = SolverSettings { max_sweeps: self.0, ..settings(Method::Nsgs, 1e-300) };
-            solve::<M>(problem, &never).expect("a method for problems");
+            solve::<M>(problem, &mut Memory::default(), &never);
         }
         let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
         let impulses = rows.enumerate().map(|(number, row)| {
@@ -159,7 +159,7 @@ fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     for name in kept() {
         let file = read(&name);
         let in_matrix = ProblemFile { bodies: None, ..file.clone() };
-        for info in METHODS.iter().filter(|info| info.method.kind() == MethodKind::Problem) {
+        for info in METHODS {
             let settings = settings(info.method, 1e-6);
             let judge = |solution: Solution| {
                 let Solution { residual, sweeps, .. } = solution;

@@ -3,8 +3,7 @@
 use glam::DVec2;
 use slump::scene::Scene;
 use slump::scene::stability::{cantilever, column, heap, mass_ratio, overlapped};
-use slump::sim::AlarmKind;
-use slump::solver::Method;
+use slump::sim::{AlarmKind, Stepper};
 
 /// The kinds of alarms of a run, and what they say.
 fn alarms(scene: &Scene, steps: u32) -> Vec<(AlarmKind, String)> {
@@ -15,7 +14,7 @@ fn alarms(scene: &Scene, steps: u32) -> Vec<(AlarmKind, String)> {
         }
     }
     let said = simulation.alarms().iter();
-    said.map(|alarm| (alarm.kind, alarm.message(&scene.parameters, &scene.solver))).collect()
+    said.map(|alarm| (alarm.kind, alarm.message(&scene.settings()))).collect()
 }
 
 #[test]
@@ -49,8 +48,8 @@ fn a_hundred_steps_at_the_sweep_limit_are_told_of_and_ninety_nine_are_not() {
 #[test]
 fn a_state_that_is_not_finite_is_told_of_with_what_helps() {
     let mut scene = column(20);
-    scene.solver.method = Method::Dem;
-    scene.solver.substeps = 1;
+    scene.stepper = Stepper::Dem;
+    scene.parameters.substeps = 1;
     scene.parameters.time_step_secs = 1.0;
     scene.gravity = slump::world::Gravity::Uniform { acceleration: DVec2::new(0.0, -1e150) };
     let said = alarms(&scene, 1000);

@@ -3,8 +3,8 @@
 use glam::DVec2;
 use slump::scene::stability::{bounce, heap, overlapped, squeeze};
 use slump::scene::{Preset, Scene};
+use slump::sim::Remedies;
 use slump::sim::Simulation;
-use slump::solver::{Remedies, SolverSettings};
 use slump::world::Gravity;
 
 /// Overlap that pushing out leaves, in d.
@@ -16,11 +16,11 @@ fn start(scene: &Scene) -> Simulation {
 
 #[test]
 fn there_is_no_remedy_unless_asked_for() {
-    assert!(SolverSettings::default().remedies.is_none());
+    assert!(Remedies::default().is_none());
     let mut robust = heap(2);
     Preset::Robust.apply(&mut robust);
     let Remedies { push_out, max_travel, calm_unsolved, sequential_impacts, speculative } =
-        robust.solver.remedies;
+        robust.remedies;
     assert!(push_out && calm_unsolved && sequential_impacts && max_travel > 0.0);
     assert!(!speculative, "pieces of a step keep bounces");
 }
@@ -36,7 +36,7 @@ fn overlap_is_pushed_out_without_speed_and_down_to_what_is_left() {
     let stays = simulation.observables().max_overlap;
     assert!((stays - 0.3).abs() < 1e-12, "without the remedy the overlap stays: {stays}");
 
-    scene.solver.remedies.push_out = true;
+    scene.remedies.push_out = true;
     let mut simulation = start(&scene);
     let mut before = 0.3;
     for step in 0..200 {
@@ -55,8 +55,8 @@ fn a_step_that_bounces_contradict_is_solved_without_them() {
     scene.solver.max_sweeps = 1000;
     // Shocks in sequence leave bounces that do not contradict each other.
     for (calm_unsolved, sequential_impacts) in [(false, false), (true, false), (false, true)] {
-        scene.solver.remedies.calm_unsolved = calm_unsolved;
-        scene.solver.remedies.sequential_impacts = sequential_impacts;
+        scene.remedies.calm_unsolved = calm_unsolved;
+        scene.remedies.sequential_impacts = sequential_impacts;
         let all = calm_unsolved || sequential_impacts;
         let mut simulation = start(&scene);
         let steps = (0..20).map(|_| simulation.step().expect("a finite state").converged);
@@ -69,7 +69,7 @@ fn a_step_that_bounces_contradict_is_solved_without_them() {
 fn a_step_in_pieces_is_one_step_that_keeps_the_balance_of_energy() {
     let mut scene = bounce(0.5);
     scene.parameters.time_step_secs = 0.02;
-    scene.solver.remedies.max_travel = 0.1;
+    scene.remedies.max_travel = 0.1;
     let mut simulation = start(&scene);
     // What it weighs times how far it falls: all its energy.
     let scale = simulation.observables().potential_energy;

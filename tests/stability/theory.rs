@@ -5,8 +5,8 @@ use slump::scene::stability::{
     FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, breaking_bond_of_cantilever, cantilever,
     column_on_line, mass_ratio, thin_wall,
 };
-use slump::sim::Simulation;
-use slump::solver::{Method, SolverSettings};
+use slump::sim::{Simulation, Stepper};
+use slump::solver::SolverSettings;
 use slump::study::stability::contraction_of_column;
 
 /// Steps until a column sinks steadily: each leaves a tenth or less of the one before.
@@ -117,8 +117,8 @@ fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
 fn springs(part: f64) -> Simulation {
     let mut scene = column_on_line(12);
     scene.parameters.restitution = 0.5;
-    scene.solver.method = Method::Dem;
-    scene.solver.substeps = 1;
+    scene.stepper = Stepper::Dem;
+    scene.parameters.substeps = 1;
     let critical = scene.simulation().expect("a sound scene").critical_time_step_secs();
     scene.parameters.time_step_secs = part * critical.expect("springs have a critical step");
     scene.simulation().expect("a sound scene")

@@ -1,11 +1,14 @@
 //! What the window says of a run that goes wrong, and the button that mends what can be mended.
 
+use egui_kittest::kittest::Queryable;
 use slump::scene::{Config, SCENES, SceneGroup};
+use slump::sim::Stepper;
+use slump::solver::{Method, SolverChanges, StopTest};
 
 use crate::robot::Robot;
 
 fn scene(name: &str) -> Config {
-    Config { scene: Some(name.to_owned()), ..Config::default() }
+    Config::of_scene(name)
 }
 
 #[test]
@@ -26,8 +29,8 @@ fn the_robust_button_pushes_the_overlap_out() {
     let mut robot = Robot::open(scene("overlap"));
     robot.click("Solver");
     robot.click("Robust");
-    assert!(robot.world().settings.solver.remedies.push_out);
-    assert_eq!(robot.world().settings.parameters.restitution_threshold, 2.0);
+    assert!(robot.world().controls.settings.remedies.push_out);
+    assert_eq!(robot.world().controls.settings.parameters.restitution_threshold, 2.0);
     robot.click("Step");
     let before = robot.world().snapshot.observables.max_overlap;
     for _ in 0..10 {
@@ -41,12 +44,12 @@ fn the_law_range_takes_the_remedies_that_it_has_its_own_ways_for_away() {
     let mut robot = Robot::open(scene("pile"));
     robot.click("Solver");
     robot.click("Robust");
-    assert!(robot.world().settings.solver.remedies.sequential_impacts);
+    assert!(robot.world().controls.settings.remedies.sequential_impacts);
     robot.click("range");
     robot.settle();
-    let settings = robot.world().settings;
-    let left = settings.solver.remedies;
-    assert_eq!(left, left.under(settings.parameters.law), "{settings:?}");
+    let settings = robot.world().controls.settings;
+    let left = settings.remedies;
+    assert_eq!(settings, settings.with_remedies_taken());
     assert!(!left.push_out && left.max_travel > 0.0);
 }
 
@@ -61,4 +64,24 @@ fn every_scene_made_to_break_methods_opens_and_steps() {
             Some(info.name)
         );
     }
+}
+
+#[test]
+fn a_stalled_step_of_the_stepper_range_is_told_of() {
+    let mut config = scene("pile");
+    config.stepper = Some(Stepper::Range);
+    config.solver = SolverChanges {
+        method: Some(Method::Nncg),
+        stop: Some(StopTest::Residual),
+        // Below the rounding of any step of a pile.
+        tolerance: Some(1e-18),
+        max_sweeps: Some(100_000),
+        ..SolverChanges::default()
+    };
+    let mut robot = Robot::open(config);
+    robot.click("Solver");
+    robot.click("Step");
+    assert!(robot.world().snapshot.observables.stalled);
+    robot.harness.step();
+    assert!(robot.harness.query_by_label_contains("stalled").is_some());
 }

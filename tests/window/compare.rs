@@ -1,7 +1,7 @@
 //! Worlds side by side.
 
-use slump::sim::live::{Command, Variant};
-use slump::world::ContactLaw;
+use slump::sim::Stepper;
+use slump::sim::live::Command;
 
 use crate::robot::{Robot, pile};
 
@@ -16,7 +16,12 @@ fn compared_worlds_share_their_simulated_time() {
         .frame
         .worlds
         .iter()
-        .map(|world| (world.settings.parameters.bond, world.settings.parameters.time_step_secs))
+        .map(|world| {
+            (
+                world.controls.settings.parameters.bond,
+                world.controls.settings.parameters.time_step_secs,
+            )
+        })
         .collect();
     let expected =
         [(20.0, 1e-4), (20.0, 1e-3), (20.0, 2e-3), (100.0, 1e-4), (100.0, 1e-3), (100.0, 2e-3)];
@@ -41,13 +46,14 @@ fn two_laws_stand_side_by_side() {
     robot.click("Compare");
     robot.click("Two laws");
     let worlds = &robot.state().frame.worlds;
-    let told: Vec<(ContactLaw, f64, f64)> = worlds
+    let told: Vec<(Stepper, f64, f64)> = worlds
         .iter()
-        .map(|world| world.settings.parameters)
-        .map(|numbers| (numbers.law, numbers.bond, numbers.time_step_secs))
+        .map(|world| world.controls.settings)
+        .map(|settings| (settings.stepper, settings.parameters))
+        .map(|(stepper, numbers)| (stepper, numbers.bond, numbers.time_step_secs))
         .collect();
     let of_law = |law| [1e-4, 1e-3, 5e-3].map(|time| (law, 20.0, time));
-    assert_eq!(told, [of_law(ContactLaw::Moreau), of_law(ContactLaw::Range)].concat());
+    assert_eq!(told, [of_law(Stepper::Moreau), of_law(Stepper::Range)].concat());
 }
 
 #[test]
@@ -58,8 +64,7 @@ fn a_world_computes_what_it_computes_alone() {
     }
     robot.settle();
     let alone = robot.world().snapshot.grains.clone();
-    let settings = robot.world().settings;
-    let same = Variant { parameters: settings.parameters, solver: settings.solver };
+    let same = robot.world().controls.settings;
     let mut other = same;
     other.parameters.bond = 0.0;
     robot.state_mut().live.send(Command::Compare(vec![other, same]));

@@ -12,7 +12,7 @@ fn a_slider_changes_the_time_step_of_the_next_snapshot() {
     robot.drag(from, to);
     robot.button(to, false);
     robot.settle();
-    let wanted = robot.world().settings.parameters.time_step_secs;
+    let wanted = robot.world().controls.settings.parameters.time_step_secs;
     assert!((5e-3..=1e-2).contains(&wanted), "the slider's right end means 1e-2 s, not {wanted}");
     robot.click("Step");
     assert_eq!(robot.world().snapshot.observables.time_step_secs, wanted);
@@ -34,7 +34,7 @@ fn the_run_changes_while_it_runs() {
     robot.type_number("Bond", "75");
     let world = robot.world();
     assert!(robot.state().frame.playing);
-    assert_eq!(world.settings.parameters.bond, 75.0);
+    assert_eq!(world.controls.settings.parameters.bond, 75.0);
 }
 
 #[test]
@@ -63,7 +63,8 @@ fn a_step_is_exactly_one() {
 
 #[test]
 fn a_run_pauses_at_the_end_of_its_scene_and_plays_on_from_there() {
-    let config = Config { duration: Some(0.02), ..pile() };
+    let mut config = pile();
+    config.origin.duration = Some(0.02);
     let mut robot = Robot::open(config);
     robot.state_mut().preferences.full_speed = true;
     robot.key(egui::Key::Space);
@@ -80,18 +81,22 @@ fn what_makes_no_sense_is_refused_visibly() {
         [("-5", "bond is -5, but must be a finite number ≥ 0"), ("strong", "“strong” is no number")]
     {
         robot.type_number("Bond", text);
-        assert_eq!(robot.world().settings.parameters.bond, 20.0);
+        assert_eq!(robot.world().controls.settings.parameters.bond, 20.0);
         assert!(robot.harness.query_by_label(complaint).is_some(), "{complaint}");
     }
     robot.type_number("Bond", "500");
-    assert_eq!(robot.world().settings.parameters.bond, 500.0, "beyond the slider is no mistake");
+    assert_eq!(
+        robot.world().controls.settings.parameters.bond,
+        500.0,
+        "beyond the slider is no mistake"
+    );
     assert!(robot.harness.query_by_label_contains("is no number").is_none());
 }
 
 #[test]
 fn a_scene_that_cannot_be_opened_says_why_and_leaves_the_old_one() {
     let mut robot = Robot::open(pile());
-    let config = Config { scene: Some("no-such.toml".into()), ..Config::default() };
+    let config = Config::of_scene("no-such.toml");
     robot.state_mut().load(config);
     robot.settle();
     let (notice, _) = robot.state().notice().expect("a complaint");
@@ -132,7 +137,9 @@ fn a_dropped_list_of_discs_is_opened_and_anything_else_is_not() {
 #[test]
 fn a_new_pile_can_be_given_up() {
     let mut robot = Robot::open(pile());
-    robot.state_mut().load(Config { grains: Some(300), seed: Some(1), ..pile() });
+    let mut config = pile();
+    (config.origin.grains, config.origin.seed) = (Some(300), Some(1));
+    robot.state_mut().load(config);
     robot.until("progress", |state| {
         state.frame.loading.as_ref().is_some_and(|progress| !progress.text.is_empty())
     });

@@ -20,7 +20,7 @@ fn one_grain() -> (tempfile::TempDir, Config) {
     });
     let path = folder.path().join("one.toml");
     std::fs::write(&path, slump::scene::scene_to_toml(&scene).unwrap()).unwrap();
-    let config = Config { scene: path.to_str().map(str::to_owned), ..Config::default() };
+    let config = Config::of_scene(path.to_str().expect("a path"));
     (folder, config)
 }
 
@@ -59,7 +59,7 @@ fn a_dragged_grain_follows_the_mouse_and_stays_when_let_go() {
     });
     robot.button(to, false);
     robot.settle();
-    assert_eq!(robot.world().settings.pull, None);
+    assert_eq!(robot.world().controls.pull, None);
     assert!(robot.state().grabbed.is_none());
 }
 

@@ -3,7 +3,7 @@
 use egui_kittest::kittest::Queryable;
 use slump::sim::Pull;
 use slump::sim::live::{Command, Live, LiveOptions, Start};
-use slump::solver::{Method, SolverSettings};
+use slump::sim::{Settings, Stepper};
 
 use crate::robot::{Robot, bits, pile};
 
@@ -31,7 +31,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     robot.settle();
     let scrubbed = robot.steps();
     assert!((1..30).contains(&scrubbed), "step {scrubbed}");
-    let settings = robot.world().settings;
+    let settings = robot.world().controls.settings;
     assert_eq!((settings.parameters.bond, settings.parameters.time_step_secs), (20.0, 1e-3));
     assert_eq!(robot.state().frame.recorded_secs(), curve[90].time_secs, "nothing is lost yet");
 
@@ -39,7 +39,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     robot.state_mut().live.send(Command::Seek(curve[90].time_secs));
     robot.settle();
     assert_eq!(bits(robot.world()), uninterrupted);
-    let parameters = robot.world().settings.parameters;
+    let parameters = robot.world().controls.settings.parameters;
     assert_eq!((parameters.bond, parameters.time_step_secs), (80.0, 2e-3));
 
     // From step 60 on, stepping: a continuation.
@@ -114,11 +114,10 @@ fn little_memory_is_enough_to_get_anywhere() {
 #[test]
 fn stepping_schemes_and_a_pull_are_played_back_bitwise() {
     let mut robot = Robot::open(pile());
-    let solver = robot.world().settings.solver;
+    let settings = robot.world().controls.settings;
     let pull = Pull { grain: 100, target: glam::DVec2::new(0.0, 0.1) };
-    for (method, steps) in [(Method::Dem, 40), (Method::TgsSoft, 20), (Method::Dem, 20)] {
-        let settings = SolverSettings { method, ..solver };
-        robot.state_mut().live.send(Command::SetSolver(0, settings));
+    for (stepper, steps) in [(Stepper::Dem, 40), (Stepper::TgsSoft, 20), (Stepper::Dem, 20)] {
+        robot.state_mut().live.send(Command::Change(0, Settings { stepper, ..settings }));
         robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
         for _ in 0..steps {
             robot.state_mut().step();

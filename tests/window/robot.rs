@@ -152,5 +152,7 @@ pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
 
 /// The paper's pile, solved well enough for a test.
 pub fn pile() -> Config {
-    Config { tolerance: Some(1e-3), max_sweeps: Some(500), ..Config::default() }
+    let mut config = Config::default();
+    (config.solver.tolerance, config.solver.max_sweeps) = (Some(1e-3), Some(500));
+    config
 }

@@ -25,10 +25,10 @@ fn the_run_has_its_place_on_the_chart() {
     let loose = residual(&robot);
     assert!(tells(&robot, loose));
 
-    let mut solver = robot.world().settings.solver;
-    (solver.stop, solver.tolerance) = (StopTest::Residual, 1e-7);
-    solver.max_sweeps = 20_000;
-    robot.state_mut().set_solver(0, solver);
+    let mut settings = robot.world().controls.settings;
+    (settings.solver.stop, settings.solver.tolerance) = (StopTest::Residual, 1e-7);
+    settings.solver.max_sweeps = 20_000;
+    robot.state_mut().change(0, settings);
     robot.settle();
     robot.key(egui::Key::ArrowRight);
     assert!(residual(&robot) < 0.1 * loose, "{} after {loose}", residual(&robot));

@@ -3,19 +3,17 @@
 use egui::{Button, RichText, Ui};
 
 use super::physics::PAPER_TIME_STEPS;
-use super::solver::method_box;
+use crate::app::method_box::method_box;
 use crate::app::number::written;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::sim::live::{Command, Settings, Variant};
-use crate::solver::METHODS;
-use crate::world::{ContactLaw, FrictionCone};
+use crate::sim::live::{Command, Controls};
+use crate::sim::{Settings, Stepper};
+use crate::solver::{METHODS, MethodInfo, SolverSettings};
+use crate::world::FrictionCone;
 
 /// Most worlds side by side.
 pub const MOST_WORLDS: usize = 6;
-
-/// The time steps at which the laws are compared, s.
-const LAW_TIME_STEPS: [f64; 3] = [1e-4, 1e-3, 5e-3];
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, state: &mut AppState) {
@@ -61,69 +59,88 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     }
 }
 
-fn variants(state: &AppState) -> Vec<Variant> {
-    state.wanted.iter().map(variant).collect()
+fn variants(state: &AppState) -> Vec<Settings> {
+    state.wanted.iter().map(|wanted| wanted.settings).collect()
 }
 
-fn variant(settings: &Settings) -> Variant {
-    Variant { parameters: settings.parameters, solver: settings.solver }
+/// Worlds that one click sets side by side.
+struct LineUp {
+    name: &'static str,
+    hint: &'static str,
+    /// Made of the settings of the selected world.
+    worlds: fn(Settings) -> Vec<Settings>,
+}
+
+const LINE_UPS: [LineUp; 6] = [
+    LineUp {
+        name: "Paper Fig. 4",
+        hint: "Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s.",
+        worlds: |base| {
+            let of_bond = |bond| [1e-4, 1e-3, 2e-3].map(|secs| with(base, bond, secs));
+            [20.0, 100.0].into_iter().flat_map(of_bond).collect()
+        },
+    },
+    LineUp {
+        name: "Six Δt",
+        hint: "This Bond with the six time steps of the paper.",
+        worlds: |base| PAPER_TIME_STEPS.map(|secs| with(base, base.parameters.bond, secs)).into(),
+    },
+    LineUp {
+        name: "Two laws",
+        hint: "Bond 20 at Δt 1e-4, 1e-3 and 5e-3 s, under the laws moreau and range.",
+        worlds: |base| {
+            let of_law = |law| [1e-4, 1e-3, 5e-3].map(|secs| stepped(with(base, 20.0, secs), law));
+            [Stepper::Moreau, Stepper::Range].into_iter().flat_map(of_law).collect()
+        },
+    },
+    LineUp {
+        name: "Four Bonds",
+        hint: "This Δt with Bond 0, 20, 50 and 100.",
+        worlds: |base| {
+            [0.0, 20.0, 50.0, 100.0]
+                .map(|bond| with(base, bond, base.parameters.time_step_secs))
+                .into()
+        },
+    },
+    LineUp {
+        name: "Methods",
+        hint: "As many methods as there is room for, on the same problem.",
+        worlds: |base| {
+            let by = |info: &MethodInfo| {
+                let solver = SolverSettings { method: info.method, ..base.solver };
+                Settings { solver, ..base }
+            };
+            METHODS.iter().take(MOST_WORLDS).map(by).collect()
+        },
+    },
+    LineUp {
+        name: "Steppers",
+        hint: "As many ways to step as there is room for, from the same state.",
+        worlds: |base| {
+            let by = |&stepper: &Stepper| stepped(base, stepper);
+            Stepper::ALL.iter().take(MOST_WORLDS).map(by).collect()
+        },
+    },
+];
+
+fn with(mut base: Settings, bond: f64, time_step_secs: f64) -> Settings {
+    base.parameters.bond = bond;
+    base.over(time_step_secs)
+}
+
+/// With another stepper, and with nothing that it does not take.
+fn stepped(base: Settings, stepper: Stepper) -> Settings {
+    let mut settings = Settings { stepper, ..base };
+    settings.parameters.cone = FrictionCone::Shifted;
+    settings.with_remedies_taken()
 }
 
 fn presets(ui: &mut Ui, state: &mut AppState) {
-    let Some(base) = state.wanted.get(state.selected).map(variant) else { return };
-    let with = |bond: f64, time_step_secs: f64| {
-        let mut variant = base;
-        variant.parameters.bond = bond;
-        variant.parameters.time_step_secs = time_step_secs;
-        variant
-    };
+    let Some(base) = state.wanted.get(state.selected).map(|wanted| wanted.settings) else { return };
     ui.horizontal_wrapped(|ui| {
-        let fig_4 =
-            ui.button("Paper Fig. 4").on_hover_text("Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s.");
-        if fig_4.clicked() {
-            let times = [1e-4, 1e-3, 2e-3];
-            let all = [20.0, 100.0].iter().flat_map(|bond| times.map(|time| with(*bond, time)));
-            state.live.send(Command::Compare(all.collect()));
-        }
-        let steps =
-            ui.button("Six Δt").on_hover_text("This Bond with the six time steps of the paper.");
-        if steps.clicked() {
-            let all = PAPER_TIME_STEPS.map(|time| with(base.parameters.bond, time));
-            state.live.send(Command::Compare(all.to_vec()));
-        }
-        let laws = ui
-            .button("Two laws")
-            .on_hover_text("Bond 20 at Δt 1e-4, 1e-3 and 5e-3 s, under the laws moreau and range.");
-        if laws.clicked() {
-            let of_law = |law| {
-                LAW_TIME_STEPS.map(|time| {
-                    let mut variant = with(20.0, time);
-                    variant.parameters.law = law;
-                    variant.solver.remedies = variant.solver.remedies.under(law);
-                    variant.parameters.cone = FrictionCone::Shifted;
-                    variant
-                })
-            };
-            let all = [ContactLaw::Moreau, ContactLaw::Range].into_iter().flat_map(of_law);
-            state.live.send(Command::Compare(all.collect()));
-        }
-        let bonds = ui.button("Four Bonds").on_hover_text("This Δt with Bond 0, 20, 50 and 100.");
-        if bonds.clicked() {
-            let all =
-                [0.0, 20.0, 50.0, 100.0].map(|bond| with(bond, base.parameters.time_step_secs));
-            state.live.send(Command::Compare(all.to_vec()));
-        }
-        if METHODS.len() > 1 {
-            let methods = ui
-                .button("Methods")
-                .on_hover_text("As many methods as there is room for, on the same problem.");
-            if methods.clicked() {
-                let all = METHODS.iter().take(MOST_WORLDS).map(|info| {
-                    let mut variant = base;
-                    variant.solver.method = info.method;
-                    variant
-                });
-                state.live.send(Command::Compare(all.collect()));
+        for LineUp { name, hint, worlds } in &LINE_UPS {
+            if ui.button(*name).on_hover_text(*hint).clicked() {
+                state.live.send(Command::Compare(worlds(base)));
             }
         }
         if !state.compares()
@@ -151,10 +168,13 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             removed = ui.small_button("✖").on_hover_text("Remove this world.").clicked();
             if METHODS.len() > 1 {
-                let mut solver = state.wanted[index].solver;
-                method_box(ui, ("method of world", index), &mut solver);
-                if solver != state.wanted[index].solver {
-                    state.set_solver(index, solver);
+                let before = state.wanted[index].settings;
+                let mut settings = before;
+                if before.stepper.uses_method() {
+                    method_box(ui, ("method of world", index), &mut settings.solver.method);
+                }
+                if settings != before {
+                    state.change(index, settings);
                 }
             }
         });
@@ -164,19 +184,17 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
 
 /// What tells a world from the others.
 pub fn title(state: &AppState, index: usize) -> String {
-    let Some(Settings { parameters, solver, .. }) = state.wanted.get(index) else {
+    let Some(&Controls { settings, .. }) = state.wanted.get(index) else {
         return String::new();
     };
-    let methods_differ = state.wanted.iter().any(|other| other.solver.method != solver.method);
-    let name =
-        METHODS.iter().find(|info| info.method == solver.method).map_or("", |info| info.name);
-    let method = if methods_differ { format!(", {name}") } else { String::new() };
-    let laws_differ = state.wanted.iter().any(|other| other.parameters.law != parameters.law);
-    let law = match parameters.law {
-        _ if !laws_differ => "",
-        ContactLaw::Moreau => "moreau, ",
-        ContactLaw::Range => "range, ",
+    let Settings { stepper, parameters, solver, .. } = settings;
+    let differ = |other: &dyn Fn(&Settings) -> bool| {
+        state.wanted.iter().any(|wanted| other(&wanted.settings))
     };
+    let methods_differ = differ(&|other| other.solver.method != solver.method);
+    let method = if methods_differ { format!(", {}", solver.method) } else { String::new() };
+    let steppers_differ = differ(&|other| other.stepper != stepper);
+    let stepper = if steppers_differ { format!("{stepper}, ") } else { String::new() };
     let step = written(parameters.time_step_secs);
-    format!("{law}Bond {}, Δt {step} s{method}", written(parameters.bond))
+    format!("{stepper}Bond {}, Δt {step} s{method}", written(parameters.bond))
 }

@@ -1,14 +1,15 @@
-//! Panel: the numbers of the contact law and the time step.
+//! Panel: the contact law with its numbers, and the time step.
 
 use egui::{RichText, Ui};
 
-use crate::app::number::Number;
+use crate::app::setting_control;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::contact::range::escape_speed;
 use crate::render::numbers::si_prefix;
-use crate::solver::SolverSettings;
-use crate::world::{ContactLaw, FrictionCone, Parameters};
+use crate::setting::{About, Group, Needs};
+use crate::sim::{Settings, Stepper};
+use crate::world::{Parameters, Physics};
 
 /// The paper's time steps, s.
 pub const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
@@ -19,122 +20,59 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
     let (Some(wanted), Some(start)) = (state.wanted.get(index), state.frame.start.clone()) else {
         return;
     };
-    let before = wanted.parameters;
-    let defaults = start.parameters;
-    let mut parameters = before;
+    let before = wanted.settings;
+    let mut settings = before;
     let mut places = Vec::new();
-
-    let bond = Number {
-        label: "Bond",
-        unit: "",
-        hint: "Cohesion: how many times its own weight a contact can pull before it opens.",
-        range: [0.0, 200.0],
-        logarithmic: false,
-        default: defaults.bond,
-        refuse: &|value| refusal(Parameters { bond: value, ..before }),
-    };
-    let edited = bond.show(ui, before.bond);
-    parameters.bond = edited.value.unwrap_or(parameters.bond);
-    places.push(("Bond", edited.slider.rect));
-    ui.add_space(4.0);
-
-    let time_step = Number {
-        label: "Δt, time step",
-        unit: "s",
-        hint: "One step of the computation; cohesion cancels the opening speed Bond·g·Δt in each.",
-        range: [1e-5, 1e-2],
-        logarithmic: true,
-        default: defaults.time_step_secs,
-        refuse: &|value| refusal(Parameters { time_step_secs: value, ..before }),
-    };
-    let edited = time_step.show(ui, before.time_step_secs);
-    parameters.time_step_secs = edited.value.unwrap_or(parameters.time_step_secs);
-    places.push(("Δt", edited.slider.rect));
-    time_step_buttons(ui, &mut parameters.time_step_secs);
-    ui.add_space(4.0);
-
-    let restitution = Number {
-        label: "ρ, restitution",
-        unit: "",
-        hint: "Part of the approach speed with which grains bounce apart.",
-        range: [0.0, 1.0],
-        logarithmic: false,
-        default: defaults.restitution,
-        refuse: &|value| refusal(Parameters { restitution: value, ..before }),
-    };
-    let edited = restitution.show(ui, before.restitution);
-    parameters.restitution = edited.value.unwrap_or(parameters.restitution);
-    places.push(("ρ", edited.slider.rect));
-
-    if start.physics.friction {
-        let friction = Number {
-            label: "μ, friction",
-            unit: "",
-            hint: "Largest tangential force, in units of the normal force plus cohesion.",
-            range: [0.0, 2.0],
-            logarithmic: false,
-            default: defaults.friction,
-            refuse: &|value| refusal(Parameters { friction: value, ..before }),
-        };
-        let edited = friction.show(ui, before.friction);
-        parameters.friction = edited.value.unwrap_or(parameters.friction);
-        places.push(("μ", edited.slider.rect));
-    }
-
-    if start.physics.cohesion {
-        ui.add_space(4.0);
-        law_switch(ui, &mut parameters);
-        if parameters.law == ContactLaw::Range {
-            let distance = Number {
-                label: "δc, debonding distance",
-                unit: "d",
-                hint: "How far a bond is opened before it breaks, in mean diameters.",
-                range: [1e-3, 0.1],
-                logarithmic: true,
-                default: defaults.debonding_distance,
-                refuse: &|value| refusal(Parameters { debonding_distance: value, ..before }),
-            };
-            let edited = distance.show(ui, before.debonding_distance);
-            parameters.debonding_distance = edited.value.unwrap_or(parameters.debonding_distance);
-            places.push(("δc", edited.slider.rect));
+    stepper_switch(ui, &mut settings);
+    let shown = Parameters::ABOUT.iter().filter(|about| is_shown(about, &before, start.physics));
+    for about in shown {
+        let rect = setting_control::show(ui, about, &mut settings, &start.settings);
+        places.extend(about.control.map(|control| control.symbol).zip(rect));
+        if about.name == "dt" {
+            time_step_buttons(ui, &mut settings.parameters.time_step_secs);
         }
+        ui.add_space(2.0);
     }
-
     for (name, rect) in places {
         state.note_control(name, rect);
     }
-    if parameters != before {
-        state.set_parameters(index, parameters);
-        let solver = state.wanted[index].solver;
-        let remedies = solver.remedies.under(parameters.law);
-        if remedies != solver.remedies {
-            state.set_solver(index, SolverSettings { remedies, ..solver });
-        }
+    if settings != before {
+        state.change(index, settings);
     }
-    ui.add_space(2.0);
-    derived(ui, state, &parameters);
+    derived(ui, state, &settings);
 }
 
-/// The paper's law or the one under which Bond means the same at every Δt.
-fn law_switch(ui: &mut Ui, parameters: &mut Parameters) {
+/// Whether a parameter means anything to the stepper and the scene.
+fn is_shown(about: &About, settings: &Settings, physics: Physics) -> bool {
+    let has = match about.needs {
+        Needs::Nothing => true,
+        Needs::Friction => physics.friction,
+        Needs::Cohesion => physics.cohesion,
+    };
+    has && about.control.is_some() && settings.stepper.reads(about.name)
+}
+
+/// The ways to step; remedies that the chosen one does not take are left out.
+fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
+    let before = settings.stepper;
     ui.horizontal(|ui| {
-        ui.label("Law");
-        let laws = [
-            (ContactLaw::Moreau, "moreau", "The paper's: a bond lives while the gap is negative."),
-            (ContactLaw::Range, "range", "A bond lives until it is opened by δc, at every Δt."),
-        ];
-        // The law range knows the shifted cone alone.
-        let shifted = parameters.cone == FrictionCone::Shifted;
-        for (law, name, hint) in laws {
-            ui.add_enabled_ui(shifted || law == ContactLaw::Moreau, |ui| {
-                ui.selectable_value(&mut parameters.law, law, name).on_hover_text(hint);
+        ui.label("Stepper").on_hover_text("The way to step, with its contact law.");
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.spacing_mut().button_padding.x = 5.0;
+        for &stepper in Stepper::ALL {
+            let info = stepper.info();
+            let refused = (info.check)(&settings.parameters).err();
+            let hint = format!("{}. Solves {} ({}).", stepper.hint(), info.solves, info.source);
+            ui.add_enabled_ui(refused.is_none(), |ui| {
+                ui.selectable_value(&mut settings.stepper, stepper, stepper.name())
+                    .on_hover_text(hint)
+                    .on_disabled_hover_text(refused.map_or(String::new(), |why| why.to_string()));
             });
         }
     });
-}
-
-fn refusal(parameters: Parameters) -> Option<String> {
-    parameters.validate().err().map(|error| error.to_string())
+    if settings.stepper != before {
+        *settings = settings.with_remedies_taken();
+    }
 }
 
 /// The paper's six values, one click away.
@@ -155,7 +93,8 @@ fn time_step_buttons(ui: &mut Ui, time_step_secs: &mut f64) {
 }
 
 /// What the numbers mean together.
-fn derived(ui: &mut Ui, state: &AppState, parameters: &Parameters) {
+fn derived(ui: &mut Ui, state: &AppState, settings: &Settings) {
+    let parameters = &settings.parameters;
     let Some(world) = state.world() else { return };
     let surroundings = &world.snapshot.surroundings;
     let (diameter, g) = (surroundings.mean_diameter, surroundings.gravity_magnitude);
@@ -172,7 +111,7 @@ fn derived(ui: &mut Ui, state: &AppState, parameters: &Parameters) {
             .on_hover_text("The opening speed that one step of cohesion cancels (paper eq. 9).");
         ui.label(RichText::new(format!("{:.3} {prefix}m/s", speed / factor)).color(accent));
         ui.end_row();
-        if parameters.law == ContactLaw::Range {
+        if settings.stepper.reads("debonding-distance") {
             let distance = parameters.debonding_distance * diameter;
             ui.label(RichText::new("escape speed √(2C₀δc/m_ij)").weak())
                 .on_hover_text("A pair that is thrown apart faster parts, at every time step.");

@@ -4,7 +4,7 @@ use egui::{Align, ComboBox, RichText, Slider, Ui};
 
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::scene::{Config, Rain, SCENES, SceneGroup};
+use crate::scene::{Config, Origin, Rain, SCENES, SceneGroup};
 use crate::sim::live::Command;
 
 /// Most grains that the panel offers; the command line takes more.
@@ -22,7 +22,9 @@ struct Draft {
 /// Shows the panel.
 pub fn show(ui: &mut Ui, state: &mut AppState) {
     scene_box(ui, state);
-    if state.config.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE) == Config::DEFAULT_SCENE {
+    if state.config.origin.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE)
+        == Config::DEFAULT_SCENE
+    {
         new_pile(ui, state);
     }
     loading(ui, state);
@@ -43,8 +45,7 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
                     for info in SCENES.iter().filter(|info| info.group == group) {
                         let entry = ui.selectable_label(info.name == current, info.name);
                         if entry.on_hover_text(info.summary).clicked() {
-                            let scene = Some(info.name.to_owned());
-                            state.load(Config { scene, ..Config::default() });
+                            state.load(Config::of_scene(info.name));
                         }
                     }
                 }
@@ -59,7 +60,7 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
 }
 
 fn new_pile(ui: &mut Ui, state: &mut AppState) {
-    let Rain { grains, seed, .. } = state.config.rain();
+    let Rain { grains, seed, .. } = state.config.origin.rain();
     let id = egui::Id::unique("new pile");
     let mut draft = ui.data(|data| data.get_temp(id)).unwrap_or(Draft { grains, seed });
     ui.horizontal(|ui| {
@@ -84,35 +85,17 @@ fn new_pile(ui: &mut Ui, state: &mut AppState) {
 
 /// A new pile with the numbers that the controls show.
 fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
-    let wanted = state.wanted.get(state.selected);
-    let parameters = wanted.map(|wanted| wanted.parameters);
-    let solver = wanted.map(|wanted| wanted.solver);
-    Config {
+    let origin = Origin {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
         grains: Some(grains),
         seed: Some(seed),
         initial: None,
-        bond: parameters.map(|parameters| parameters.bond),
-        dt: parameters.map(|parameters| parameters.time_step_secs),
-        rho: parameters.map(|parameters| parameters.restitution),
-        mu: parameters.map(|parameters| parameters.friction),
-        cone: parameters.map(|parameters| parameters.cone),
-        restitution_threshold: parameters.map(|parameters| parameters.restitution_threshold),
-        law: parameters.map(|parameters| parameters.law),
-        debonding_distance: parameters.map(|parameters| parameters.debonding_distance),
-        solver: solver.map(|solver| solver.method),
-        ordering: solver.map(|solver| solver.ordering),
-        stop: solver.map(|solver| solver.stop),
-        tolerance: solver.map(|solver| solver.tolerance),
-        max_sweeps: solver.map(|solver| solver.max_sweeps),
-        warm_start: solver.map(|solver| solver.warm_start),
-        substeps: solver.map(|solver| solver.substeps),
-        push_out: solver.map(|solver| solver.remedies.push_out),
-        max_travel: solver.map(|solver| solver.remedies.max_travel),
-        calm_unsolved: solver.map(|solver| solver.remedies.calm_unsolved),
-        sequential_impacts: solver.map(|solver| solver.remedies.sequential_impacts),
-        speculative: solver.map(|solver| solver.remedies.speculative),
-        ..state.config.clone()
+        ..state.config.origin.clone()
+    };
+    let config = Config { origin, ..state.config.clone() };
+    match state.wanted.get(state.selected) {
+        Some(wanted) => config.with_settings(&wanted.settings),
+        None => config,
     }
 }
 

@@ -59,7 +59,7 @@ impl StateFile {
             step: last.step,
             time_secs: last.time_secs,
             slump: last.slump,
-            parameters: world.map(|world| world.settings.parameters),
+            parameters: world.map(|world| world.controls.settings.parameters),
             worlds: state.frame.worlds.len(),
             steps_per_sec: state.frame.steps_per_sec,
             devices,

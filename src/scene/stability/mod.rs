@@ -36,6 +36,7 @@ pub use thin_wall::{WALL_DISTANCE, thin_wall};
 pub use truss::{breaking_bond_of_cantilever, bridge, cantilever};
 
 use super::Scene;
+use crate::sim::{Remedies, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{Boundary, Grain, Gravity, Parameters, Physics};
 
@@ -59,6 +60,7 @@ fn dry(name: &str, grains: Vec<Grain>) -> Scene {
         duration_secs: 0.5,
         physics: Physics::FULL,
         gravity: Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) },
+        stepper: Stepper::Moreau,
         parameters: Parameters {
             bond: 0.0,
             time_step_secs: TIME_STEP_SECS,
@@ -67,6 +69,7 @@ fn dry(name: &str, grains: Vec<Grain>) -> Scene {
             ..Parameters::default()
         },
         solver: SolverSettings::default(),
+        remedies: Remedies::default(),
         view: None,
         source: None,
         boundaries: Vec::new(),

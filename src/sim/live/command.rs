@@ -2,11 +2,9 @@
 
 use glam::DVec2;
 
-use super::Settings;
 use crate::error::Result;
-use crate::sim::{Pull, Simulation};
-use crate::solver::SolverSettings;
-use crate::world::{Boundary, Parameters};
+use crate::sim::{Pull, Settings, Simulation};
+use crate::world::Boundary;
 
 /// The state that a run starts from.
 #[derive(Clone, Debug)]
@@ -36,15 +34,6 @@ pub struct Progress {
 /// where the callback returns false.
 pub type Loader = Box<dyn FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<Start> + Send>;
 
-/// One of the worlds that run side by side.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Variant {
-    /// Its parameters.
-    pub parameters: Parameters,
-    /// Its solver.
-    pub solver: SolverSettings,
-}
-
 /// Simulated time per time on the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
@@ -60,12 +49,10 @@ pub enum Command {
     Load(Loader),
     /// Give up the loading that is going on.
     CancelLoading,
-    /// Run worlds side by side from the present start; one variant is the ordinary case.
-    Compare(Vec<Variant>),
-    /// Change the parameters of a world from its next step on.
-    SetParameters(usize, Parameters),
-    /// Change the solver of a world from its next step on.
-    SetSolver(usize, SolverSettings),
+    /// Run worlds with these settings side by side from the present start; one is the ordinary case.
+    Compare(Vec<Settings>),
+    /// Change the settings of a world from its next step on.
+    Change(usize, Settings),
     /// Tie a spring to a grain of a world, or take it away.
     SetPull(usize, Option<Pull>),
     /// Let time pass.
@@ -82,15 +69,4 @@ pub enum Command {
     SetPace(Pace),
     /// End the thread.
     Quit,
-}
-
-impl Settings {
-    /// The settings of a simulation's next step.
-    pub fn of(simulation: &Simulation) -> Self {
-        Self {
-            parameters: *simulation.parameters(),
-            solver: *simulation.solver(),
-            pull: simulation.pull(),
-        }
-    }
 }

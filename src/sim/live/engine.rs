@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use triple_buffer::Input;
 
 use super::clock::Clock;
-use super::loading::message;
+use super::frame::message;
 use super::worlds::Worlds;
-use super::{Command, Frame, LiveOptions, Progress, Start, StartInfo, Variant};
-use crate::sim::Surroundings;
+use super::{Command, Frame, LiveOptions, Progress, Start, StartInfo};
+use crate::sim::{Settings, Surroundings};
 
 /// A frame that nobody fetched yet is renewed after so many frame intervals: making one costs time,
 /// and an old one shows late what happens.
@@ -155,14 +155,9 @@ impl Engine {
             Command::Load(loader) => self.load(loader),
             Command::CancelLoading => {}
             Command::Compare(variants) => self.restart(&variants),
-            Command::SetParameters(world, parameters) => {
+            Command::Change(world, settings) => {
                 if let Some(track) = self.worlds.tracks.get_mut(world) {
-                    self.refusal = track.simulation.set_parameters(parameters).err().map(message);
-                }
-            }
-            Command::SetSolver(world, solver) => {
-                if let Some(track) = self.worlds.tracks.get_mut(world) {
-                    self.refusal = track.simulation.set_solver(solver).err().map(message);
+                    self.refusal = track.simulation.change(settings).err().map(message);
                 }
             }
             Command::SetPull(world, pull) => {
@@ -211,7 +206,7 @@ impl Engine {
     }
 
     /// Puts worlds at the start, one a variant.
-    pub(super) fn restart(&mut self, variants: &[Variant]) {
+    pub(super) fn restart(&mut self, variants: &[Settings]) {
         let Some(start) = &self.start else { return };
         if variants.is_empty() {
             return;
@@ -247,14 +242,6 @@ impl Engine {
 impl Command {
     /// Whether it changes a state that a seek is still computing.
     fn waits_for_seek(&self) -> bool {
-        matches!(
-            self,
-            Self::SetParameters(..)
-                | Self::SetSolver(..)
-                | Self::SetPull(..)
-                | Self::Play
-                | Self::Step
-                | Self::Reset
-        )
+        matches!(self, Self::Change(..) | Self::SetPull(..) | Self::Play | Self::Step | Self::Reset)
     }
 }

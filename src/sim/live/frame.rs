@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Curve, Progress, Settings};
-use crate::sim::Snapshot;
-use crate::solver::SolverSettings;
-use crate::world::{Parameters, Physics};
+use super::{Controls, Curve, Progress};
+use crate::error::Error;
+use crate::sim::{Settings, Snapshot};
+use crate::world::Physics;
 
 /// The newest moment of a live run.
 #[derive(Clone, Debug, Default)]
@@ -49,10 +49,8 @@ pub struct StartInfo {
     pub view: [DVec2; 2],
     /// The physics that the scene computes.
     pub physics: Physics,
-    /// The parameters that the scene states.
-    pub parameters: Parameters,
-    /// The solver that the scene states.
-    pub solver: SolverSettings,
+    /// The settings that the scene states.
+    pub settings: Settings,
 }
 
 /// One world at one moment.
@@ -60,8 +58,8 @@ pub struct StartInfo {
 pub struct WorldFrame {
     /// The world. Before the first step, with the shapes that hold it.
     pub snapshot: Arc<Snapshot>,
-    /// The settings of its next step.
-    pub settings: Settings,
+    /// How its next step is taken.
+    pub controls: Controls,
     /// The observables of the whole recording.
     pub curve: Curve,
     /// Simulated time of the last recorded step, s.
@@ -100,4 +98,9 @@ impl Frame {
     pub fn held(&self) -> bool {
         self.at_start() && self.start.as_ref().is_some_and(|start| start.held)
     }
+}
+
+/// An error as frames carry it.
+pub(super) fn message(error: Error) -> Arc<str> {
+    error.to_string().into()
 }

@@ -1,34 +1,12 @@
 //! The side of a live run that a window holds.
 
 use std::sync::mpsc::{Sender, channel};
-use std::time::Duration;
 
 use triple_buffer::{Output, triple_buffer};
 
 use super::engine::Engine;
-use super::{Command, Frame};
+use super::{Command, Frame, LiveOptions};
 use crate::error::{Error, Result};
-
-/// How a live run serves its window.
-pub struct LiveOptions {
-    /// Called on the solver's thread after each new frame.
-    pub wake: Box<dyn Fn() + Send>,
-    /// Least time between two frames while the run goes on.
-    pub frame_interval: Duration,
-    /// Memory for keyframes, of all worlds together.
-    pub recording_bytes: usize,
-}
-
-impl Default for LiveOptions {
-    /// Nobody to wake, 60 frames a second, 256 MiB.
-    fn default() -> Self {
-        Self {
-            wake: Box::new(|| {}),
-            frame_interval: Duration::from_micros(16_600),
-            recording_bytes: 256 << 20,
-        }
-    }
-}
 
 /// A run on a thread of its own. Dropped, it ends after the step that it is computing.
 pub struct Live {

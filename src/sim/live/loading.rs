@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::engine::Engine;
-use super::{Command, Loader, Progress, Settings, Start, StartInfo, Variant};
-use crate::error::Error;
+use super::frame::message;
+use super::{Command, Loader, Progress, Start, StartInfo};
 use crate::sim::Surroundings;
 
 /// Least time between two frames that tell of the progress of a loading.
@@ -52,7 +52,7 @@ impl Engine {
 
     fn begin(&mut self, start: Start) {
         self.loads += 1;
-        let settings = Settings::of(&start.simulation);
+        let settings = *start.simulation.settings();
         self.info = Some(Arc::new(StartInfo {
             number: self.loads,
             name: start.name.clone(),
@@ -60,20 +60,12 @@ impl Engine {
             held: !start.held_by.is_empty(),
             view: start.view,
             physics: start.simulation.physics(),
-            parameters: settings.parameters,
-            solver: settings.solver,
+            settings,
         }));
         let mut surroundings = Surroundings::clone(&start.simulation.snapshot().surroundings);
         surroundings.boundaries.extend_from_slice(&start.held_by);
         self.held = Some(Arc::new(surroundings));
-        let Settings { parameters, solver, .. } = settings;
-        let variant = Variant { parameters, solver };
         self.start = Some(start);
-        self.restart(&[variant]);
+        self.restart(&[settings]);
     }
-}
-
-/// An error as frames carry it.
-pub(super) fn message(error: Error) -> Arc<str> {
-    error.to_string().into()
 }

@@ -12,13 +12,15 @@ mod engine;
 mod frame;
 mod handle;
 mod loading;
+mod options;
 mod publish;
 mod recording;
 mod track;
 mod worlds;
 
-pub use command::{Command, Loader, Pace, Progress, Start, Variant};
+pub use command::{Command, Loader, Pace, Progress, Start};
 pub use curve::Curve;
 pub use frame::{Frame, StartInfo, WorldFrame};
-pub use handle::{Live, LiveOptions};
-pub use recording::{Recording, Settings};
+pub use handle::Live;
+pub use options::LiveOptions;
+pub use recording::{Controls, Recording};

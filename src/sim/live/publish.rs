@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use super::engine::Engine;
 use super::track::Track;
-use super::{Frame, Settings, WorldFrame};
+use super::{Controls, Frame, WorldFrame};
 use crate::sim::{AlarmKind, Simulation, Snapshot};
 
 /// The sentences of a simulation's alarms, but for the one that ends it: that is a failure.
 fn alarms(simulation: &Simulation) -> Vec<Arc<str>> {
     let alarms = simulation.alarms().iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite);
-    alarms.map(|alarm| alarm.message(simulation.parameters(), simulation.solver()).into()).collect()
+    alarms.map(|alarm| alarm.message(simulation.settings()).into()).collect()
 }
 
 impl Engine {
@@ -46,7 +46,7 @@ impl Engine {
         }
         WorldFrame {
             snapshot: Arc::new(snapshot),
-            settings: Settings::of(&track.simulation),
+            controls: Controls::of(&track.simulation),
             curve: track.curve.clone(),
             recorded_secs: track.recording.end_secs(),
             unconverged_steps: track.unconverged,

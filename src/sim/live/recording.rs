@@ -5,30 +5,33 @@
 //! is the keyframe before it and the steps from there. Where memory runs out, every second keyframe
 //! goes: the whole run stays within reach, at the price of more steps to get anywhere.
 
-use crate::sim::{Pull, Simulation};
-use crate::solver::SolverSettings;
-use crate::world::Parameters;
+use crate::sim::{Pull, Settings, Simulation};
 
 /// Steps between keyframes at first.
 const FIRST_SPACING: u64 = 32;
 
 /// All that can be changed between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Physics.
-    pub parameters: Parameters,
-    /// Solver.
-    pub solver: SolverSettings,
+pub struct Controls {
+    /// How the next step is taken.
+    pub settings: Settings,
     /// Spring on a grain.
     pub pull: Option<Pull>,
+}
+
+impl Controls {
+    /// Those of a simulation's next step.
+    pub fn of(simulation: &Simulation) -> Self {
+        Self { settings: *simulation.settings(), pull: simulation.pull() }
+    }
 }
 
 /// The recorded part of a run.
 #[derive(Clone, Debug)]
 pub struct Recording {
     keyframes: Vec<Keyframe>,
-    /// Settings of all steps after the numbered one, up to the next change.
-    changes: Vec<(u64, Settings)>,
+    /// Controls of all steps after the numbered one, up to the next change.
+    changes: Vec<(u64, Controls)>,
     spacing: u64,
     budget_bytes: usize,
     end_step: u64,
@@ -83,9 +86,9 @@ impl Recording {
             self.changes.retain(|(after, _)| *after < step);
             self.end_step = step;
         }
-        let settings = Settings::of(simulation);
-        if self.changes.last().is_none_or(|(_, last)| *last != settings) {
-            self.changes.push((step, settings));
+        let controls = Controls::of(simulation);
+        if self.changes.last().is_none_or(|(_, last)| *last != controls) {
+            self.changes.push((step, controls));
         }
         let last = self.keyframes.last().map_or(0, Keyframe::step);
         if step >= last + self.spacing {
@@ -123,8 +126,8 @@ impl Recording {
         (&keyframe.simulation, keyframe.unconverged)
     }
 
-    /// The settings of the step that follows `step`; none before anything was recorded.
-    pub fn settings_after(&self, step: u64) -> Option<&Settings> {
+    /// The controls of the step that follows `step`; none before anything was recorded.
+    pub fn controls_after(&self, step: u64) -> Option<&Controls> {
         let count = self.changes.partition_point(|(after, _)| *after <= step);
         count.checked_sub(1).map(|index| &self.changes[index].1)
     }

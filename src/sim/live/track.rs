@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::{Curve, Recording, Settings, Variant};
-use crate::sim::Simulation;
+use super::{Controls, Curve, Recording};
+use crate::sim::{Settings, Simulation};
 
 /// Weight of the newest step in the mean time a step takes.
 const NEWEST: f64 = 0.05;
@@ -25,11 +25,10 @@ pub(super) struct Track {
 }
 
 impl Track {
-    pub fn new(start: &Simulation, variant: &Variant, budget_bytes: usize) -> Self {
+    pub fn new(start: &Simulation, variant: &Settings, budget_bytes: usize) -> Self {
         let mut simulation = start.clone();
         // A variant is checked where it is made; what is refused here stays as the start has it.
-        let _ = simulation.set_parameters(variant.parameters);
-        let _ = simulation.set_solver(variant.solver);
+        let _ = simulation.change(*variant);
         let mut curve = Curve::default();
         curve.push(*simulation.observables());
         Self {
@@ -43,8 +42,8 @@ impl Track {
         }
     }
 
-    pub fn variant(&self) -> Variant {
-        Variant { parameters: *self.simulation.parameters(), solver: *self.simulation.solver() }
+    pub fn variant(&self) -> Settings {
+        *self.simulation.settings()
     }
 
     pub fn time_secs(&self) -> f64 {
@@ -102,7 +101,7 @@ impl Track {
         self.unconverged = unconverged;
         self.failure = None;
         self.goal_secs = Some(time_secs);
-        self.adopt_recorded_settings();
+        self.adopt_recorded_controls();
     }
 
     /// Takes one step of a seek. Whether it has arrived.
@@ -123,7 +122,7 @@ impl Track {
         match self.simulation.step() {
             Ok(observables) => {
                 self.unconverged += u64::from(!observables.converged);
-                self.adopt_recorded_settings();
+                self.adopt_recorded_controls();
                 true
             }
             Err(error) => {
@@ -133,15 +132,12 @@ impl Track {
         }
     }
 
-    /// The settings with which the next step was recorded.
-    fn adopt_recorded_settings(&mut self) {
+    /// The controls with which the next step was recorded.
+    fn adopt_recorded_controls(&mut self) {
         let step = self.simulation.observables().step;
-        if let Some(Settings { parameters, solver, pull }) =
-            self.recording.settings_after(step).copied()
-        {
+        if let Some(Controls { settings, pull }) = self.recording.controls_after(step).copied() {
             // They were accepted when they were recorded.
-            let _ = self.simulation.set_parameters(parameters);
-            let _ = self.simulation.set_solver(solver);
+            let _ = self.simulation.change(settings);
             self.simulation.set_pull(pull);
         }
     }

@@ -2,9 +2,8 @@
 
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
-use super::Variant;
 use super::track::Track;
-use crate::sim::Simulation;
+use crate::sim::{Settings, Simulation};
 
 /// One track a world. The world with the largest time step leads; the others follow to within half
 /// a step of their own.
@@ -15,13 +14,13 @@ pub(super) struct Worlds {
 
 impl Worlds {
     /// Worlds at one start, with `recording_bytes` for the keyframes of all of them.
-    pub fn new(start: &Simulation, variants: &[Variant], recording_bytes: usize) -> Self {
+    pub fn new(start: &Simulation, variants: &[Settings], recording_bytes: usize) -> Self {
         let budget_bytes = recording_bytes / variants.len().max(1);
-        let track = |variant: &Variant| Track::new(start, variant, budget_bytes);
+        let track = |variant: &Settings| Track::new(start, variant, budget_bytes);
         Self { tracks: variants.iter().map(track).collect() }
     }
 
-    pub fn variants(&self) -> Vec<Variant> {
+    pub fn variants(&self) -> Vec<Settings> {
         self.tracks.iter().map(Track::variant).collect()
     }
 

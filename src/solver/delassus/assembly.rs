@@ -4,8 +4,8 @@
 //! them, W = G M⁻¹ Gᵀ and q = G v^free, plus restitution's term in the normal rows. A contact
 //! meets those that share one of its grains, and no others.
 
-use super::Triplets;
-use crate::solver::{Kinematics, Row, StepProblem};
+use super::blocks::Triplets;
+use crate::solver::problem::{Kinematics, Row, StepProblem};
 
 /// W and q of a step's problem, its contacts in the order of its rows.
 pub struct Assembled {

@@ -1,12 +1,10 @@
 //! Non-linear Gauss–Seidel on W (M. Jean, 1999): one contact after the other, each solved exactly
 //! with the impulses that the ones before it left.
 
-use super::DelassusProblem;
+use super::problem::DelassusProblem;
 use crate::error::{Error, Result};
-use crate::solver::iterate::sweep_until_settled;
-use crate::solver::{
-    METHODS, Method, SolveReport, SolverSettings, StopTest, Vectors, solve_system,
-};
+use crate::solver::methods::{Method, SolveReport, Vectors, solve_system, sweep_until_settled};
+use crate::solver::settings::{SolverSettings, StopTest};
 
 /// The residual, which costs as much as a sweep, is looked at where ‖ΔP‖₂ of a sweep is at most this
 /// many times the error allowed: what a sweep changes is about the error before it. A smaller number
@@ -33,9 +31,8 @@ pub fn solve_delassus(
         return Ok(sweeps(problem, settings));
     }
     solve_system(problem, settings, &mut Vectors::default()).ok_or_else(|| {
-        let info = METHODS.iter().find(|info| info.method == settings.method);
         let allowed = "one that works on W alone, for the problem says nothing of its bodies";
-        Error::value("method", info.map_or("unknown", |info| info.name), allowed)
+        Error::value("method", settings.method.name(), allowed)
     })
 }
 
@@ -73,7 +70,7 @@ impl DelassusProblem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::delassus::Triplets;
+    use crate::solver::delassus::blocks::Triplets;
     use crate::world::FrictionCone;
 
     /// Two contacts on opposite sides of one body, which close at 1 m/s

@@ -2,9 +2,9 @@
 //! A is W between √m_n and √m_n. Where W_nt ≠ 0 a contact's own block of A has entries off its
 //! diagonal; no method on this trait asks for them to be zero.
 
-use super::{ContactRow, DelassusProblem, Neighbour};
-use crate::solver::system::{ContactSystem, Pairs};
-use crate::solver::{SolverSettings, StopTest};
+use super::problem::{ContactRow, DelassusProblem, Neighbour};
+use crate::solver::methods::{ContactSystem, Pairs};
+use crate::solver::settings::{SolverSettings, StopTest};
 
 impl ContactRow {
     /// √W_nn: s = √W_nn P, w = u/√W_nn.

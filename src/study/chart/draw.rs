@@ -23,6 +23,9 @@ const CHARACTER: u32 = 12;
 /// Name that the font goes by; one that browsers know too, for the SVG.
 const FONT: &str = "sans-serif";
 
+/// A pair of axes with what is drawn on them.
+type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<Places, Places>>;
+
 /// The sheet as PNG.
 ///
 /// # Errors
@@ -152,101 +155,117 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
         .draw()
         .map_err(failed)?;
 
-    let place = |x: f64, y: f64| (chart.x.scale.place(x), chart.y.scale.place(y));
-    let width = place(chart.x.to, 1.0).0 - place(chart.x.from, 1.0).0;
     let mut has_legend = false;
     for layer in &chart.layers {
-        match layer {
-            Layer::Words { at: (x, y), text, colour } => {
-                let style = (FONT, CAPTION).into_font().color(&rgb(*colour));
-                context
-                    .draw_series([Text::new(text.clone(), place(*x, *y), style)])
-                    .map_err(failed)?;
-            }
-            Layer::Cells { cells, colour, .. } => {
-                let rectangles = cells.iter().map(|Cell { x: (_, x), y: (_, y), value }| {
-                    let corners = [place(x[0], y[0]), place(x[1], y[1])];
-                    Rectangle::new(corners, rgb(colour(*value)).filled())
-                });
-                context.draw_series(rectangles).map_err(failed)?;
-            }
-            Layer::Curve { name, in_legend, points, colour, look, aside } => {
-                let colour = rgb(*colour);
-                let place = |x: f64, y: f64| {
-                    let (x, y) = place(x, y);
-                    (x + aside * width, y)
-                };
-                let line: Vec<_> = points.iter().map(|point| place(point.x, point.y)).collect();
-                let bars = points.iter().filter_map(|point| {
-                    let (low, high) = point.interval?;
-                    let bar = vec![place(point.x, low), place(point.x, high)];
-                    Some(PathElement::new(bar, colour.stroke_width(2)))
-                });
-                context.draw_series(bars).map_err(failed)?;
-                let stroke = match look {
-                    Look::Line(width) | Look::Dashes(width) => *width,
-                    Look::LineAndDots => 3,
-                    Look::Dots(_) | Look::Rings(_) => 0,
-                };
-                if matches!(look, Look::Line(_) | Look::LineAndDots) {
-                    let style = colour.stroke_width(stroke);
-                    context.draw_series(LineSeries::new(line.clone(), style)).map_err(failed)?;
-                }
-                if matches!(look, Look::Dashes(_)) {
-                    let style = colour.stroke_width(stroke);
-                    let dashes = DashedLineSeries::new(line.clone(), 8, 6, style);
-                    context.draw_series(dashes).map_err(failed)?;
-                }
-                let dot = match look {
-                    Look::LineAndDots => Some((5, colour.filled())),
-                    Look::Dots(radius) => Some((*radius, colour.filled())),
-                    Look::Rings(radius) => Some((*radius, colour.stroke_width(2))),
-                    Look::Line(_) | Look::Dashes(_) => None,
-                };
-                if let Some((radius, style)) = dot {
-                    let dots = line.iter().map(|place| Circle::new(*place, radius, style));
-                    context.draw_series(dots).map_err(failed)?;
-                }
-                if *in_legend {
-                    has_legend = true;
-                    // Two dashes that touch are a line.
-                    let dash = if matches!(look, Look::Dashes(_)) { 11 } else { 14 };
-                    let key = move |(x, y): (i32, i32)| {
-                        // Without a line there is none in the key either.
-                        let seen = if stroke > 0 { 1.0 } else { 0.0 };
-                        let style = colour.mix(seen).stroke_width(stroke.max(1));
-                        let first = PathElement::new(vec![(x, y), (x + dash, y)], style);
-                        let second = PathElement::new(vec![(x + 28 - dash, y), (x + 28, y)], style);
-                        let (radius, style) = dot.unwrap_or((0, colour.mix(0.0).filled()));
-                        EmptyElement::at((0, 0))
-                            + first
-                            + second
-                            + Circle::new((x + 14, y), radius.min(8), style)
-                    };
-                    let nothing: [EmptyElement<(f64, f64), DB>; 0] = [];
-                    context.draw_series(nothing).map_err(failed)?.label(name).legend(key);
-                }
-            }
+        draw_layer(chart, layer, &mut context)?;
+        has_legend |= matches!(layer, Layer::Curve { in_legend: true, .. });
+    }
+    if !has_legend {
+        return Ok(());
+    }
+    let position = match chart.legend {
+        Corner::UpperLeft => SeriesLabelPosition::UpperLeft,
+        Corner::UpperRight => SeriesLabelPosition::UpperRight,
+        Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
+        Corner::LowerRight => SeriesLabelPosition::LowerRight,
+    };
+    context
+        .configure_series_labels()
+        .position(position)
+        .margin(12)
+        .legend_area_size(36)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 200, 200))
+        .label_font((FONT, CAPTION + 2).into_font().color(&rgb(super::INK)))
+        .draw()
+        .map_err(failed)
+}
+
+fn draw_layer<'a, DB: DrawingBackend + 'a>(
+    chart: &Chart,
+    layer: &Layer,
+    context: &mut Context<'a, DB>,
+) -> Result<()> {
+    let place = |x: f64, y: f64| (chart.x.scale.place(x), chart.y.scale.place(y));
+    match layer {
+        Layer::Words { at: (x, y), text, colour } => {
+            let style = (FONT, CAPTION).into_font().color(&rgb(*colour));
+            let words = Text::new(text.clone(), place(*x, *y), style);
+            context.draw_series([words]).map_err(failed)?;
+        }
+        Layer::Cells { cells, colour, .. } => {
+            let rectangles = cells.iter().map(|Cell { x: (_, x), y: (_, y), value }| {
+                let corners = [place(x[0], y[0]), place(x[1], y[1])];
+                Rectangle::new(corners, rgb(colour(*value)).filled())
+            });
+            context.draw_series(rectangles).map_err(failed)?;
+        }
+        Layer::Curve { name, in_legend, points, colour, look, aside } => {
+            let colour = rgb(*colour);
+            let width = place(chart.x.to, 1.0).0 - place(chart.x.from, 1.0).0;
+            let place = |x: f64, y: f64| {
+                let (x, y) = place(x, y);
+                (x + aside * width, y)
+            };
+            let bars = points.iter().filter_map(|point| {
+                let (low, high) = point.interval?;
+                let bar = vec![place(point.x, low), place(point.x, high)];
+                Some(PathElement::new(bar, colour.stroke_width(2)))
+            });
+            context.draw_series(bars).map_err(failed)?;
+            let line = points.iter().map(|point| place(point.x, point.y)).collect();
+            draw_curve(line, colour, *look, in_legend.then_some(name), context)?;
         }
     }
-    if has_legend {
-        let position = match chart.legend {
-            Corner::UpperLeft => SeriesLabelPosition::UpperLeft,
-            Corner::UpperRight => SeriesLabelPosition::UpperRight,
-            Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
-            Corner::LowerRight => SeriesLabelPosition::LowerRight,
-        };
-        context
-            .configure_series_labels()
-            .position(position)
-            .margin(12)
-            .legend_area_size(36)
-            .background_style(WHITE.mix(0.85))
-            .border_style(RGBColor(200, 200, 200))
-            .label_font((FONT, CAPTION + 2).into_font().color(&rgb(super::INK)))
-            .draw()
-            .map_err(failed)?;
+    Ok(())
+}
+
+/// Draws a curve through places of the axes, and names it in the legend if it has a name.
+fn draw_curve<'a, DB: DrawingBackend + 'a>(
+    line: Vec<(f64, f64)>,
+    colour: RGBColor,
+    look: Look,
+    name: Option<&String>,
+    context: &mut Context<'a, DB>,
+) -> Result<()> {
+    let stroke = match look {
+        Look::Line(width) | Look::Dashes(width) => width,
+        Look::LineAndDots => 3,
+        Look::Dots(_) | Look::Rings(_) => 0,
+    };
+    let style = colour.stroke_width(stroke);
+    if matches!(look, Look::Line(_) | Look::LineAndDots) {
+        context.draw_series(LineSeries::new(line.clone(), style)).map_err(failed)?;
     }
+    if matches!(look, Look::Dashes(_)) {
+        let dashes = DashedLineSeries::new(line.clone(), 8, 6, style);
+        context.draw_series(dashes).map_err(failed)?;
+    }
+    let dot = match look {
+        Look::LineAndDots => Some((5, colour.filled())),
+        Look::Dots(radius) => Some((radius, colour.filled())),
+        Look::Rings(radius) => Some((radius, colour.stroke_width(2))),
+        Look::Line(_) | Look::Dashes(_) => None,
+    };
+    if let Some((radius, style)) = dot {
+        let dots = line.iter().map(|place| Circle::new(*place, radius, style));
+        context.draw_series(dots).map_err(failed)?;
+    }
+    let Some(name) = name else { return Ok(()) };
+    // Two dashes that touch are a line.
+    let dash = if matches!(look, Look::Dashes(_)) { 11 } else { 14 };
+    let key = move |(x, y): (i32, i32)| {
+        // Without a line there is none in the key either.
+        let seen = if stroke > 0 { 1.0 } else { 0.0 };
+        let style = colour.mix(seen).stroke_width(stroke.max(1));
+        let first = PathElement::new(vec![(x, y), (x + dash, y)], style);
+        let second = PathElement::new(vec![(x + 28 - dash, y), (x + 28, y)], style);
+        let (radius, style) = dot.unwrap_or((0, colour.mix(0.0).filled()));
+        let middle = Circle::new((x + 14, y), radius.min(8), style);
+        EmptyElement::at((0, 0)) + first + second + middle
+    };
+    let nothing: [EmptyElement<(f64, f64), DB>; 0] = [];
+    context.draw_series(nothing).map_err(failed)?.label(name).legend(key);
     Ok(())
 }
 

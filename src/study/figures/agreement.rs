@@ -25,14 +25,16 @@ impl Comparison {
 
 /// The slumps of all states at a Bond and a Δt, in the order of the states.
 pub(super) fn slumps(rows: &Rows<'_>, bond: f64, step: f64) -> Vec<f64> {
-    let here = |config: &Config| config.bond == Some(bond) && config.dt == Some(step);
+    let here = |config: &Config| {
+        config.parameters.bond == Some(bond) && config.parameters.time_step_secs == Some(step)
+    };
     rows.such_that(here).outcomes(|outcome| outcome.slump)
 }
 
 /// Every Bond at every Δt of `steps`, which rise.
 fn compare(rows: &Rows<'_>, steps: &[f64]) -> Vec<Comparison> {
     let mut all = Vec::new();
-    for bond in rows.values(|config| config.bond) {
+    for bond in rows.values(|config| config.parameters.bond) {
         let least = slumps(rows, bond, steps[0]);
         for &step in steps {
             let here = slumps(rows, bond, step);
@@ -150,11 +152,11 @@ mod tests {
                 let scatter =
                     if step == STEPS[0] { 0.0 } else { 0.03 * [1.0, -1.0][seed as usize % 2] };
                 let slump = 0.1 * seed as f64 + shift + scatter;
-                let (bond, dt) = (Some(10.0), Some(step));
-                runs.push((
-                    Config { bond, dt, seed: Some(seed), ..Config::default() },
-                    outcome(slump),
-                ));
+                let mut config = Config::default();
+                config.origin.seed = Some(seed);
+                config.parameters.bond = Some(10.0);
+                config.parameters.time_step_secs = Some(step);
+                runs.push((config, outcome(slump)));
             }
         }
         let rows = Rows(runs.iter().map(|(config, outcome)| (config, outcome)).collect());

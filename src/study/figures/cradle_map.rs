@@ -26,7 +26,8 @@ pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
 
 pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     let rows = workshop.rows("cradle-map")?;
-    let (steps, tolerances) = (rows.values(|c| c.dt), rows.values(|c| c.tolerance));
+    let (steps, tolerances) =
+        (rows.values(|c| c.parameters.time_step_secs), rows.values(|c| c.solver.tolerance));
     let (step_edges, tolerance_edges) = (log_edges(&steps), log_edges(&tolerances));
     let place = |values: &[f64], value: Option<f64>| {
         values.iter().position(|known| Some(*known) == value).unwrap_or(0)
@@ -35,7 +36,10 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         .0
         .iter()
         .map(|(config, outcome)| {
-            let (column, row) = (place(&steps, config.dt), place(&tolerances, config.tolerance));
+            let (column, row) = (
+                place(&steps, config.parameters.time_step_secs),
+                place(&tolerances, config.solver.tolerance),
+            );
             Cell {
                 x: (steps[column], step_edges[column]),
                 y: (tolerances[row], tolerance_edges[row]),
@@ -50,9 +54,10 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         Axis::log("Δt (s)", x.0, x.1),
         Axis::log("stopping tolerance Σ|ΔP|/m (m/s)", y.0, y.1),
     );
-    let small = rows.such_that(|config| config.dt < Some(3e-3));
+    let small = rows.such_that(|config| config.parameters.time_step_secs < Some(3e-3));
     let of_small = |low: f64, high: f64| {
-        let picked = small.such_that(|c| c.tolerance.is_some_and(|x| (low..high).contains(&x)));
+        let picked =
+            small.such_that(|c| c.solver.tolerance.is_some_and(|x| (low..high).contains(&x)));
         let open = picked.0.iter().filter(|(_, outcome)| is_open(outcome)).count();
         open as f64 / picked.0.len().max(1) as f64
     };

@@ -25,7 +25,7 @@ pub(super) fn slump(workshop: &Workshop) -> Result<Figure> {
         (100.0, "at Bond 100 it rises as Δt grows", rising),
     ];
     let claims = claims.into_iter().map(|(bond, said, test)| {
-        let rows = rows.such_that(|config| config.bond == Some(bond));
+        let rows = rows.such_that(|config| config.parameters.bond == Some(bond));
         let (measured, verdict) = test(&by_seed(&rows));
         Claim::new(format!("Fig. 5a: {said}"), measured, verdict)
     });
@@ -39,14 +39,17 @@ pub(super) fn overlap(workshop: &Workshop) -> Result<Figure> {
     let mut chart =
         chart(&rows, "Fig. 5b: mean overlap during 1 s", y, |outcome| outcome.mean_overlap);
     chart.legend = Corner::UpperLeft;
-    let cohesive = rows.such_that(|config| config.bond > Some(0.0));
+    let cohesive = rows.such_that(|config| config.parameters.bond > Some(0.0));
     let slopes: Vec<f64> = cohesive
         .seeds()
         .into_iter()
         .map(|seed| {
-            let of_seed = cohesive.such_that(|config| config.seed == Some(seed));
+            let of_seed = cohesive.such_that(|config| config.origin.seed == Some(seed));
             let log = |(config, outcome): &(&Config, &Outcome)| {
-                (config.dt.unwrap_or(1.0).log10(), outcome.mean_overlap.max(1e-12).log10())
+                (
+                    config.parameters.time_step_secs.unwrap_or(1.0).log10(),
+                    outcome.mean_overlap.max(1e-12).log10(),
+                )
             };
             slope(&of_seed.0.iter().map(log).collect::<Vec<_>>())
         })
@@ -76,21 +79,24 @@ pub(super) fn overlap(workshop: &Workshop) -> Result<Figure> {
 
 fn chart(rows: &Rows<'_>, title: &str, y: Axis, number: fn(&Outcome) -> f64) -> Chart {
     let mut chart = Chart::new(title, Axis::log("Δt (s)", 8e-5, 6.5e-3), y);
-    let bonds = rows.values(|config| config.bond);
+    let bonds = rows.values(|config| config.parameters.bond);
     for (index, &bond) in bonds.iter().enumerate() {
-        let of_bond = rows.such_that(|config| config.bond == Some(bond));
+        let of_bond = rows.such_that(|config| config.parameters.bond == Some(bond));
         let colour = PALETTE[index % PALETTE.len()];
-        let steps = of_bond.values(|config| config.dt);
+        let steps = of_bond.values(|config| config.parameters.time_step_secs);
         let shared = steps.iter().filter_map(|&step| {
             let is_it = |config: &Config| {
-                config.dt == Some(step) && config.seed == Some(Rain::default().seed)
+                config.parameters.time_step_secs == Some(step)
+                    && config.origin.seed == Some(Rain::default().seed)
             };
             Some((step, *of_bond.such_that(is_it).outcomes(number).first()?))
         });
         let name = format!("Bond {bond}, single state");
         chart.layers.push(Layer::quiet(name, points(shared), colour, Look::Line(1)));
         let means = steps.iter().map(|&step| {
-            let mean = mean(&of_bond.such_that(|c| c.dt == Some(step)).outcomes(number));
+            let mean = mean(
+                &of_bond.such_that(|c| c.parameters.time_step_secs == Some(step)).outcomes(number),
+            );
             Point { x: step, y: mean.mean, interval: Some((mean.low.max(1e-6), mean.high)) }
         });
         let name = format!("Bond {bond}");
@@ -116,11 +122,13 @@ type Test = fn(&[OfSeed]) -> (String, Verdict);
 
 fn by_seed(rows: &Rows<'_>) -> Vec<OfSeed> {
     let of_seed = |seed| {
-        let rows = rows.such_that(|config| config.seed == Some(seed));
+        let rows = rows.such_that(|config| config.origin.seed == Some(seed));
         let mut pairs: OfSeed = rows
             .0
             .iter()
-            .map(|(config, outcome)| (config.dt.unwrap_or(1.0).log10(), outcome.slump))
+            .map(|(config, outcome)| {
+                (config.parameters.time_step_secs.unwrap_or(1.0).log10(), outcome.slump)
+            })
             .collect();
         pairs.sort_by(|one, other| one.0.total_cmp(&other.0));
         pairs

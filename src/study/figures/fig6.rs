@@ -14,7 +14,8 @@ const RESAMPLINGS: usize = 400;
 
 /// The cohesive time of a run.
 pub(super) fn cohesive_time(config: &Config, unit_secs: f64) -> f64 {
-    config.bond.unwrap_or(0.0) * config.dt.unwrap_or(0.0) / unit_secs
+    config.parameters.bond.unwrap_or(0.0) * config.parameters.time_step_secs.unwrap_or(0.0)
+        / unit_secs
 }
 
 /// √(d/g) of the piles, s.
@@ -25,7 +26,7 @@ pub(super) fn unit_secs() -> Result<f64> {
 
 pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     let unit_secs = unit_secs()?;
-    let rows = workshop.rows("pile")?.such_that(|config| config.bond > Some(0.0));
+    let rows = workshop.rows("pile")?.such_that(|config| config.parameters.bond > Some(0.0));
     let mut chart = Chart::new(
         "Fig. 6: slump against cohesive time",
         Axis::log("Bond·Δt/√(d/g)", 0.06, 32.0),
@@ -33,11 +34,12 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     );
     let one = points([(1.0, 0.0), (1.0, 0.6)]);
     chart.layers.push(Layer::curve("the paper's guess", one, INK, Look::Dashes(2)));
-    for (index, bond) in rows.values(|config| config.bond).into_iter().enumerate() {
-        let of_bond = rows.such_that(|config| config.bond == Some(bond));
-        let means = of_bond.values(|config| config.dt).into_iter().map(|step| {
-            let mean =
-                mean(&of_bond.such_that(|c| c.dt == Some(step)).outcomes(|outcome| outcome.slump));
+    for (index, bond) in rows.values(|config| config.parameters.bond).into_iter().enumerate() {
+        let of_bond = rows.such_that(|config| config.parameters.bond == Some(bond));
+        let steps = of_bond.values(|config| config.parameters.time_step_secs);
+        let means = steps.into_iter().map(|step| {
+            let of_step = of_bond.such_that(|c| c.parameters.time_step_secs == Some(step));
+            let mean = mean(&of_step.outcomes(|outcome| outcome.slump));
             Point {
                 x: bond * step / unit_secs,
                 y: mean.mean,
@@ -57,32 +59,13 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         .seeds()
         .into_iter()
         .map(|seed| {
-            let of_seed = rows.such_that(|config| config.seed == Some(seed));
+            let of_seed = rows.such_that(|config| config.origin.seed == Some(seed));
             let place = |(config, outcome): &(&Config, &crate::study::Outcome)| {
                 (cohesive_time(config, unit_secs).log10(), outcome.slump)
             };
             of_seed.0.iter().map(place).collect()
         })
         .collect();
-    let side = |below: bool| {
-        let of_state = |state: &Vec<(f64, f64)>| {
-            let points: Vec<_> =
-                state.iter().copied().filter(|(x, _)| (*x < 0.0) == below).collect();
-            slope(&points)
-        };
-        mean(&states.iter().map(of_state).collect::<Vec<_>>())
-    };
-    let (below, above) = (side(true), side(false));
-    let told = |name: &str, mean: &crate::study::statistics::Mean| {
-        format!("slope per decade {name} {:+.3} ({:+.3} … {:+.3})", mean.mean, mean.low, mean.high)
-    };
-    let p = below.p_below(0.0).max(above.p_above(0.0));
-    let regimes = Claim::new(
-        "Fig. 6: below a cohesive time of 1 the slump falls with it, above it rises",
-        format!("{}, {}; both: {}", told("below", &below), told("above", &above), p_value(p))
-            .replace('-', "−"),
-        Verdict::of(p, below.p_above(0.0).min(above.p_below(0.0))),
-    );
     let (found, low, high) = turning(&states);
     let guess = Claim::new(
         "Fig. 6: two regimes part at a cohesive time of 1",
@@ -99,7 +82,30 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         states.len()
     )];
     sheet.caption.extend(workshop.note());
-    Ok(Figure { name: "fig6", sheet, claims: vec![regimes, guess], table: None })
+    Ok(Figure { name: "fig6", sheet, claims: vec![regimes(&states), guess], table: None })
+}
+
+/// Whether the slump falls and rises, over (log₁₀ of the cohesive time, slump) of each initial state.
+fn regimes(states: &[Vec<(f64, f64)>]) -> Claim {
+    let side = |below: bool| {
+        let of_state = |state: &Vec<(f64, f64)>| {
+            let points: Vec<_> =
+                state.iter().copied().filter(|(x, _)| (*x < 0.0) == below).collect();
+            slope(&points)
+        };
+        mean(&states.iter().map(of_state).collect::<Vec<_>>())
+    };
+    let (below, above) = (side(true), side(false));
+    let told = |name: &str, mean: &crate::study::statistics::Mean| {
+        format!("slope per decade {name} {:+.3} ({:+.3} … {:+.3})", mean.mean, mean.low, mean.high)
+    };
+    let p = below.p_below(0.0).max(above.p_above(0.0));
+    Claim::new(
+        "Fig. 6: below a cohesive time of 1 the slump falls with it, above it rises",
+        format!("{}, {}; both: {}", told("below", &below), told("above", &above), p_value(p))
+            .replace('-', "−"),
+        Verdict::of(p, below.p_above(0.0).min(above.p_below(0.0))),
+    )
 }
 
 /// Where the slump turns, with the interval in which it does so for resampled initial states.

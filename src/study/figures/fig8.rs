@@ -42,7 +42,7 @@ pub(super) fn is_open(outcome: &Outcome) -> bool {
 
 /// The larger, looser of a study's tolerances, and the smaller one.
 fn tolerances(rows: &super::workshop::Rows<'_>) -> (f64, f64) {
-    let values = rows.values(|config| config.tolerance);
+    let values = rows.values(|config| config.solver.tolerance);
     (values[values.len() - 1], values[0])
 }
 
@@ -57,7 +57,10 @@ pub(super) fn courses(workshop: &Workshop) -> Result<Figure> {
     let mut highest: f64 = 1.1;
     for (index, shown) in SHOWN_SECS.into_iter().enumerate() {
         let all = workshop.courses("cradle")?;
-        let is_it = |config: &Config| config.dt == Some(shown) && config.tolerance == Some(loose);
+        let is_it = |config: &Config| {
+            config.parameters.time_step_secs == Some(shown)
+                && config.solver.tolerance == Some(loose)
+        };
         let found = all.iter().find(|(config, _)| is_it(config));
         let (_, text) = found.ok_or_else(|| Error::value("dt", shown, "part of the study"))?;
         let course: Vec<_> = after_shock(text)?
@@ -105,11 +108,14 @@ pub(super) fn strip(workshop: &Workshop) -> Result<Figure> {
     let mut chart =
         Chart::new("The bond of i and j after the shock", Axis::log("Δt (s)", 8e-5, 1.3e-2), y);
     let of = |tolerance: f64| {
-        let rows = rows.such_that(|config| config.tolerance == Some(tolerance));
+        let rows = rows.such_that(|config| config.solver.tolerance == Some(tolerance));
         rows.0
             .iter()
             .map(|(config, outcome)| {
-                (config.dt.unwrap_or(0.0), f64::from(u8::from(is_open(outcome))))
+                (
+                    config.parameters.time_step_secs.unwrap_or(0.0),
+                    f64::from(u8::from(is_open(outcome))),
+                )
             })
             .collect::<Vec<_>>()
     };
@@ -135,10 +141,14 @@ pub(super) fn strip(workshop: &Workshop) -> Result<Figure> {
              six of its twenty time steps; the others are ours."
             .into(),
     ];
+    let claims = claims_of_strip(&of(loose), &of(tight), tight);
+    Ok(Figure { name: "fig8-strip", sheet, claims, table: None })
+}
 
-    let found = of(loose);
+/// What the outcomes, open or not at each Δt, say of the paper's pattern.
+fn claims_of_strip(loose: &[(f64, f64)], tight: &[(f64, f64)], tolerance: f64) -> Vec<Claim> {
     let agrees = |&&(step, open): &&(f64, bool)| {
-        found.iter().any(|&(dt, state)| dt == step && (state > 0.5) == open)
+        loose.iter().any(|&(dt, state)| dt == step && (state > 0.5) == open)
     };
     let agreed = PAPER.iter().filter(agrees).count();
     let pattern = Claim::new(
@@ -149,16 +159,16 @@ pub(super) fn strip(workshop: &Workshop) -> Result<Figure> {
         ),
         (agreed == PAPER.len()).into(),
     );
-    let small = of(tight).into_iter().filter(|(step, _)| *step < PHASE_SECS);
+    let small = tight.iter().filter(|(step, _)| *step < PHASE_SECS);
     let opened = small.filter(|(_, state)| *state > 0.5).count();
     let solved = Claim::new(
         "§4 (eq. 15): at small Δt the shock opens the bond",
         format!(
-            "solved to {tight:e} m/s, {opened} bonds open at Δt < {PHASE_SECS} s: the opening is what the loose stop leaves over"
+            "solved to {tolerance:e} m/s, {opened} bonds open at Δt < {PHASE_SECS} s: the opening is what the loose stop leaves over"
         ),
         if opened == 0 { Verdict::Fails } else { Verdict::Open },
     );
-    Ok(Figure { name: "fig8-strip", sheet, claims: vec![pattern, solved], table: None })
+    vec![pattern, solved]
 }
 
 pub(super) fn share(workshop: &Workshop) -> Result<Figure> {
@@ -170,16 +180,17 @@ pub(super) fn share(workshop: &Workshop) -> Result<Figure> {
     );
     chart.y.ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].map(|share| (share, share.to_string())).to_vec();
     chart.legend = Corner::UpperRight;
-    let starts = rows.values(|config| config.start);
+    let starts = rows.values(|config| config.origin.start);
     let mut told = Vec::new();
-    let tolerances = rows.values(|config| config.tolerance);
+    let tolerances = rows.values(|config| config.solver.tolerance);
     for (&tolerance, colour) in tolerances.iter().rev().zip([PALETTE[6], PALETTE[2], PALETTE[1]]) {
-        let rows = rows.such_that(|config| config.tolerance == Some(tolerance));
+        let rows = rows.such_that(|config| config.solver.tolerance == Some(tolerance));
         let shares: Vec<Point> = rows
-            .values(|config| config.dt)
+            .values(|config| config.parameters.time_step_secs)
             .into_iter()
             .map(|step| {
-                let of_step = rows.such_that(|config| config.dt == Some(step));
+                let of_step =
+                    rows.such_that(|config| config.parameters.time_step_secs == Some(step));
                 let hits = of_step.0.iter().filter(|(_, outcome)| is_open(outcome)).count();
                 let (share, low, high) = statistics::share(hits, of_step.0.len());
                 Point { x: step, y: share, interval: Some((low, high)) }

@@ -1,5 +1,5 @@
 //! Every figure of the paper and those that its conclusion asks for, from simulation alone, and a
-//! report of what holds. One file a figure, listed in [`FIGURES`].
+//! report of what holds. One file a figure, listed in `registry`.
 
 mod agreement;
 mod cradle_map;
@@ -7,9 +7,11 @@ mod fig2;
 mod fig5;
 mod fig6;
 mod fig8;
+mod figure;
 mod pile_map;
 mod pile_series;
 mod range;
+mod registry;
 mod reproduce;
 mod table;
 mod two_body;
@@ -17,52 +19,7 @@ mod verdict;
 mod workshop;
 
 pub use reproduce::{figure_names, reproduce};
-use workshop::Workshop;
 
-use super::chart::Sheet;
-use crate::error::Result;
-use table::Table;
+use figure::Figure;
 use verdict::Claim;
-
-/// A finished figure.
-pub(super) struct Figure {
-    /// Name of its files.
-    pub name: &'static str,
-    /// What is drawn.
-    pub sheet: Sheet,
-    /// What it says of the paper's claims.
-    pub claims: Vec<Claim>,
-    /// The numbers behind them, where the chart shows too few.
-    pub table: Option<Table>,
-}
-
-/// A figure that can be asked for.
-pub(super) struct FigureInfo {
-    /// Its name on the command line.
-    pub name: &'static str,
-    /// The studies that it needs.
-    pub studies: &'static [&'static str],
-    /// Makes it.
-    pub make: fn(&Workshop) -> Result<Figure>,
-}
-
-/// All figures that are charts, in the order of the report.
-pub(super) const FIGURES: [FigureInfo; 13] = [
-    FigureInfo { name: "fig2", studies: &[], make: fig2::make },
-    FigureInfo { name: "two-body", studies: &[], make: two_body::make },
-    FigureInfo { name: "fig5a", studies: &["pile"], make: fig5::slump },
-    FigureInfo { name: "fig5b", studies: &["pile"], make: fig5::overlap },
-    FigureInfo { name: "fig6", studies: &["pile"], make: fig6::make },
-    FigureInfo { name: "fig8", studies: &["cradle"], make: fig8::courses },
-    FigureInfo { name: "fig8-strip", studies: &["cradle"], make: fig8::strip },
-    FigureInfo { name: "fig8-share", studies: &["cradle-share"], make: fig8::share },
-    FigureInfo { name: "cradle-map", studies: &["cradle-map"], make: cradle_map::make },
-    FigureInfo { name: "pile-map", studies: &["pile-map"], make: pile_map::make },
-    FigureInfo { name: "pile-size", studies: &["pile-size"], make: pile_series::size },
-    FigureInfo {
-        name: "pile-tolerance",
-        studies: &["pile-tolerance"],
-        make: pile_series::tolerance,
-    },
-    FigureInfo { name: "range", studies: &["range"], make: range::make },
-];
+use workshop::Workshop;

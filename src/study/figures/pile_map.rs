@@ -1,5 +1,7 @@
 //! The slump over Bond number and time step, with contours of the cohesive time.
 
+use std::ops::RangeInclusive;
+
 use super::cradle_map::log_edges;
 use super::fig6::unit_secs;
 use super::verdict::Verdict;
@@ -28,7 +30,8 @@ fn colour(slump: f64) -> Rgb {
 pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     let unit_secs = unit_secs()?;
     let rows = workshop.rows("pile-map")?;
-    let (bonds, steps) = (rows.values(|c| c.bond), rows.values(|c| c.dt));
+    let (bonds, steps) =
+        (rows.values(|c| c.parameters.bond), rows.values(|c| c.parameters.time_step_secs));
     let half = 0.5 * (bonds[1] - bonds[0]);
     let edges = log_edges(&steps);
     let mut cells = Vec::new();
@@ -38,7 +41,9 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         let edge = |number: usize| bonds[0] + half * (2.0 * number as f64 - 1.0);
         let mut best = (f64::INFINITY, 0.0);
         for (step, edges) in steps.iter().zip(&edges) {
-            let cell = rows.such_that(|c| c.bond == Some(bond) && c.dt == Some(*step));
+            let cell = rows.such_that(|c| {
+                c.parameters.bond == Some(bond) && c.parameters.time_step_secs == Some(*step)
+            });
             let slump = mean(&cell.outcomes(|outcome| outcome.slump)).mean;
             cells.push(Cell {
                 x: (bond, [edge(index), edge(index + 1)]),
@@ -60,22 +65,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     );
     chart.width = 5.0;
     chart.layers.push(Layer::Cells { name: "mean slump".into(), cells, colour });
-    for time in CONTOURS {
-        let line: Vec<_> = (1..=400)
-            .map(|k| x_to * f64::from(k) / 400.0)
-            .map(|bond| (bond, time * unit_secs / bond))
-            .filter(|(_, step)| (y_from..=y_to).contains(step))
-            .collect();
-        let Some(&(bond, step)) = line.get(line.len() / 2) else { continue };
-        let name = format!("cohesive time {time}");
-        let look = if time == 1.0 { Look::Line(3) } else { Look::Line(1) };
-        chart.layers.push(Layer::quiet(name, points(line), WHITE, look));
-        chart.layers.push(Layer::Words {
-            at: (bond, step),
-            text: format!(" {time}"),
-            colour: WHITE,
-        });
-    }
+    chart.layers.extend(contours(unit_secs, x_to, y_from..=y_to));
     let cohesive: Vec<_> = lowest.iter().copied().filter(|(bond, _)| *bond > 0.0).collect();
     let dots = points(cohesive.iter().copied());
     chart.layers.push(Layer::quiet(
@@ -85,6 +75,38 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         Look::Dots(6),
     ));
 
+    let claim = claim(&cohesive, &steps, unit_secs);
+    let sheet = Sheet {
+        size: (1320, 900),
+        charts: vec![chart, scale()],
+        caption: [vec![format!(
+            "Means over {} initial states; red: the Δt of the lowest slump at each Bond number.",
+            rows.seeds().len()
+        )], workshop.note()].concat(),
+    };
+    Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
+}
+
+/// Lines of equal cohesive time, each with its number, on axes that end there.
+fn contours(unit_secs: f64, most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
+    let mut layers = Vec::new();
+    for time in CONTOURS {
+        let line: Vec<_> = (1..=400)
+            .map(|k| most_bond * f64::from(k) / 400.0)
+            .map(|bond| (bond, time * unit_secs / bond))
+            .filter(|(_, step)| steps.contains(step))
+            .collect();
+        let Some(&(bond, step)) = line.get(line.len() / 2) else { continue };
+        let name = format!("cohesive time {time}");
+        let look = if time == 1.0 { Look::Line(3) } else { Look::Line(1) };
+        layers.push(Layer::quiet(name, points(line), WHITE, look));
+        layers.push(Layer::Words { at: (bond, step), text: format!(" {time}"), colour: WHITE });
+    }
+    layers
+}
+
+/// The scale of colours.
+fn scale() -> Chart {
     let mut scale =
         Chart::new("", Axis::linear("", 0.0, 1.0), Axis::linear("slump Δy_G", 0.0, MOST));
     scale.x.ticks = vec![(-1.0, String::new())];
@@ -94,17 +116,21 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     };
     let cells = (0..SHADES).map(shade).collect();
     scale.layers.push(Layer::Cells { name: "scale".into(), cells, colour });
+    scale
+}
 
+/// What the Δt of the lowest slump at each Bond number say of a cohesive time of 1.
+fn claim(lowest: &[(f64, f64)], steps: &[f64], unit_secs: f64) -> Claim {
     // Where the lowest slump is at an end of the range, the turn may lie outside.
     let inside = |step: &f64| *step > steps[0] && *step < steps[steps.len() - 1];
-    let times: Vec<f64> = cohesive
+    let times: Vec<f64> = lowest
         .iter()
         .filter(|(_, step)| inside(step))
         .map(|(bond, step)| (bond * step / unit_secs).log10())
         .collect();
     let turn = mean(&times);
     let told = |exponent: f64| 10f64.powf(exponent);
-    let claim = Claim::new(
+    Claim::new(
         "Beyond the paper: over the plane of Bond and Δt the slump is lowest along a cohesive time of 1",
         format!(
             "lowest at a cohesive time of {:.2} (95 % interval {:.2} … {:.2}, {} Bond numbers with the lowest inside the range)",
@@ -118,14 +144,5 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         } else {
             Verdict::of_interval(1.0, told(turn.low), told(turn.high))
         },
-    );
-    let sheet = Sheet {
-        size: (1320, 900),
-        charts: vec![chart, scale],
-        caption: [vec![format!(
-            "Means over {} initial states; red: the Δt of the lowest slump at each Bond number.",
-            rows.seeds().len()
-        )], workshop.note()].concat(),
-    };
-    Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
+    )
 }

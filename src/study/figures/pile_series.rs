@@ -15,14 +15,17 @@ const FEWEST_STATES: usize = 8;
 
 pub(super) fn size(workshop: &Workshop) -> Result<Figure> {
     let rows = workshop.rows("pile-size")?;
-    let grains = |config: &Config| config.grains.map(|count| count as f64);
+    let grains = |config: &Config| config.origin.grains.map(|count| count as f64);
     let counts = rows.values(grains);
     let x = Axis::log("number of grains", 0.8 * counts[0], 1.25 * counts[counts.len() - 1]);
     let (mut sheet, curves) =
         series(workshop, &rows, "Slump against the number of grains", x, grains)?;
     let solver = rows.0.first().map_or_else(String::new, |(config, _)| {
-        let method = config.solver.map_or("", |method| method.name());
-        format!("Solved by {method} to a residual of {:e}.", config.tolerance.unwrap_or_default())
+        let method = config.solver.method.map_or("", |method| method.name());
+        format!(
+            "Solved by {method} to a residual of {:e}.",
+            config.solver.tolerance.unwrap_or_default()
+        )
     });
     sheet.caption.insert(1, solver);
     if let Some(chart) = sheet.charts.first_mut() {
@@ -46,17 +49,17 @@ pub(super) fn size(workshop: &Workshop) -> Result<Figure> {
 
 pub(super) fn tolerance(workshop: &Workshop) -> Result<Figure> {
     let rows = workshop.rows("pile-tolerance")?;
-    let values = rows.values(|config| config.tolerance);
+    let values = rows.values(|config| config.solver.tolerance);
     let x = Axis::log(
         "relative change at which sweeps stop",
         0.6 * values[0],
         1.6 * values[values.len() - 1],
     );
     let title = "Slump against how well each step is solved";
-    let (sheet, _) = series(workshop, &rows, title, x, |config| config.tolerance)?;
+    let (sheet, _) = series(workshop, &rows, title, x, |config| config.solver.tolerance)?;
     let unit_secs = unit_secs()?;
-    let claims = rows.values(|config| config.dt).into_iter().map(|step| {
-        let of_step = rows.such_that(|config| config.dt == Some(step));
+    let claims = rows.values(|config| config.parameters.time_step_secs).into_iter().map(|step| {
+        let of_step = rows.such_that(|config| config.parameters.time_step_secs == Some(step));
         // The loosest tolerance from which on no mean differs from the tightest one, state by state.
         let differs = |tolerance: f64| {
             let differences: Vec<f64> = of_step
@@ -65,7 +68,7 @@ pub(super) fn tolerance(workshop: &Workshop) -> Result<Figure> {
                 .filter_map(|seed| {
                     let slump = |wanted: f64| {
                         let run = of_step
-                            .such_that(|c| c.seed == Some(seed) && c.tolerance == Some(wanted));
+                            .such_that(|c| c.origin.seed == Some(seed) && c.solver.tolerance == Some(wanted));
                         run.outcomes(|outcome| outcome.slump).first().copied()
                     };
                     Some(slump(tolerance)? - slump(values[0])?)
@@ -78,7 +81,7 @@ pub(super) fn tolerance(workshop: &Workshop) -> Result<Figure> {
         let settled = settled.unwrap_or(values[0]);
         // That no difference is seen says little where few states were looked at.
         let undecided = settled == values[0] || of_step.seeds().len() < FEWEST_STATES;
-        let bond = of_step.values(|config| config.bond)[0];
+        let bond = of_step.values(|config| config.parameters.bond)[0];
         Claim::new(
             format!(
                 "Beyond the paper: how well a step must be solved, at a cohesive time of {:.1}",
@@ -110,8 +113,10 @@ fn series(
     let mut chart = Chart::new(title, x, Axis::linear("slump Δy_G", 0.0, 0.7));
     chart.legend = Corner::UpperRight;
     let mut curves = Vec::new();
-    for (index, step) in rows.values(|config| config.dt).into_iter().enumerate() {
-        let of_step = rows.such_that(|config| config.dt == Some(step));
+    for (index, step) in
+        rows.values(|config| config.parameters.time_step_secs).into_iter().enumerate()
+    {
+        let of_step = rows.such_that(|config| config.parameters.time_step_secs == Some(step));
         let time = of_step.0.first().map_or(0.0, |(config, _)| cohesive_time(config, unit_secs));
         let means = of_step.values(&number).into_iter().map(|value| {
             let mean = mean(&of_step.such_that(|c| number(c) == Some(value)).outcomes(|o| o.slump));
@@ -124,14 +129,14 @@ fn series(
         let curve = Layer::curve(name, means.collect(), colour, Look::LineAndDots);
         chart.layers.push(curve.beside(index, 3));
         let of_seed = |seed| {
-            let run = of_step.such_that(|config| config.seed == Some(seed));
+            let run = of_step.such_that(|config| config.origin.seed == Some(seed));
             let places = run.0.iter().filter_map(|(c, o)| Some((number(c)?.log10(), o.slump)));
             slope(&places.collect::<Vec<_>>())
         };
         curves.push((time, of_step.seeds().into_iter().map(of_seed).collect()));
     }
     let mut sheet = Sheet::of(chart);
-    let bond = rows.values(|config| config.bond)[0];
+    let bond = rows.values(|config| config.parameters.bond)[0];
     sheet.caption = vec![format!(
         "Bond {bond}; means over {} initial states, with 95 % intervals from three states up.",
         rows.seeds().len()

@@ -7,14 +7,13 @@ use super::agreement::{self, slumps};
 use super::workshop::Rows;
 use super::{Claim, Figure, Workshop};
 use crate::error::Result;
-use crate::scene::Config;
+use crate::scene::Origin;
+use crate::sim::Stepper;
 use crate::study::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
 use crate::study::statistics::mean;
-use crate::world::ContactLaw;
 
-/// Both laws with what the figure calls them.
-const LAWS: [(ContactLaw, &str); 2] =
-    [(ContactLaw::Moreau, "moreau"), (ContactLaw::Range, "range")];
+/// The steppers whose laws are compared.
+const LAWS: [Stepper; 2] = [Stepper::Moreau, Stepper::Range];
 
 /// Bonds whose curves against Δt are drawn.
 const SHOWN_BONDS: [f64; 5] = [0.0, 10.0, 15.0, 20.0, 100.0];
@@ -27,12 +26,12 @@ const TIMED: (f64, f64) = (0.3, 20.0);
 
 pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     let rows = workshop.rows("range")?;
-    let of_law = LAWS.map(|(law, _)| rows.such_that(|config| config.law == Some(law)));
-    let steps = rows.values(|config| config.dt);
+    let of_law = LAWS.map(|law| rows.such_that(|config| config.stepper == Some(law)));
+    let steps = rows.values(|config| config.parameters.time_step_secs);
     let mut charts: Vec<Chart> = LAWS
         .iter()
         .zip(&of_law)
-        .map(|((_, name), rows)| against_step(name, rows, &steps))
+        .map(|(law, rows)| against_step(law.name(), rows, &steps))
         .collect();
     charts.push(against_bond(&of_law[1], &steps));
     charts.push(cost(&of_law, &steps, workshop.quick)?);
@@ -44,7 +43,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         steps[0]
     )];
     sheet.caption.extend(workshop.note());
-    let named = [(LAWS[0].1, &of_law[0]), (LAWS[1].1, &of_law[1])];
+    let named = [(LAWS[0].name(), &of_law[0]), (LAWS[1].name(), &of_law[1])];
     let mut claims = Vec::from(named.map(|(name, rows)| agreement::claim(name, rows, &steps)));
     let overlaps = of_law[1].outcomes(|outcome| outcome.mean_overlap);
     let largest = overlaps.into_iter().fold(0.0, f64::max);
@@ -77,7 +76,7 @@ fn against_step(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Chart {
     let x = Axis::log("Δt (s)", 0.8 * steps[0], 1.3 * steps[steps.len() - 1]);
     let x = Axis { ticks: ticks(&[2e-4, 1e-3, 5e-3], steps[0], steps[steps.len() - 1]), ..x };
     let mut chart = Chart::new(format!("Law {law}"), x, Axis::linear("slump Δy_G", 0.0, 0.7));
-    let bonds = rows.values(|config| config.bond);
+    let bonds = rows.values(|config| config.parameters.bond);
     let shown = bonds.into_iter().filter(|bond| SHOWN_BONDS.contains(bond));
     for (index, bond) in shown.enumerate() {
         let means = steps.iter().map(|&step| point(step, &slumps(rows, bond, step)));
@@ -90,7 +89,7 @@ fn against_step(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Chart {
 }
 
 fn against_bond(rows: &Rows<'_>, steps: &[f64]) -> Chart {
-    let bonds = rows.values(|config| config.bond);
+    let bonds = rows.values(|config| config.parameters.bond);
     let most = bonds[bonds.len() - 1];
     let x = Axis::linear("Bond", -0.03 * most, 1.05 * most);
     let y = Axis::linear("slump Δy_G", 0.0, 0.7);
@@ -108,8 +107,8 @@ fn against_bond(rows: &Rows<'_>, steps: &[f64]) -> Chart {
 /// Wall-clock seconds of one thread for a simulated second against the error, a point a Δt.
 fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
     let mut curves = Vec::new();
-    for ((law, name), rows) in LAWS.into_iter().zip(of_law) {
-        let bonds = rows.values(|config| config.bond);
+    for (law, rows) in LAWS.into_iter().zip(of_law) {
+        let bonds = rows.values(|config| config.parameters.bond);
         let mut points = Vec::new();
         for &step in &steps[1..] {
             let differences = bonds.iter().map(|&bond| {
@@ -120,7 +119,7 @@ fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
             let secs = seconds_per_second(rows, law, step, quick)?;
             points.push(Point { x: error, y: secs, interval: None });
         }
-        curves.push((name, points));
+        curves.push((law.name(), points));
     }
     let all = || curves.iter().flat_map(|(_, points)| points);
     let span = |number: fn(&Point) -> f64, room: f64| {
@@ -141,18 +140,15 @@ fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
 }
 
 /// Times one state of the study.
-fn seconds_per_second(rows: &Rows<'_>, law: ContactLaw, step: f64, quick: bool) -> Result<f64> {
+fn seconds_per_second(rows: &Rows<'_>, law: Stepper, step: f64, quick: bool) -> Result<f64> {
     let (duration, bond) = TIMED;
-    let like = rows.such_that(|config| config.dt == Some(step));
+    let like = rows.such_that(|config| config.parameters.time_step_secs == Some(step));
     let Some((config, _)) = like.0.first() else { return Ok(f64::NAN) };
     // The state that is shipped: no pile is settled for this.
-    let config = Config {
-        seed: None,
-        bond: Some(bond),
-        law: Some(law),
-        duration: Some(duration),
-        ..(*config).clone()
-    };
+    let mut config = (*config).clone();
+    config.origin = Origin { seed: None, duration: Some(duration), ..config.origin };
+    config.parameters.bond = Some(bond);
+    config.stepper = Some(law);
     let scene = config.without_settling()?;
     let mut least = f64::INFINITY;
     for _ in 0..if quick { 1 } else { 3 } {

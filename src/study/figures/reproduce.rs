@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
-use super::{FIGURES, Figure, FigureInfo, Workshop};
+use super::registry::{FIGURES, FigureInfo};
+use super::{Figure, Workshop};
 use crate::error::{Error, Result};
 use crate::output::{check_writable, write_file};
 use crate::study::chart;

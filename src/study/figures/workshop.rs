@@ -118,7 +118,8 @@ impl<'a> Rows<'a> {
 
     /// Seeds that are there, rising.
     pub fn seeds(&self) -> Vec<u64> {
-        let mut seeds: Vec<u64> = self.0.iter().filter_map(|(config, _)| config.seed).collect();
+        let mut seeds: Vec<u64> =
+            self.0.iter().filter_map(|(config, _)| config.origin.seed).collect();
         seeds.sort_unstable();
         seeds.dedup();
         seeds

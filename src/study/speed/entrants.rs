@@ -1,74 +1,109 @@
 //! Who takes part: every method of the registry.
 
-use crate::solver::{METHODS, Method, MethodKind, Ordering, Remedies, SolverSettings, StopTest};
+use crate::scene::Scene;
+use crate::sim::{Settings, Stepper};
+use crate::solver::{METHODS, Method, Ordering, SolverSettings, StopTest};
 
-/// A method as it is charted.
+/// A method, or a way to step that has none, as it is charted.
 #[derive(Clone, Debug)]
 pub(super) struct Entrant {
     /// Its name on charts.
     pub name: String,
     /// Its number among all looks.
     pub look: usize,
-    pub method: Method,
-    pub ordering: Ordering,
+    pub stepper: Stepper,
+    pub solver: SolverSettings,
 }
 
-/// Every method of the registry, in its order; `auto` is one of the others.
+/// How an entrant steps, with an effort.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    pub stepper: Stepper,
+    pub solver: SolverSettings,
+    pub substeps: u32,
+}
+
+/// Steppers that solve no problem by a method: entrants by themselves.
+fn without_method() -> impl Iterator<Item = Stepper> {
+    Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
+}
+
+/// How many looks there are, but for those of entrants that come twice.
+pub(super) fn looks() -> usize {
+    METHODS.len() + without_method().count()
+}
+
+/// Every method of the registry, in its order, and every way to step without one; `auto` is one of the
+/// others.
 pub(super) fn all() -> Vec<Entrant> {
-    let entrant = |(look, info): (usize, &crate::solver::MethodInfo)| Entrant {
-        name: info.name.to_owned(),
-        look,
-        method: info.method,
-        ordering: Ordering::default(),
-    };
-    let own = METHODS.iter().enumerate().filter(|(_, info)| info.method != Method::Auto);
-    own.map(entrant).collect()
+    let mut entrants = of_problems(false);
+    entrants.extend((METHODS.len()..).zip(without_method()).map(|(look, stepper)| {
+        let name = stepper.name().to_owned();
+        Entrant { name, look, stepper, solver: SolverSettings::default() }
+    }));
+    entrants
 }
 
 /// Those that solve the problem of a step, and Gauss–Seidel in its other orders where `orders` are
 /// asked for.
 pub(super) fn of_problems(orders: bool) -> Vec<Entrant> {
-    let mut entrants = all();
-    entrants.retain(|entrant| entrant.method.kind() == MethodKind::Problem);
+    let entrant = |name: String, look, method, ordering| {
+        let solver = SolverSettings { method, ordering, ..SolverSettings::default() };
+        Entrant { name, look, stepper: Stepper::Moreau, solver }
+    };
+    let own = METHODS.iter().enumerate().filter(|(_, info)| info.method != Method::Auto);
+    let mut entrants: Vec<Entrant> = own
+        .map(|(look, info)| entrant(info.name.to_owned(), look, info.method, Ordering::default()))
+        .collect();
     if orders {
-        for (name, ordering) in [
-            ("bottom-up", Ordering::BottomUp),
-            ("detected", Ordering::Detected),
-            ("symmetric", Ordering::Symmetric),
-        ] {
-            entrants.push(Entrant {
-                name: format!("nsgs {name}"),
-                look: METHODS.len() + entrants.len(),
-                method: Method::Nsgs,
-                ordering,
-            });
+        for ordering in [Ordering::BottomUp, Ordering::Detected, Ordering::Symmetric] {
+            let look = looks() + entrants.len();
+            entrants.push(entrant(format!("nsgs {ordering}"), look, Method::Nsgs, ordering));
         }
     }
     entrants
 }
 
 impl Entrant {
-    /// Its settings, warm-started, down to a residual.
-    pub fn to_residual(&self, tolerance: f64, max_sweeps: u32) -> SolverSettings {
-        SolverSettings {
-            method: self.method,
-            ordering: self.ordering,
+    /// Its method, if it has one.
+    pub fn method(&self) -> Option<Method> {
+        self.stepper.uses_method().then_some(self.solver.method)
+    }
+
+    /// Warm-started, down to a residual.
+    pub fn to_residual(&self, tolerance: f64, max_sweeps: u32) -> Way {
+        let solver = SolverSettings {
             stop: StopTest::Residual,
             tolerance,
             max_sweeps,
             warm_start: true,
-            substeps: 0,
-            remedies: Remedies::default(),
-        }
+            ..self.solver
+        };
+        Way { stepper: self.stepper, solver, substeps: 0 }
     }
 
-    /// Its settings with so many sweeps, whatever they come to.
-    pub fn sweeps(&self, count: u32) -> SolverSettings {
+    /// With so many sweeps, whatever they come to.
+    pub fn sweeps(&self, count: u32) -> Way {
         self.to_residual(f64::MIN_POSITIVE, count)
     }
 
-    /// Its settings with so many substeps; its own number where that is 0.
-    pub fn substeps(&self, count: u32) -> SolverSettings {
-        SolverSettings { substeps: count, ..self.to_residual(f64::MIN_POSITIVE, 1) }
+    /// With so many substeps; its own number where that is 0.
+    pub fn substeps(&self, count: u32) -> Way {
+        Way { substeps: count, ..self.sweeps(1) }
+    }
+}
+
+impl Way {
+    /// The settings, stepped this way.
+    pub fn over(&self, settings: &Settings) -> Settings {
+        let Self { stepper, solver, substeps } = *self;
+        let mut settings = Settings { stepper, solver, ..*settings };
+        settings.parameters.substeps = substeps;
+        settings
+    }
+
+    /// Has a scene stepped this way.
+    pub fn take(&self, scene: &mut Scene) {
+        scene.set_settings(self.over(&scene.settings()));
     }
 }

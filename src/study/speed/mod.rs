@@ -5,6 +5,7 @@
 //! `measured/`: journals of what was measured, by program and processor, so that the same command
 //! goes on where it was stopped and never mixes times of different programs.
 
+mod bench;
 mod entrants;
 mod look;
 mod machine;
@@ -19,12 +20,9 @@ mod steps;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-
+use self::bench::{Bench, Part};
 use self::machine::Machine;
-use super::chart::{Sheet, png, svg};
-use super::journal::{self, Journal};
+use super::chart::{png, svg};
 use crate::error::Result;
 use crate::output::{check_writable, write_file};
 
@@ -54,26 +52,6 @@ pub struct ChartOptions {
     pub only: Vec<ChartPart>,
     /// Folder of tables of other engines' runs (`benches/peers`); none are drawn where it is missing.
     pub peers: PathBuf,
-}
-
-/// A finished chart.
-struct Part {
-    /// Name of its files.
-    name: String,
-    sheet: Sheet,
-    /// Markdown; may be empty.
-    report: String,
-    /// (name, CSV) of tables beside the sheet's own.
-    tables: Vec<(String, String)>,
-}
-
-/// Where charts are made.
-struct Bench {
-    folder: PathBuf,
-    quick: bool,
-    large: bool,
-    peers: PathBuf,
-    machine: Machine,
 }
 
 /// Measures and draws into a folder.
@@ -123,34 +101,6 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     print!("{report}");
     println!("\n{}", path.display());
     Ok(())
-}
-
-impl Bench {
-    fn states_folder(&self) -> PathBuf {
-        self.folder.join("states")
-    }
-
-    /// A journal for the measurements of this program on this machine, and what it holds.
-    fn journal<T: Serialize + DeserializeOwned>(&self, name: &str) -> Result<(Journal, Vec<T>)> {
-        let pass = if self.quick { "quick" } else { "full" };
-        let folder = self.folder.join("measured").join(&self.machine.fingerprint).join(pass);
-        check_writable(&folder)?;
-        // Opening cuts off a half line, so it comes first.
-        let journal = Journal::open(&folder, name)?;
-        let done: Vec<T> = journal::read(&journal::path_of(&folder, name))?;
-        if !done.is_empty() {
-            eprintln!("{name}: {} measurements were there", done.len());
-        }
-        Ok((journal, done))
-    }
-
-    /// Lines below a chart: what it shows, then where it was measured.
-    fn caption(&self, lines: &[&str]) -> Vec<String> {
-        let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
-        let quick = if self.quick { "Quick pass. " } else { "" };
-        caption.push(format!("{quick}{}", self.machine.words()));
-        caption
-    }
 }
 
 /// Where the tables of other engines lie in the source tree.

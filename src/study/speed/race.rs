@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::entrants::Entrant;
 use crate::contact::ContactList;
 use crate::sim::ProblemVisitor;
-use crate::solver::{Model, SolverSettings, StepProblem, residual, solve};
+use crate::solver::{Memory, Model, SolverSettings, StepProblem, residual, solve};
 use crate::study::performance::Timing;
 
 /// Least number of solves that a time is the minimum of.
@@ -88,7 +88,7 @@ impl ProblemVisitor for Runner<'_> {
         };
         let max_sweeps = self.sweeps_in_time::<M>(problem);
         for &tolerance in &self.course.tolerances {
-            let settings = self.entrant.to_residual(tolerance, max_sweeps);
+            let settings = self.entrant.to_residual(tolerance, max_sweeps).solver;
             let (mut least, mut sum) = (f64::INFINITY, 0.0);
             for repeat in 0..MOST_REPEATS {
                 if repeat >= LEAST_REPEATS && sum > ENOUGH_SECS {
@@ -113,7 +113,7 @@ impl ProblemVisitor for Runner<'_> {
 impl Runner<'_> {
     /// The sweeps that fit in the time limit, from what a few take.
     fn sweeps_in_time<M: Model>(&self, problem: &StepProblem<M::Kinematics>) -> u32 {
-        let of = |sweeps| timed::<M>(problem, &self.entrant.sweeps(sweeps));
+        let of = |sweeps| timed::<M>(problem, &self.entrant.sweeps(sweeps).solver);
         let (few_secs, few, _) = of(20);
         let (many_secs, many, _) = of(220);
         if many <= few {
@@ -130,10 +130,9 @@ fn timed<M: Model>(
     problem: &StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> (f64, u32, f64) {
-    let mut copy = problem.clone();
+    let (mut copy, mut memory) = (problem.clone(), Memory::default());
     let started = Instant::now();
-    let report = solve::<M>(&mut copy, settings);
+    let report = solve::<M>(&mut copy, &mut memory, settings);
     let secs = started.elapsed().as_secs_f64();
-    // Fails only for schemes, which do not race.
-    (secs, report.map_or(0, |report| report.sweeps), residual::<M>(&copy))
+    (secs, report.sweeps, residual::<M>(&copy))
 }

@@ -7,19 +7,19 @@
 
 use std::collections::BTreeMap;
 
-use super::entrants;
+use super::entrants::{self, Way};
 use super::look::{colour, dots};
 use super::peers::{self, PeerRun};
 use super::runs::{Ending, TimedRun, timed_steps};
 use super::{Bench, Part};
 use crate::error::Result;
 use crate::output::Progress;
-use crate::scene::{Config, Rain, Scene, walls};
+use crate::scene::{Config, Origin, Rain, Scene, walls};
 use crate::sim::Simulation;
-use crate::solver::{MethodKind, SolverSettings, StopTest};
+use crate::solver::{SolverSettings, StopTest};
 use crate::study::chart::{Axis, Chart, Layer, Look, Sheet, points};
 use crate::study::states::States;
-use crate::world::Parameters;
+use crate::world::ParameterChanges;
 
 /// The grains, as `benches/peers/run.sh` rains them.
 const RAIN: Rain = Rain { grains: 2000, box_width_in_diameters: 60.0, seed: 1 };
@@ -47,14 +47,18 @@ struct Entry {
 }
 
 pub(super) fn make(bench: &Bench) -> Result<Vec<Part>> {
-    let config = Config {
+    let origin = Origin {
         grains: Some(RAIN.grains),
         box_width: Some(RAIN.box_width_in_diameters),
         seed: Some(RAIN.seed),
+        ..Origin::default()
+    };
+    let parameters = ParameterChanges {
         bond: Some(0.0),
         restitution_threshold: Some(2.0),
-        ..Config::default()
+        ..ParameterChanges::default()
     };
+    let config = Config { origin, parameters, ..Config::default() };
     let states = States::of(bench.states_folder(), std::iter::once(&config))?;
     let mut scene = states.scene(&config)?;
     scene.boundaries = walls(RAIN.box_width_in_diameters);
@@ -83,16 +87,16 @@ fn carried(mut scene: Scene) -> Result<Simulation> {
 
 fn run_all(bench: &Bench, carried: &Simulation) -> Result<Vec<Entry>> {
     let (journal, mut done) = bench.journal::<TimedRun>("rest")?;
-    let mut wanted: Vec<(entrants::Entrant, String, SolverSettings, f64)> = Vec::new();
+    let mut wanted: Vec<(entrants::Entrant, String, Way, f64)> = Vec::new();
     for time_step_secs in TIME_STEPS_SECS {
         for entrant in entrants::all() {
-            let mut want = |effort: String, settings| {
-                wanted.push((entrant.clone(), effort, settings, time_step_secs));
+            let mut want = |effort: String, way| {
+                wanted.push((entrant.clone(), effort, way, time_step_secs));
             };
-            if entrant.method.kind() == MethodKind::Problem {
+            if entrant.stepper.uses_method() {
                 for tolerance in [1e-2, 1e-4] {
-                    let settings = entrant.to_residual(tolerance, 2_000);
-                    want(format!("residual {tolerance:e}"), settings);
+                    let way = entrant.to_residual(tolerance, 2_000);
+                    want(format!("residual {tolerance:e}"), way);
                 }
                 want("10 sweeps".into(), entrant.sweeps(10));
             } else {
@@ -102,14 +106,13 @@ fn run_all(bench: &Bench, carried: &Simulation) -> Result<Vec<Entry>> {
     }
     let progress = Progress::new("at rest", wanted.len() as u64);
     let mut entries = Vec::new();
-    for (entrant, effort, settings, time_step_secs) in wanted {
+    for (entrant, effort, way, time_step_secs) in wanted {
         let key = format!("{}, {effort}, dt {time_step_secs:e}", entrant.name);
         let run = match done.iter().position(|run| run.key == key) {
             Some(place) => done.swap_remove(place),
             None => {
                 let mut start = carried.clone();
-                start.set_solver(settings)?;
-                start.set_parameters(Parameters { time_step_secs, ..*start.parameters() })?;
+                start.change(way.over(start.settings()).over(time_step_secs))?;
                 let steps = (DURATION_SECS / time_step_secs).round() as u64;
                 let run = timed_steps(key, &start, steps, 3, LIMIT_SECS)?;
                 journal.add(&run)?;
@@ -146,7 +149,7 @@ fn draw(bench: &Bench, entries: &[Entry], peers: &[PeerRun]) -> Part {
     let line = points([from, to].map(|x| (x, OVERLAP)));
     chart.layers.push(Layer::curve("5·10⁻⁴ d", line, (130, 130, 130), Look::Dashes(2)));
     for entrant in entrants::all() {
-        let of_method = || entries.iter().filter(|entry| entry.entrant.method == entrant.method);
+        let of_method = || entries.iter().filter(|entry| entry.entrant.look == entrant.look);
         let failed = of_method().filter(|entry| !entry.is_done()).count();
         let name = match failed {
             0 => entrant.name.clone(),

@@ -1,12 +1,13 @@
 //! Whole runs of piles against the clock.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::Scene;
-use crate::sim::{Simulation, Tally};
+use crate::sim::{RunEnding, Simulation, Tally};
 
 /// Steps between two looks at the clock.
 const STEPS_PER_LOOK: u64 = 16;
@@ -54,7 +55,7 @@ pub(super) fn timed_run(
     repeats: u32,
     limit_secs: f64,
 ) -> Result<TimedRun> {
-    let steps = (scene.duration_secs / scene.parameters.time_step_secs).round() as u64;
+    let steps = scene.parameters.steps_in(scene.duration_secs);
     timed_steps(key, &scene.simulation()?, steps, repeats, limit_secs)
 }
 
@@ -84,22 +85,21 @@ pub(super) fn timed_steps(
 fn once(key: String, start: &Simulation, steps: u64, limit_secs: f64) -> Result<TimedRun> {
     let mut simulation = start.clone();
     let mut tally = Tally::default();
-    let mut ending = Ending::Done;
     let started = Instant::now();
-    for step in 0..steps {
-        if step % STEPS_PER_LOOK == 0 && started.elapsed().as_secs_f64() > limit_secs {
-            ending = Ending::TooSlow;
-            break;
-        }
-        match simulation.step() {
-            Ok(observables) => tally.add(observables),
-            Err(Error::NonFinite { .. }) => {
-                ending = Ending::NotFinite;
-                break;
-            }
-            Err(error) => return Err(error),
-        }
-    }
+    let ended = simulation.run(steps, |simulation| {
+        tally.add(simulation.observables());
+        let looks = tally.steps % STEPS_PER_LOOK == 0 && tally.steps < steps;
+        Ok(if looks && started.elapsed().as_secs_f64() > limit_secs {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        })
+    })?;
+    let ending = match ended {
+        RunEnding::Done => Ending::Done,
+        RunEnding::Stopped => Ending::TooSlow,
+        RunEnding::NotFinite(_) => Ending::NotFinite,
+    };
     let wall_secs = started.elapsed().as_secs_f64();
     // What is not finite has no place in a journal of numbers.
     let finite = |number: f64| if number.is_finite() { number } else { 0.0 };

@@ -1,6 +1,9 @@
 //! Who is tried: every method of the registry, and settings that mend a known failure.
 
+use std::sync::LazyLock;
+
 use crate::scene::{Preset, Scene};
+use crate::sim::Stepper;
 use crate::solver::{METHODS, Method, Ordering};
 
 /// A way to step that is tried.
@@ -8,52 +11,56 @@ use crate::solver::{METHODS, Method, Ordering};
 pub struct Contender {
     /// Its name in the table.
     pub name: &'static str,
-    apply: fn(&mut Scene, Method),
-    method: Method,
+    way: Way,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    /// The paper's stepper with this method.
+    Method(Method),
+    /// Gauss–Seidel in an order of its own.
+    Order(Ordering),
+    /// A stepper that solves no problem by a method.
+    Stepper(Stepper),
+    /// Settings that go together.
+    Preset(Preset),
 }
 
 impl Contender {
     /// Changes a scene to be stepped this way; whatever else it says stays.
     pub fn apply(&self, scene: &mut Scene) {
-        (self.apply)(scene, self.method);
+        match self.way {
+            Way::Method(method) => scene.solver.method = method,
+            Way::Order(ordering) => {
+                scene.solver.method = Method::Nsgs;
+                scene.solver.ordering = ordering;
+            }
+            Way::Stepper(stepper) => scene.stepper = stepper,
+            Way::Preset(preset) => preset.apply(scene),
+        }
+    }
+
+    /// Whether it is a method or a stepper, and not settings of one.
+    pub fn is_of_registry(&self) -> bool {
+        matches!(self.way, Way::Method(_) | Way::Stepper(_))
     }
 
     /// The contender of that name.
     pub fn named(name: &str) -> Option<&'static Self> {
         CONTENDERS.iter().find(|contender| contender.name == name)
     }
-
-    const fn of_method(index: usize) -> Self {
-        let info = METHODS[index];
-        Self {
-            name: info.name,
-            apply: |scene, method| scene.solver.method = method,
-            method: info.method,
-        }
-    }
 }
 
-/// All contenders.
-pub static CONTENDERS: [Contender; METHODS.len() + 2] = {
-    let bottom_up = Contender {
-        name: "nsgs bottom-up",
-        apply: |scene, method| {
-            scene.solver.method = method;
-            scene.solver.ordering = Ordering::BottomUp;
-        },
-        method: Method::Nsgs,
-    };
-    let robust = Contender {
-        name: "robust",
-        apply: |scene, _| Preset::Robust.apply(scene),
-        method: Method::Newton,
-    };
-    let mut all = [bottom_up; METHODS.len() + 2];
-    all[METHODS.len() + 1] = robust;
-    let mut index = 0;
-    while index < METHODS.len() {
-        all[index] = Contender::of_method(index);
-        index += 1;
-    }
-    all
-};
+/// All contenders: every method, every stepper without one, and settings that mend a known failure.
+pub static CONTENDERS: LazyLock<Vec<Contender>> = LazyLock::new(|| {
+    let methods =
+        METHODS.iter().map(|info| Contender { name: info.name, way: Way::Method(info.method) });
+    let steppers = Stepper::ALL.iter().filter(|stepper| !stepper.uses_method());
+    let steppers =
+        steppers.map(|&stepper| Contender { name: stepper.name(), way: Way::Stepper(stepper) });
+    let others = [
+        Contender { name: "nsgs bottom-up", way: Way::Order(Ordering::BottomUp) },
+        Contender { name: "robust", way: Way::Preset(Preset::Robust) },
+    ];
+    methods.chain(steppers).chain(others).collect()
+});

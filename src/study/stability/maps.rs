@@ -1,25 +1,12 @@
 //! Stability maps: where, over two parameters, each method holds, where it sinks or overlaps by more
 //! than 1 % of d, and where it is lost: torn, thrown, or no longer finite.
-//!
-//! Borders that theory gives. A step of Gauss–Seidel from nothing leaves the share ρ^s of what gravity
-//! adds to the slowest mode, g Δt, and of what the step before left. So a column sinks with
-//!
-//! > v = A g Δt ρ^s / (1 − ρ^s),
-//!
-//! where A = 4/π is the slowest mode's part at the top of a column of many (1 for two discs) and ρ is
-//! what `scene::stability` derives for each scene. In T it sinks by v T = 0.01 d where
-//! s = ln(q/(1 + q)) / ln ρ, q = 0.01 d/(A g Δt T). The border of springs is their critical time step.
-//!
-//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever, and Δt does
-//! not enter. One might fear another where bonds are strong and steps long, with C₀Δt²/m_ij = Bond·g·Δt²
-//! a hundredth of d: an impulse of cohesion, left alone for a step, would pull two grains into each other
-//! by that much. There is none. In the map's corner of Bond 500 and Δt = 0.01 s that is 49 d, and where
-//! steps are solved nothing overlaps: a bond pulls no more than is asked of it.
-
-use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
 
+use super::borders::{
+    COUNTS, DURATION_SECS, TOP_OF_COLUMN, contraction_of_column, substeps_at_border,
+    sweeps_at_border,
+};
 use super::contenders::{CONTENDERS, Contender};
 use super::measures::{sagging, sunk};
 use super::picture::colour;
@@ -32,17 +19,11 @@ use crate::scene::stability::{
 use crate::solver::METHODS;
 use crate::study::chart::{Axis, Cell, Chart, Corner, INK, Layer, Look, Sheet, points};
 
-/// Simulated time of every run, s.
-const DURATION_SECS: f64 = 0.1;
-/// Sinking or overlap that counts, in d.
-const COUNTS: f64 = 0.01;
 /// A grain that has gone this far is lost, in d.
 const LOST: f64 = 1.0;
 /// Speed that a scene at rest does not have at its end, in √(g d).
 const SHAKES: f64 = 0.05;
 const SPRINGS_SHAKE: f64 = 4e-3;
-/// Part of the slowest mode in the motion of a column's top.
-const TOP_OF_COLUMN: f64 = 4.0 / PI;
 /// Discs of the column whose size is not varied.
 const DISCS: usize = 20;
 /// Discs in a row of the cantilever.
@@ -168,27 +149,6 @@ fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
     scene
 }
 
-/// What a sweep of Gauss–Seidel leaves of the slowest mode of a column.
-pub fn contraction_of_column(count: f64) -> f64 {
-    (FRAC_PI_2 / count).cos().powi(2)
-}
-
-fn sweeps_at_border(part: f64, time_step_secs: f64, contraction: f64) -> f64 {
-    let scene = column_on_line(1);
-    let fall = part * scene.gravity.magnitude() * time_step_secs * DURATION_SECS;
-    let q = COUNTS * scene.mean_diameter / fall;
-    (q / (1.0 + q)).ln() / contraction.ln()
-}
-
-fn substeps_at_border(count: usize, time_step_secs: f64) -> Result<f64> {
-    let mut scene = column_on_line(count);
-    if let Some(dem) = Contender::named("dem") {
-        dem.apply(&mut scene);
-    }
-    let critical_secs = scene.simulation()?.critical_time_step_secs().unwrap_or(f64::INFINITY);
-    Ok(time_step_secs / critical_secs)
-}
-
 /// 0 where the contender holds, 1 where it sinks or overlaps, 2 where it is lost. `may_swing`: what
 /// stands on springs has not come to rest by the end, and is not lost for that.
 fn class(contender: &Contender, scene: &Scene, may_swing: bool) -> Result<f64> {
@@ -227,8 +187,7 @@ fn class(contender: &Contender, scene: &Scene, may_swing: bool) -> Result<f64> {
 /// Where a scene is not sound.
 pub fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
     let mut sheets = Vec::new();
-    let contenders =
-        || CONTENDERS.iter().filter(|one| METHODS.iter().any(|info| info.name == one.name));
+    let contenders = || CONTENDERS.iter().filter(|one| one.is_of_registry());
     for map in &MAPS {
         let mut charts = Vec::new();
         for contender in contenders() {

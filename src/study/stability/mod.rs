@@ -2,6 +2,7 @@
 //! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in
 //! the file of the same subject here, and [`CHALLENGES`] lists all.
 
+mod borders;
 mod challenges;
 mod contenders;
 mod maps;
@@ -10,9 +11,10 @@ mod picture;
 mod table;
 mod trial;
 
+pub use borders::contraction_of_column;
 pub use challenges::{CHALLENGES, Challenge, Limits};
 pub use contenders::{CONTENDERS, Contender};
-pub use maps::{contraction_of_column, count_of_maps, maps};
+pub use maps::{count_of_maps, maps};
 pub use picture::picture;
 pub use table::{Cell, StabilityTable, Verdict};
 pub use trial::Trial;

@@ -1,7 +1,7 @@
 //! The table as a picture: a row a challenge, a column a contender, in each cell the level from which
 //! on the worst verdict holds.
 
-use super::table::summary;
+use super::table::{number, summary};
 use super::{CONTENDERS, StabilityTable, Verdict};
 use crate::study::chart::{Axis, Cell, Chart, INK, Layer, Rgb, Sheet};
 
@@ -62,14 +62,5 @@ pub fn picture(table: &StabilityTable) -> Sheet {
         size: (BESIDE + COLUMN * columns as u32, BELOW + ROW * rows as u32),
         charts: vec![chart],
         caption,
-    }
-}
-
-/// A number as short as it can be said.
-pub(super) fn number(value: f64) -> String {
-    if value != 0.0 && !(1e-2..1e4).contains(&value.abs()) {
-        format!("{value:e}").replace('-', "−")
-    } else {
-        format!("{value}")
     }
 }

@@ -5,7 +5,6 @@ use std::fmt;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::picture::number;
 use super::{CHALLENGES, CONTENDERS, Challenge, Contender, Limits, Trial};
 use crate::error::{Error, Result};
 
@@ -96,7 +95,7 @@ impl StabilityTable {
         let mut plan = Vec::new();
         for challenge in challenges {
             let further: &[f64] = if quick { &[] } else { challenge.further };
-            for contender in &CONTENDERS {
+            for contender in CONTENDERS.iter() {
                 for &level in challenge.quick.iter().chain(further) {
                     plan.push((*challenge, Trial { contender, level }));
                 }
@@ -168,13 +167,13 @@ impl fmt::Display for StabilityTable {
     /// A line a challenge, a column a contender: the worst verdict, and the first level that got it.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{:SCENE_WIDTH$}", "")?;
-        for contender in &CONTENDERS {
+        for contender in CONTENDERS.iter() {
             write!(out, "{:CELL_WIDTH$}", contender.name)?;
         }
         writeln!(out)?;
         for challenge in self.challenges() {
             write!(out, "{:SCENE_WIDTH$}", challenge.name)?;
-            for contender in &CONTENDERS {
+            for contender in CONTENDERS.iter() {
                 let (verdict, from) = summary(&self.levels(challenge, contender));
                 let from = from.map_or(String::new(), |level| format!(" {}", number(level)));
                 write!(out, "{:CELL_WIDTH$}", format!("{}{from}", verdict.name()))?;
@@ -182,5 +181,14 @@ impl fmt::Display for StabilityTable {
             writeln!(out, "{}", challenge.driver)?;
         }
         Ok(())
+    }
+}
+
+/// A number as short as it can be said.
+pub(super) fn number(value: f64) -> String {
+    if value != 0.0 && !(1e-2..1e4).contains(&value.abs()) {
+        format!("{value:e}").replace('-', "−")
+    } else {
+        format!("{value}")
     }
 }

@@ -1,6 +1,7 @@
 //! One contender on one challenge at one level, and what measures have in common.
 
 use super::Contender;
+use crate::contact::Numbering;
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::sim::Simulation;
@@ -29,16 +30,7 @@ impl Trial {
 
 /// Steps for a simulated time, s.
 pub(super) fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
-    let steps = (secs / simulation.parameters().time_step_secs).round() as u64;
-    steps_of(simulation, steps)
-}
-
-/// Takes so many steps.
-pub(super) fn steps_of(simulation: &mut Simulation, steps: u64) -> Result<()> {
-    for _ in 0..steps {
-        simulation.step()?;
-    }
-    Ok(())
+    simulation.take_steps(simulation.parameters().steps_in(secs))
 }
 
 /// The longest way that any grain has gone since `scene`, in d.
@@ -58,10 +50,10 @@ pub(super) fn jitter(simulation: &Simulation) -> f64 {
 
 /// What the fixed bodies carry along the y axis, N: the sum of N n_y over their contacts.
 pub(super) fn force_on_ground(simulation: &Simulation) -> f64 {
-    let grains = simulation.world().grains.len();
+    let numbering = Numbering::of(simulation.world());
     let list = simulation.contacts();
     let pairs = list.contacts().iter().zip(list.impulses());
-    let of_ground = pairs.filter(|(contact, _)| contact.other as usize >= grains);
+    let of_ground = pairs.filter(|(contact, _)| numbering.other(contact.other).grain().is_none());
     let impulse: f64 = of_ground.map(|(contact, impulse)| impulse.normal * contact.normal.y).sum();
     impulse / simulation.parameters().time_step_secs
 }

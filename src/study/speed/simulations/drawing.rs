@@ -5,13 +5,12 @@ use std::collections::BTreeMap;
 use super::super::Bench;
 use super::super::look::{colour, dots};
 use super::super::peers::{self, PeerRun};
-use super::FINEST_SECS;
-use super::plan::Plan;
+use super::plan::{FINEST_SECS, Plan};
 use super::runs::{Charted, References};
 use crate::scene::Rain;
+use crate::sim::Stepper;
 use crate::study::chart::{Axis, Chart, INK, Layer, Look, Sheet, points};
 use crate::study::performance::pareto_front;
-use crate::world::ContactLaw;
 
 /// Errors below this are drawn here.
 const LEAST_ERROR: f64 = 1e-3;
@@ -56,26 +55,9 @@ pub(super) fn draw(
         let honest: Vec<_> = places.iter().map(|&(x, y)| (x, y.max(floor))).collect();
         let front = pareto_front(&honest).into_iter().map(|index| honest[index]);
         chart.layers.push(Layer::curve("Pareto front", points(front), INK, Look::Line(1)));
-        for (number, entrant) in plan.entrants.iter().enumerate() {
-            let is_its = |point: &Charted| plan.efforts[point.effort].entrant == number;
-            let of_method = || charted.iter().filter(|point| is_its(point));
-            let failed = of_method().filter(|point| point.failed.is_some()).count();
-            let told = match failed {
-                0 => entrant.name.clone(),
-                failed => format!("{}\n{failed} of {} failed", entrant.name, of_method().count()),
-            };
-            let mut in_legend = panel == 1;
-            for (size, time_step_secs) in plan.time_steps_secs.iter().enumerate() {
-                let here = good
-                    .iter()
-                    .zip(&places)
-                    .filter(|(point, _)| is_its(point) && point.time_step_secs == *time_step_secs);
-                let layer = points(here.map(|(_, place)| *place));
-                let look = dots(entrant.look, 4 + 2 * size as u32);
-                let make = if in_legend { Layer::curve } else { Layer::quiet };
-                in_legend = false;
-                chart.layers.push(make(told.clone(), layer, colour(entrant.look), look));
-            }
+        let drawn: Vec<_> = good.iter().copied().zip(places).collect();
+        for number in 0..plan.entrants.len() {
+            chart.layers.extend(method_layers(plan, number, charted, &drawn, panel == 1));
         }
         if panel == 1 {
             chart.layers.extend(peer_layers(plan, peers, references));
@@ -95,6 +77,36 @@ pub(super) fn draw(
     }
 }
 
+/// The dots of one entrant, of those that did not fail at their places: a layer for each Δt.
+fn method_layers(
+    plan: &Plan,
+    number: usize,
+    charted: &[Charted],
+    drawn: &[(&Charted, (f64, f64))],
+    mut in_legend: bool,
+) -> Vec<Layer> {
+    let entrant = &plan.entrants[number];
+    let is_its = |point: &Charted| plan.efforts[point.effort].entrant == number;
+    let of_method = || charted.iter().filter(|point| is_its(point));
+    let failed = of_method().filter(|point| point.failed.is_some()).count();
+    let told = match failed {
+        0 => entrant.name.clone(),
+        failed => format!("{}\n{failed} of {} failed", entrant.name, of_method().count()),
+    };
+    let mut layers = Vec::new();
+    for (size, time_step_secs) in plan.time_steps_secs.iter().enumerate() {
+        let here = drawn
+            .iter()
+            .filter(|(point, _)| is_its(point) && point.time_step_secs == *time_step_secs);
+        let layer = points(here.map(|(_, place)| *place));
+        let look = dots(entrant.look, 4 + 2 * size as u32);
+        let make = if in_legend { Layer::curve } else { Layer::quiet };
+        in_legend = false;
+        layers.push(make(told.clone(), layer, colour(entrant.look), look));
+    }
+    layers
+}
+
 fn said(words: impl Iterator<Item = String>) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
@@ -103,7 +115,7 @@ fn said(words: impl Iterator<Item = String>) -> String {
 fn peer_layers(plan: &Plan, peers: &[PeerRun], references: &References) -> Vec<Layer> {
     let shared = (0.0, Rain::default().seed);
     let Some(pile) = plan.piles.iter().position(|pile| *pile == shared) else { return Vec::new() };
-    let reference = references.slump(ContactLaw::Moreau, FINEST_SECS, pile);
+    let reference = references.slump(Stepper::Moreau, FINEST_SECS, pile);
     let mut by_engine: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
     for run in peers.iter().filter(|run| run.is_collapse_of(Rain::default().grains)) {
         let error = (run.slump - reference).abs().max(LEAST_ERROR);

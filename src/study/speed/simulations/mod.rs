@@ -4,7 +4,7 @@
 //! Steps are posed with the restitution threshold with which nearly all of them have a solution: an
 //! error of the solver means something only where there is something to be solved. Two errors are
 //! told apart. Against the reference *at the same Δt* a slump is off by what the solver left undone;
-//! against the reference at [`FINEST_SECS`] also by the time step. Piles are chaotic: two references,
+//! against the reference at [`plan::FINEST_SECS`] also by the time step. Piles are chaotic: two references,
 //! one solved ten times tighter than the other, differ by the *floor*, and no error below it means
 //! anything. The law `range` is another model of the same pile, and is held against references of its
 //! own.
@@ -20,13 +20,8 @@ use self::plan::{Plan, config};
 use super::runs::TimedRun;
 use super::{Bench, Part, peers};
 use crate::error::Result;
+use crate::sim::Stepper;
 use crate::study::states::States;
-use crate::world::ContactLaw;
-
-/// Δt of the reference that has next to no error of the time step, s.
-const FINEST_SECS: f64 = 1e-4;
-/// Residual of the references, and of those that show the floor.
-const REFERENCE: [f64; 2] = [1e-8, 1e-9];
 
 pub(super) fn make(bench: &Bench) -> Result<Vec<Part>> {
     let plan = Plan::new(bench.quick);
@@ -34,7 +29,7 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<Part>> {
         bench.states_folder(),
         plan.piles
             .iter()
-            .map(|&pile| config(pile, 1e-3, ContactLaw::Moreau))
+            .map(|&pile| config(pile, 1e-3, Stepper::Moreau))
             .collect::<Vec<_>>()
             .iter(),
     )?;

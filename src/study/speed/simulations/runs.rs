@@ -5,27 +5,26 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use super::super::runs::{Ending, TimedRun, timed_run};
-use super::plan::{Plan, config};
-use super::{FINEST_SECS, REFERENCE};
+use super::plan::{FINEST_SECS, Plan, REFERENCE, config};
 use crate::error::Result;
 use crate::output::Progress;
+use crate::sim::Stepper;
 use crate::solver::{Method, SolverSettings, StopTest};
 use crate::study::journal::Journal;
 use crate::study::states::States;
 use crate::study::statistics::mean;
-use crate::world::ContactLaw;
 
 /// A pile that slumps less than this holds.
 const HOLDS: f64 = 0.1;
 
 /// The law under which the floor is measured.
-const FLOOR_LAW: ContactLaw = ContactLaw::Moreau;
+const FLOOR_LAW: Stepper = Stepper::Moreau;
 
 /// What one method at one Δt and one effort comes to.
 pub(super) struct Charted {
     /// Number in `Plan::efforts`.
     pub effort: usize,
-    pub law: ContactLaw,
+    pub law: Stepper,
     pub time_step_secs: f64,
     /// The runs that reached their end, pile by pile; `None` where one did not.
     pub runs: Vec<Option<TimedRun>>,
@@ -40,11 +39,11 @@ pub(super) struct Charted {
 }
 
 /// Slumps of references by law, Δt and number of the pile.
-pub(super) struct References(HashMap<(ContactLaw, u64, usize), f64>);
+pub(super) struct References(HashMap<(Stepper, u64, usize), f64>);
 
 impl References {
     /// Slump of that pile. There is one for every law, Δt and pile of the plan, and at the finest Δt.
-    pub fn slump(&self, law: ContactLaw, time_step_secs: f64, pile: usize) -> f64 {
+    pub fn slump(&self, law: Stepper, time_step_secs: f64, pile: usize) -> f64 {
         self.0.get(&(law, time_step_secs.to_bits(), pile)).copied().unwrap_or(f64::NAN)
     }
 }
@@ -77,7 +76,7 @@ pub(super) fn references(
         .map(|(law, time_step_secs, pile, numbers, number, tolerance)| {
             let (bond, seed) = numbers;
             let key = format!(
-                "reference {tolerance:e}, law {law:?}, Bond {bond}, seed {seed}, dt {time_step_secs:e}"
+                "reference {tolerance:e}, law {law}, Bond {bond}, seed {seed}, dt {time_step_secs:e}"
             );
             let run = match known.get(&key) {
                 Some(run) => run.clone(),
@@ -146,7 +145,7 @@ pub(super) fn run_all(
                     None => {
                         let config = config((bond, seed), time_step_secs, effort.law);
                         let mut scene = states.scene(&config)?;
-                        scene.solver = effort.settings;
+                        effort.way.take(&mut scene);
                         let run = timed_run(key, &scene, plan.repeats, plan.limit_secs)?;
                         journal.add(&run)?;
                         run

@@ -1,8 +1,7 @@
 //! The runs in words and as a table.
 
 use super::super::runs::TimedRun;
-use super::REFERENCE;
-use super::plan::Plan;
+use super::plan::{Plan, REFERENCE};
 use super::runs::Charted;
 use crate::study::statistics::mean;
 

@@ -23,9 +23,8 @@ pub fn column(trial: &Trial) -> Result<f64> {
     let world = simulation.world();
     let weight = world.grains.masses.iter().sum::<f64>() * world.gravity.magnitude();
     advance(&mut simulation, 0.75 * DURATION_SECS)?;
-    let steps = 0.25 * DURATION_SECS / simulation.parameters().time_step_secs;
     let mut worst = 0f64;
-    for _ in 0..steps.round() as u64 {
+    for _ in 0..simulation.parameters().steps_in(0.25 * DURATION_SECS) {
         simulation.step()?;
         worst = worst.max((force_on_ground(&simulation) / weight - 1.0).abs());
     }
@@ -36,7 +35,7 @@ pub fn column(trial: &Trial) -> Result<f64> {
 pub(in crate::study::stability) fn sagging(count: usize, sweeps: u32) -> Scene {
     let mut scene = column_of(count);
     scene.solver.max_sweeps = sweeps;
-    scene.solver.substeps = sweeps;
+    scene.parameters.substeps = sweeps;
     scene.solver.tolerance = 1e-12;
     scene.solver.warm_start = false;
     scene

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::scene::stability::{WALL_DISTANCE, balls, bounce as bounce_of, thin_wall as wall_of};
-use crate::study::stability::trial::{Trial, advance, steps_of};
+use crate::study::stability::trial::{Trial, advance};
 
 /// Phases of the step in which the wall is reached.
 const PHASES: u32 = 10;
@@ -63,7 +63,7 @@ pub fn thin_wall(trial: &Trial) -> Result<f64> {
         let scene = wall_of(trial.level, (f64::from(phase) + 0.5) / f64::from(PHASES));
         let wall = WALL_DISTANCE * scene.mean_diameter;
         let mut simulation = trial.start(scene)?;
-        steps_of(&mut simulation, ((WALL_DISTANCE + 5.0) / trial.level) as u64)?;
+        simulation.take_steps(((WALL_DISTANCE + 5.0) / trial.level) as u64)?;
         through += u32::from(simulation.world().grains.positions[0].x > wall);
     }
     Ok(f64::from(through) / f64::from(PHASES))

@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use crate::scene::stability::{
     FRICTION_OF_ARCH, STEEPEST_DEGREES, arch as arch_of, heap, heap_on_slope, logs,
 };
-use crate::study::stability::trial::{Trial, advance, jitter, longest_way, steps_of, threshold};
+use crate::study::stability::trial::{Trial, advance, jitter, longest_way, threshold};
 
 /// Rows of the heap that is left standing.
 const ROWS: usize = 6;
@@ -78,6 +78,6 @@ fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
 pub fn rest(trial: &Trial) -> Result<f64> {
     let scene = heap(SMALL_ROWS);
     let mut simulation = trial.start(scene.clone())?;
-    steps_of(&mut simulation, trial.count() as u64)?;
+    simulation.take_steps(trial.count() as u64)?;
     Ok(longest_way(&simulation, &scene).max(jitter(&simulation)))
 }

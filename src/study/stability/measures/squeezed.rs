@@ -30,7 +30,7 @@ pub fn overlap(trial: &Trial) -> Result<f64> {
 pub fn squeeze(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(squeeze_of(trial.level))?;
     let (mut unsolved, mut speeds) = (0u64, 0.0);
-    let settling = (SETTLING_SECS / simulation.parameters().time_step_secs).round() as u64;
+    let settling = simulation.parameters().steps_in(SETTLING_SECS);
     for step in 0..settling + WATCHED_STEPS {
         unsolved += u64::from(!simulation.step()?.converged);
         if step >= settling {

@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 use crate::error::Result;
 use crate::scene::stability::{heap, lift_off as lift_off_of};
 use crate::sim::Pull;
-use crate::study::stability::trial::{Trial, jitter, longest_way, steps_of};
+use crate::study::stability::trial::{Trial, jitter, longest_way};
 use crate::world::{Boundary, Parameters};
 
 /// Steps before a sudden change, and after it.
@@ -27,7 +27,7 @@ const LIVE_SWEEPS: u32 = 200;
 /// Largest kinetic energy after a heavy disc is taken off a column, over m g d of one of its discs.
 pub fn lift_off(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(lift_off_of(trial.level))?;
-    steps_of(&mut simulation, BEFORE)?;
+    simulation.take_steps(BEFORE)?;
     simulation.remove_last_grain()?;
     let world = simulation.world();
     let scale = world.grains.masses[0] * world.gravity.magnitude() * world.mean_diameter;
@@ -44,10 +44,10 @@ pub fn time_step_switch(trial: &Trial) -> Result<f64> {
     let mut scene = heap(ROWS);
     scene.parameters.time_step_secs = SMALL_STEP_SECS;
     let mut simulation = trial.start(scene.clone())?;
-    steps_of(&mut simulation, BEFORE)?;
+    simulation.take_steps(BEFORE)?;
     let time_step_secs = SMALL_STEP_SECS * trial.level;
     simulation.set_parameters(Parameters { time_step_secs, ..*simulation.parameters() })?;
-    steps_of(&mut simulation, AFTER)?;
+    simulation.take_steps(AFTER)?;
     Ok(longest_way(&simulation, &scene).max(jitter(&simulation)))
 }
 

@@ -1,0 +1,59 @@
+//! A method of one's own: over-relaxed Gauss–Seidel, s ← s + ω (G(s) − s), beside the plain sweeps.
+//!
+//! cargo run --release --example own_method
+
+use slump::error::Result;
+use slump::scene::built_in;
+use slump::sim::{Advance, Outcome, Settings, Stage};
+use slump::solver::{BodySystem, ContactSystem, Model, SolveReport};
+
+/// Sweeps with this ω, down to a residual.
+struct OverRelaxed {
+    factor: f64,
+    residual: f64,
+    /// Of all steps.
+    sweeps: u64,
+}
+
+impl Advance for OverRelaxed {
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+        let parameters = settings.parameters;
+        let gravity = stage.world().gravity.magnitude();
+        stage.prepare(settings, |approach| {
+            parameters.restitution_velocity(approach.velocity, gravity)
+        });
+        let mut root_masses = Vec::new();
+        let mut system = BodySystem::<M>::new(stage.problem, &mut root_masses);
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        let mut report = SolveReport::default();
+        while !report.converged && report.sweeps < 5_000 {
+            system.read(&mut before);
+            system.sweep();
+            report.sweeps += 1;
+            report.converged = system.residual() <= self.residual;
+            if report.converged {
+                break;
+            }
+            system.read(&mut after);
+            for (after, before) in after.iter_mut().zip(&before) {
+                *after = [0, 1].map(|k| before[k] + self.factor * (after[k] - before[k]));
+            }
+            system.write(&after);
+        }
+        self.sweeps += u64::from(report.sweeps);
+        stage.move_by(report, settings)
+    }
+}
+
+fn main() -> Result<()> {
+    let scene = built_in("column")?;
+    for factor in [1.0, 1.3, 1.6] {
+        let mut method = OverRelaxed { factor, residual: 1e-6, sweeps: 0 };
+        let mut simulation = scene.simulation()?;
+        for _ in 0..50 {
+            simulation.step_by(&mut method)?;
+        }
+        println!("ω = {factor}: {} sweeps for 50 steps", method.sweeps);
+    }
+    Ok(())
+}

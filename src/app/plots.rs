@@ -1,0 +1,186 @@
+//! Plots against simulated time, for the window and for pictures of them.
+
+use egui::{Color32, Label, RichText, Ui};
+use egui_plot::{
+    AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine,
+};
+
+use super::quantity::Quantity;
+use crate::render::numbers::{decimal, si_prefix, ticks};
+use crate::sim::Observables;
+use crate::sim::live::Curve;
+
+/// Least width of a plot, points: below it fewer are shown in a row.
+const LEAST_WIDTH: f32 = 150.0;
+/// Intervals of time for which a long curve shows its least and its largest value.
+const BUCKETS: usize = 300;
+
+/// An energy of the bonds in a row, J.
+type EnergyOfBonds = fn(&Observables) -> Option<f64>;
+
+/// What the plot of energy shows of bonds, with its style.
+const ENERGIES_OF_BONDS: [(&str, LineStyle, EnergyOfBonds); 2] = [
+    ("stored in bonds", LineStyle::Dashed { length: 6.0 }, |row| row.bond_energy),
+    ("taken by broken bonds", LineStyle::Dotted { spacing: 4.0 }, |row| row.broken_bond_energy),
+];
+
+fn has_bonds(curve: &Curve) -> bool {
+    curve.last().is_some_and(|row| row.bond_energy.is_some())
+}
+
+/// Everything that plots are drawn from.
+#[derive(Clone, Debug)]
+pub struct PlotData {
+    /// Name, colour and rows of each world.
+    pub worlds: Vec<(String, Color32, Curve)>,
+    /// The plots.
+    pub quantities: Vec<Quantity>,
+    /// The moment that is shown, s.
+    pub now_secs: f64,
+    /// Plots reach at least to here, s.
+    pub until_secs: f64,
+}
+
+/// Draws the plots into the space that is left. Returns the time that was clicked, s.
+pub fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
+    // Plots that left room would shrink their panel, frame by frame.
+    ui.set_min_size(ui.available_size());
+    let count = data.quantities.len();
+    if count == 0 || data.worlds.is_empty() {
+        ui.weak("Choose what to plot.");
+        return None;
+    }
+    let spacing = ui.spacing().item_spacing;
+    let fitting = ((ui.available_width() + spacing.x) / (LEAST_WIDTH + spacing.x)).floor();
+    // Plots wider than high read best; a high area holds two rows of them.
+    let high = ui.available_height() > 0.45 * ui.available_width();
+    let most = if high { count.div_ceil(2) } else { count };
+    let columns = most.min((fitting as usize).max(1));
+    let rows = count.div_ceil(columns);
+    let size = egui::vec2(
+        (ui.available_width() - spacing.x * (columns - 1) as f32) / columns as f32,
+        (ui.available_height() - spacing.y * (rows - 1) as f32) / rows as f32,
+    );
+    let mut clicked = None;
+    for row in data.quantities.chunks(columns) {
+        ui.horizontal(|ui| {
+            for quantity in row {
+                ui.allocate_ui(size, |ui| {
+                    ui.set_min_width(size.x);
+                    ui.vertical(|ui| clicked = clicked.or(plot(ui, data, *quantity)));
+                });
+            }
+        });
+    }
+    clicked
+}
+
+fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
+    let (prefix, factor) = match quantity {
+        Quantity::Energy => {
+            let rows = data.worlds.iter().flat_map(|(.., curve)| curve.rows());
+            let largest = |row: &Observables| {
+                let taken = row.broken_bond_energy.unwrap_or(0.0);
+                row.kinetic_energy.max(taken).max(row.bond_energy.unwrap_or(0.0))
+            };
+            si_prefix(rows.map(largest).fold(0.0, f64::max))
+        }
+        _ => ("", 1.0),
+    };
+    let mut title = quantity.title(prefix);
+    if quantity == Quantity::Energy && data.worlds.iter().any(|(.., curve)| has_bonds(curve)) {
+        title.push_str("; dashed: stored in bonds, dotted: taken by broken ones");
+    }
+    ui.add(Label::new(RichText::new(title).small()).truncate());
+    let log = quantity == Quantity::Residual;
+    let group = egui::Id::unique("time");
+    let response = Plot::new(("plot", quantity.name()))
+        .height((ui.available_height() - 2.0).max(40.0))
+        // Half of the last label lies right of the plot.
+        .width(ui.available_width() - 10.0)
+        .link_axis(group, [true, false])
+        .link_cursor(group, [true, false])
+        .allow_scroll(false)
+        .allow_zoom([true, false])
+        // egui would fill it pixel by pixel (see `fill`).
+        .show_background(false)
+        .show_grid([true, true])
+        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
+        .include_x(0.0)
+        .include_x(data.until_secs)
+        .x_grid_spacer(|grid| round_marks(grid, 4, 0.0))
+        .y_grid_spacer(move |grid| round_marks(grid, 4, if log { 1.0 } else { 0.0 }))
+        .custom_x_axes(vec![axis(AxisHints::new_x(), false, " s")])
+        .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log, "")])
+        .label_formatter(move |position| hover_text(position, log))
+        .show(ui, |plot| {
+            plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
+            for (name, colour, curve) in &data.worlds {
+                let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
+                    Line::new(name, points(curve, |row| value(row) / factor)).color(*colour)
+                };
+                plot.line(line(name.clone(), &|row| quantity.value(row)).width(1.6));
+                if quantity == Quantity::Energy && has_bonds(curve) {
+                    for (what, style, value) in ENERGIES_OF_BONDS {
+                        let value = |row: &Observables| value(row).unwrap_or(f64::NAN);
+                        plot.line(line(format!("{name}: {what}"), &value).style(style).width(1.2));
+                    }
+                }
+            }
+            plot.pointer_coordinate()
+        });
+    response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
+}
+
+/// Marks at round numbers, at most `most` of them and at least `least_step` apart.
+fn round_marks(grid: GridInput, most: usize, least_step: f64) -> Vec<GridMark> {
+    let (low, high) = grid.bounds;
+    let (values, step) = ticks(low, high, most);
+    let step_size = step.max(least_step);
+    let on_grid = |value: &f64| step == step_size || (value / step_size).fract() == 0.0;
+    let marks = values.into_iter().filter(on_grid);
+    marks.map(|value| GridMark { value, step_size }).collect()
+}
+
+/// Labels of the marks: numbers, or the powers of ten that numbers stand for.
+fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
+    hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
+        if log {
+            return format!("1e{}", mark.value);
+        }
+        format!("{}{unit}", decimal(mark.value, mark.step_size))
+    })
+}
+
+fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
+    let (name, at) = match position {
+        HoverPosition::NearDataPoint { plot_name, position, .. } => (*plot_name, position),
+        HoverPosition::Elsewhere { .. } => return None,
+    };
+    let value = if log { format!("{:.1e}", 10f64.powf(at.y)) } else { format!("{:.4}", at.y) };
+    Some(format!("{name}\n{:.4} s\n{value}", at.x))
+}
+
+/// The curve, or, of a long one, the least and the largest value of every interval.
+fn points(curve: &Curve, value: impl Fn(&Observables) -> f64) -> PlotPoints<'static> {
+    let points = curve.rows().map(|row| [row.time_secs, value(row)]);
+    // A state that no step has led to has no residual, and its logarithm is no number.
+    let mut points_there = points.filter(|point| point.iter().all(|number| number.is_finite()));
+    if curve.len() <= 2 * BUCKETS {
+        return points_there.collect();
+    }
+    let per_bucket = curve.len().div_ceil(BUCKETS);
+    let mut points = Vec::with_capacity(2 * BUCKETS + 2);
+    loop {
+        let bucket: Vec<[f64; 2]> = points_there.by_ref().take(per_bucket).collect();
+        let extremes = [f64::lt as fn(&f64, &f64) -> bool, f64::gt].map(|beats| {
+            bucket
+                .iter()
+                .copied()
+                .reduce(|best, next| if beats(&next[1], &best[1]) { next } else { best })
+        });
+        let [Some(low), Some(high)] = extremes else { break };
+        points.extend(if low[0] <= high[0] { [low, high] } else { [high, low] });
+    }
+    points.into()
+}

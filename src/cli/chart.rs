@@ -1,0 +1,34 @@
+//! `slump chart`: speed against accuracy.
+
+use std::path::PathBuf;
+
+use crate::error::Result;
+use crate::study::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
+
+/// Arguments of `slump chart`.
+#[derive(clap::Args)]
+pub(super) struct ChartCommand {
+    /// Folder for pictures, tables and measurements; the same command goes on where it stopped
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Coarser, in a few minutes
+    #[arg(long)]
+    quick: bool,
+    /// Also race on steps of 2,000 grains
+    #[arg(long)]
+    large: bool,
+    /// Chart these alone
+    #[arg(long, value_name = "PART", value_delimiter = ',')]
+    only: Vec<ChartPart>,
+    /// Folder with the tables of other engines' runs
+    #[arg(long, value_name = "DIR", default_value_os_t = default_peers_folder().to_owned())]
+    peers: PathBuf,
+}
+
+impl ChartCommand {
+    /// Does what is asked.
+    pub fn run(self) -> Result<()> {
+        let Self { out, quick, large, only, peers } = self;
+        chart_speed(&ChartOptions { out, quick, large, only, peers })
+    }
+}

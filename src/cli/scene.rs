@@ -1,0 +1,20 @@
+//! `slump scene`: a scene, with changes, as a file.
+
+use crate::error::Result;
+use crate::headless::settled;
+use crate::scene::{Config, scene_to_toml};
+
+/// Arguments of `slump scene`.
+#[derive(clap::Args)]
+pub(super) struct SceneCommand {
+    #[command(flatten)]
+    config: Config,
+}
+
+impl SceneCommand {
+    /// Does what is asked.
+    pub fn run(&self) -> Result<()> {
+        print!("{}", scene_to_toml(&settled(&self.config)?)?);
+        Ok(())
+    }
+}

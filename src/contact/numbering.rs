@@ -1,0 +1,89 @@
+//! Who the other body of a contact is.
+
+use crate::world::World;
+
+/// The other body of a contact, by its index among those of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Other {
+    /// A grain.
+    Grain(usize),
+    /// A fixed disc.
+    FixedDisc(usize),
+    /// A feature of the boundaries.
+    Feature(usize),
+}
+
+impl Other {
+    /// The grain, if it is one.
+    #[inline(always)]
+    pub fn grain(self) -> Option<usize> {
+        if let Self::Grain(index) = self { Some(index) } else { None }
+    }
+}
+
+/// How all bodies are numbered through: grains, then fixed discs, then features of the boundaries.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbering {
+    grains: usize,
+    fixed_discs: usize,
+}
+
+impl Numbering {
+    /// That of a world.
+    pub fn of(world: &World) -> Self {
+        Self { grains: world.grains.len(), fixed_discs: world.fixed_discs.len() }
+    }
+
+    /// That of bodies of which nothing is known but that the first are grains.
+    pub fn of_grains(grains: usize) -> Self {
+        Self { grains, fixed_discs: 0 }
+    }
+
+    /// The body of a number.
+    #[inline(always)]
+    pub fn other(self, number: u32) -> Other {
+        let index = number as usize;
+        if index < self.grains {
+            return Other::Grain(index);
+        }
+        let fixed = index - self.grains;
+        if fixed < self.fixed_discs {
+            Other::FixedDisc(fixed)
+        } else {
+            Other::Feature(fixed - self.fixed_discs)
+        }
+    }
+
+    /// The number of a body.
+    #[inline(always)]
+    pub fn number(self, other: Other) -> u32 {
+        let index = match other {
+            Other::Grain(index) => index,
+            Other::FixedDisc(index) => self.grains + index,
+            Other::Feature(index) => self.grains + self.fixed_discs + index,
+        };
+        index as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_tells_what_it_was_made_of() {
+        let numbering = Numbering { grains: 3, fixed_discs: 2 };
+        let bodies = [
+            Other::Grain(0),
+            Other::Grain(2),
+            Other::FixedDisc(0),
+            Other::FixedDisc(1),
+            Other::Feature(0),
+            Other::Feature(7),
+        ];
+        for (body, number) in bodies.into_iter().zip([0, 2, 3, 4, 5, 12]) {
+            assert_eq!(numbering.number(body), number);
+            assert_eq!(numbering.other(number), body);
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! Shocks that run through touching grains one after the other, in one step.
+//!
+//! **What is wrong.** The term ρ v_n^{n−1} of the paper's law settles all shocks of a step at once, and
+//! knows what a contact does before the step alone. A ball that hits a row of balls at rest sends all
+//! of them off together, whatever ρ is: contacts within the row do not close beforehand, so they may
+//! not open afterwards either. In truth the shock travels, and the last ball alone flies off.
+//!
+//! **The remedy.** The shocks are followed first, without gravity, which does nothing in no time, and
+//! without friction. A pass takes the contacts that close, and those alone, and solves
+//!
+//! > 0 ≤ P_k ⟂ u_k⁺ + ρ u_k⁻ ≥ 0 for each k with u_k⁻ < 0,  u⁺ = u⁻ + W P.
+//!
+//! That makes other contacts close, which are the next pass, until none is left. With ρ = 1 these are
+//! the generalized reflections of B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf and E. Grinspun,
+//! *Reflections on simultaneous impact* (2012); where the contacts of a pass share no grain, they are
+//! binary impacts in sequence (A. Chatterjee and A. Ruina, 1998). Contacts that close together are
+//! solved together, so that the outcome is as symmetric as its start and does not depend on how grains
+//! are numbered, as it would if one of them had to come first.
+//!
+//! **No energy is gained.** Where P_k > 0, u_k⁺ = −ρ u_k⁻, so (WP)_k = u_k⁺ − u_k⁻ = (1+ρ)|u_k⁻| > 0. A
+//! pass changes the kinetic energy by
+//!
+//! > ½P·(u⁺ + u⁻) = −½ (1−ρ) Σ P_k |u_k⁻| = −½ (1−ρ)/(1+ρ) Σ P_k (WP)_k ≤ 0.
+//!
+//! Contacts that still close after the last pass, slower than anything that is to bounce, are stopped
+//! by the projection of the velocities on those that close no contact. That takes energy too. Impulses
+//! act on pairs, so momentum stays.
+//!
+//! **The step itself** then asks each contact that was struck to open with the speed û_k ≥ 0 that the
+//! shocks have left it: u_k^n − û_k takes the place of u_k^n + ρ u_k^{n−1} in its law. Without gravity
+//! and friction the impulses of the shocks solve that step as they are: they are ≥ 0, and where
+//! they are not 0, u_k^n = û_k. With friction it rubs by the whole normal impulse, shocks included.
+//! A single contact has û = −ρ u^{n−1}: nothing changes for it.
+//!
+//! **Friction.** With it bounces may gain energy, here as in the paper's scheme (T. R. Kane, 1984).
+//! Where the contacts of a step have done positive work, beside that of walls that move, its û_k are
+//! halved and it is solved again. With
+//! û_k = 0 that work is, without gravity, P_t·u_t − ½P·WP ≤ 0, so this ends.
+//!
+//! **Not with cohesion.** In the paper's law what touches is bonded, and a bond takes part in a shock.
+//! Then all contacts belong to the first pass, which is the law as it was.
+
+use super::Remedy;
+use crate::contact::ContactList;
+use crate::sim::settings::Settings;
+use crate::sim::steppers::stepper::Stepper;
+use crate::sim::stepping::Stage;
+use crate::solver::{
+    Kinematics, Memory, Method, Model, Ordering, Row, SolveReport, SolverSettings, StepProblem,
+    StopTest, for_each_row, relative_velocities, solve as solve_problem,
+};
+
+/// The row of the registry.
+pub(super) const REMEDY: Remedy = Remedy {
+    name: "sequential-impacts",
+    taken_by: &[Stepper::Moreau],
+    is_on: |remedies| remedies.sequential_impacts,
+    leave_out: |remedies| remedies.sequential_impacts = false,
+};
+
+/// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
+/// resting contact do that. Less, and a pile at rest would be shaken in each step.
+const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
+/// The same in the fastest closing speed of the step, for scenes without gravity. For ρ < 1 a chain
+/// closes infinitely often; smaller: more passes for what cannot be seen.
+const LEAST_IN_FASTEST: f64 = 1e-6;
+/// Most passes, so that a step ends. A row of n balls needs n − 1 of them.
+const MOST_PASSES: u32 = 2000;
+
+/// Part of what goes through the contacts that they may gain by rounding and by a step's tolerance.
+const LEAST_GAIN: f64 = 1e-6;
+
+/// How often bounces that gain energy with friction are halved, the last time to nothing.
+const HALVINGS: u32 = 5;
+
+/// How a pass is solved, whatever the step's own method: contacts that close together are few.
+const PASS: SolverSettings = SolverSettings {
+    method: Method::Nsgs,
+    ordering: Ordering::Interleaved,
+    stop: StopTest::Residual,
+    tolerance: 1e-12,
+    max_sweeps: 1000,
+    warm_start: true,
+};
+
+/// Solves a prepared step whose contacts open as its shocks say.
+pub(in crate::sim) fn solve<M: Model>(
+    stage: &mut Stage<'_, M>,
+    settings: &Settings,
+) -> SolveReport {
+    let followed = follow(stage, settings);
+    let mut report = stage.solve(settings);
+    let Some(mut earlier) = followed else { return report };
+    let mut halvings = 0;
+    while M::FRICTION && halvings < HALVINGS && gains_energy(stage.problem) {
+        halvings += 1;
+        scale_rebounds(stage.problem, if halvings < HALVINGS { 0.5 } else { 0.0 });
+        earlier.add(report);
+        report = stage.solve(settings);
+    }
+    report.after(earlier)
+}
+
+/// Follows the shocks of a prepared step, and has its contacts open as they say. Reports the work that
+/// took; whether the step is solved is for the step to say. Leaves a problem with cohesion, or without
+/// shocks that bounce, as it is, and reports nothing.
+pub(in crate::sim) fn follow<M: Model>(
+    stage: &mut Stage<'_, M>,
+    settings: &Settings,
+) -> Option<SolveReport> {
+    let Stage { state, problem, memory } = stage;
+    let parameters = &settings.parameters;
+    if problem.capture_speed > 0.0 || parameters.restitution == 0.0 {
+        return None;
+    }
+    let mut report = SolveReport::default();
+    let mut shocks = Shocks::new(problem, &state.contacts);
+    let fastest = shocks.fastest_closing();
+    let step_of_gravity = state.world.gravity.magnitude() * parameters.time_step_secs;
+    let threshold = parameters.restitution_threshold.max(LEAST_IN_STEPS_OF_GRAVITY);
+    let least = (threshold * step_of_gravity).max(LEAST_IN_FASTEST * fastest);
+    if fastest <= least {
+        return None;
+    }
+    let mut pass = StepProblem::default();
+    for _ in 0..MOST_PASSES {
+        if !shocks.select(problem, &mut pass, parameters.restitution, least) {
+            break;
+        }
+        report.add(solve_problem::<M>(&mut pass, memory, &PASS));
+        shocks.take(problem, &mut pass);
+    }
+    if shocks.fastest_closing() > LEAST_IN_FASTEST * fastest {
+        report.add(shocks.stop_the_rest::<M>(problem, memory, &settings.solver));
+    }
+    shocks.set_rebounds(problem);
+    Some(report)
+}
+
+/// Whether the contacts of a solved step have done work on the grains, beyond rounding and beyond what
+/// the walls that move have put in: velocities are taken relative to those.
+fn gains_energy<K: Kinematics>(problem: &StepProblem<K>) -> bool {
+    let (mut gain, mut scale) = (0.0, 0.0);
+    for_each_row(problem, |number, row, motion| {
+        let [normal, tangential] =
+            problem.reduced_impulse(number, row).map(|impulse| 0.5 * row.effective_mass * impulse);
+        let [now, before] =
+            [motion.now[0], motion.before[0]].map(|v| v - problem.wall_speed(number));
+        gain += normal * (now + before) + tangential * (motion.now[1] + motion.before[1]);
+        scale += normal.abs() * (now.abs() + before.abs());
+    });
+    gain > LEAST_GAIN * scale
+}
+
+/// Multiplies the speeds that contacts are asked to open with, relative to walls that move.
+fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
+    for (row, wall_speed) in problem.rows_with_walls() {
+        let rebound = row.restitution_velocity + wall_speed;
+        if rebound < 0.0 {
+            row.restitution_velocity = factor * rebound - wall_speed;
+        }
+    }
+}
+
+/// How far the shocks have gone.
+struct Shocks<K: Kinematics> {
+    /// Velocities by now.
+    bodies: Vec<K::Body<f64>>,
+    /// u of each row, m/s.
+    speeds: Vec<f64>,
+    /// P/m_ij of each row so far, m/s.
+    impulses: Vec<f64>,
+    /// Whether a row's pair touches: one that will do so within the step only has no shock yet.
+    touching: Vec<bool>,
+}
+
+impl<K: Kinematics> Shocks<K> {
+    /// Nothing has happened yet.
+    fn new(problem: &StepProblem<K>, contacts: &ContactList) -> Self {
+        let bodies = problem.before.clone();
+        let mut speeds = Vec::new();
+        relative_velocities(problem, &bodies, &mut speeds);
+        let impulses = vec![0.0; speeds.len()];
+        let touches = |&index: &u32| contacts.is_in_touch(index as usize);
+        let touching = problem.contact_of_row.iter().map(touches).collect();
+        Self { bodies, speeds, impulses, touching }
+    }
+
+    /// max(−u), m/s, or 0.
+    fn fastest_closing(&self) -> f64 {
+        let all = self.speeds.iter().zip(&self.touching);
+        all.filter(|(_, touches)| **touches).fold(0.0, |fastest, (speed, _)| fastest.max(-speed))
+    }
+
+    /// Sets `pass` up with the rows that close faster than `least` (m/s). Whether there are any.
+    fn select(
+        &self,
+        problem: &StepProblem<K>,
+        pass: &mut StepProblem<K>,
+        restitution: f64,
+        least: f64,
+    ) -> bool {
+        let StepProblem { fixed_rows, pair_rows, contact_of_row, before, free, bodies, .. } = pass;
+        fixed_rows.clear();
+        pair_rows.clear();
+        contact_of_row.clear();
+        for (number, row) in problem.rows() {
+            let speed = self.speeds[number];
+            if speed >= -least || !self.touching[number] {
+                continue;
+            }
+            let rows =
+                if number < problem.fixed_rows.len() { &mut *fixed_rows } else { &mut *pair_rows };
+            rows.push(Row {
+                restitution_velocity: restitution * speed - problem.wall_speed(number),
+                shifted_impulse: 0.0,
+                tangential_impulse: 0.0,
+                ..*row
+            });
+            contact_of_row.push(number as u32);
+        }
+        for copy in [before, free, bodies] {
+            copy.clone_from(&self.bodies);
+        }
+        !contact_of_row.is_empty()
+    }
+
+    /// Takes over what a pass has led to.
+    fn take(&mut self, problem: &StepProblem<K>, pass: &mut StepProblem<K>) {
+        for ((_, row), &number) in pass.rows().zip(&pass.contact_of_row) {
+            self.impulses[number as usize] += row.shifted_impulse;
+        }
+        std::mem::swap(&mut self.bodies, &mut pass.bodies);
+        relative_velocities(problem, &self.bodies, &mut self.speeds);
+    }
+
+    /// Stops all contacts that still close, by the step's own method: there may be many of them.
+    fn stop_the_rest<M: Model<Kinematics = K>>(
+        &mut self,
+        problem: &mut StepProblem<K>,
+        memory: &mut Memory<K>,
+        settings: &SolverSettings,
+    ) -> SolveReport {
+        let free = std::mem::replace(&mut problem.free, self.bodies.clone());
+        let friction = std::mem::take(&mut problem.friction);
+        let (fixed, pairs) = (problem.fixed_rows.clone(), problem.pair_rows.clone());
+        for ((row, wall_speed), &touches) in problem.rows_with_walls().zip(&self.touching) {
+            if touches {
+                row.restitution_velocity = -wall_speed;
+            }
+            row.shifted_impulse = 0.0;
+            row.tangential_impulse = 0.0;
+        }
+        problem.form_velocities();
+        let report = solve_problem::<M>(problem, memory, settings);
+        for (number, row) in problem.rows() {
+            self.impulses[number] += row.shifted_impulse;
+        }
+        self.bodies.clone_from(&problem.bodies);
+        relative_velocities(problem, &self.bodies, &mut self.speeds);
+        problem.free = free;
+        problem.friction = friction;
+        problem.fixed_rows = fixed;
+        problem.pair_rows = pairs;
+        report
+    }
+
+    /// Asks each contact that was struck for the speed that it has come to. One that was not may not
+    /// bounce. The step starts from the impulses of the shocks.
+    fn set_rebounds(&self, problem: &mut StepProblem<K>) {
+        for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
+            let impulse = self.impulses[number];
+            // The law speaks of velocities relative to a wall that moves.
+            row.restitution_velocity = if !self.touching[number] {
+                row.restitution_velocity
+            } else if impulse > 0.0 {
+                -self.speeds[number].max(0.0) - wall_speed
+            } else {
+                (row.restitution_velocity + wall_speed).max(0.0) - wall_speed
+            };
+            row.shifted_impulse += impulse;
+        }
+        problem.form_velocities();
+    }
+}

@@ -1,0 +1,47 @@
+//! Speculative contacts: pairs with a gap that a step would close.
+//!
+//! A contact that is looked for at the beginning of a step is missed where the pair meets later in it,
+//! and a fast disc is then inside a wall, or through it. So pairs with a gap that would close within
+//! the step enter its problem too, and may close by that gap and no more (E. Catto, *Continuous
+//! collision*, 2013):
+//!
+//! > 0 ≤ P ⟂ v_n + gap/Δt ≥ 0.
+//!
+//! They do not pull. At the end of the step they touch: the gap is taken larger by the rounding that
+//! contacts have (`contact::range`). In the compressive cone they rub by what exceeds the cohesion that
+//! they will have.
+//!
+//! **What it costs.** The pair is slowed down to gap/Δt before it meets, and bounces in the step after
+//! with ρ times that: with any share between 0 and 1 of the speed that it should have, half of it in
+//! the mean. The normal is that of the beginning, so what would pass by at a slant may be held up by
+//! nothing. And a fast grain makes the search of all pairs as wide as its own way. Cutting the step
+//! into pieces (`max_travel`) has none of these faults.
+
+use super::Remedy;
+use crate::contact::LookAhead;
+use crate::sim::state::State;
+use crate::sim::steppers::stepper::Stepper;
+
+/// The row of the registry.
+pub(super) const REMEDY: Remedy = Remedy {
+    name: "speculative",
+    taken_by: &[Stepper::Moreau],
+    is_on: |remedies| remedies.speculative,
+    leave_out: |remedies| remedies.speculative = false,
+};
+
+/// Farther pairs are left alone, in d: the search would be of nearly all pairs.
+const FARTHEST_IN_DIAMETERS: f64 = 8.0;
+
+/// How far a step that has begun has to look: as far as two bodies of the fastest speed come.
+pub(in crate::sim) fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
+    let world = &state.world;
+    let by_gravity = 2.0 * world.gravity.magnitude() * time_step_secs * time_step_secs;
+    let way = 2.0 * state.fastest() * time_step_secs + by_gravity;
+    LookAhead {
+        time_step_secs,
+        distance: by_gravity,
+        reach: way.min(FARTHEST_IN_DIAMETERS * world.mean_diameter),
+        bonds: false,
+    }
+}

@@ -1,0 +1,128 @@
+//! What a step reads and moves, and what every way to step does with it: find contacts, move grains.
+
+use glam::DVec2;
+
+use super::pull::Pull;
+use super::walls::Walls;
+use crate::contact::{Candidates, ContactList, LookAhead, Reach};
+use crate::error::Result;
+use crate::solver::{Kinematics, Model};
+use crate::world::{Physics, World};
+
+/// Skin of the candidate search, in units of d. Smaller: the list is built more often; larger: more
+/// pairs are looked at in vain. Does not change any result.
+pub(super) const SKIN_IN_DIAMETERS: f64 = 0.2;
+
+/// A world with the contacts of its last step.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub world: World,
+    pub physics: Physics,
+    pub candidates: Candidates,
+    pub contacts: ContactList,
+    /// Walls that move.
+    pub walls: Walls,
+    /// A spring on one grain, from the next step on.
+    pub pull: Option<Pull>,
+    /// Δt of the impulses in `contacts`, s.
+    pub time_step_of_impulses_secs: f64,
+}
+
+impl State {
+    /// Begins a step of that length: the contacts' forces stay what they were, walls get their speeds.
+    pub fn begin(&mut self, time_step_secs: f64) {
+        let before = self.time_step_of_impulses_secs;
+        if time_step_secs != before {
+            self.contacts.scale_impulses(time_step_secs / before);
+            self.time_step_of_impulses_secs = time_step_secs;
+        }
+        self.walls.begin(&self.world, &self.candidates, time_step_secs);
+    }
+
+    /// Finds the contacts: those at the present positions, or, looking ahead, those that the step may
+    /// come to as well.
+    pub fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
+        let Self { world, candidates, contacts, .. } = self;
+        match (ahead, M::Kinematics::AXES) {
+            (None, 1) => {
+                candidates.update::<1>(world);
+                contacts.detect::<1>(world, candidates);
+            }
+            (None, _) => {
+                candidates.update::<2>(world);
+                contacts.detect::<2>(world, candidates);
+            }
+            (Some(ahead), 1) => {
+                candidates.update_ahead::<1>(world, ahead.reach);
+                contacts.detect_ahead::<1>(world, candidates, ahead);
+            }
+            (Some(ahead), _) => {
+                candidates.update_ahead::<2>(world, ahead.reach);
+                contacts.detect_ahead::<2>(world, candidates, ahead);
+            }
+        }
+    }
+
+    /// The push of the spring on a grain in the next `time_step_secs` ([`Pull::push`]).
+    pub fn push_of_pull(&self, axes: usize, time_step_secs: f64) -> Option<(usize, DVec2, f64)> {
+        self.pull.and_then(|pull| pull.push(&self.world, axes, time_step_secs))
+    }
+
+    /// Speed of the fastest grain or wall of a step that has begun, m/s.
+    pub fn fastest(&self) -> f64 {
+        self.fastest_with(self.walls.fastest())
+    }
+
+    /// Speed of the fastest grain or wall in the next step, if that is of such a length, m/s.
+    pub fn fastest_in(&self, time_step_secs: f64) -> f64 {
+        self.fastest_with(Walls::fastest_in(&self.world, &self.candidates, time_step_secs))
+    }
+
+    fn fastest_with(&self, fastest_wall: f64) -> f64 {
+        let speeds = self.world.grains.velocities.iter().map(|velocity| velocity.length());
+        speeds.fold(fastest_wall, f64::max)
+    }
+
+    /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and the angles where grains turn.
+    pub fn integrate<M: Model>(&mut self, time_step_secs: f64) {
+        let grains = &mut self.world.grains;
+        for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
+            if M::Kinematics::AXES == 1 {
+                position.x += time_step_secs * velocity.x;
+            } else {
+                *position += time_step_secs * *velocity;
+            }
+        }
+        // Grains go on turning where friction is switched off for the moment.
+        if self.physics.rotation {
+            for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
+                *angle += time_step_secs * spin;
+            }
+        }
+        if self.walls.any_move() {
+            self.walls.advance(&mut self.world, &mut self.candidates, time_step_secs);
+        }
+    }
+
+    /// Whether all positions and velocities are numbers.
+    pub fn is_finite(&self) -> bool {
+        let grains = &self.world.grains;
+        // A sum is finite only where every term is (or where an overflow is close enough to count).
+        let total = |vectors: &[DVec2]| vectors.iter().sum::<DVec2>().is_finite();
+        total(&grains.positions)
+            && total(&grains.velocities)
+            && grains.angular_velocities.iter().sum::<f64>().is_finite()
+    }
+
+    /// Takes the last grain out. The impulses of all other contacts stay.
+    pub fn remove_last_grain(&mut self) -> Result<()> {
+        let last = self.world.grains.len() - 1;
+        self.world.grains.truncate(last);
+        self.contacts.remove_body(last as u32);
+        let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
+        let gap_tolerance = self.candidates.gap_tolerance();
+        self.candidates = Candidates::new(&self.world, Reach { skin, gap_tolerance })?;
+        self.pull = self.pull.filter(|pull| (pull.grain as usize) < last);
+        Ok(())
+    }
+}

@@ -1,0 +1,193 @@
+//! Smooth discrete elements (P. A. Cundall & O. D. L. Strack, 1979), with the linear cohesive law
+//! that S. Luding (2008) starts from: a contact is a spring and a dashpot, and pulls by C₀ as long
+//! as the discs overlap. With δ = −gap the overlap,
+//!
+//! > N = max(k δ − γ v_n, 0) − C₀,  T = −k_t ξ − γ_t v_t with ξ̇ = v_t,  |T| ≤ bound(N + C₀).
+//!
+//! Spring and dashpot together never pull: N ≥ −C₀, as everywhere here, and the cone is that of the
+//! contact laws. Where friction slides, ξ is shortened to what gives T at the bound.
+
+mod spring_dashpot;
+
+pub use spring_dashpot::SpringDashpot;
+
+use self::spring_dashpot::{critical_time_step_secs, substeps};
+use super::StepperInfo;
+use super::course::Course;
+use crate::contact::{Contact, ContactMemory, Impulse, law};
+use crate::sim::settings::Settings;
+use crate::sim::state::State;
+use crate::sim::stepping::{Outcome, Stage};
+use crate::solver::{Kinematics, Model};
+
+/// The row of the registry. Springs carry their stretch on whether asked to or not, so nothing is told of a
+/// warm start.
+pub(super) const INFO: StepperInfo = StepperInfo {
+    solves: "nothing exactly: contacts are damped springs",
+    source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
+    settings: &["bond", "dt", "rho", "mu", "cone", "substeps"],
+    substeps,
+    critical_time_step_secs: |world, physics, parameters| {
+        Some(critical_time_step_secs(world, physics, parameters))
+    },
+    ..StepperInfo::WHOLE
+};
+
+/// Takes one step. Contacts are detected in each substep; the problem's rows, those of the beginning of the
+/// step, get what their pairs transmitted in all.
+pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+    let (world, physics) = (&stage.state.world, stage.state.physics);
+    let parameters = &settings.parameters;
+    let substeps = substeps(world, physics, parameters);
+    let cohesion = if physics.cohesion { parameters.bond } else { 0.0 };
+    let elements = Elements {
+        springs: SpringDashpot::of(world, physics.axes, parameters.restitution),
+        cohesive_acceleration: cohesion * world.gravity.magnitude(),
+        friction: parameters.friction,
+        substep_secs: parameters.time_step_secs / f64::from(substeps),
+    };
+    let course = &mut Course::begin_step(stage, settings, substeps);
+    let mut totals = Totals::new(stage.state.contacts.contacts());
+    stage.state.contacts.impulses_mut().fill(Impulse::default());
+    let mut pushes = Vec::new();
+    let mut is_first = true;
+    stage.in_pieces(substeps, settings, Outcome::nothing_yet(), |stage, _, _| {
+        if !std::mem::take(&mut is_first) {
+            stage.state.detect::<M>(None);
+        }
+        course.begin(stage);
+        elements.push(stage, &course.start, &mut totals, &mut pushes);
+        let bodies = &stage.problem.bodies;
+        for (contact, &(mass, impulse)) in stage.state.contacts.contacts().iter().zip(&pushes) {
+            let of = |bodies: &[_]| velocity::<M::Kinematics>(contact, bodies);
+            course.works.add(mass, impulse, of(&course.start), of(bodies));
+        }
+        course.add_gravity_work(bodies, &stage.state.world.grains.masses);
+        course.place(stage);
+    });
+    stage.problem.set_impulses(&totals.impulses);
+    course.end_step(stage, substeps)
+}
+
+/// (v_n, v_t) of a contact, m/s.
+#[inline(always)]
+fn velocity<K: Kinematics>(contact: &Contact, bodies: &[K::Body<f64>]) -> [f64; 2] {
+    let (normal, i) = (K::normal(contact.normal.to_array()), &bodies[contact.grain as usize]);
+    match bodies.get(contact.other as usize) {
+        Some(j) => K::relative_velocity(normal, i, j),
+        None => K::velocity(normal, i),
+    }
+}
+
+/// The law of the contacts.
+struct Elements {
+    springs: SpringDashpot,
+    /// C₀/m_ij = Bond·g, m/s².
+    cohesive_acceleration: f64,
+    friction: f64,
+    substep_secs: f64,
+}
+
+impl Elements {
+    /// The forces of a contact of effective mass `mass` at a gap and relative velocities, into its memory.
+    #[inline(always)]
+    fn force<M: Model>(
+        &self,
+        memory: &mut ContactMemory,
+        gap: f64,
+        mass: f64,
+        [normal_velocity, tangential_velocity]: [f64; 2],
+    ) {
+        let stiffness = self.springs.stiffness;
+        let damping = self.springs.damping(mass);
+        let push = (-stiffness * gap - damping * normal_velocity).max(0.0);
+        let cohesion = mass * self.cohesive_acceleration;
+        memory.normal_force = push - cohesion;
+        if M::FRICTION {
+            let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            let bound = M::friction_bound(self.friction, push, cohesion);
+            let dashpot = part * damping * tangential_velocity;
+            let spring = part * stiffness;
+            let stretch = memory.tangential_displacement + self.substep_secs * tangential_velocity;
+            let force = law::coulomb(-spring * stretch - dashpot, bound);
+            memory.tangential_displacement = -(force + dashpot) / spring;
+            memory.tangential_force = force;
+        }
+    }
+
+    /// Pushes the bodies by the forces that the present overlaps and the velocities `start` make.
+    /// `pushes` gets m_ij and the impulses λ (m/s) of each contact.
+    fn push<M: Model>(
+        &self,
+        stage: &mut Stage<'_, M>,
+        start: &[<M::Kinematics as Kinematics>::Body<f64>],
+        totals: &mut Totals,
+        pushes: &mut Vec<(f64, [f64; 2])>,
+    ) {
+        let h = self.substep_secs;
+        let State { world, contacts, walls, .. } = &mut *stage.state;
+        let bodies = &mut stage.problem.bodies;
+        let masses = &world.grains.masses;
+        let (list, impulses, memories) = contacts.parts_mut();
+        pushes.clear();
+        totals.rewind();
+        for ((contact, sum), memory) in list.iter().zip(impulses).zip(memories) {
+            let (i, j) = (contact.grain as usize, contact.other as usize);
+            let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
+            let mass = masses[i] * share;
+            let [normal_velocity, tangential_velocity] = velocity::<M::Kinematics>(contact, start);
+            let normal_velocity = normal_velocity - walls.speed(world, contact);
+
+            self.force::<M>(memory, contact.gap, mass, [normal_velocity, tangential_velocity]);
+            let impulse = Impulse {
+                normal: h * memory.normal_force,
+                tangential: h * memory.tangential_force,
+            };
+            sum.normal += impulse.normal;
+            sum.tangential += impulse.tangential;
+            totals.add(contact, impulse);
+            let reduced = [impulse.normal / mass, impulse.tangential / mass];
+            pushes.push((mass, reduced));
+            let normal = M::Kinematics::normal(contact.normal.to_array());
+            if j < bodies.len() {
+                let (mut one, mut other) = (bodies[i], bodies[j]);
+                M::Kinematics::push_pair(&mut one, &mut other, normal, reduced, share);
+                bodies[i] = one;
+                bodies[j] = other;
+            } else {
+                M::Kinematics::push_single(&mut bodies[i], normal, reduced);
+            }
+        }
+    }
+}
+
+/// What the contacts of the beginning of a step transmit in its course, N·s.
+struct Totals {
+    contacts: Vec<Contact>,
+    impulses: Vec<Impulse>,
+    next: usize,
+}
+
+impl Totals {
+    fn new(contacts: &[Contact]) -> Self {
+        let impulses = vec![Impulse::default(); contacts.len()];
+        Self { contacts: contacts.to_vec(), impulses, next: 0 }
+    }
+
+    /// Before the contacts of another substep.
+    fn rewind(&mut self) {
+        self.next = 0;
+    }
+
+    /// Adds to the contact of that pair, if it is one of them. Both lists are sorted alike.
+    fn add(&mut self, contact: &Contact, impulse: Impulse) {
+        let behind = |then: &Contact| then.pair() < contact.pair();
+        while self.contacts.get(self.next).is_some_and(behind) {
+            self.next += 1;
+        }
+        if self.contacts.get(self.next).is_some_and(|then| then.pair() == contact.pair()) {
+            self.impulses[self.next].normal += impulse.normal;
+            self.impulses[self.next].tangential += impulse.tangential;
+        }
+    }
+}

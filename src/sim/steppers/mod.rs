@@ -1,0 +1,102 @@
+//! The ways to take a step of Δt, each with its own contact law: the registry. A way to step is a file or
+//! folder here with its `INFO` and its `advance`, a word of [`Stepper`], and an arm of each match below.
+
+mod course;
+mod dem;
+mod info;
+pub(super) mod moreau;
+mod range;
+pub(super) mod stepper;
+mod tgs_soft;
+
+pub use dem::SpringDashpot;
+pub use info::StepperInfo;
+pub use stepper::Stepper;
+
+use super::settings::Settings;
+use super::stepping::{Advance, Outcome, Stage};
+use crate::solver::Model;
+
+impl Stepper {
+    /// What there is to know of it.
+    pub const fn info(self) -> &'static StepperInfo {
+        match self {
+            Self::Moreau => &moreau::INFO,
+            Self::Range => &range::INFO,
+            Self::TgsSoft => &tgs_soft::INFO,
+            Self::Dem => &dem::INFO,
+        }
+    }
+
+    /// Whether it reads the setting of that name.
+    pub fn reads(self, name: &str) -> bool {
+        self.info().settings.contains(&name)
+    }
+
+    /// Whether it solves the step's problem by one of the methods.
+    pub fn uses_method(self) -> bool {
+        self.reads("solver")
+    }
+
+    /// Whether it tells of bonds.
+    pub(super) fn has_bonds(self) -> bool {
+        self.info().observables.contains(&"bond_energy")
+    }
+}
+
+/// What ways to step remember from one step to the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Memory {
+    range: range::Memory,
+}
+
+impl Advance for Memory {
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+        match settings.stepper {
+            Stepper::Moreau => moreau::advance(stage, settings),
+            Stepper::Range => range::advance(stage, settings, &mut self.range),
+            Stepper::TgsSoft => tgs_soft::advance(stage, settings),
+            Stepper::Dem => dem::advance(stage, settings),
+        }
+    }
+}
+
+impl Memory {
+    /// Detects the contacts of the next step and sets up its problem, as it is before any solution.
+    pub fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
+        match settings.stepper {
+            Stepper::Range => range::prepare(stage, settings),
+            Stepper::Moreau | Stepper::TgsSoft | Stepper::Dem => moreau::set_up(stage, settings),
+        }
+    }
+
+    /// Sets up the first problem that the method gets in the next step; where no method gets any, the
+    /// problem that the step is judged by.
+    pub fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
+        match settings.stepper {
+            Stepper::Moreau => moreau::set_up_with_impacts(stage, settings),
+            Stepper::Range => range::set_up(stage, settings, &mut self.range),
+            Stepper::TgsSoft | Stepper::Dem => moreau::set_up(stage, settings),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steppers_read_settings_that_exist_and_every_setting_is_read_by_one() {
+        let remedies = |name: &str| crate::sim::remedies::ROWS.iter().any(|row| row.name == name);
+        let names: Vec<&str> = Settings::about().map(|about| about.name).collect();
+        for stepper in Stepper::ALL {
+            for name in stepper.info().settings {
+                assert!(names.contains(name), "{stepper} reads {name}");
+            }
+        }
+        for name in names {
+            let read = Stepper::ALL.iter().any(|stepper| stepper.reads(name));
+            assert!(read || remedies(name) || name == "stepper", "{name}");
+        }
+    }
+}

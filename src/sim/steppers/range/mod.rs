@@ -1,0 +1,176 @@
+//! A step under the law `range` (`contact::range`): contacts are looked for ahead, bonds are solved
+//! for (`range::bonds`), in substeps where they break or grains go far, and what overlaps is pushed out.
+//!
+//! **Substeps.** Two things ask for them.
+//!
+//! * A step is long against the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile whose
+//!   bonds are not is stepped at full length. Where the step before was cut and bonds were restless to
+//!   its end, the next one is cut without being tried.
+//! * Grains go far. A contact's normal is that of the beginning of the step, so the constraint
+//!   v_n + gap/Δt ≥ 0 bars a grain from passing another one that it would have missed: without cohesion,
+//!   where only this asks for substeps, a pile slumps too little at a large Δt.
+
+mod bonds;
+mod numbers;
+mod separation;
+mod shocks;
+
+pub(in crate::sim) use bonds::Memory;
+
+use self::bonds::{Solved, pass_shocks, solve_range};
+use super::StepperInfo;
+use crate::contact::LookAhead;
+use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
+use crate::error::Error;
+use crate::sim::settings::Settings;
+use crate::sim::state::State;
+use crate::sim::stepping::{BondEnergies, Outcome, Stage};
+use crate::solver::{Approach, Model, SolveReport};
+use crate::world::{FrictionCone, World};
+
+/// The row of the registry.
+pub(super) const INFO: StepperInfo = StepperInfo {
+    solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
+    source: "bonds that cost the work C₀δc; shocks apart from loads",
+    settings: &[
+        "bond",
+        "dt",
+        "rho",
+        "mu",
+        "cone",
+        "debonding-distance",
+        "solver",
+        "ordering",
+        "stop",
+        "tolerance",
+        "max-sweeps",
+        "warm-start",
+    ],
+    observables: &["bond_work", "bond_energy", "broken_bond_energy"],
+    // In the compressive cone the sweep needs the capture speed, which differs between contacts.
+    check: |parameters| match parameters.cone {
+        FrictionCone::Shifted => Ok(()),
+        cone => Err(Error::value("cone", cone, "shifted where stepper is range")),
+    },
+    ..StepperInfo::WHOLE
+};
+
+/// Pairs within the first of these many diameters that a step could close are contacts;
+/// a pair that is to meet within the step is one up to the second.
+const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
+
+/// Longest substep where bonds are restless, in times of a break. Larger: a load is handed on by one bond
+/// a step, so weakly bonded piles hold at a large Δt; smaller: it costs more.
+const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
+
+/// How far a grain goes in a substep, in diameters, as long as there are few enough of them. Larger: a
+/// pile slumps too little at a large Δt; smaller: it costs more.
+const MOST_TRAVEL: f64 = 0.1;
+
+/// More would be a step of another order than the one asked for.
+const MOST_SUBSTEPS: f64 = 16.0;
+
+/// How far a step that has begun has to look: the speed of the fastest tells what any grain may come to.
+fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
+    let world = &state.world;
+    let travel = travel(world, state.fastest(), time_step_secs);
+    let [near, far] = AHEAD_IN_DIAMETERS.map(|most| most * world.mean_diameter);
+    let distance = travel.min(near);
+    let reach = (distance + 2.0 * travel).min(far);
+    LookAhead { time_step_secs, distance, reach, bonds: true }
+}
+
+/// How far a grain may go in a step where the fastest has that speed (m/s), m.
+fn travel(world: &World, fastest: f64, time_step_secs: f64) -> f64 {
+    (fastest + 2.0 * world.gravity.magnitude() * time_step_secs) * time_step_secs
+}
+
+/// How a step is cut.
+struct Cut {
+    substeps: u32,
+    /// Whether it is tried as a whole first.
+    whole_first: bool,
+}
+
+impl Cut {
+    /// Of a step that has begun, where bonds were restless to the end of the last or not.
+    fn of(state: &State, settings: &Settings, restless: bool) -> Self {
+        let State { world, .. } = state;
+        let parameters = &settings.parameters;
+        let whole = parameters.time_step_secs;
+        let distance = parameters.debonding_distance * world.mean_diameter;
+        let travel = travel(world, state.fastest(), whole);
+        let of_travel = (travel / (MOST_TRAVEL * world.mean_diameter)).ceil();
+        let bond_time = bond_time_secs(parameters.bond, world.gravity.magnitude(), distance);
+        let of_bonds = (whole / (SUBSTEP_IN_BOND_TIMES * bond_time)).ceil();
+        let substeps = of_travel.max(of_bonds).clamp(1.0, MOST_SUBSTEPS) as u32;
+        Self { substeps, whole_first: substeps == 1 || (of_travel <= 1.0 && !restless) }
+    }
+}
+
+/// Takes a step: as a whole, or in substeps (see the module).
+pub(super) fn advance<M: Model>(
+    stage: &mut Stage<'_, M>,
+    settings: &Settings,
+    memory: &mut Memory,
+) -> Outcome {
+    prepare(stage, settings);
+    let restless = std::mem::take(&mut memory.restless);
+    let Cut { substeps, whole_first } = Cut::of(stage.state, settings, restless);
+    let mut outcome = Outcome { bonds: Some(BondEnergies::default()), ..Outcome::nothing_yet() };
+    if whole_first {
+        match try_step(stage, settings, memory, substeps == 1) {
+            Ok(outcome) => return outcome,
+            // Of what was given up the work alone counts.
+            Err(given_up) => outcome.report = outcome.report.after(given_up),
+        }
+    }
+    stage.in_pieces(substeps, settings, outcome, |stage, settings, outcome| {
+        prepare(stage, settings);
+        if let Ok(piece) = try_step(stage, settings, memory, true) {
+            outcome.add(piece);
+        }
+    })
+}
+
+/// Sets up the first problem that is solved with the loads of the step, its shocks passed.
+pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings, memory: &mut Memory) {
+    prepare(stage, settings);
+    let Cut { substeps, whole_first } = Cut::of(stage.state, settings, memory.restless);
+    let first = settings.over(settings.parameters.time_step_secs / f64::from(substeps));
+    let first = if whole_first { *settings } else { first };
+    prepare(stage, &first);
+    pass_shocks(stage, memory, &first, &mut SolveReport::default());
+}
+
+/// Detects the contacts and sets up the problem of a step. A gap must not close by more than itself;
+/// bounces are part of the shocks.
+pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
+    let time_step_secs = settings.parameters.time_step_secs;
+    let touch = TOUCH_IN_DIAMETERS * stage.world().mean_diameter;
+    let ahead = |state: &State| Some(look_ahead(state, time_step_secs));
+    let rebound = |Approach { gap, .. }| (gap - touch).max(0.0) / time_step_secs;
+    stage.prepare_ahead(settings, ahead, rebound);
+}
+
+/// Solves the prepared problem with its bonds and moves the grains. Fails, with what that took, where a
+/// bond breaks that may not.
+fn try_step<M: Model>(
+    stage: &mut Stage<'_, M>,
+    settings: &Settings,
+    memory: &mut Memory,
+    may_break: bool,
+) -> Result<Outcome, SolveReport> {
+    let Solved { report, of_shocks, bonds, done } = solve_range(stage, memory, settings, may_break);
+    if !done {
+        return Err(report);
+    }
+    let mut outcome = stage.move_by(report, settings);
+    outcome.bonds = Some(bonds);
+    let measures = &mut outcome.measures;
+    measures.residual = measures.residual.max(of_shocks.residual);
+    measures.normal_work += of_shocks.normal_work;
+    measures.tangential_work += of_shocks.tangential_work;
+    separation::separate::<M>(stage.state);
+    Ok(outcome)
+}

@@ -1,0 +1,9 @@
+//! What all ways to step share: the step's problem on its stage, the cut into pieces, the outcome, and what
+//! is observed of it.
+
+pub(super) mod observe;
+pub(super) mod outcome;
+pub(super) mod stage;
+
+pub use outcome::{BondEnergies, Outcome};
+pub use stage::{Advance, Stage};

@@ -1,0 +1,125 @@
+//! A step on its way: the state, its contact problem and the memory of the method that solves it.
+
+use super::Outcome;
+use crate::contact::{ContactList, LookAhead};
+use crate::sim::pull;
+use crate::sim::settings::Settings;
+use crate::sim::state::State;
+use crate::solver::{
+    Approach, Kinematics, Memory, Model, ProblemNumbers, Slot, SolveReport, StepProblem, measure,
+    solve,
+};
+use crate::world::World;
+
+/// A way to step: one of the registry, or one of your own
+/// ([`Simulation::step_by`](crate::sim::Simulation::step_by)).
+pub trait Advance {
+    /// Takes the state through a step of `settings.parameters.time_step_secs`, and tells what came of it.
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome;
+}
+
+/// What a way to step works on. The usual course is [`Stage::prepare`], [`Stage::solve`], [`Stage::move_by`].
+#[derive(Debug)]
+pub struct Stage<'a, M: Model> {
+    pub(crate) state: &'a mut State,
+    /// The step's contact problem, once it is prepared.
+    pub problem: &'a mut StepProblem<M::Kinematics>,
+    pub(crate) memory: &'a mut Memory<M::Kinematics>,
+}
+
+impl<'a, M: Model> Stage<'a, M> {
+    pub(crate) fn new(state: &'a mut State, slot: &'a mut Slot<M::Kinematics>) -> Self {
+        let Slot { problem, memory } = slot;
+        Self { state, problem, memory }
+    }
+
+    /// The world as it is now.
+    pub fn world(&self) -> &World {
+        &self.state.world
+    }
+
+    /// The contacts of the step; row k of the problem is contact `problem.contact_of_row[k]` of them.
+    pub fn contacts(&self) -> &ContactList {
+        &self.state.contacts
+    }
+
+    /// Begins a step and sets up its problem with the contacts that touch. `rebound` is what the law adds
+    /// to v_n of a contact, m/s.
+    pub fn prepare(&mut self, settings: &Settings, rebound: impl Fn(Approach) -> f64 + Copy) {
+        self.prepare_ahead(settings, |_| None, rebound);
+    }
+
+    /// The same with the contacts that the step may come to as well, as far as `look_ahead` says of a step
+    /// that has begun.
+    pub(crate) fn prepare_ahead(
+        &mut self,
+        settings: &Settings,
+        look_ahead: impl FnOnce(&State) -> Option<LookAhead>,
+        rebound: impl Fn(Approach) -> f64 + Copy,
+    ) {
+        let Self { state, problem, .. } = self;
+        let parameters = &settings.parameters;
+        let time_step_secs = parameters.time_step_secs;
+        state.begin(time_step_secs);
+        let ahead = look_ahead(state);
+        state.detect::<M>(ahead);
+        let push = state.push_of_pull(M::Kinematics::AXES, time_step_secs);
+        let State { world, physics, contacts, walls, .. } = &mut **state;
+        let capture_speed = if physics.cohesion {
+            parameters.capture_speed(world.gravity.magnitude())
+        } else {
+            0.0
+        };
+        let numbers =
+            ProblemNumbers { time_step_secs, friction: parameters.friction, capture_speed };
+        problem.prepare::<M>(world, contacts, numbers, &settings.solver, rebound);
+        if walls.any_move() {
+            problem.drive(contacts, rebound, |contact| walls.speed(world, contact));
+        }
+        if let Some(push) = push {
+            pull::apply::<M::Kinematics>(&mut problem.free, push);
+            pull::apply::<M::Kinematics>(&mut problem.bodies, push);
+        }
+    }
+
+    /// Solves the prepared problem by the method of the settings.
+    pub fn solve(&mut self, settings: &Settings) -> SolveReport {
+        solve::<M>(self.problem, self.memory, &settings.solver)
+    }
+
+    /// Moves the grains by the solution of the problem, for Δt.
+    pub fn move_by(&mut self, report: SolveReport, settings: &Settings) -> Outcome {
+        let Self { state, problem, .. } = self;
+        let measures = measure::<M>(problem);
+        problem.store_impulses(&mut state.contacts);
+        let mut gravity_work = 0.0;
+        for (index, body) in problem.bodies.iter().enumerate() {
+            M::Kinematics::store(body, &mut state.world, index);
+            let (before, free) = (&problem.before[index], &problem.free[index]);
+            let mass = state.world.grains.masses[index];
+            gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
+        }
+        state.integrate::<M>(settings.parameters.time_step_secs);
+        Outcome { report, measures, gravity_work, bonds: None }
+    }
+
+    /// Cuts a step into pieces of equal length and takes them one after the other: `piece` gets the
+    /// settings of a piece and adds what came of it to the outcome of the whole. A state that is no longer
+    /// finite ends it early.
+    pub fn in_pieces(
+        &mut self,
+        count: u32,
+        settings: &Settings,
+        mut outcome: Outcome,
+        mut piece: impl FnMut(&mut Self, &Settings, &mut Outcome),
+    ) -> Outcome {
+        let part = settings.over(settings.parameters.time_step_secs / f64::from(count));
+        for _ in 0..count {
+            piece(self, &part, &mut outcome);
+            if !self.state.is_finite() {
+                break;
+            }
+        }
+        outcome
+    }
+}

@@ -1,0 +1,235 @@
+//! A sparse LU factorisation of D × D blocks, one row and column of blocks a body.
+//!
+//! The pattern is symmetric, the numbers need not be. There is no pivoting between blocks: the
+//! matrices that Newton's method factorises are masses plus contact stiffnesses, whose diagonal
+//! blocks dominate unless friction is large, and a factorisation that breaks down gives numbers that
+//! are not finite or a step that is refused.
+
+use super::elimination::Elimination;
+
+/// A block of D × D numbers.
+pub type Block<const D: usize> = [[f64; D]; D];
+
+/// A matrix, then its factors. Memory is kept between matrices.
+#[derive(Clone, Debug, Default)]
+pub struct BlockMatrix<const D: usize> {
+    /// Diagonal blocks by place; inverted by [`BlockMatrix::factorise`].
+    diagonal: Vec<Block<D>>,
+    /// Block (b, a) for each pair a < b of neighbours, numbered as in [`Elimination::later`].
+    lower: Vec<Block<D>>,
+    /// Block (a, b).
+    upper: Vec<Block<D>>,
+}
+
+impl<const D: usize> BlockMatrix<D> {
+    /// A zero matrix of the given structure.
+    pub fn clear(&mut self, elimination: &Elimination) {
+        let zero = [[0.0; D]; D];
+        for (blocks, count) in [
+            (&mut self.diagonal, elimination.body_at.len()),
+            (&mut self.lower, elimination.later.len()),
+            (&mut self.upper, elimination.later.len()),
+        ] {
+            blocks.clear();
+            blocks.resize(count, zero);
+        }
+    }
+
+    /// The diagonal block of a place.
+    pub fn diagonal_mut(&mut self, place: u32) -> &mut Block<D> {
+        &mut self.diagonal[place as usize]
+    }
+
+    /// Blocks (i, j) and (j, i) of two places that are neighbours, `number` being the index of the
+    /// later one among [`Elimination::later`].
+    #[inline(always)]
+    pub fn off_diagonal_mut(
+        &mut self,
+        number: u32,
+        i_is_earlier: bool,
+    ) -> (&mut Block<D>, &mut Block<D>) {
+        let (upper, lower) = (&mut self.upper[number as usize], &mut self.lower[number as usize]);
+        if i_is_earlier { (upper, lower) } else { (lower, upper) }
+    }
+
+    /// Factorises in place: L with unit diagonal below, U above, inverses of U's diagonal blocks.
+    pub fn factorise(&mut self, elimination: &Elimination) {
+        let mut targets = elimination.targets.iter();
+        for place in 0..self.diagonal.len() {
+            let inverse = inverse(&self.diagonal[place]);
+            self.diagonal[place] = inverse;
+            let range = elimination.starts[place] as usize..elimination.starts[place + 1] as usize;
+            for edge in range.clone() {
+                self.lower[edge] = product(&self.lower[edge], &inverse);
+            }
+            for first in range.clone() {
+                let a = elimination.later[first] as usize;
+                let lower_a = self.lower[first];
+                subtract_product(&mut self.diagonal[a], &lower_a, &self.upper[first]);
+                for second in first + 1..range.end {
+                    // There is a target for every pair, in this very order.
+                    let Some(&target) = targets.next() else { return };
+                    let target = target as usize;
+                    let (upper_b, lower_b) = (self.upper[second], self.lower[second]);
+                    subtract_product(&mut self.upper[target], &lower_a, &upper_b);
+                    let upper_a = self.upper[first];
+                    subtract_product(&mut self.lower[target], &lower_b, &upper_a);
+                }
+            }
+        }
+    }
+
+    /// Solves with the factors: `vector` (by place) is the right-hand side and becomes the solution.
+    pub fn solve(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
+        for place in 0..vector.len() {
+            let here = vector[place];
+            for edge in elimination.starts[place] as usize..elimination.starts[place + 1] as usize {
+                let there = &mut vector[elimination.later[edge] as usize];
+                subtract_applied(there, &self.lower[edge], &here);
+            }
+        }
+        for place in (0..vector.len()).rev() {
+            let mut here = vector[place];
+            for edge in elimination.starts[place] as usize..elimination.starts[place + 1] as usize {
+                let there = vector[elimination.later[edge] as usize];
+                subtract_applied(&mut here, &self.upper[edge], &there);
+            }
+            let mut solution = [0.0; D];
+            for (row, solution) in self.diagonal[place].iter().zip(&mut solution) {
+                *solution = dot(row, &here);
+            }
+            vector[place] = solution;
+        }
+    }
+}
+
+#[inline(always)]
+fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    let mut sum = 0.0;
+    for index in 0..D {
+        sum += a[index] * b[index];
+    }
+    sum
+}
+
+#[inline(always)]
+fn product<const D: usize>(a: &Block<D>, b: &Block<D>) -> Block<D> {
+    let mut result = [[0.0; D]; D];
+    for row in 0..D {
+        for inner in 0..D {
+            for column in 0..D {
+                result[row][column] += a[row][inner] * b[inner][column];
+            }
+        }
+    }
+    result
+}
+
+#[inline(always)]
+fn subtract_product<const D: usize>(from: &mut Block<D>, a: &Block<D>, b: &Block<D>) {
+    for row in 0..D {
+        for inner in 0..D {
+            for column in 0..D {
+                from[row][column] -= a[row][inner] * b[inner][column];
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn subtract_applied<const D: usize>(from: &mut [f64; D], a: &Block<D>, b: &[f64; D]) {
+    for row in 0..D {
+        from[row] -= dot(&a[row], b);
+    }
+}
+
+/// The inverse by Gauss–Jordan elimination with pivoting inside the block.
+fn inverse<const D: usize>(block: &Block<D>) -> Block<D> {
+    let mut left = *block;
+    let mut right = [[0.0; D]; D];
+    for (index, row) in right.iter_mut().enumerate() {
+        row[index] = 1.0;
+    }
+    for column in 0..D {
+        let mut pivot = column;
+        for row in column + 1..D {
+            if left[row][column].abs() > left[pivot][column].abs() {
+                pivot = row;
+            }
+        }
+        left.swap(column, pivot);
+        right.swap(column, pivot);
+        let scale = 1.0 / left[column][column];
+        for index in 0..D {
+            left[column][index] *= scale;
+            right[column][index] *= scale;
+        }
+        for row in 0..D {
+            if row != column {
+                let factor = left[row][column];
+                for index in 0..D {
+                    left[row][index] -= factor * left[column][index];
+                    right[row][index] -= factor * right[column][index];
+                }
+            }
+        }
+    }
+    right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_of_unsymmetric_blocks_is_solved_to_rounding() {
+        let side = 6u32;
+        let bodies = (side * side) as usize;
+        let pairs: Vec<(u32, u32)> = (0..side * side)
+            .flat_map(|k| {
+                let right = (k % side + 1 < side).then_some((k, k + 1));
+                let up = (k + side < side * side).then_some((k, k + side));
+                [right, up].into_iter().flatten()
+            })
+            .collect();
+        let mut elimination = Elimination::default();
+        elimination.analyse(bodies, pairs.iter().copied());
+        let mut random = 1u64;
+        let mut number = || {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (random >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let mut block = || [(); 3].map(|()| [(); 3].map(|()| number()));
+        let mut matrix = BlockMatrix::<3>::default();
+        matrix.clear(&elimination);
+        let mut entries = Vec::new();
+        for place in 0..bodies as u32 {
+            let mut diagonal = block();
+            for (index, row) in diagonal.iter_mut().enumerate() {
+                row[index] += 8.0;
+            }
+            *matrix.diagonal_mut(place) = diagonal;
+            entries.push((place, place, diagonal));
+        }
+        for &(i, j) in &pairs {
+            let (a, b) = (elimination.place_of[i as usize], elimination.place_of[j as usize]);
+            let number = elimination.block(a.min(b), a.max(b)) as u32;
+            let (there, back) = (block(), block());
+            let (upper, lower) = matrix.off_diagonal_mut(number, a < b);
+            (*upper, *lower) = (there, back);
+            entries.extend([(a, b, there), (b, a, back)]);
+        }
+        let solution: Vec<[f64; 3]> = (0..bodies).map(|k| [1.0, k as f64, -2.0]).collect();
+        let mut vector = vec![[0.0; 3]; bodies];
+        for (row, column, block) in &entries {
+            subtract_applied(&mut vector[*row as usize], block, &solution[*column as usize]);
+        }
+        matrix.factorise(&elimination);
+        matrix.solve(&elimination, &mut vector);
+        for (found, expected) in vector.iter().zip(&solution) {
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found + expected).abs() < 1e-12 * (1.0 + expected.abs()));
+            }
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Sparse systems of blocks: the order in which they are eliminated, and their factors.
+
+mod block_lu;
+mod elimination;
+
+pub use self::block_lu::BlockMatrix;
+pub use self::elimination::Elimination;

@@ -1,0 +1,148 @@
+//! Accelerated projected gradients with adaptive restart (H. Mazhar, T. Heyn, D. Negrut, A. Tasora,
+//! *Using Nesterov's method to accelerate multibody dynamics with friction and contact*, 2015).
+//!
+//! With the bounds of friction held fixed (Tresca's friction) a step's impulses are a minimum of the
+//! convex f(s) = ½ s·As + b·s over a box, and Nesterov's method applies:
+//!
+//! > x_{k+1} = projection of y_k − D w(y_k)/L,  y_{k+1} = x_{k+1} + β_k (x_{k+1} − x_k),
+//!
+//! with D = diag(1, m_t/m_n) and β_k from the recursion of Nesterov. *Coulomb's* bound depends on the
+//! solution. It is taken anew from the normal impulses of every iterate (the outer fixed point on the
+//! bound, with one inner step each), so a point where the iteration rests is a zero of the common
+//! natural map: Coulomb's law as it stands, not its convex relaxation. In exchange no theorem
+//! promises that it rests; restarts see to it in practice. To solve for each bound before the next
+//! one is taken does worse: the outer fixed point may swing up.
+//!
+//! * **L** is the largest curvature that the solve has met: a step is good if Δ·AΔ ≤ L Δ·D⁻¹Δ, else it
+//!   is done again with a larger L, up to the bound of `ContactSystem::splitting`. To let L fall
+//!   between iterations, as is often done, takes more of them.
+//! * **Restart** (B. O'Donoghue, E. Candès 2015): momentum is dropped where it leads away from where
+//!   the projected step went, (y_k − x_{k+1})·D⁻¹(x_{k+1} − x_k) > 0. The test with the gradient in
+//!   place of the projected step takes two to three times as many iterations.
+//! * w is affine, so w(y) is formed from the w(x) at hand: one product with A an iteration.
+
+use super::info::{BOUND_BY_BOUND, MethodInfo, MethodOrder};
+use super::method::Method;
+use super::report::SolveReport;
+use super::shared::body_system::SystemMemory;
+use super::shared::contact_system::{ContactSystem, Pairs, Vectors};
+use super::shared::iterate::{Best, is_tested, projected};
+use crate::solver::problem::{Model, StepProblem};
+use crate::solver::settings::SolverSettings;
+
+/// What there is to know of it.
+pub(super) const INFO: MethodInfo = MethodInfo {
+    method: Method::Apgd,
+    name: "apgd",
+    summary: "accelerated projected gradients with restart: all contacts at once, no order",
+    solves: BOUND_BY_BOUND,
+    source: "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
+    order: MethodOrder::AllAtOnce,
+};
+
+/// L after a step that was too long, over the curvature that it met: a little more than needed, or
+/// the next step meets as much again.
+const MARGIN: f64 = 1.05;
+
+/// Solves a prepared problem.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    memory: &mut SystemMemory,
+    settings: &SolverSettings,
+) -> SolveReport {
+    let (mut system, vectors) = memory.system::<M>(problem);
+    solve_system(&mut system, settings, vectors)
+}
+
+/// Solves a system from its present impulses. Every product with A counts as an iteration.
+pub(super) fn solve_system<S: ContactSystem>(
+    system: &mut S,
+    settings: &SolverSettings,
+    vectors: &mut Vectors,
+) -> SolveReport {
+    let Vectors { pairs: [x, w_x, y, w_y, next, w_next, best, ..], weights } = vectors;
+    system.splitting(weights);
+    let largest_curvature = 1.0 / weights.iter().copied().fold(1.0, f64::min);
+    system.read(x);
+    system.velocities(w_x);
+    y.clone_from(x);
+    w_y.clone_from(w_x);
+    let mut best = Best::new(system, best);
+    let mut lipschitz = 1.0;
+    let mut theta = 1.0;
+    for sweeps in 1..=settings.max_sweeps {
+        step(system, (y, w_y), lipschitz, next);
+        system.write(next);
+        system.velocities(w_next);
+        let curvature = curvature(system, (y, w_y), (next, w_next));
+        let is_last = sweeps == settings.max_sweeps;
+        if curvature > lipschitz && lipschitz < largest_curvature && !is_last {
+            lipschitz = (MARGIN * curvature).min(largest_curvature);
+            continue;
+        }
+        if is_tested(sweeps, settings) && system.is_settled(x, settings) {
+            return SolveReport { sweeps, converged: true, ..SolveReport::default() };
+        }
+        if best.look(system, next, sweeps, settings) {
+            return best.restore(system, sweeps);
+        }
+        let momentum = if leads_away(system, y, next, x) {
+            theta = 1.0;
+            0.0
+        } else {
+            let squared: f64 = theta * theta;
+            let theta_next = 0.5 * (theta * (squared + 4.0).sqrt() - squared);
+            let momentum = theta * (1.0 - theta) / (squared + theta_next);
+            theta = theta_next;
+            momentum
+        };
+        extrapolate(next, x, momentum, y);
+        extrapolate(w_next, w_x, momentum, w_y);
+        std::mem::swap(x, next);
+        std::mem::swap(w_x, w_next);
+    }
+    best.restore(system, settings.max_sweeps)
+}
+
+/// The projected step from y.
+fn step<S: ContactSystem>(system: &S, (y, w): (&Pairs, &Pairs), lipschitz: f64, next: &mut Pairs) {
+    next.clear();
+    next.extend(y.iter().zip(w).enumerate().map(|(contact, (y, w))| {
+        let tangential = w[1] / system.tangential_diagonal(contact);
+        projected(system, contact, [y[0] - w[0] / lipschitz, y[1] - tangential / lipschitz])
+    }));
+}
+
+/// Δ·AΔ / Δ·D⁻¹Δ between two points with their w; 0 where they are the same.
+fn curvature<S: ContactSystem>(
+    system: &S,
+    (y, w_y): (&Pairs, &Pairs),
+    (x, w_x): (&Pairs, &Pairs),
+) -> f64 {
+    let (mut energy, mut squared) = (0.0, 0.0);
+    for (contact, (((y, w_y), x), w_x)) in y.iter().zip(w_y).zip(x).zip(w_x).enumerate() {
+        let change = [x[0] - y[0], x[1] - y[1]];
+        energy += change[0] * (w_x[0] - w_y[0]) + change[1] * (w_x[1] - w_y[1]);
+        squared +=
+            change[0] * change[0] + system.tangential_diagonal(contact) * change[1] * change[1];
+    }
+    if squared > 0.0 { energy / squared } else { 0.0 }
+}
+
+/// (y − next)·D⁻¹(next − now) > 0.
+fn leads_away<S: ContactSystem>(system: &S, y: &Pairs, next: &Pairs, now: &Pairs) -> bool {
+    let mut product = 0.0;
+    for (contact, ((y, next), now)) in y.iter().zip(next).zip(now).enumerate() {
+        product += (y[0] - next[0]) * (next[0] - now[0])
+            + system.tangential_diagonal(contact) * (y[1] - next[1]) * (next[1] - now[1]);
+    }
+    product > 0.0
+}
+
+/// next + momentum · (next − now).
+fn extrapolate(next: &Pairs, now: &Pairs, momentum: f64, result: &mut Pairs) {
+    result.clear();
+    let ahead = |next: f64, now: f64| next + momentum * (next - now);
+    let ends = next.iter().zip(now);
+    result.extend(ends.map(|(next, now)| [ahead(next[0], now[0]), ahead(next[1], now[1])]));
+}

@@ -1,0 +1,93 @@
+//! `auto`: a method by the size of a step's problem and by how it is stopped.
+//!
+//! The choice is that of the charts of speed against accuracy (`slump chart`). Newton's method wins
+//! at every residual up to some hundred discs. On larger problems fewer of its guesses come true while a factorisation costs more, and conjugate gradients
+//! take the lead. A stop by the impulses of one sweep belongs to Gauss–Seidel, whose error is what
+//! such a study is about.
+
+use super::info::{COULOMB, MethodInfo, MethodOrder};
+use super::method::Method;
+use super::newton::{self, NewtonMemory};
+use super::report::SolveReport;
+use super::shared::body_system::SystemMemory;
+use super::{nncg, nsgs};
+use crate::solver::problem::{Model, StepProblem};
+use crate::solver::settings::{SolverSettings, StopTest};
+
+/// What there is to know of it.
+pub(super) const INFO: MethodInfo = MethodInfo {
+    method: Method::Auto,
+    name: "auto",
+    summary: "newton up to 1,000 contacts, nncg above, nsgs where sweeps are what is studied",
+    solves: COULOMB,
+    source: "the charts of speed against accuracy",
+    order: MethodOrder::OfSettings,
+};
+
+/// Up to so many contacts Newton's method is taken. At 270 contacts it wins by far, at 1,000 by a
+/// little, at 4,000 it solves few steps (`slump chart --large`).
+const CONTACTS_FOR_NEWTON: usize = 1_000;
+
+/// What the methods keep that it picks from.
+#[derive(Clone, Debug, Default)]
+pub struct AutoMemory {
+    newton: NewtonMemory,
+    nncg: SystemMemory,
+}
+
+/// Solves a prepared problem by the method that is picked.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    memory: &mut AutoMemory,
+    settings: &SolverSettings,
+) -> SolveReport {
+    match pick(settings.stop, problem.contact_of_row.len()) {
+        Pick::Nsgs => nsgs::solve::<M>(problem, &mut (), settings),
+        Pick::Newton => newton::solve::<M>(problem, &mut memory.newton, settings),
+        Pick::Nncg => nncg::solve::<M>(problem, &mut memory.nncg, settings),
+    }
+}
+
+/// The method that solves a problem of so many contacts: that of the settings, unless they leave it
+/// to `auto`.
+pub fn picked(settings: &SolverSettings, contacts: usize) -> Method {
+    if settings.method != Method::Auto {
+        return settings.method;
+    }
+    match pick(settings.stop, contacts) {
+        Pick::Nsgs => Method::Nsgs,
+        Pick::Newton => Method::Newton,
+        Pick::Nncg => Method::Nncg,
+    }
+}
+
+/// What there is to pick from.
+enum Pick {
+    Nsgs,
+    Newton,
+    Nncg,
+}
+
+fn pick(stop: StopTest, contacts: usize) -> Pick {
+    match stop {
+        StopTest::ImpulsePerMass => Pick::Nsgs,
+        _ if contacts <= CONTACTS_FOR_NEWTON => Pick::Newton,
+        _ => Pick::Nncg,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn auto_picks_by_size_and_stop_and_nothing_else_is_changed() {
+        let auto = SolverSettings { method: Method::Auto, ..SolverSettings::default() };
+        assert_eq!(picked(&auto, 270), Method::Newton);
+        assert_eq!(picked(&auto, 5_000), Method::Nncg);
+        let of_a_sweep = SolverSettings { stop: StopTest::ImpulsePerMass, ..auto };
+        assert_eq!(picked(&of_a_sweep, 2), Method::Nsgs);
+        let said = SolverSettings { method: Method::Jacobi, ..auto };
+        assert_eq!(picked(&said, 270), Method::Jacobi);
+    }
+}

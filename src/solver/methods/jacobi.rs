@@ -1,0 +1,73 @@
+//! Jacobi with mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov, *Mass splitting for
+//! jitter-free parallel rigid body simulation*, 2012): all contacts at once, each as if it had its
+//! grains' parts to itself.
+//!
+//! A grain with k contacts is cut into k parts of 1/k of its mass and inertia, one a contact; each
+//! contact is solved exactly with its two parts, and the parts of a grain then share the mean of
+//! their velocities. The mean of the parts moves as the whole grain does under all the impulses, so
+//! no part is ever stored: one iteration is, with the split contact's inverse mass 1/(d m_n)
+//! (`ContactSystem::splitting`),
+//!
+//! > s ← projection of s − D w(s),
+//!
+//! a projected gradient step whose D is small enough for any pile. Impulses spread by one contact an
+//! iteration and are weakened by k, so it takes many; but no order of contacts enters.
+
+use super::info::{COULOMB, MethodInfo, MethodOrder};
+use super::method::Method;
+use super::report::SolveReport;
+use super::shared::body_system::SystemMemory;
+use super::shared::contact_system::{ContactSystem, Vectors};
+use super::shared::iterate::{Best, is_tested, projected};
+use crate::solver::problem::{Model, StepProblem};
+use crate::solver::settings::SolverSettings;
+
+/// What there is to know of it.
+pub(super) const INFO: MethodInfo = MethodInfo {
+    method: Method::Jacobi,
+    name: "jacobi",
+    summary: "Jacobi with mass splitting: all contacts at once, each with its part of the mass",
+    solves: COULOMB,
+    source: "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
+    order: MethodOrder::AllAtOnce,
+};
+
+/// Solves a prepared problem.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    memory: &mut SystemMemory,
+    settings: &SolverSettings,
+) -> SolveReport {
+    let (mut system, vectors) = memory.system::<M>(problem);
+    solve_system(&mut system, settings, vectors)
+}
+
+/// Solves a system from its present impulses.
+pub(super) fn solve_system<S: ContactSystem>(
+    system: &mut S,
+    settings: &SolverSettings,
+    vectors: &mut Vectors,
+) -> SolveReport {
+    let Vectors { pairs: [impulses, before, velocities, best, ..], weights } = vectors;
+    system.splitting(weights);
+    system.read(impulses);
+    let mut best = Best::new(system, best);
+    for sweeps in 1..=settings.max_sweeps {
+        system.velocities(velocities);
+        before.clone_from(impulses);
+        for (contact, [normal, tangential]) in impulses.iter_mut().enumerate() {
+            let ([w_n, w_t], weight) = (velocities[contact], weights[contact]);
+            let tangential_weight = weight / system.tangential_diagonal(contact);
+            let moved = [*normal - weight * w_n, *tangential - tangential_weight * w_t];
+            [*normal, *tangential] = projected(system, contact, moved);
+        }
+        system.write(impulses);
+        if is_tested(sweeps, settings) && system.is_settled(before, settings) {
+            return SolveReport { sweeps, converged: true, ..SolveReport::default() };
+        }
+        if best.look(system, impulses, sweeps, settings) {
+            return best.restore(system, sweeps);
+        }
+    }
+    best.restore(system, settings.max_sweeps)
+}

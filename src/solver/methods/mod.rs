@@ -1,0 +1,159 @@
+//! The registry of methods: a file or folder each, a row each in `methods!`.
+
+mod admm;
+mod apgd;
+mod auto;
+mod info;
+mod jacobi;
+mod method;
+mod newton;
+mod nncg;
+mod nsgs;
+mod nsgs_parallel;
+mod report;
+mod shared;
+
+use std::fmt;
+use std::marker::PhantomData;
+
+pub use self::auto::picked;
+pub use self::info::{MethodInfo, MethodOrder};
+pub use self::method::Method;
+#[doc(hidden)]
+pub use self::nsgs::sweep;
+pub use self::report::SolveReport;
+pub use self::shared::body_system::BodySystem;
+use self::shared::body_system::SystemMemory;
+pub use self::shared::contact_system::{ContactSystem, Pairs, Vectors};
+pub(super) use self::shared::iterate::sweep_until_settled;
+use super::problem::{Kinematics, Model, StepProblem};
+use super::settings::SolverSettings;
+use crate::setting::{Kind, Settable, Value, Word};
+
+/// Makes of a row a method (variant, module, memory) all that goes through the methods one by one.
+/// The module has a `const INFO: MethodInfo` and a
+/// `fn solve<M: Model>(&mut StepProblem<M::Kinematics>, &mut Memory, &SolverSettings) -> SolveReport`.
+macro_rules! methods {
+    ($(($variant:ident, $module:ident, $memory:ty)),* $(,)?) => {
+        /// All methods, in the order in which they are shown.
+        pub const METHODS: [MethodInfo; 8] = [$($module::INFO),*];
+
+        const WORDS: [Word; METHODS.len()] =
+            [$(Word { name: $module::INFO.name, hint: $module::INFO.summary }),*];
+
+        /// What the methods keep from one solve to the next, a field a method. Results do not depend
+        /// on it.
+        #[derive(Clone, Debug, Default)]
+        pub struct Memory<K: Kinematics> {
+            $($module: $memory,)*
+            kinematics: PhantomData<K>,
+        }
+
+        impl Method {
+            /// What there is to know of it.
+            pub const fn info(self) -> &'static MethodInfo {
+                match self {
+                    $(Self::$variant => &$module::INFO,)*
+                }
+            }
+        }
+
+        fn solve_by_method<M: Model>(
+            problem: &mut StepProblem<M::Kinematics>,
+            memory: &mut Memory<M::Kinematics>,
+            settings: &SolverSettings,
+        ) -> SolveReport {
+            match settings.method {
+                $(Method::$variant => $module::solve::<M>(problem, &mut memory.$module, settings),)*
+            }
+        }
+    };
+}
+
+methods![
+    (Nsgs, nsgs, ()),
+    (NsgsParallel, nsgs_parallel, nsgs_parallel::BlockMemory),
+    (Newton, newton, newton::NewtonMemory),
+    (Nncg, nncg, SystemMemory),
+    (Apgd, apgd, SystemMemory),
+    (Admm, admm, admm::AdmmMemory),
+    (Jacobi, jacobi, SystemMemory),
+    (Auto, auto, auto::AutoMemory),
+];
+
+impl Method {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        self.info().name
+    }
+
+    /// Whether the order of the settings tells the method in which order to sweep.
+    pub fn sweeps_in_order(self) -> bool {
+        self.info().order == MethodOrder::OfSettings
+    }
+}
+
+impl Settable for Method {
+    const KIND: Kind = Kind::Word(&WORDS);
+
+    fn value(self) -> Value {
+        Value::Word(self.name())
+    }
+
+    fn of(value: Value) -> Option<Self> {
+        let Value::Word(word) = value else { return None };
+        METHODS.iter().find(|info| info.name == word).map(|info| info.method)
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+/// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
+/// the rows' impulses.
+pub fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    memory: &mut Memory<M::Kinematics>,
+    settings: &SolverSettings,
+) -> SolveReport {
+    if problem.contact_of_row.is_empty() {
+        return SolveReport::nothing_yet();
+    }
+    solve_by_method::<M>(problem, memory, settings)
+}
+
+/// Solves any contact system, from its present impulses, with the method of the settings. Gives
+/// nothing where that method needs bodies.
+pub fn solve_system<S: ContactSystem>(
+    system: &mut S,
+    settings: &SolverSettings,
+    vectors: &mut Vectors,
+) -> Option<SolveReport> {
+    if system.is_empty() {
+        return Some(SolveReport::nothing_yet());
+    }
+    match settings.method {
+        // Without bodies there is nothing to factorise.
+        Method::Nncg | Method::Auto => Some(nncg::solve_system(system, settings, vectors)),
+        Method::Apgd => Some(apgd::solve_system(system, settings, vectors)),
+        Method::Jacobi => Some(jacobi::solve_system(system, settings, vectors)),
+        Method::Nsgs | Method::NsgsParallel | Method::Newton | Method::Admm => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_method_is_called_the_same_in_its_file_in_the_registry_and_in_scene_files() {
+        for info in METHODS {
+            assert_eq!(info.method.name(), info.name);
+            let written = serde_json::to_string(&info.method).expect("a name");
+            assert_eq!(written, format!("\"{}\"", info.name));
+        }
+    }
+}

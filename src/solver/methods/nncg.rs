@@ -1,0 +1,90 @@
+//! Non-smooth non-linear conjugate gradients (M. Silcowitz, S. Niebe, K. Erleben, *A nonsmooth
+//! nonlinear conjugate gradient method for interactive contact force problems*, 2010).
+//!
+//! A Gauss–Seidel sweep G leads from impulses s to G(s), and leaves a solution where it is. Read as
+//! the step of a descent, r = G(s) − s is a preconditioned negative gradient, and two sweeps can be
+//! combined as the Fletcher–Reeves method combines gradients:
+//!
+//! > r_k = G(s_k) − s_k,  β = ‖r_k‖²/‖r_{k−1}‖²,  s_{k+1} = G(s_k) + β p_{k−1},  p_k = r_k + β p_{k−1}.
+//!
+//! Where the gradient has grown (β > 1) the direction is forgotten and the plain sweep is kept. The
+//! sweep solves Coulomb's law as it stands, so the method does too; what leaves the cone by
+//! extrapolation is brought back by the next sweep, and the result is always a sweep's.
+
+use super::info::{COULOMB, MethodInfo, MethodOrder};
+use super::method::Method;
+use super::report::SolveReport;
+use super::shared::body_system::SystemMemory;
+use super::shared::contact_system::{ContactSystem, Vectors};
+use super::shared::iterate::{Best, dot, is_tested};
+use crate::solver::problem::{Model, StepProblem};
+use crate::solver::settings::SolverSettings;
+
+/// What there is to know of it.
+pub(super) const INFO: MethodInfo = MethodInfo {
+    method: Method::Nncg,
+    name: "nncg",
+    summary: "conjugate gradients over Gauss-Seidel sweeps: fewer sweeps to tight tolerances",
+    solves: COULOMB,
+    source: "M. Silcowitz, S. Niebe, K. Erleben, non-smooth non-linear conjugate gradients (2010)",
+    order: MethodOrder::OfSettings,
+};
+
+/// Solves a prepared problem.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    memory: &mut SystemMemory,
+    settings: &SolverSettings,
+) -> SolveReport {
+    let (mut system, vectors) = memory.system::<M>(problem);
+    solve_system(&mut system, settings, vectors)
+}
+
+/// Solves a system from its present impulses.
+pub(super) fn solve_system<S: ContactSystem>(
+    system: &mut S,
+    settings: &SolverSettings,
+    vectors: &mut Vectors,
+) -> SolveReport {
+    let Vectors { pairs: [impulses, swept, step, direction, best, ..], .. } = vectors;
+    system.read(impulses);
+    let mut best = Best::new(system, best);
+    direction.clear();
+    direction.resize(impulses.len(), [0.0; 2]);
+    let mut squared_before = f64::INFINITY;
+    for sweeps in 1..=settings.max_sweeps {
+        if is_tested(sweeps, settings) {
+            if system.tested_sweep(settings) {
+                return SolveReport { sweeps, converged: true, ..SolveReport::default() };
+            }
+        } else {
+            system.sweep();
+        }
+        system.read(swept);
+        if best.look(system, swept, sweeps, settings) {
+            return best.restore(system, sweeps);
+        }
+        step.clear();
+        step.extend(
+            swept.iter().zip(&*impulses).map(|(now, old)| [now[0] - old[0], now[1] - old[1]]),
+        );
+        let squared = dot(step, step);
+        // Not a number is not below anything.
+        let factor = squared / squared_before;
+        let extrapolates = factor <= 1.0 && sweeps < settings.max_sweeps;
+        squared_before = squared;
+        if !extrapolates {
+            direction.iter_mut().for_each(|entry| *entry = [0.0; 2]);
+            std::mem::swap(impulses, swept);
+            continue;
+        }
+        for ((entry, now), step) in direction.iter_mut().zip(swept.iter_mut()).zip(&*step) {
+            let along = [factor * entry[0], factor * entry[1]];
+            *now = [now[0] + along[0], now[1] + along[1]];
+            *entry = [step[0] + along[0], step[1] + along[1]];
+        }
+        system.write(swept);
+        std::mem::swap(impulses, swept);
+    }
+    best.restore(system, settings.max_sweeps)
+}

@@ -1,0 +1,145 @@
+//! The residual that is common to all methods, and the work of the contact forces.
+
+use super::kinematics::Kinematics;
+use super::model::Model;
+use super::step_problem::{Row, StepProblem};
+use crate::contact::law;
+
+/// What one pass over the rows tells of a solved step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measures {
+    /// The common residual, dimensionless.
+    pub residual: f64,
+    /// Contacts with P_n > 0.
+    pub compressive_contacts: u32,
+    /// Contacts with P_n < 0.
+    pub tensile_contacts: u32,
+    /// Work of the normal impulses, J.
+    pub normal_work: f64,
+    /// Work of the tangential impulses, J.
+    pub tangential_work: f64,
+}
+
+/// The natural map's residual in impulse units. A contact's impulses solve its law exactly where
+/// they are the projections that a Gauss–Seidel update would make of them, so with
+/// p = P_n + C₀Δt
+///
+/// > e_n = p − max(0, p − m_n (v_n + ρ v_n^{n−1})),  e_t = P_t − clamp(P_t − m_t v_t, ±bound(p)),
+///
+/// > residual = ‖(e_n, e_t)‖₂ / ‖(m_n v_n^free, m_t v_t^free)‖₂,
+///
+/// with v^free the relative velocity without any contact impulse, restitution's term included. It
+/// is 0 where nothing moves and nothing errs. Rows hold p/m_n and P_t/m_n, so each row's terms are
+/// formed in m/s and weighted by m_n.
+pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
+    let mut sums = Sums::default();
+    for_each_row::<M::Kinematics>(problem, |_, row, motion| {
+        sums.add_error::<M>(problem, row, &motion)
+    });
+    sums.residual()
+}
+
+/// Residual, contact counts and works in one pass.
+///
+/// Work: from v^n = v^{n−1} + M⁻¹(ΔtF + HP) the kinetic energy changes by
+/// ½(v^n + v^{n−1})·(ΔtF + HP), so a contact impulse does the work P·½(u^n + u^{n−1}) with u its
+/// relative velocity. Summed with gravity's this closes the budget to rounding, whatever the solver
+/// left undone.
+pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
+    let mut sums = Sums::default();
+    let mut measures = Measures::default();
+    for_each_row::<M::Kinematics>(problem, |number, row, motion| {
+        sums.add_error::<M>(problem, row, &motion);
+        let [normal, tangential] = problem.reduced_impulse(number, row);
+        let half_mass = 0.5 * row.effective_mass;
+        measures.compressive_contacts += u32::from(normal > 0.0);
+        measures.tensile_contacts += u32::from(normal < 0.0);
+        measures.normal_work += half_mass * normal * (motion.now[0] + motion.before[0]);
+        if M::FRICTION {
+            measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
+        }
+    });
+    Measures { residual: sums.residual(), ..measures }
+}
+
+/// Relative (normal, tangential) velocities of one contact, m/s.
+pub struct Motion {
+    /// At the end of the step.
+    pub now: [f64; 2],
+    /// At its beginning.
+    pub before: [f64; 2],
+    /// At the end if no contact acted.
+    pub free: [f64; 2],
+}
+
+/// Visits the rows with their numbers and motions.
+pub fn for_each_row<K: Kinematics>(
+    problem: &StepProblem<K>,
+    mut visit: impl FnMut(usize, &Row<K>, Motion),
+) {
+    for (number, row) in problem.fixed_rows.iter().enumerate() {
+        let of = |bodies: &[K::Body<f64>]| K::velocity(row.normal, &bodies[row.i as usize]);
+        let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
+        visit(number, row, Motion { now, before, free });
+    }
+    for (number, row) in (problem.fixed_rows.len()..).zip(&problem.pair_rows) {
+        let of = |bodies: &[K::Body<f64>]| {
+            K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])
+        };
+        let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
+        visit(number, row, Motion { now, before, free });
+    }
+}
+
+/// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
+pub fn relative_velocities<K: Kinematics>(
+    problem: &StepProblem<K>,
+    bodies: &[K::Body<f64>],
+    speeds: &mut Vec<f64>,
+) {
+    let StepProblem { fixed_rows, pair_rows, .. } = problem;
+    speeds.clear();
+    speeds.extend(fixed_rows.iter().map(|row| K::velocity(row.normal, &bodies[row.i as usize])[0]));
+    speeds.extend(pair_rows.iter().map(|row| {
+        K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])[0]
+    }));
+    for (speed, wall_speed) in speeds.iter_mut().zip(&problem.wall_speeds) {
+        *speed -= wall_speed;
+    }
+}
+
+#[derive(Default)]
+struct Sums {
+    error: f64,
+    scale: f64,
+}
+
+impl Sums {
+    #[inline(always)]
+    fn add_error<M: Model>(
+        &mut self,
+        problem: &StepProblem<M::Kinematics>,
+        row: &Row<M::Kinematics>,
+        motion: &Motion,
+    ) {
+        let squared_mass = row.effective_mass * row.effective_mass;
+        let shifted = row.shifted_impulse;
+        let error = shifted - law::signorini(shifted - motion.now[0] - row.restitution_velocity);
+        self.error += squared_mass * error * error;
+        let free = motion.free[0] + row.restitution_velocity;
+        self.scale += squared_mass * free * free;
+        if M::FRICTION {
+            let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            let tangential = row.tangential_impulse;
+            let bound = problem.friction_bound::<M>(shifted);
+            let error = tangential - law::coulomb(tangential - compliance * motion.now[1], bound);
+            self.error += squared_mass * error * error;
+            let free = compliance * motion.free[1];
+            self.scale += squared_mass * free * free;
+        }
+    }
+
+    fn residual(&self) -> f64 {
+        if self.error > 0.0 { (self.error / self.scale).sqrt() } else { self.error.sqrt() }
+    }
+}

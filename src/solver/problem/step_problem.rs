@@ -1,0 +1,198 @@
+//! The problem of one step: packed bodies and one row a contact, in the order of the sweep.
+
+use glam::DVec2;
+
+use super::kinematics::Kinematics;
+use super::model::Model;
+use super::order::Sorter;
+use crate::contact::{Contact, ContactList, Impulse, Numbering, Other};
+
+/// One contact as the sweep sees it: exactly one cache line in the plane. Impulses are reduced ones,
+/// λ = P/m_ij (see `problem::kinematics` and `contact::law`).
+///
+/// Array of structures was measured against structure of arrays before it was chosen
+/// (`cargo bench --bench layout`).
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Row<K: Kinematics> {
+    /// Grain i.
+    pub i: u32,
+    /// Grain j; unused in a row against a fixed body.
+    pub j: u32,
+    /// n, from j to i.
+    pub normal: K::Normal<f64>,
+    /// g_i = m_ij/m_i; 1 against a fixed body.
+    pub share: f64,
+    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold, and less
+    /// the speed of a wall that comes ([`StepProblem::drive`]).
+    pub restitution_velocity: f64,
+    /// σ = λ_n + capture speed, m/s.
+    pub shifted_impulse: f64,
+    /// λ_t, m/s.
+    pub tangential_impulse: f64,
+    /// m_ij, kg.
+    pub effective_mass: f64,
+}
+
+/// All contacts of one step. Memory is kept between steps.
+///
+/// Rows are in the order of the sweep (`problem::order`): first the contacts with fixed bodies, then
+/// those between grains.
+#[derive(Clone, Debug)]
+pub struct StepProblem<K: Kinematics> {
+    /// Bodies as the sweep moves them.
+    pub bodies: Vec<K::Body<f64>>,
+    /// Bodies at the beginning of the step.
+    pub before: Vec<K::Body<f64>>,
+    /// Bodies at the end of the step if no contact acted.
+    pub free: Vec<K::Body<f64>>,
+    /// Rows against fixed bodies.
+    pub fixed_rows: Vec<Row<K>>,
+    /// Rows between grains.
+    pub pair_rows: Vec<Row<K>>,
+    /// The contact behind each row: fixed rows, then pair rows.
+    pub contact_of_row: Vec<u32>,
+    /// μ.
+    pub friction: f64,
+    /// C₀Δt/m_ij = Bond·g·Δt, m/s; 0 in a scene without cohesion.
+    pub capture_speed: f64,
+    /// The same row by row, where rows differ in it (law `range`); else empty. Sweeps need it not:
+    /// they see σ alone.
+    pub captures: Vec<f64>,
+    /// How fast the wall of each fixed row comes along the normal, m/s; empty where no wall moves.
+    pub wall_speeds: Vec<f64>,
+    /// Masses of the bodies, kg.
+    pub masses: Vec<f64>,
+    /// Mean mass of the grains, kg.
+    pub mean_mass: f64,
+    /// Ends of the colours in the rows against fixed bodies and in those between grains; empty where
+    /// rows are not coloured.
+    pub colour_ends: [Vec<usize>; 2],
+    pub(super) sorter: Sorter,
+}
+
+impl<K: Kinematics> Default for StepProblem<K> {
+    fn default() -> Self {
+        Self {
+            bodies: Vec::new(),
+            before: Vec::new(),
+            free: Vec::new(),
+            fixed_rows: Vec::new(),
+            pair_rows: Vec::new(),
+            contact_of_row: Vec::new(),
+            friction: 0.0,
+            capture_speed: 0.0,
+            captures: Vec::new(),
+            wall_speeds: Vec::new(),
+            masses: Vec::new(),
+            mean_mass: 0.0,
+            colour_ends: Default::default(),
+            sorter: Sorter::default(),
+        }
+    }
+}
+
+impl<K: Kinematics> StepProblem<K> {
+    /// Moves the bodies from their free velocities by the rows' impulses.
+    pub fn form_velocities(&mut self) {
+        self.bodies.clone_from(&self.free);
+        for (at, row) in self.fixed_rows.iter().enumerate() {
+            let impulse = self.reduced_impulse(at, row);
+            K::push_single(&mut self.bodies[row.i as usize], row.normal, impulse);
+        }
+        for (at, row) in (self.fixed_rows.len()..).zip(&self.pair_rows) {
+            let impulse = self.reduced_impulse(at, row);
+            let (mut i, mut j) = (self.bodies[row.i as usize], self.bodies[row.j as usize]);
+            K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+            self.bodies[row.i as usize] = i;
+            self.bodies[row.j as usize] = j;
+        }
+    }
+
+    /// Puts rows that were not made by [`StepProblem::prepare`] in the order of colours, for the
+    /// method that needs it.
+    pub fn sort_by_colours(&mut self) {
+        let Self { fixed_rows, pair_rows, contact_of_row, colour_ends, sorter, .. } = self;
+        let contact = |row: &Row<K>, other: u32| Contact {
+            grain: row.i,
+            other,
+            normal: DVec2::ZERO,
+            gap: 0.0,
+        };
+        let fixed_body = Numbering::of_grains(self.masses.len()).number(Other::Feature(0));
+        let contacts: Vec<Contact> = fixed_rows
+            .iter()
+            .map(|row| contact(row, fixed_body))
+            .chain(pair_rows.iter().map(|row| contact(row, row.j)))
+            .collect();
+        let [fixed_ends, pair_ends] = colour_ends;
+        let (fixed, all) = (fixed_rows.len() as u32, contacts.len() as u32);
+        let mut order = Vec::with_capacity(contacts.len());
+        let list = (self.masses.len(), &contacts[..]);
+        sorter.append_coloured(list, 0..fixed, &mut order, fixed_ends);
+        sorter.append_coloured(list, fixed..all, &mut order, pair_ends);
+        let (of_fixed, of_pairs) = order.split_at(fixed as usize);
+        *fixed_rows = of_fixed.iter().map(|&row| fixed_rows[row as usize]).collect();
+        *pair_rows = of_pairs.iter().map(|&row| pair_rows[(row - fixed) as usize]).collect();
+        *contact_of_row = order.iter().map(|&row| contact_of_row[row as usize]).collect();
+    }
+
+    /// The capture speed of a row by its number (fixed rows, then pair rows), m/s.
+    #[inline(always)]
+    pub fn capture(&self, number: usize) -> f64 {
+        if self.captures.is_empty() { self.capture_speed } else { self.captures[number] }
+    }
+
+    /// How fast the wall of a row comes, by the row's number (fixed rows, then pair rows), m/s.
+    #[inline(always)]
+    pub fn wall_speed(&self, number: usize) -> f64 {
+        self.wall_speeds.get(number).copied().unwrap_or(0.0)
+    }
+
+    /// (λ_n, λ_t) of a row with its number, m/s.
+    #[inline(always)]
+    pub fn reduced_impulse(&self, number: usize, row: &Row<K>) -> [f64; 2] {
+        [row.shifted_impulse - self.capture(number), row.tangential_impulse]
+    }
+
+    /// The rows with their numbers: fixed rows, then pair rows.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &Row<K>)> {
+        self.fixed_rows.iter().chain(&self.pair_rows).enumerate()
+    }
+
+    /// Every row, to be changed, with how fast its wall comes, m/s: 0 where that does not move.
+    pub fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<K>, f64)> {
+        let Self { fixed_rows, pair_rows, wall_speeds, .. } = self;
+        let walls = wall_speeds.iter().copied().chain(std::iter::repeat(0.0));
+        fixed_rows.iter_mut().chain(pair_rows).zip(walls)
+    }
+
+    /// The largest |λ_t| that a shifted normal impulse allows, m/s.
+    #[inline(always)]
+    pub fn friction_bound<M: Model>(&self, shifted_impulse: f64) -> f64 {
+        M::friction_bound(self.friction, shifted_impulse, self.capture_speed)
+    }
+
+    /// Hands the rows' impulses back to the contacts, in N·s.
+    pub fn store_impulses(&self, contacts: &mut ContactList) {
+        let impulses = contacts.impulses_mut();
+        for ((number, row), &index) in self.rows().zip(&self.contact_of_row) {
+            let [normal, tangential] = self.reduced_impulse(number, row);
+            let mass = row.effective_mass;
+            impulses[index as usize] =
+                Impulse { normal: mass * normal, tangential: mass * tangential };
+        }
+    }
+
+    /// Gives the rows the impulses of a step that was taken in another way, one a contact, N·s.
+    pub fn set_impulses(&mut self, impulses: &[Impulse]) {
+        let Self { fixed_rows, pair_rows, contact_of_row, capture_speed, captures, .. } = self;
+        let rows = fixed_rows.iter_mut().chain(pair_rows).enumerate();
+        for ((number, row), &index) in rows.zip(&*contact_of_row) {
+            let Impulse { normal, tangential } = impulses[index as usize];
+            let capture_speed = captures.get(number).unwrap_or(capture_speed);
+            row.shifted_impulse = normal / row.effective_mass + capture_speed;
+            row.tangential_impulse = tangential / row.effective_mass;
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! What is on a chart, as plain data.
+
+use super::Scale;
+
+/// A colour, 0 … 255 each.
+pub type Rgb = (u8, u8, u8);
+
+/// Ink of axes and words.
+pub const INK: Rgb = (40, 40, 40);
+/// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
+pub const PALETTE: [Rgb; 7] = [
+    (0, 0, 0),
+    (0, 114, 178),
+    (230, 159, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (86, 180, 233),
+    (213, 94, 0),
+];
+
+/// Distance of curves that stand side by side, in widths of the chart.
+const ASIDE: f64 = 0.006;
+
+/// One axis of a chart.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// What it stands for, with its unit.
+    pub label: String,
+    /// Linear or logarithmic.
+    pub scale: Scale,
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Places with words of their own; where there are none, round numbers.
+    pub ticks: Vec<(f64, String)>,
+}
+
+impl Axis {
+    /// A linear axis.
+    pub fn linear(label: impl Into<String>, from: f64, to: f64) -> Self {
+        Self { label: label.into(), scale: Scale::Linear, from, to, ticks: Vec::new() }
+    }
+
+    /// A logarithmic axis.
+    pub fn log(label: impl Into<String>, from: f64, to: f64) -> Self {
+        Self { label: label.into(), scale: Scale::Log, from, to, ticks: Vec::new() }
+    }
+}
+
+/// A point, with the ends of its interval where it has one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// On the x axis.
+    pub x: f64,
+    /// On the y axis.
+    pub y: f64,
+    /// Lower and upper end of the interval in y.
+    pub interval: Option<(f64, f64)>,
+}
+
+/// Points without intervals.
+pub fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point> {
+    places.into_iter().map(|(x, y)| Point { x, y, interval: None }).collect()
+}
+
+/// A filled rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// What it stands for on the x axis, and the edges to its left and right.
+    pub x: (f64, [f64; 2]),
+    /// What it stands for on the y axis, and its lower and upper edge.
+    pub y: (f64, [f64; 2]),
+    /// What its colour stands for.
+    pub value: f64,
+}
+
+/// How a layer is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// A line of that many pixels.
+    Line(u32),
+    /// A dashed line of that many pixels.
+    Dashes(u32),
+    /// Filled discs of that radius in pixels.
+    Dots(u32),
+    /// Empty circles of that radius in pixels.
+    Rings(u32),
+    /// A line through filled discs.
+    LineAndDots,
+}
+
+/// Something on a chart.
+#[derive(Clone, Debug)]
+pub enum Layer {
+    /// Points, joined or not.
+    Curve {
+        /// Name in the CSV, and in the legend where `in_legend`.
+        name: String,
+        /// Whether the legend tells of it.
+        in_legend: bool,
+        /// Its points, in order.
+        points: Vec<Point>,
+        /// Its colour.
+        colour: Rgb,
+        /// How it is drawn.
+        look: Look,
+        /// How far aside it is drawn, in widths of the chart, so that bars do not hide each other.
+        aside: f64,
+    },
+    /// Filled rectangles, each with the value that its colour stands for.
+    Cells {
+        /// Name in the CSV.
+        name: String,
+        /// The rectangles.
+        cells: Vec<Cell>,
+        /// Value → colour.
+        colour: fn(f64) -> Rgb,
+    },
+    /// Words at a place.
+    Words {
+        /// Where they begin, in the axes' units.
+        at: (f64, f64),
+        /// The words.
+        text: String,
+        /// Their colour.
+        colour: Rgb,
+    },
+}
+
+impl Layer {
+    /// A curve that the legend tells of.
+    pub fn curve(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
+        Self::Curve { name: name.into(), in_legend: true, points, colour, look, aside: 0.0 }
+    }
+
+    /// The same curve, number `index` of `count` side by side.
+    pub fn beside(mut self, index: usize, count: usize) -> Self {
+        if let Self::Curve { aside, .. } = &mut self {
+            *aside = ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0));
+        }
+        self
+    }
+
+    /// A curve that the legend leaves out.
+    pub fn quiet(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
+        Self::Curve { name: name.into(), in_legend: false, points, colour, look, aside: 0.0 }
+    }
+}
+
+/// Where a legend stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Corner {
+    /// Upper left.
+    UpperLeft,
+    /// Upper right.
+    #[default]
+    UpperRight,
+    /// Lower left.
+    LowerLeft,
+    /// Lower right.
+    LowerRight,
+}
+
+/// One pair of axes.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// Above it.
+    pub title: String,
+    /// Horizontal.
+    pub x: Axis,
+    /// Vertical.
+    pub y: Axis,
+    /// From back to front.
+    pub layers: Vec<Layer>,
+    /// Where the legend stands.
+    pub legend: Corner,
+    /// Its share of the width of the sheet.
+    pub width: f64,
+    /// Whether it is nothing but a legend, without axes: for long ones, beside other charts.
+    pub only_legend: bool,
+}
+
+impl Chart {
+    /// An empty chart.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
+        Self {
+            title: title.into(),
+            x,
+            y,
+            layers: Vec::new(),
+            legend: Corner::default(),
+            width: 1.0,
+            only_legend: false,
+        }
+    }
+
+    /// Moves what the legends of some charts say into a column of its own, each name once.
+    pub fn legend_of(charts: &mut [Self], width: f64) -> Self {
+        let nowhere = Axis::linear("", 0.0, 1.0);
+        let mut column = Self::new("", nowhere.clone(), nowhere);
+        column.width = width;
+        column.only_legend = true;
+        let mut names = std::collections::HashSet::new();
+        for layer in charts.iter_mut().flat_map(|chart| &mut chart.layers) {
+            if let Layer::Curve { name, in_legend, .. } = layer
+                && std::mem::take(in_legend)
+                && names.insert(name.clone())
+            {
+                let mut entry = layer.clone();
+                if let Layer::Curve { in_legend, points, .. } = &mut entry {
+                    *in_legend = true;
+                    points.clear();
+                }
+                column.layers.push(entry);
+            }
+        }
+        column
+    }
+}
+
+/// Charts side by side, with words below.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// Pixels.
+    pub size: (u32, u32),
+    /// From left to right.
+    pub charts: Vec<Chart>,
+    /// Lines of words below.
+    pub caption: Vec<String>,
+}
+
+impl Sheet {
+    /// One chart of the usual size.
+    pub fn of(chart: Chart) -> Self {
+        Self { size: (1200, 820), charts: vec![chart], caption: Vec::new() }
+    }
+}

@@ -1,0 +1,63 @@
+//! Where charts are made, and what is made there.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::machine::Machine;
+use crate::error::Result;
+use crate::output::check_writable;
+use crate::study::chart::Sheet;
+use crate::study::journal::{self, Journal};
+
+/// A finished chart.
+pub(super) struct Part {
+    /// Name of its files.
+    pub name: String,
+    pub sheet: Sheet,
+    /// Markdown; may be empty.
+    pub report: String,
+    /// (name, CSV) of tables beside the sheet's own.
+    pub tables: Vec<(String, String)>,
+}
+
+/// Where charts are made.
+pub(super) struct Bench {
+    pub folder: PathBuf,
+    pub quick: bool,
+    pub large: bool,
+    pub peers: PathBuf,
+    pub machine: Machine,
+}
+
+impl Bench {
+    pub fn states_folder(&self) -> PathBuf {
+        self.folder.join("states")
+    }
+
+    /// A journal for the measurements of this program on this machine, and what it holds.
+    pub fn journal<T: Serialize + DeserializeOwned>(
+        &self,
+        name: &str,
+    ) -> Result<(Journal, Vec<T>)> {
+        let pass = if self.quick { "quick" } else { "full" };
+        let folder = self.folder.join("measured").join(&self.machine.fingerprint).join(pass);
+        check_writable(&folder)?;
+        // Opening cuts off a half line, so it comes first.
+        let journal = Journal::open(&folder, name)?;
+        let done: Vec<T> = journal::read(&journal::path_of(&folder, name))?;
+        if !done.is_empty() {
+            eprintln!("{name}: {} measurements were there", done.len());
+        }
+        Ok((journal, done))
+    }
+
+    /// Lines below a chart: what it shows, then where it was measured.
+    pub fn caption(&self, lines: &[&str]) -> Vec<String> {
+        let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
+        let quick = if self.quick { "Quick pass. " } else { "" };
+        caption.push(format!("{quick}{}", self.machine.words()));
+        caption
+    }
+}
