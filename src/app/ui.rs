@@ -3,9 +3,7 @@
 use egui::{CentralPanel, CollapsingHeader, Frame, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::fill::fill;
-use super::panels::{
-    compare, grain, help, physics, plots, run, scene, see, solver, speed, status, transport,
-};
+use super::panels::{SECTIONS, Section, help, plots, scene, status, transport};
 use super::state::AppState;
 use super::{drop, keys};
 
@@ -36,7 +34,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
             ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
                 // The scroll bar floats over the right edge.
                 Frame::new().inner_margin(Margin { right: 8, ..Margin::ZERO }).show(ui, |ui| {
-                    panels(ui, state);
+                    sidebar_contents(ui, state);
                 });
             });
         });
@@ -59,41 +57,20 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     help::show(ui, state);
 }
 
-fn panels(ui: &mut Ui, state: &mut AppState) {
+fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
     transport::release_button(ui, state);
     let hint = "A larger Δt makes the grains stick better: set Δt and Bond, release, and see whether the pile holds.";
     ui.label(RichText::new(hint).small().weak());
     ui.add_space(2.0);
-    let title = if state.compares() {
-        format!("Physics of {}", compare::title(state, state.selected))
-    } else {
-        "Physics".to_owned()
-    };
-    section(ui, state, "physics", &title, true, physics::show);
-    if state.pinned.is_some() {
-        section(ui, state, "grain", "Grain", true, grain::show);
+    for Section { id, title, open, show } in SECTIONS {
+        let Some(title) = title(state) else { continue };
+        ui.separator();
+        let shown = CollapsingHeader::new(RichText::new(title).heading())
+            .id_salt(id)
+            .default_open(*open)
+            .show_unindented(ui, |ui| show(ui, state));
+        state.note_control(id, shown.header_response.rect);
     }
-    section(ui, state, "run", "Run", true, run::show);
-    section(ui, state, "see", "See", false, see::show);
-    section(ui, state, "compare", "Compare", false, compare::show);
-    section(ui, state, "solver", "Solver", false, solver::show);
-    section(ui, state, "speed", "Speed and accuracy", false, speed::show);
-}
-
-fn section(
-    ui: &mut Ui,
-    state: &mut AppState,
-    id: &str,
-    title: &str,
-    open: bool,
-    contents: fn(&mut Ui, &mut AppState),
-) {
-    ui.separator();
-    let shown = CollapsingHeader::new(RichText::new(title).heading())
-        .id_salt(id)
-        .default_open(open)
-        .show_unindented(ui, |ui| contents(ui, state));
-    state.note_control(id, shown.header_response.rect);
 }
 
 /// What the middle says while there is nothing to see yet.

@@ -7,6 +7,11 @@ use crate::app::state::AppState;
 use crate::render::numbers::si_prefix;
 use crate::sim::live::WorldFrame;
 
+/// Its heading, where a grain is pinned.
+pub fn title(state: &AppState) -> Option<String> {
+    state.pinned.map(|_| "Grain".into())
+}
+
 /// Shows the panel; nothing without a pinned grain.
 pub fn show(ui: &mut Ui, state: &mut AppState) {
     let Some(pinned) = state.pinned else { return };
