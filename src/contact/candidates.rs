@@ -12,7 +12,7 @@ use super::grid::Grid;
 use super::numbering::{Numbering, Other};
 use super::tree::Tree;
 use crate::error::Result;
-use crate::world::{Boundary, World};
+use crate::world::World;
 
 /// How far the candidate search looks, m.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +65,7 @@ impl Candidates {
     pub fn new(world: &World, reach: Reach) -> Result<Self> {
         let (mut features, mut pistons) = (Vec::new(), Vec::new());
         for (index, boundary) in world.boundaries.iter().enumerate() {
-            if matches!(boundary, Boundary::Piston { .. }) {
+            if boundary.can_move() {
                 pistons.push((index, features.len()));
             }
             Feature::collect(boundary, &format!("boundaries[{index}]"), &mut features)?;

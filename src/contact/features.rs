@@ -105,10 +105,33 @@ impl Feature {
         Ok(())
     }
 
-    /// Moves a half-space, m. Other shapes stay.
+    /// Moves it, m.
     pub fn shift(&mut self, by: DVec2) {
-        if let Feature::HalfSpace { point, .. } = self {
-            *point += by;
+        let shift =
+            |segment: &mut Segment| (segment.a, segment.b) = (segment.a + by, segment.b + by);
+        match self {
+            Feature::HalfSpace { point, .. } => *point += by,
+            Feature::Segment { shape, before, .. } => {
+                shift(shape);
+                before.iter_mut().for_each(shift);
+            }
+            Feature::ConvexPolygon { sides } => sides.iter_mut().for_each(shift),
+        }
+    }
+
+    /// Whether it goes on for ever, and what is on it may roll as far as it likes.
+    pub fn is_endless(&self) -> bool {
+        match self {
+            Feature::HalfSpace { .. } => true,
+            Feature::Segment { .. } | Feature::ConvexPolygon { .. } => false,
+        }
+    }
+
+    /// Whether it is solid: what is deep inside is lost.
+    pub fn is_solid(&self) -> bool {
+        match self {
+            Feature::HalfSpace { .. } | Feature::ConvexPolygon { .. } => true,
+            Feature::Segment { .. } => false,
         }
     }
 
@@ -117,7 +140,9 @@ impl Feature {
     pub fn distance_to_any_point(&self, centre: DVec2) -> f64 {
         match self {
             Feature::Segment { shape, .. } => shape.distance_to_local_point(centre, false),
-            _ => self.distance(centre).map_or(f64::INFINITY, |(_, distance)| distance),
+            Feature::HalfSpace { .. } | Feature::ConvexPolygon { .. } => {
+                self.distance(centre).map_or(f64::INFINITY, |(_, distance)| distance)
+            }
         }
     }
 
@@ -224,6 +249,30 @@ mod tests {
         assert!(normal.distance(DVec2::Y) < 1e-15 && (distance + 0.1).abs() < 1e-15);
         let (normal, distance) = hits(&square, 1.3, 1.4)[0];
         assert!(normal.distance(DVec2::new(0.6, 0.8)) < 1e-14 && (distance - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_feature_that_is_shifted_takes_all_of_its_surface_along() {
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::new(0.5, 1.0)].to_vec();
+        let by = DVec2::new(4.0, -8.0);
+        for boundary in [
+            Boundary::HalfSpace { point: DVec2::ONE, normal: DVec2::new(1.0, 2.0) },
+            Boundary::Polyline { points: corners.clone() },
+            Boundary::ConvexPolygon { points: corners },
+        ] {
+            for mut feature in features(boundary) {
+                for centre in [DVec2::new(0.5, 0.25), DVec2::new(1.5, -0.5), DVec2::new(0.5, 2.0)] {
+                    let before = feature.clone();
+                    feature.shift(by);
+                    let [then, now] = [before.distance(centre), feature.distance(centre + by)];
+                    assert_eq!(then.is_some(), now.is_some());
+                    for ((old, far), (new, distance)) in then.into_iter().zip(now) {
+                        assert!(old.distance(new) < 1e-14 && (far - distance).abs() < 1e-14);
+                    }
+                    feature = before;
+                }
+            }
+        }
     }
 
     #[test]

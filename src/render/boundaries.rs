@@ -7,7 +7,7 @@
 use glam::DVec2;
 
 use super::{Camera, Colour, LinkInstance};
-use crate::world::Boundary;
+use crate::world::{Boundary, Edge};
 
 // All in units of the font size of the picture's labels, so that prints of any size look alike.
 
@@ -43,46 +43,34 @@ pub(super) fn boundary_links(
     let em = f64::from(text_px);
     let reach = DVec2::new(f64::from(width), f64::from(height)) / 2.0 + em;
     let mut walls = Walls { camera, colour, em, reach, links: Vec::new() };
-    for boundary in boundaries {
-        walls.draw(boundary);
+    for edge in boundaries.iter().flat_map(Boundary::edges) {
+        walls.draw(edge);
     }
     walls.links
 }
 
 impl Walls<'_> {
-    fn draw(&mut self, boundary: &Boundary) {
-        match boundary {
-            Boundary::HalfSpace { point, normal } | Boundary::Piston { point, normal, .. } => {
+    fn draw(&mut self, edge: Edge) {
+        match edge {
+            Edge::Endless { point, normal } => {
                 let along = -normal.normalize_or_zero().perp();
                 // Long enough to cross the picture from any point of the line nearest to it.
-                let anchor = self.camera.offset_px(*point);
+                let anchor = self.camera.offset_px(point);
                 let nearest = along * -anchor.dot(along);
                 let across = along * (2.0 * self.reach.length());
                 self.solid_edge(anchor, anchor + nearest - across, anchor + nearest + across);
             }
-            Boundary::Segment { from, to } => self.wall(*from, *to),
-            Boundary::Polyline { points } => {
-                for ends in points.windows(2) {
-                    self.wall(ends[0], ends[1]);
+            Edge::Wall(ends) => {
+                let [from, to] = ends.map(|end| self.camera.offset_px(end));
+                if let Some([start, end]) = clip(from, to, self.reach) {
+                    self.link(start, end, LINE_HALF_WIDTH_EM);
                 }
             }
-            Boundary::ConvexPolygon { points } => {
-                for (index, corner) in points.iter().enumerate() {
-                    let next = points[(index + 1) % points.len()];
-                    let (from, to) = (self.camera.offset_px(*corner), self.camera.offset_px(next));
-                    // Anticlockwise corners have the solid on their left, a half-space's surface
-                    // has it on its right.
-                    self.solid_edge(to, to, from);
-                }
+            Edge::Side(ends) => {
+                let [from, to] = ends.map(|end| self.camera.offset_px(end));
+                // Backwards it has the solid on its right.
+                self.solid_edge(to, to, from);
             }
-        }
-    }
-
-    /// A wall between two points, m, that is open on both sides.
-    fn wall(&mut self, from: DVec2, to: DVec2) {
-        let (from, to) = (self.camera.offset_px(from), self.camera.offset_px(to));
-        if let Some([start, end]) = clip(from, to, self.reach) {
-            self.link(start, end, LINE_HALF_WIDTH_EM);
         }
     }
 

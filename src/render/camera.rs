@@ -7,7 +7,7 @@
 use glam::DVec2;
 
 use crate::sim::Snapshot;
-use crate::world::Boundary;
+use crate::world::{Boundary, Edge};
 
 /// Which part of the world a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +81,8 @@ pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
     let surroundings = &snapshot.surroundings;
     let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));
     let fixed = surroundings.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
-    let walls = surroundings.boundaries.iter().flat_map(corners).map(|point| (point, 0.0));
+    let edges = surroundings.boundaries.iter().flat_map(Boundary::edges);
+    let walls = edges.flat_map(ends).map(|point| (point, 0.0));
     let centre = surroundings.centre_of_attraction.map(|point| (point, 0.0));
     grains
         .chain(fixed)
@@ -92,12 +93,13 @@ pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
         .reduce(|all, next| [all[0].min(next[0]), all[1].max(next[1])])
 }
 
-fn corners(boundary: &Boundary) -> Vec<DVec2> {
-    match boundary {
-        Boundary::HalfSpace { .. } | Boundary::Piston { .. } => Vec::new(),
-        Boundary::Segment { from, to } => vec![*from, *to],
-        Boundary::Polyline { points } | Boundary::ConvexPolygon { points } => points.clone(),
-    }
+/// None of what goes on for ever.
+fn ends(edge: Edge) -> impl Iterator<Item = DVec2> {
+    let ends = match edge {
+        Edge::Endless { .. } => None,
+        Edge::Wall(ends) | Edge::Side(ends) => Some(ends),
+    };
+    ends.into_iter().flatten()
 }
 
 #[cfg(test)]

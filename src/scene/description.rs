@@ -168,11 +168,7 @@ impl Scene {
             let field = format!("fixed_discs[{index}]");
             return Err(Error::value(field, self.fixed_discs[index].position, allowed));
         }
-        let across = |boundary: &Boundary| match boundary {
-            Boundary::HalfSpace { normal, .. } | Boundary::Piston { normal, .. } => normal.y == 0.0,
-            _ => false,
-        };
-        if let Some(index) = self.boundaries.iter().position(|boundary| !across(boundary)) {
+        if let Some(index) = self.boundaries.iter().position(|shape| !shape.is_across_line()) {
             let field = format!("boundaries[{index}]");
             let allowed = "a half-space across the x axis where physics.axes is 1";
             return Err(Error::value(field, format!("{:?}", self.boundaries[index]), allowed));

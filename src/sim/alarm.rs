@@ -96,8 +96,7 @@ pub(super) struct Watch {
 impl Watch {
     /// Watches over a world, whose boundaries are `features`, from now on.
     pub fn new(world: &World, features: &[Feature]) -> Self {
-        let is_half_space = |feature: &&Feature| matches!(feature, Feature::HalfSpace { .. });
-        let open_ground = features.iter().any(|feature| is_half_space(&feature));
+        let open_ground = features.iter().any(Feature::is_endless);
         // On open ground grains may roll as far as they like.
         let corners = (!world.fixed_discs.is_empty() && !open_ground).then(|| {
             let fixed = world.fixed_discs.iter().map(|disc| disc.position);
@@ -141,12 +140,11 @@ impl Watch {
     }
 
     fn any_lost(&self, world: &World, features: &[Feature]) -> bool {
-        let has_inside = |feature: &&Feature| !matches!(feature, Feature::Segment { .. });
         let deep = -LOST_DEPTH * world.mean_diameter;
         let outside = |place: DVec2| {
             self.corners
                 .is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
-                || features.iter().filter(has_inside).any(|feature| {
+                || features.iter().filter(|feature| feature.is_solid()).any(|feature| {
                     feature.distance(place).is_some_and(|(_, distance)| distance < deep)
                 })
         };

@@ -1,4 +1,5 @@
-//! Shapes that grains do not move.
+//! Shapes that grains do not move: what they are, how they move, and how they show. How a disc touches
+//! them is in `contact::features`.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -54,22 +55,84 @@ pub enum Boundary {
     },
 }
 
+/// A piece of a boundary's surface, as pictures show it. All lengths in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edge {
+    /// A line without ends.
+    Endless {
+        /// A point of it.
+        point: DVec2,
+        /// Points out of the solid. Need not have length 1.
+        normal: DVec2,
+    },
+    /// A wall between two points, open on both sides.
+    Wall([DVec2; 2]),
+    /// A side of a solid that lies on its left.
+    Side([DVec2; 2]),
+}
+
+// No `_` in these: each is to be thought of where a shape is added.
 impl Boundary {
+    /// Its surface.
+    pub fn edges(&self) -> Vec<Edge> {
+        match self {
+            Self::HalfSpace { point, normal } | Self::Piston { point, normal, .. } => {
+                vec![Edge::Endless { point: *point, normal: *normal }]
+            }
+            Self::Segment { from, to } => vec![Edge::Wall([*from, *to])],
+            Self::Polyline { points } => {
+                points.windows(2).map(|ends| Edge::Wall([ends[0], ends[1]])).collect()
+            }
+            Self::ConvexPolygon { points } => {
+                let nexts = points.iter().cycle().skip(1);
+                points.iter().zip(nexts).map(|(from, to)| Edge::Side([*from, *to])).collect()
+            }
+        }
+    }
+
+    /// Whether it stands across the x axis, as in scenes with that axis alone.
+    pub fn is_across_line(&self) -> bool {
+        match self {
+            Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => normal.y == 0.0,
+            Self::Segment { .. } | Self::Polyline { .. } | Self::ConvexPolygon { .. } => false,
+        }
+    }
+
+    /// Whether it can move. What does is a single feature of the contacts' search.
+    pub fn can_move(&self) -> bool {
+        match self {
+            Self::Piston { .. } => true,
+            Self::HalfSpace { .. }
+            | Self::Segment { .. }
+            | Self::Polyline { .. }
+            | Self::ConvexPolygon { .. } => false,
+        }
+    }
+
     /// Its mean velocity in the next `secs`, m/s.
     pub fn velocity(&self, secs: f64) -> DVec2 {
         match *self {
             Self::Piston { normal, speed, travel, .. } => {
                 speed.signum() * speed.abs().min(travel / secs) * normal.normalize_or_zero()
             }
-            _ => DVec2::ZERO,
+            Self::HalfSpace { .. }
+            | Self::Segment { .. }
+            | Self::Polyline { .. }
+            | Self::ConvexPolygon { .. } => DVec2::ZERO,
         }
     }
 
     /// Moves it by a part of its way.
     pub fn advance(&mut self, by: DVec2) {
-        if let Self::Piston { point, travel, .. } = self {
-            *point += by;
-            *travel = (*travel - by.length()).max(0.0);
+        match self {
+            Self::Piston { point, travel, .. } => {
+                *point += by;
+                *travel = (*travel - by.length()).max(0.0);
+            }
+            Self::HalfSpace { .. }
+            | Self::Segment { .. }
+            | Self::Polyline { .. }
+            | Self::ConvexPolygon { .. } => {}
         }
     }
 }

@@ -6,7 +6,7 @@ mod gravity;
 mod parameters;
 mod physics;
 
-pub use boundary::{Boundary, Disc};
+pub use boundary::{Boundary, Disc, Edge};
 pub use grains::{Grain, Grains};
 pub use gravity::Gravity;
 pub use parameters::{
