@@ -5,28 +5,18 @@ use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine,
 };
 
-use super::quantity::Quantity;
 use crate::render::numbers::{decimal, si_prefix, ticks};
-use crate::sim::Observables;
 use crate::sim::live::Curve;
+use crate::sim::{Beside, Observables, Quantity};
 
 /// Least width of a plot, points: below it fewer are shown in a row.
 const LEAST_WIDTH: f32 = 150.0;
 /// Intervals of time for which a long curve shows its least and its largest value.
 const BUCKETS: usize = 300;
 
-/// An energy of the bonds in a row, J.
-type EnergyOfBonds = fn(&Observables) -> Option<f64>;
-
-/// What the plot of energy shows of bonds, with its style.
-const ENERGIES_OF_BONDS: [(&str, LineStyle, EnergyOfBonds); 2] = [
-    ("stored in bonds", LineStyle::Dashed { length: 6.0 }, |row| row.bond_energy),
-    ("taken by broken bonds", LineStyle::Dotted { spacing: 4.0 }, |row| row.broken_bond_energy),
-];
-
-fn has_bonds(curve: &Curve) -> bool {
-    curve.last().is_some_and(|row| row.bond_energy.is_some())
-}
+/// How what is shown beside a quantity is drawn.
+const BESIDE: [LineStyle; 2] =
+    [LineStyle::Dashed { length: 6.0 }, LineStyle::Dotted { spacing: 4.0 }];
 
 /// Everything that plots are drawn from.
 #[derive(Clone, Debug)]
@@ -34,7 +24,7 @@ pub struct PlotData {
     /// Name, colour and rows of each world.
     pub worlds: Vec<(String, Color32, Curve)>,
     /// The plots.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<&'static Quantity<Observables>>,
     /// The moment that is shown, s.
     pub now_secs: f64,
     /// Plots reach at least to here, s.
@@ -67,7 +57,7 @@ pub fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
             for quantity in row {
                 ui.allocate_ui(size, |ui| {
                     ui.set_min_width(size.x);
-                    ui.vertical(|ui| clicked = clicked.or(plot(ui, data, *quantity)));
+                    ui.vertical(|ui| clicked = clicked.or(plot(ui, data, quantity)));
                 });
             }
         });
@@ -75,26 +65,12 @@ pub fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     clicked
 }
 
-fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
-    let (prefix, factor) = match quantity {
-        Quantity::Energy => {
-            let rows = data.worlds.iter().flat_map(|(.., curve)| curve.rows());
-            let largest = |row: &Observables| {
-                let taken = row.broken_bond_energy.unwrap_or(0.0);
-                row.kinetic_energy.max(taken).max(row.bond_energy.unwrap_or(0.0))
-            };
-            si_prefix(rows.map(largest).fold(0.0, f64::max))
-        }
-        _ => ("", 1.0),
-    };
-    let mut title = quantity.title(prefix);
-    if quantity == Quantity::Energy && data.worlds.iter().any(|(.., curve)| has_bonds(curve)) {
-        title.push_str("; dashed: stored in bonds, dotted: taken by broken ones");
-    }
+fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Option<f64> {
+    let (title, factor) = title(data, quantity);
     ui.add(Label::new(RichText::new(title).small()).truncate());
-    let log = quantity == Quantity::Residual;
+    let log = quantity.logarithmic;
     let group = egui::Id::unique("time");
-    let response = Plot::new(("plot", quantity.name()))
+    let response = Plot::new(("plot", quantity.name))
         .height((ui.available_height() - 2.0).max(40.0))
         // Half of the last label lies right of the plot.
         .width(ui.available_width() - 10.0)
@@ -119,17 +95,53 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: Quantity) -> Option<f64> {
                 let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
                     Line::new(name, points(curve, |row| value(row) / factor)).color(*colour)
                 };
-                plot.line(line(name.clone(), &|row| quantity.value(row)).width(1.6));
-                if quantity == Quantity::Energy && has_bonds(curve) {
-                    for (what, style, value) in ENERGIES_OF_BONDS {
-                        let value = |row: &Observables| value(row).unwrap_or(f64::NAN);
-                        plot.line(line(format!("{name}: {what}"), &value).style(style).width(1.2));
-                    }
+                let value = |row: &Observables| {
+                    let value = (quantity.value)(row);
+                    if log { value.log10() } else { value }
+                };
+                plot.line(line(name.clone(), &value).width(1.6));
+                for ((what, value), style) in beside(curve, quantity).zip(BESIDE) {
+                    let value = |row: &Observables| value(row).unwrap_or(f64::NAN);
+                    plot.line(line(format!("{name}: {what}"), &value).style(style).width(1.2));
                 }
             }
             plot.pointer_coordinate()
         });
     response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
+}
+
+/// What a curve has to show beside a quantity.
+fn beside(
+    curve: &Curve,
+    quantity: &Quantity<Observables>,
+) -> impl Iterator<Item = Beside<Observables>> {
+    let last = curve.last();
+    let has = move |beside: &Beside<Observables>| last.is_some_and(|row| beside.1(row).is_some());
+    quantity.beside.into_iter().flatten().filter(has)
+}
+
+/// The title of a plot, and what its values are divided by for the prefix of their unit.
+fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
+    let mut title = quantity.title.to_owned();
+    let mut factor = 1.0;
+    if !quantity.unit.is_empty() {
+        let others = quantity.beside.into_iter().flatten();
+        let largest = |row: &Observables| {
+            let others = others.clone().filter_map(|(_, value)| value(row));
+            others.fold((quantity.value)(row), f64::max)
+        };
+        let rows = data.worlds.iter().flat_map(|(.., curve)| curve.rows());
+        let prefix;
+        (prefix, factor) = si_prefix(rows.map(largest).fold(0.0, f64::max));
+        title = format!("{title} ({prefix}{})", quantity.unit);
+    }
+    let has_more = |curve: &Curve| beside(curve, quantity).next().is_some();
+    if let Some([(dashed, _), (dotted, _)]) = quantity.beside
+        && data.worlds.iter().any(|(.., curve)| has_more(curve))
+    {
+        title = format!("{title}; dashed: {dashed}, dotted: {dotted}");
+    }
+    (title, factor)
 }
 
 /// Marks at round numbers, at most `most` of them and at least `least_step` apart.

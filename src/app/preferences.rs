@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::quantity::Quantity;
 use crate::error::Result;
 use crate::headless::{HeadlessOptions, PictureSize};
 use crate::render::{Style, Theme};
 use crate::scene::Config;
+use crate::sim::QUANTITIES;
 use crate::sim::live::Pace;
 
 /// Choices that outlive the window.
@@ -23,8 +23,8 @@ pub struct Preferences {
     pub sidebar: bool,
     /// Whether the plots are open.
     pub plots: bool,
-    /// The quantities that are plotted.
-    pub quantities: Vec<Quantity>,
+    /// The quantities that are plotted, by their names.
+    pub quantities: Vec<String>,
     /// Simulated time per time on the wall.
     pub speed: f64,
     /// As fast as the machine computes, whatever `speed` says.
@@ -44,7 +44,7 @@ impl Default for Preferences {
             style: Style::default(),
             sidebar: true,
             plots: true,
-            quantities: Quantity::ALL.to_vec(),
+            quantities: QUANTITIES.iter().map(|quantity| quantity.name.to_owned()).collect(),
             speed: 0.2,
             full_speed: false,
             picture_size: [1600, 1000],

@@ -19,7 +19,7 @@ mod visits;
 mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
-pub use observables::Observables;
+pub use observables::{Beside, Observables, QUANTITIES, Quantity};
 pub use pull::Pull;
 pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};
 pub use run::RunEnding;

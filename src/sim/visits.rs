@@ -1,10 +1,10 @@
 //! What a simulation has done once it is known which model its scene and settings need.
 
-use super::observables::Observables;
+use super::observables::{self, Observables};
 use super::settings::Settings;
 use super::state::State;
 use super::steppers::Memory;
-use super::stepping::{Advance, Outcome, Stage, observe};
+use super::stepping::{Advance, Outcome, Stage};
 use crate::contact::ContactList;
 use crate::solver::{Model, Slot, SlotVisitor, StepProblem};
 
@@ -47,7 +47,7 @@ impl<A: Advance> SlotVisitor for Step<'_, A> {
         };
         let time_step_secs = settings.parameters.time_step_secs;
         *observables =
-            observe::after_step(stage, outcome, time_step_secs, observables, initial_heights);
+            observables::after_step(stage, outcome, time_step_secs, observables, initial_heights);
     }
 }
 
@@ -66,7 +66,12 @@ impl SlotVisitor for Start<'_> {
         let Self { state, settings, memory, initial_heights } = self;
         memory.prepare(&mut Stage::<M>::new(state, slot), settings);
         let bonds = settings.stepper.has_bonds();
-        observe::at_start::<M>(state, bonds, settings.parameters.time_step_secs, initial_heights)
+        observables::at_start::<M>(
+            state,
+            bonds,
+            settings.parameters.time_step_secs,
+            initial_heights,
+        )
     }
 }
 

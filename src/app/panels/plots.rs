@@ -5,10 +5,10 @@ use egui::{RichText, Ui};
 use crate::app::export::Export;
 use crate::app::plot_picture::PlotPicture;
 use crate::app::plots::{PlotData, draw};
-use crate::app::quantity::Quantity;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::sim::live::Command;
+use crate::sim::{Observables, QUANTITIES, Quantity};
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, state: &mut AppState) {
@@ -29,26 +29,26 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
                 (name, theme::world_colour(index, dark), world.curve.clone())
             })
             .collect(),
-        quantities: state.preferences.quantities.clone(),
+        quantities: QUANTITIES.iter().filter(|quantity| is_shown(state, quantity)).collect(),
         now_secs: state.frame.time_secs(),
         // An empty plot is as wide as a short run; a long one is seen as a whole.
         until_secs: 0.2 * state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs),
     }
 }
 
+fn is_shown(state: &AppState, quantity: &Quantity<Observables>) -> bool {
+    state.preferences.quantities.iter().any(|name| name == quantity.name)
+}
+
 fn header(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Plots").heading());
-        for quantity in Quantity::ALL {
-            let chosen = &mut state.preferences.quantities;
-            let mut shown = chosen.contains(&quantity);
-            if ui.toggle_value(&mut shown, quantity.name()).changed() {
-                if shown {
-                    chosen.push(quantity);
-                    chosen.sort_by_key(|quantity| *quantity as u8);
-                } else {
-                    chosen.retain(|other| *other != quantity);
-                }
+        for quantity in QUANTITIES {
+            let mut shown = is_shown(state, quantity);
+            if ui.toggle_value(&mut shown, quantity.name).changed() {
+                let chosen = &mut state.preferences.quantities;
+                chosen.retain(|name| name != quantity.name);
+                chosen.extend(shown.then(|| quantity.name.to_owned()));
             }
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

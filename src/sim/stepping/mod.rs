@@ -1,7 +1,5 @@
-//! What all ways to step share: the step's problem on its stage, the cut into pieces, the outcome, and what
-//! is observed of it.
+//! What all ways to step share: the step's problem on its stage, the cut into pieces, the outcome.
 
-pub(super) mod observe;
 pub(super) mod outcome;
 pub(super) mod stage;
 

@@ -39,17 +39,12 @@ impl Outcome {
 
     /// Counts another piece of the step; what it measures at its end counts for the whole.
     pub fn add(&mut self, piece: Self) {
-        let before = self.measures;
-        self.report.add(piece.report);
-        self.measures = Measures {
-            residual: before.residual.max(piece.measures.residual),
-            normal_work: before.normal_work + piece.measures.normal_work,
-            tangential_work: before.tangential_work + piece.measures.tangential_work,
-            ..piece.measures
-        };
-        self.gravity_work += piece.gravity_work;
+        let Self { report, measures, gravity_work, bonds } = piece;
+        self.report.add(report);
+        self.measures.add(measures);
+        self.gravity_work += gravity_work;
         let earlier = self.bonds.unwrap_or_default();
-        self.bonds = piece.bonds.map(|BondEnergies { work, stored, broken }| BondEnergies {
+        self.bonds = bonds.map(|BondEnergies { work, stored, broken }| BondEnergies {
             work: earlier.work + work,
             stored,
             broken: earlier.broken + broken,

@@ -21,10 +21,11 @@ impl SolveReport {
 
     /// Counts another solve of the same step. The step has stalled where one of them has.
     pub fn add(&mut self, other: Self) {
-        self.sweeps += other.sweeps;
-        self.factorisations += other.factorisations;
-        self.converged &= other.converged;
-        self.stalled |= other.stalled;
+        let Self { sweeps, factorisations, converged, stalled } = other;
+        self.sweeps += sweeps;
+        self.factorisations += factorisations;
+        self.converged &= converged;
+        self.stalled |= stalled;
     }
 
     /// The same with the work of solves that came before, and of whose outcome nothing is left.

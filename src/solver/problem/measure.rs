@@ -20,6 +20,19 @@ pub struct Measures {
     pub tangential_work: f64,
 }
 
+impl Measures {
+    /// Counts another piece of the same step; the contacts are those at its end.
+    pub fn add(&mut self, piece: Self) {
+        let Self { residual, compressive_contacts, tensile_contacts, normal_work, tangential_work } =
+            piece;
+        self.residual = self.residual.max(residual);
+        self.compressive_contacts = compressive_contacts;
+        self.tensile_contacts = tensile_contacts;
+        self.normal_work += normal_work;
+        self.tangential_work += tangential_work;
+    }
+}
+
 /// The natural map's residual in impulse units. A contact's impulses solve its law exactly where
 /// they are the projections that a Gauss–Seidel update would make of them, so with
 /// p = P_n + C₀Δt

@@ -1,0 +1,232 @@
+//! What every step reports of itself: the columns, how they are found, and what plots show of them.
+
+mod heights;
+mod overlaps;
+mod quantity;
+
+use serde::{Deserialize, Serialize};
+
+use heights::heights;
+use overlaps::overlaps;
+pub use quantity::{Beside, Quantity};
+
+use super::state::State;
+use super::stepping::{BondEnergies, Outcome, Stage};
+use crate::solver::{Kinematics, Measures, Model, SolveReport};
+
+/// Measured after each step. One row of the observables' CSV.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Observables {
+    /// Steps taken so far.
+    pub step: u64,
+    /// Simulated time, s.
+    pub time_secs: f64,
+    /// Δt of this step, s.
+    pub time_step_secs: f64,
+    /// Sweeps of the solver; of a scheme, its passes over all contacts.
+    pub sweeps: u32,
+    /// Matrices that the solver factorised.
+    pub factorisations: u32,
+    /// Whether the stopping test was met within the sweep limit; true for a scheme, which does a
+    /// fixed amount of work and tests nothing. What its step is worth, `residual` tells.
+    pub converged: bool,
+    /// Whether a step that did not converge had stalled: its residual had stopped falling, so that
+    /// more sweeps are of no use. As a rule it has no solution (see the README).
+    #[serde(default)]
+    pub stalled: bool,
+    /// The common residual (`solver::residual`), dimensionless. For a scheme: that of the step's
+    /// problem with the impulses that the scheme summed up and the velocities it ended with.
+    pub residual: f64,
+    /// All contacts, with grains and with fixed shapes.
+    pub contacts: u32,
+    /// Contacts with N > 0.
+    pub compressive_contacts: u32,
+    /// Contacts with N < 0.
+    pub tensile_contacts: u32,
+    /// δ: mean of |gap|/d over touching grain pairs.
+    pub mean_overlap: f64,
+    /// Largest overlap of any contact, in units of d.
+    pub max_overlap: f64,
+    /// Kinetic energy, J.
+    pub kinetic_energy: f64,
+    /// Potential energy in the gravity field, J.
+    pub potential_energy: f64,
+    /// Work that the normal contact forces did in this step, J.
+    pub normal_work: f64,
+    /// Work that the tangential contact forces did in this step, J.
+    pub tangential_work: f64,
+    /// Work of the gravity field, and of a spring that pulls a grain, in this step, J.
+    pub gravity_work: f64,
+    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11); 0 where Σ y_i(0) is 0.
+    pub slump: f64,
+    /// Work that bonds did in this step, a part of `normal_work`, J: negative while they are
+    /// stretched. None but under the law `range`, as all that is told of bonds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bond_work: Option<f64>,
+    /// Σ C₀ s over the bonds that live, J: what stretching them took.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bond_energy: Option<f64>,
+    /// What bonds took that have broken since the start, J: C₀ δ_c each.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub broken_bond_energy: Option<f64>,
+}
+
+impl Observables {
+    /// With numbers that are none where there are no bonds, so that rows with and without bonds fit
+    /// in one table.
+    pub fn with_columns_of_bonds(self) -> Self {
+        let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));
+        Self {
+            bond_work: number(self.bond_work),
+            bond_energy: number(self.bond_energy),
+            broken_bond_energy: number(self.broken_bond_energy),
+            ..self
+        }
+    }
+}
+
+/// What can be plotted, in the order in which it is shown.
+pub const QUANTITIES: &[Quantity<Observables>] = &[
+    Quantity { name: "slump", title: "slump Δy", value: |row| row.slump, ..Quantity::PLAIN },
+    Quantity {
+        name: "overlap",
+        title: "mean overlap δ/d (%)",
+        value: |row| 100.0 * row.mean_overlap,
+        ..Quantity::PLAIN
+    },
+    Quantity {
+        name: "residual",
+        title: "residual",
+        logarithmic: true,
+        value: |row| row.residual,
+        ..Quantity::PLAIN
+    },
+    Quantity {
+        name: "energy",
+        title: "kinetic energy",
+        unit: "J",
+        value: |row| row.kinetic_energy,
+        beside: Some([
+            ("stored in bonds", |row| row.bond_energy),
+            ("taken by broken ones", |row| row.broken_bond_energy),
+        ]),
+        ..Quantity::PLAIN
+    },
+];
+
+/// The observables after a step of Δt that began with those `before`.
+pub(super) fn after_step<M: Model>(
+    stage: &Stage<'_, M>,
+    outcome: Outcome,
+    time_step_secs: f64,
+    before: &Observables,
+    initial_heights: f64,
+) -> Observables {
+    let moving = stage.problem.bodies.iter().zip(&stage.state.world.grains.masses);
+    let kinetic_energy =
+        moving.map(|(body, &mass)| M::Kinematics::kinetic_energy(body, mass)).sum();
+    Observables {
+        step: before.step + 1,
+        time_secs: before.time_secs + time_step_secs,
+        broken_bond_energy: outcome
+            .bonds
+            .map(|bonds| before.broken_bond_energy.unwrap_or(0.0) + bonds.broken),
+        ..of_state::<M>(stage.state, outcome, kinetic_energy, time_step_secs, initial_heights)
+    }
+}
+
+/// The observables of an initial state whose contacts have been found: energies, and the contacts that
+/// are there before any impulse. `bonds` tells whether there are any to be observed.
+pub(super) fn at_start<M: Model>(
+    state: &State,
+    bonds: bool,
+    time_step_secs: f64,
+    initial_heights: f64,
+) -> Observables {
+    let energy = |index: usize| {
+        let body = M::Kinematics::body(&state.world, index);
+        M::Kinematics::kinetic_energy(&body, state.world.grains.masses[index])
+    };
+    let bonds = bonds.then(BondEnergies::default);
+    let outcome = Outcome { bonds, ..Outcome::nothing_yet() };
+    let kinetic_energy = (0..state.world.grains.len()).map(energy).sum();
+    of_state::<M>(state, outcome, kinetic_energy, time_step_secs, initial_heights)
+}
+
+/// What a state and what led to it tell, as at the beginning of a run. Each observable is named, so that none
+/// is forgotten.
+fn of_state<M: Model>(
+    state: &State,
+    outcome: Outcome,
+    kinetic_energy: f64,
+    time_step_secs: f64,
+    initial_heights: f64,
+) -> Observables {
+    let Outcome { report, measures, gravity_work, bonds } = outcome;
+    let SolveReport { sweeps, factorisations, converged, stalled } = report;
+    let Measures { residual, compressive_contacts, tensile_contacts, normal_work, tangential_work } =
+        measures;
+    let [mean_overlap, max_overlap] = overlaps(state, bonds.is_some());
+    let [heights, potential_energy] = heights(state);
+    let dropped = initial_heights - heights;
+    let in_touch = |index: &usize| state.contacts.is_in_touch(*index);
+    Observables {
+        step: 0,
+        time_secs: 0.0,
+        time_step_secs,
+        sweeps,
+        factorisations,
+        converged,
+        stalled,
+        residual,
+        contacts: (0..state.contacts.contacts().len()).filter(in_touch).count() as u32,
+        compressive_contacts,
+        tensile_contacts,
+        mean_overlap,
+        max_overlap,
+        kinetic_energy,
+        potential_energy,
+        normal_work,
+        tangential_work,
+        gravity_work,
+        // On a line nothing can slump, and about a mean height of 0 a relative drop says nothing.
+        slump: if M::Kinematics::AXES == 1 || initial_heights == 0.0 {
+            0.0
+        } else {
+            dropped / initial_heights
+        },
+        bond_work: bonds.map(|bonds| bonds.work),
+        bond_energy: bonds.map(|bonds| bonds.stored),
+        broken_bond_energy: bonds.map(|bonds| bonds.broken),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns that the window does not plot.
+    const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled \
+        contacts compressive_contacts tensile_contacts max_overlap potential_energy normal_work \
+        tangential_work gravity_work bond_work";
+
+    #[test]
+    fn every_column_is_plotted_or_said_not_to_be() {
+        let plain = Observables::default();
+        let columns = serde_json::to_value(plain.with_columns_of_bonds()).unwrap();
+        let columns = columns.as_object().unwrap();
+        let fields = format!("{plain:?}").matches(": ").count();
+        assert_eq!(columns.len(), fields, "columns where there are bonds");
+        for (column, value) in columns {
+            let mut row = serde_json::to_value(plain).unwrap();
+            row[column] = if value.is_boolean() { true.into() } else { 1.into() };
+            let row: Observables = serde_json::from_value(row).unwrap();
+            let tells = |quantity: &Quantity<Observables>| {
+                let beside = |row| quantity.beside.map(|all| all.map(|(_, value)| value(row)));
+                (quantity.value)(&row) != (quantity.value)(&plain) || beside(&row) != beside(&plain)
+            };
+            let plotted = QUANTITIES.iter().any(tells);
+            assert_ne!(plotted, NOT_PLOTTED.split(' ').any(|name| name == column), "{column}");
+        }
+    }
+}
