@@ -1,5 +1,11 @@
 //! Known remedies for known failures, all off in the paper's scheme. A remedy is a file, with its row in
-//! [`ROWS`] and its setting in [`Remedies`]; the steppers that take it call it by name.
+//! [`ROWS`], its setting in [`Remedies`], and a line where the course of a step asks for it: in [`solve`] or
+//! [`after_step`], or, where it looks ahead or cuts the step, in the way to step itself.
+
+#![deny(
+    dead_code,
+    reason = "a remedy without a row, or one that no step asks, would not be missed"
+)]
 
 pub(super) mod calm_unsolved;
 pub(super) mod declared;
@@ -10,7 +16,10 @@ pub(super) mod speculative;
 
 pub use declared::{Remedies, Remedy, RemedyChanges};
 
+use super::settings::Settings;
+use super::stepping::Stage;
 use crate::setting::Group;
+use crate::solver::{Model, SolveReport};
 
 /// All remedies, in the order of their settings.
 pub const ROWS: [Remedy; 5] = [
@@ -22,6 +31,26 @@ pub const ROWS: [Remedy; 5] = [
 ];
 
 const _: () = assert!(ROWS.len() == Remedies::ABOUT.len(), "each remedy has a row and a setting");
+
+/// Solves the problem that is set up.
+pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> SolveReport {
+    let mut report = if settings.remedies.sequential_impacts {
+        sequential_impacts::solve(stage, settings)
+    } else {
+        stage.solve(settings)
+    };
+    if settings.remedies.calm_unsolved && !report.converged {
+        report = calm_unsolved::solve_again(stage, settings, report);
+    }
+    report
+}
+
+/// What is done once the grains have moved.
+pub(super) fn after_step<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
+    if settings.remedies.push_out {
+        push_out::push_out(stage.state, settings.parameters.time_step_secs);
+    }
+}
 
 #[cfg(test)]
 mod tests {

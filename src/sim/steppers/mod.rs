@@ -1,6 +1,8 @@
 //! The ways to take a step of Δt, each with its own contact law: the registry. A way to step is a file or
 //! folder here with its `INFO` and its `advance`, a word of [`Stepper`], and an arm of each match below.
 
+#![deny(dead_code, reason = "a way to step that no row names would not be missed")]
+
 mod course;
 mod dem;
 mod info;

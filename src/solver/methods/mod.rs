@@ -1,5 +1,7 @@
 //! The registry of methods: a file or folder each, a row each in `methods!`.
 
+#![deny(dead_code, reason = "a method without a row would not be missed")]
+
 mod admm;
 mod apgd;
 mod auto;

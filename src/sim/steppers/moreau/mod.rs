@@ -6,7 +6,7 @@ pub(in crate::sim) mod set_up;
 pub(super) use self::set_up::set_up;
 
 use super::StepperInfo;
-use crate::sim::remedies::{calm_unsolved, push_out, sequential_impacts};
+use crate::sim::remedies::{self, sequential_impacts};
 use crate::sim::settings::Settings;
 use crate::sim::stepping::{Outcome, Stage};
 use crate::solver::Model;
@@ -35,20 +35,9 @@ pub(super) const INFO: StepperInfo = StepperInfo {
 /// Takes one step.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
     set_up(stage, settings);
-    let report = if settings.remedies.sequential_impacts {
-        sequential_impacts::solve(stage, settings)
-    } else {
-        stage.solve(settings)
-    };
-    let report = if settings.remedies.calm_unsolved && !report.converged {
-        calm_unsolved::solve_again(stage, settings, report)
-    } else {
-        report
-    };
+    let report = remedies::solve(stage, settings);
     let outcome = stage.move_by(report, settings);
-    if settings.remedies.push_out {
-        push_out::push_out(stage.state, settings.parameters.time_step_secs);
-    }
+    remedies::after_step(stage, settings);
     outcome
 }
 
