@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::circles::Circles;
 use super::modules::House;
 use super::uses::{Uses, between_files};
-use super::{floors, sizes};
+use super::{floors, rooms, sizes};
 
 fn uses(files: &[(&str, &str)]) -> Uses {
     let sources: BTreeMap<String, String> =
@@ -126,6 +126,21 @@ fn a_use_that_points_upward_is_told() {
         "world/mod.rs uses scene.rs, which does not lie below world: crate::scene::Scene",
     ];
     assert_eq!(complaints, expected);
+}
+
+#[test]
+fn a_room_without_a_door_and_one_without_a_row_are_told() {
+    let files = [
+        ("lib.rs", "mod a; mod list;"),
+        ("list.rs", "const ALL: [Row; 1] = [Row { make: || listed(1) }];"),
+        ("a/mod.rs", "mod one; mod two;"),
+        ("a/one.rs", "pub fn listed(n: u32) {} fn helper() {}"),
+        ("a/two.rs", "pub fn forgotten() {}"),
+        ("a/three.rs", "pub fn listed(n: u32) {}"),
+    ];
+    let sources = files.map(|(path, text)| (path.to_owned(), text.to_owned())).into();
+    assert_eq!(rooms::without_a_door(&sources), ["a/three.rs"]);
+    assert_eq!(rooms::without_a_row(&sources, "a/", "list.rs"), ["a/two.rs"]);
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod circles;
 mod floors;
 mod made_up;
 mod modules;
+mod rooms;
 mod sizes;
 mod sources;
 mod uses;
@@ -34,6 +35,14 @@ fn no_file_uses_what_uses_it() {
 fn folders_use_only_those_on_floors_below() {
     let complaints = floors::complaints(&uses::between_files(&house(), being_rebuilt));
     assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
+}
+
+#[test]
+fn every_file_is_compiled_and_every_scene_is_listed() {
+    let sources = sources::below("src");
+    assert_eq!(rooms::without_a_door(&sources), [""; 0], "no `mod` names them");
+    let unlisted = rooms::without_a_row(&sources, "scene/stability/", "scene/registry.rs");
+    assert_eq!(unlisted, [""; 0], "scenes that no row of the registry makes");
 }
 
 #[test]

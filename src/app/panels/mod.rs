@@ -33,7 +33,7 @@ pub(super) struct Section {
 
 /// The sidebar, from top to bottom.
 pub(super) const SECTIONS: &[Section] = &[
-    Section { id: "physics", title: physics::title, open: true, show: physics::show },
+    Section { id: "physics", title: title_of_physics, open: true, show: physics::show },
     Section { id: "grain", title: grain::title, open: true, show: grain::show },
     Section { id: "run", title: |_| Some("Run".into()), open: true, show: run::show },
     Section { id: "see", title: |_| Some("See".into()), open: false, show: see::show },
@@ -46,3 +46,8 @@ pub(super) const SECTIONS: &[Section] = &[
         show: speed::show,
     },
 ];
+
+fn title_of_physics(state: &AppState) -> Option<String> {
+    let of_one = || format!("Physics of {}", compare::title(state, state.selected));
+    Some(if state.compares() { of_one() } else { "Physics".into() })
+}

@@ -14,12 +14,6 @@ use crate::world::{Parameters, Physics};
 /// The paper's time steps, s.
 pub const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
-/// Its heading.
-pub fn title(state: &AppState) -> Option<String> {
-    let of_one = || format!("Physics of {}", super::compare::title(state, state.selected));
-    Some(if state.compares() { of_one() } else { "Physics".into() })
-}
-
 /// Shows the panel.
 pub fn show(ui: &mut Ui, state: &mut AppState) {
     let index = state.selected;
