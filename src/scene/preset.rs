@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Scene;
-use crate::sim::{Remedies, Settings};
+use crate::setting::Group;
+use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
 /// Gap below which grains touch, in d: contacts that a step opens by its rounding live on.
@@ -13,18 +14,6 @@ const RESTITUTION_THRESHOLD: f64 = 2.0;
 /// Residual that steps are solved to.
 const TOLERANCE: f64 = 1e-8;
 const MAX_SWEEPS: u32 = 5_000;
-/// Furthest way of a grain in a piece of a step, in d: half of what could jump a wall.
-const MAX_TRAVEL: f64 = 0.25;
-
-/// Each for a failure of its own. Fast grains are cut into pieces of a step and not looked ahead for,
-/// which would cost them their bounce (`sim::remedies::speculative`).
-const ALL_REMEDIES: Remedies = Remedies {
-    push_out: true,
-    max_travel: MAX_TRAVEL,
-    calm_unsolved: true,
-    sequential_impacts: true,
-    speculative: false,
-};
 
 /// Settings that go together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -56,7 +45,12 @@ impl Preset {
             warm_start: true,
             ..settings.solver
         };
-        settings.remedies = ALL_REMEDIES;
+        settings.remedies = Remedies::default();
+        for remedy in &REMEDIES {
+            if let Some(value) = remedy.robust {
+                settings.remedies.set(remedy.name, value);
+            }
+        }
         *settings = settings.with_remedies_taken();
     }
 }

@@ -16,7 +16,7 @@ impl Settings {
         self.solver.validate()?;
         self.remedies.validate_each()?;
         for remedy in &ROWS {
-            if (remedy.is_on)(&self.remedies) && !remedy.taken_by.contains(&self.stepper) {
+            if remedy.is_on(&self.remedies) && !remedy.taken_by.contains(&self.stepper) {
                 let takers: Vec<_> = remedy.taken_by.iter().map(|taker| taker.name()).collect();
                 let allowed = format!(
                     "left out where stepper is {}: it goes with {}",
@@ -32,7 +32,7 @@ impl Settings {
     /// The same without the remedies that its stepper does not take.
     pub fn with_remedies_taken(mut self) -> Self {
         for remedy in ROWS.iter().filter(|remedy| !remedy.taken_by.contains(&self.stepper)) {
-            (remedy.leave_out)(&mut self.remedies);
+            remedy.leave_out(&mut self.remedies);
         }
         self
     }

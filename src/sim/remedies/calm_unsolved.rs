@@ -4,6 +4,7 @@
 //! with it. What the step measures is then the residual of the problem without.
 
 use super::Remedy;
+use crate::setting::Value;
 use crate::sim::settings::Settings;
 use crate::sim::steppers::moreau::set_up::set_up;
 use crate::sim::steppers::stepper::Stepper;
@@ -14,8 +15,7 @@ use crate::solver::{Model, SolveReport};
 pub(super) const REMEDY: Remedy = Remedy {
     name: "calm-unsolved",
     taken_by: &[Stepper::Moreau],
-    is_on: |remedies| remedies.calm_unsolved,
-    leave_out: |remedies| remedies.calm_unsolved = false,
+    robust: Some(Value::Switch(true)),
 };
 
 /// Solves the step anew with ρ = 0, from the impulses of the step before. The work of the solve that failed

@@ -1,6 +1,6 @@
 //! The settings of the remedies, and what a remedy's own file says of it.
 
-use crate::setting::settings;
+use crate::setting::{Group, Value, settings};
 use crate::sim::steppers::stepper::Stepper;
 
 /// What there is to know of a remedy.
@@ -10,10 +10,22 @@ pub struct Remedy {
     pub name: &'static str,
     /// The steppers that take it; others have their own ways, or none.
     pub taken_by: &'static [Stepper],
+    /// Its setting in the preset `robust`, if it is part of that.
+    pub robust: Option<Value>,
+}
+
+impl Remedy {
     /// Whether it is asked for.
-    pub is_on: fn(&Remedies) -> bool,
+    pub fn is_on(&self, remedies: &Remedies) -> bool {
+        remedies.get(self.name) != Remedies::default().get(self.name)
+    }
+
     /// Asks for it no more.
-    pub leave_out: fn(&mut Remedies),
+    pub fn leave_out(&self, remedies: &mut Remedies) {
+        if let Some(value) = Remedies::default().get(self.name) {
+            remedies.set(self.name, value);
+        }
+    }
 }
 
 settings! {

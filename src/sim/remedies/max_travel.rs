@@ -1,6 +1,7 @@
 //! A step cut into pieces, so that no grain jumps over what it should hit.
 
 use super::Remedy;
+use crate::setting::Value;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::stepper::Stepper;
@@ -9,9 +10,11 @@ use crate::sim::steppers::stepper::Stepper;
 pub(super) const REMEDY: Remedy = Remedy {
     name: "max-travel",
     taken_by: &[Stepper::Moreau, Stepper::Range],
-    is_on: |remedies| remedies.max_travel > 0.0,
-    leave_out: |remedies| remedies.max_travel = 0.0,
+    robust: Some(Value::Number(ROBUST)),
 };
+
+/// Furthest way of a grain in a piece where the preset `robust` asks, in d: half of what could jump a wall.
+const ROBUST: f64 = 0.25;
 
 /// Most pieces of a step: a grain that is faster still is lost anyhow, and the step has to end.
 const MOST_PIECES: f64 = 1000.0;

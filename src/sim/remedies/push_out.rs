@@ -13,16 +13,13 @@ use glam::DVec2;
 
 use super::Remedy;
 use crate::contact::Numbering;
+use crate::setting::Value;
 use crate::sim::state::State;
 use crate::sim::steppers::stepper::Stepper;
 
 /// The row of the registry.
-pub(super) const REMEDY: Remedy = Remedy {
-    name: "push-out",
-    taken_by: &[Stepper::Moreau],
-    is_on: |remedies| remedies.push_out,
-    leave_out: |remedies| remedies.push_out = false,
-};
+pub(super) const REMEDY: Remedy =
+    Remedy { name: "push-out", taken_by: &[Stepper::Moreau], robust: Some(Value::Switch(true)) };
 
 /// Overlap that is left, in d: cohesive contacts live on overlap. Smaller: contacts are lost to
 /// rounding; larger: it shows in what is measured.

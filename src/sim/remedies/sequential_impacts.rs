@@ -42,6 +42,7 @@
 
 use super::Remedy;
 use crate::contact::ContactList;
+use crate::setting::Value;
 use crate::sim::settings::Settings;
 use crate::sim::steppers::stepper::Stepper;
 use crate::sim::stepping::Stage;
@@ -54,8 +55,7 @@ use crate::solver::{
 pub(super) const REMEDY: Remedy = Remedy {
     name: "sequential-impacts",
     taken_by: &[Stepper::Moreau],
-    is_on: |remedies| remedies.sequential_impacts,
-    leave_out: |remedies| remedies.sequential_impacts = false,
+    robust: Some(Value::Switch(true)),
 };
 
 /// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
