@@ -31,7 +31,7 @@ pub struct Observables {
     /// fixed amount of work and tests nothing. What its step is worth, `residual` tells.
     pub converged: bool,
     /// Whether a step that did not converge had stalled: its residual had stopped falling, so that
-    /// more sweeps are of no use. As a rule it has no solution (see the README).
+    /// more sweeps are of no use. As a rule it has no solution (see RESULTS.md).
     #[serde(default)]
     pub stalled: bool,
     /// The common residual (`solver::residual`), dimensionless. For a scheme: that of the step's
