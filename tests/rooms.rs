@@ -2,8 +2,10 @@
 
 mod common;
 
+use std::path::Path;
+
 use common::{parameters, pressed_pile};
-use slump::scene::Scene;
+use slump::scene::{Scene, read_scene};
 use slump::setting::{About, Kind, Value};
 use slump::sim::{Observables, REMEDIES, Settings, Stepper};
 
@@ -73,6 +75,14 @@ fn a_setting_that_a_stepper_reads_and_a_remedy_that_it_takes_change_its_steps() 
             assert!(matters(about, stepper), "{stepper}: {} changes nothing", about.name);
         }
     }
+}
+
+#[test]
+fn scene_files_that_do_not_know_the_newest_settings_are_read() {
+    let hourglass = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/hourglass.toml");
+    let text = std::fs::read_to_string(&hourglass).expect("it is there");
+    assert!(!text.contains("substeps") && !text.contains("remedies"), "it is older than they are");
+    read_scene(&hourglass).expect("a sound scene");
 }
 
 #[test]
