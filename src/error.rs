@@ -53,7 +53,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
     /// An error about the value of a field.
-    pub fn value(
+    pub(crate) fn value(
         field: impl Into<String>,
         value: impl std::fmt::Display,
         allowed: impl Into<String>,
@@ -62,7 +62,7 @@ impl Error {
     }
 
     /// An error about a file or folder.
-    pub fn file(path: impl AsRef<Path>, reason: impl std::fmt::Display) -> Self {
+    pub(crate) fn file(path: impl AsRef<Path>, reason: impl std::fmt::Display) -> Self {
         // Parsers end their messages with a line break; a sentence has none.
         let reason = reason.to_string().trim_end().to_owned();
         Self::File { path: path.as_ref().to_owned(), reason }

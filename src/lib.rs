@@ -6,20 +6,25 @@
 //! window (`app`, feature `window`) ← [`cli`]; `tests/house` checks it. The physics knows no screen.
 //! Without the feature `gpu` pictures are drawn by the processor alone.
 
-#![warn(missing_docs)]
+#![warn(missing_docs, unreachable_pub)]
 
-#[cfg(feature = "window")]
-pub mod app;
-pub mod cli;
 pub mod contact;
 pub mod error;
-pub mod headless;
+mod headless;
 pub mod interchange;
-pub mod output;
+mod output;
 pub mod render;
 pub mod scene;
 pub mod setting;
 pub mod sim;
 pub mod solver;
-pub mod study;
 pub mod world;
+
+// The program: public for `main.rs`, tests and benches of this package, and for nobody else.
+#[cfg(feature = "window")]
+#[doc(hidden)]
+pub mod app;
+#[doc(hidden)]
+pub mod cli;
+#[doc(hidden)]
+pub mod study;

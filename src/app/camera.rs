@@ -29,13 +29,13 @@ impl Default for SceneCamera {
 
 impl SceneCamera {
     /// Shows the whole scene again.
-    pub fn frame_scene(&mut self) {
+    pub(crate) fn frame_scene(&mut self) {
         self.framed = true;
     }
 
     /// The camera of a picture of `size` pixels, `pixels_per_point` of them in a point. `view` is
     /// what the whole scene takes, m.
-    pub fn camera(
+    pub(crate) fn camera(
         &mut self,
         view: [DVec2; 2],
         style: &Style,
@@ -55,7 +55,7 @@ impl SceneCamera {
 
     /// The camera that shows at least as much of the scene on a picture of another size as the
     /// window does on `window_points`.
-    pub fn for_picture(
+    pub(crate) fn for_picture(
         &self,
         view: [DVec2; 2],
         style: &Style,
@@ -73,14 +73,14 @@ impl SceneCamera {
     }
 
     /// Moves the scene with the mouse; y down, points.
-    pub fn pan(&mut self, moved: egui::Vec2) {
+    pub(crate) fn pan(&mut self, moved: egui::Vec2) {
         self.framed = false;
         let moved = DVec2::new(f64::from(moved.x), -f64::from(moved.y));
         self.centre -= moved * self.metres_per_point;
     }
 
     /// Zooms by `factor`, so that what lies `from_middle` (points, y down) stays in its place.
-    pub fn zoom(&mut self, factor: f64, from_middle: egui::Vec2) {
+    pub(crate) fn zoom(&mut self, factor: f64, from_middle: egui::Vec2) {
         let [nearest, farthest] = ZOOM_LIMITS.map(|limit| limit * self.framed_metres_per_point);
         let scale = (self.metres_per_point / factor).clamp(nearest, farthest);
         let offset = DVec2::new(f64::from(from_middle.x), -f64::from(from_middle.y));

@@ -8,7 +8,7 @@ use super::state::AppState;
 use crate::scene::{Config, Origin};
 
 /// Opens the last file that was dropped in this frame.
-pub fn take_files(context: &Context, state: &mut AppState) {
+pub(super) fn take_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
     let Some(file) = dropped else { return };
     match config_of(file.path()) {

@@ -12,7 +12,7 @@ use crate::sim::{Observables, Snapshot};
 use super::plot_picture::{PlotPicture, PlotPrinter};
 
 /// A file to be written.
-pub enum Export {
+pub(crate) enum Export {
     /// A picture of a scene.
     Scene {
         /// The moment.
@@ -55,7 +55,13 @@ struct Job {
 
 impl Exporter {
     /// Writes a file into `folder`; its name begins with `stem` and is that of no other file.
-    pub fn submit(&mut self, context: &egui::Context, export: Export, folder: &Path, stem: &str) {
+    pub(crate) fn submit(
+        &mut self,
+        context: &egui::Context,
+        export: Export,
+        folder: &Path,
+        stem: &str,
+    ) {
         let (jobs, _) = self.thread.get_or_insert_with(|| {
             let (jobs, inbox) = channel::<Job>();
             let (outbox, outcomes) = channel();
@@ -74,12 +80,12 @@ impl Exporter {
     }
 
     /// Whether a file is being written.
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.pending > 0
     }
 
     /// What became of the last file, and whether it failed; once.
-    pub fn take_outcome(&mut self) -> Option<(String, bool)> {
+    pub(crate) fn take_outcome(&mut self) -> Option<(String, bool)> {
         let (_, outcomes) = self.thread.as_ref()?;
         let outcome = outcomes.try_recv().ok()?;
         self.pending = self.pending.saturating_sub(1);

@@ -11,7 +11,7 @@ use egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 use super::scene_callback::target_format;
 
 /// Fills a rectangle (points) with an opaque colour, beneath what is painted later.
-pub fn fill(ui: &Ui, rect: Rect, colour: Color32) {
+pub(super) fn fill(ui: &Ui, rect: Rect, colour: Color32) {
     ui.painter().add(Callback::new_paint_callback(rect, Fill { colour }));
 }
 

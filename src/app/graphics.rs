@@ -6,7 +6,7 @@ use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use super::scene_callback::TargetFormat;
 
 /// Draws user interfaces into targets of one format.
-pub struct Screen {
+pub(super) struct Screen {
     /// The device.
     pub device: wgpu::Device,
     /// Its queue.
@@ -16,7 +16,11 @@ pub struct Screen {
 
 impl Screen {
     /// A screen for targets of this format.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, format: wgpu::TextureFormat) -> Self {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        format: wgpu::TextureFormat,
+    ) -> Self {
         // Nothing here has gradients that would show steps.
         let mut renderer = Renderer::new(
             device,
@@ -28,7 +32,7 @@ impl Screen {
     }
 
     /// Sends new and changed textures to the device: before the pass that needs them.
-    pub fn update_textures(&mut self, delta: &TexturesDelta) {
+    pub(super) fn update_textures(&mut self, delta: &TexturesDelta) {
         for (id, changes) in &delta.set {
             for change in changes {
                 self.renderer.update_texture(&self.device, &self.queue, *id, change);
@@ -37,14 +41,14 @@ impl Screen {
     }
 
     /// Frees textures: after the pass that needed them last.
-    pub fn free_textures(&mut self, delta: &TexturesDelta) {
+    pub(super) fn free_textures(&mut self, delta: &TexturesDelta) {
         for id in &delta.free {
             self.renderer.free_texture(id);
         }
     }
 
     /// Records the pass. Returns what is to be submitted before it.
-    pub fn paint(
+    pub(super) fn paint(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,

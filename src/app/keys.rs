@@ -6,7 +6,7 @@ use super::panels::scene;
 use super::state::AppState;
 
 /// Acts on the keys of this frame.
-pub fn act(context: &Context, state: &mut AppState) {
+pub(super) fn act(context: &Context, state: &mut AppState) {
     let escape = context.input(|input| input.key_pressed(Key::Escape));
     if escape {
         state.help = false;

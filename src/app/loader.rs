@@ -12,7 +12,7 @@ const ORDERS_OF_SETTLING: f64 = 3.5;
 const WALL_HEIGHTS: f64 = 1.1;
 
 /// Makes the start of `config` on the thread that calls it.
-pub fn loader(config: Config) -> Loader {
+pub(crate) fn loader(config: Config) -> Loader {
     Box::new(move |tell| {
         let mut part = 0f64;
         let scene = config.scene(|settling| {

@@ -5,7 +5,11 @@ use egui::{ComboBox, Ui};
 use crate::solver::{METHODS, Method};
 
 /// Shows the method, and all others to be chosen from.
-pub fn method_box(ui: &mut Ui, salt: impl std::hash::Hash + std::fmt::Debug, method: &mut Method) {
+pub(super) fn method_box(
+    ui: &mut Ui,
+    salt: impl std::hash::Hash + std::fmt::Debug,
+    method: &mut Method,
+) {
     let list = ComboBox::from_id_salt(egui::Id::unique(salt)).width(100.0);
     let shown = list.selected_text(method.name()).show_ui(ui, |ui| {
         for info in &METHODS {

@@ -10,7 +10,7 @@ const SLIDER_DIGITS: usize = 3;
 const FIELD_WIDTH: f32 = 76.0;
 
 /// How a number is shown, and what it may be.
-pub struct Number<'a> {
+pub(super) struct Number<'a> {
     /// What it is called; also its name for assistive technology.
     pub label: &'a str,
     /// Its unit, or nothing.
@@ -35,7 +35,7 @@ struct Draft {
 }
 
 /// What became of a number in this frame.
-pub struct Edited {
+pub(super) struct Edited {
     /// The new value, where there is one.
     pub value: Option<f64>,
     /// The slider.
@@ -44,7 +44,7 @@ pub struct Edited {
 
 impl Number<'_> {
     /// Shows the number as a labelled field above a slider.
-    pub fn show(&self, ui: &mut Ui, value: f64) -> Edited {
+    pub(super) fn show(&self, ui: &mut Ui, value: f64) -> Edited {
         let mut edited = None;
         ui.horizontal(|ui| {
             ui.label(self.label).on_hover_text(self.hint);
@@ -159,7 +159,7 @@ impl Number<'_> {
 }
 
 /// A number as people type it: short, and read back as the same number.
-pub fn written(value: f64) -> String {
+pub(super) fn written(value: f64) -> String {
     if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
         value.to_string()
     } else {

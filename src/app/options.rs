@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// Options of the window. The scene, its physics and its solver are in [`crate::scene::Config`].
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
-pub struct WindowOptions {
+pub(crate) struct WindowOptions {
     /// Forget the window's layout, theme and last scene
     #[arg(long, help_heading = "Window")]
     pub reset_ui: bool,

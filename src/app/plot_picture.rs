@@ -14,7 +14,7 @@ const PIXELS_PER_POINT: f32 = 2.0;
 const PASSES: usize = 4;
 
 /// What is to be drawn.
-pub struct PlotPicture {
+pub(crate) struct PlotPicture {
     /// The curves.
     pub data: PlotData,
     /// Pixels.
@@ -24,7 +24,7 @@ pub struct PlotPicture {
 }
 
 /// Draws such pictures. Keep it: opening a device takes longer than a picture.
-pub struct PlotPrinter {
+pub(crate) struct PlotPrinter {
     canvas: Canvas,
 }
 
@@ -33,7 +33,7 @@ impl PlotPrinter {
     ///
     /// # Errors
     /// Where there is none.
-    pub fn new() -> Result<Self> {
+    pub(crate) fn new() -> Result<Self> {
         Ok(Self { canvas: Canvas::new()? })
     }
 
@@ -41,7 +41,7 @@ impl PlotPrinter {
     ///
     /// # Errors
     /// What the device reports.
-    pub fn print(&mut self, picture: &PlotPicture) -> Result<RgbaImage> {
+    pub(crate) fn print(&mut self, picture: &PlotPicture) -> Result<RgbaImage> {
         let context = egui::Context::default();
         theme::install(&context);
         context.set_theme(if picture.dark { egui::Theme::Dark } else { egui::Theme::Light });

@@ -20,7 +20,7 @@ const BESIDE: [LineStyle; 2] =
 
 /// Everything that plots are drawn from.
 #[derive(Clone, Debug)]
-pub struct PlotData {
+pub(crate) struct PlotData {
     /// Name, colour and rows of each world.
     pub worlds: Vec<(String, Color32, Curve)>,
     /// The plots.
@@ -32,7 +32,7 @@ pub struct PlotData {
 }
 
 /// Draws the plots into the space that is left. Returns the time that was clicked, s.
-pub fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
+pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     // Plots that left room would shrink their panel, frame by frame.
     ui.set_min_size(ui.available_size());
     let count = data.quantities.len();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::headless::{HeadlessOptions, PictureSize};
+use crate::headless::HeadlessOptions;
 use crate::render::{Style, Theme};
 use crate::scene::Config;
 use crate::sim::QUANTITIES;
@@ -59,10 +59,10 @@ impl Preferences {
     ///
     /// # Errors
     /// Where the size of a picture is none.
-    pub fn follow(&mut self, pictures: &HeadlessOptions) -> Result<()> {
+    pub(crate) fn follow(&mut self, pictures: &HeadlessOptions) -> Result<()> {
         if pictures.size.is_some() {
-            let PictureSize { width, height } = pictures.size()?;
-            self.picture_size = [width, height];
+            let size = pictures.size()?;
+            self.picture_size = [size.width, size.height];
         }
         if let Some(colour) = pictures.colour {
             self.style.colour_by = colour;
@@ -85,7 +85,7 @@ impl Preferences {
     }
 
     /// The pace that the preferences ask for.
-    pub fn pace(&self) -> Pace {
+    pub(crate) fn pace(&self) -> Pace {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
     }
 }

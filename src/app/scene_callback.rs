@@ -10,7 +10,7 @@ use crate::render::{Frame, Painter, Picture};
 /// The format of the target that callbacks draw into; whoever makes an egui renderer puts it among
 /// the callback resources.
 #[derive(Clone, Copy, Debug)]
-pub struct TargetFormat(pub wgpu::TextureFormat);
+pub(super) struct TargetFormat(pub wgpu::TextureFormat);
 
 /// The format of the target. Tests draw into the one that egui recommends, and say nothing of it.
 pub(super) fn target_format(resources: &CallbackResources) -> wgpu::TextureFormat {
@@ -29,7 +29,7 @@ struct SceneCallback {
 }
 
 /// A shape that draws `picture` in `rect` (points). Pictures are in physical pixels.
-pub fn scene_callback(place: usize, rect: Rect, picture: Picture) -> PaintCallback {
+pub(super) fn scene_callback(place: usize, rect: Rect, picture: Picture) -> PaintCallback {
     Callback::new_paint_callback(rect, SceneCallback { place, rect, picture })
 }
 

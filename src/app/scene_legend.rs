@@ -10,7 +10,7 @@ pub(super) struct LegendCache(Option<(Legend, [u32; 2], TextureHandle)>);
 
 impl LegendCache {
     /// Paints a legend into `rect`, `size` pixels.
-    pub fn paint(&mut self, ui: &egui::Ui, rect: Rect, legend: Legend, size: [u32; 2]) {
+    pub(super) fn paint(&mut self, ui: &egui::Ui, rect: Rect, legend: Legend, size: [u32; 2]) {
         let fresh = self.0.as_ref().is_some_and(|(old, at, _)| *old == legend && *at == size);
         if !fresh {
             let strip = legend.draw(size[0], size[1]);
@@ -35,7 +35,7 @@ impl LegendCache {
     }
 
     /// Forgets the texture: its context is gone.
-    pub fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         self.0 = None;
     }
 }

@@ -8,12 +8,17 @@ use crate::sim::Settings;
 
 /// Shows a setting and changes it; `start` says what a double click sets. Nothing is shown of a setting that
 /// has no control. Where the control's slider or box lies.
-pub fn show(ui: &mut Ui, about: &About, settings: &mut Settings, start: &Settings) -> Option<Rect> {
+pub(super) fn show(
+    ui: &mut Ui,
+    about: &About,
+    settings: &mut Settings,
+    start: &Settings,
+) -> Option<Rect> {
     about.control.and_then(|control| show_as(ui, about, &control, settings, start))
 }
 
 /// The same with another control than the one that is declared.
-pub fn show_as(
+pub(super) fn show_as(
     ui: &mut Ui,
     about: &About,
     control: &Control,

@@ -104,7 +104,7 @@ impl AppState {
     }
 
     /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
-    pub fn refresh(&mut self) {
+    pub(crate) fn refresh(&mut self) {
         self.frame = self.live.latest().clone();
         let start = self.frame.start.as_ref().map_or(0, |start| start.number);
         if start != self.seen_start {
@@ -143,7 +143,7 @@ impl AppState {
     }
 
     /// Whether worlds are compared.
-    pub fn compares(&self) -> bool {
+    pub(crate) fn compares(&self) -> bool {
         self.frame.worlds.len() > 1
     }
 
@@ -156,7 +156,7 @@ impl AppState {
     }
 
     /// Releases, plays or pauses.
-    pub fn toggle_play(&mut self) {
+    pub(crate) fn toggle_play(&mut self) {
         let command = if self.frame.playing { Command::Pause } else { Command::Play };
         self.live.send(command);
     }
@@ -167,19 +167,19 @@ impl AppState {
     }
 
     /// Goes one step back in the recording.
-    pub fn step_back(&mut self) {
+    pub(crate) fn step_back(&mut self) {
         let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
         let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
         self.live.send(Command::Seek(time_secs.max(0.0)));
     }
 
     /// Back to the start, with the present settings.
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.live.send(Command::Reset);
     }
 
     /// Says something in the status bar for a while.
-    pub fn warn(&mut self, text: impl Into<String>) {
+    pub(crate) fn warn(&mut self, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), failure: true, since: Instant::now() });
     }
 
@@ -191,12 +191,12 @@ impl AppState {
     }
 
     /// Forgets what lives in an egui context: it is about to be replaced.
-    pub fn forget_textures(&mut self) {
+    pub(crate) fn forget_textures(&mut self) {
         self.legend.forget();
     }
 
     /// Notes where a control lies.
-    pub fn note_control(&mut self, name: &str, rect: Rect) {
+    pub(crate) fn note_control(&mut self, name: &str, rect: Rect) {
         match self.controls.get_mut(name) {
             Some(place) => *place = rect,
             None => {

@@ -12,7 +12,7 @@ use super::preferences::Preferences;
 /// What is kept.
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Stored {
+pub(super) struct Stored {
     /// The user's choices.
     pub preferences: Preferences,
     /// Which panels are open, and how large.
@@ -28,20 +28,20 @@ fn path() -> Option<PathBuf> {
 }
 
 /// Reads what was kept.
-pub fn load() -> Stored {
+pub(super) fn load() -> Stored {
     let text = path().and_then(|path| std::fs::read_to_string(path).ok());
     text.and_then(|text| ron::from_str(&text).ok()).unwrap_or_default()
 }
 
 /// Forgets what was kept.
-pub fn forget() {
+pub(super) fn forget() {
     if let Some(path) = path() {
         let _ = std::fs::remove_file(path);
     }
 }
 
 /// Keeps it.
-pub fn save(stored: &Stored) {
+pub(super) fn save(stored: &Stored) {
     let Some(path) = path() else { return };
     let Ok(text) = ron::to_string(stored) else { return };
     if let Some(folder) = path.parent() {

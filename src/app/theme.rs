@@ -15,33 +15,33 @@ const BOLD_FONT: &[u8] = include_bytes!("../../assets/fonts/DejaVuSansCondensed-
 const BOLD: &str = "bold";
 
 /// The family of headings.
-pub fn bold() -> FontFamily {
+pub(crate) fn bold() -> FontFamily {
     FontFamily::Name(BOLD.into())
 }
 
 /// A colour of a picture as egui has it.
-pub fn color32(colour: Colour) -> Color32 {
+pub(crate) fn color32(colour: Colour) -> Color32 {
     let [red, green, blue, alpha] = colour.to_rgba8().0;
     Color32::from_rgba_unmultiplied(red, green, blue, alpha)
 }
 
 /// What calls for action: the release button, the present time in plots.
-pub fn accent(dark: bool) -> Color32 {
+pub(crate) fn accent(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x4d, 0xa3, 0xd9) } else { Color32::from_rgb(0x00, 0x6c, 0xa8) }
 }
 
 /// What went wrong.
-pub fn warning(dark: bool) -> Color32 {
+pub(crate) fn warning(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0xf0, 0x8a, 0x4a) } else { Color32::from_rgb(0xb8, 0x46, 0x00) }
 }
 
 /// What went well.
-pub fn good(dark: bool) -> Color32 {
+pub(crate) fn good(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x5c, 0xc9, 0x8a) } else { Color32::from_rgb(0x0a, 0x7d, 0x46) }
 }
 
 /// Colours of the compared worlds, which colour-blind people tell apart (Okabe & Ito).
-pub fn world_colour(index: usize, dark: bool) -> Color32 {
+pub(crate) fn world_colour(index: usize, dark: bool) -> Color32 {
     const COLOURS: [u32; 6] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9];
     const ON_DARK: [u32; 6] = [0x56b4e9, 0xe8772e, 0x2fc49a, 0xe09cc4, 0xf0bf4c, 0x9a8cff];
     let colours = if dark { ON_DARK } else { COLOURS };

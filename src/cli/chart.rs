@@ -27,7 +27,7 @@ pub(super) struct ChartCommand {
 
 impl ChartCommand {
     /// Does what is asked.
-    pub fn run(self) -> Result<()> {
+    pub(super) fn run(self) -> Result<()> {
         let Self { out, quick, large, only, peers } = self;
         chart_speed(&ChartOptions { out, quick, large, only, peers })
     }

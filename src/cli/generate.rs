@@ -25,7 +25,7 @@ pub(super) struct GenerateCommand {
 
 impl GenerateCommand {
     /// Does what is asked.
-    pub fn run(self) -> Result<()> {
+    pub(super) fn run(self) -> Result<()> {
         let Self { grains: count, box_width: width, seed, out } = self;
         if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             check_writable(folder)?;

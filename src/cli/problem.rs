@@ -50,7 +50,7 @@ pub(super) enum ProblemCommand {
 
 impl ProblemCommand {
     /// Does what is asked.
-    pub fn run(self) -> Result<()> {
+    pub(super) fn run(self) -> Result<()> {
         match self {
             Self::Dump { config, at, out } => {
                 let scene = settled(&config)?;

@@ -24,7 +24,7 @@ pub(super) struct ReproduceCommand {
 
 impl ReproduceCommand {
     /// Does what is asked.
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         reproduce(&self.figures, &self.out, self.quick, draw_snapshots)
     }
 }

@@ -22,7 +22,7 @@ pub(super) struct RunCommand {
 
 impl RunCommand {
     /// Does what is asked.
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         if self.headless.headless {
             return crate::headless::run(&self.config, &self.headless);
         }

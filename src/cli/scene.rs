@@ -13,7 +13,7 @@ pub(super) struct SceneCommand {
 
 impl SceneCommand {
     /// Does what is asked.
-    pub fn run(&self) -> Result<()> {
+    pub(super) fn run(&self) -> Result<()> {
         print!("{}", scene_to_toml(&settled(&self.config)?)?);
         Ok(())
     }

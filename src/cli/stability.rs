@@ -28,7 +28,7 @@ pub(super) struct StabilityCommand {
 
 impl StabilityCommand {
     /// Does what is asked.
-    pub fn run(self) -> Result<()> {
+    pub(super) fn run(self) -> Result<()> {
         let named: Result<Vec<_>> = self.scenes.iter().map(|name| Challenge::named(name)).collect();
         let challenges = match named? {
             named if named.is_empty() => CHALLENGES.iter().collect(),

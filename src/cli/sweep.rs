@@ -56,7 +56,7 @@ enum Action {
 
 impl SweepCommand {
     /// Does what is asked.
-    pub fn run(self) -> Result<()> {
+    pub(super) fn run(self) -> Result<()> {
         match self.command {
             Some(Action::Merge { study, parts, out, quick }) => {
                 let study = Study::read(&study, quick)?;

@@ -94,17 +94,17 @@ impl Candidates {
     }
 
     /// The boundaries' features.
-    pub fn features(&self) -> &[Feature] {
+    pub(crate) fn features(&self) -> &[Feature] {
         &self.features
     }
 
     /// The boundaries that can move, by their number, each with the number of its feature.
-    pub fn pistons(&self) -> &[(usize, usize)] {
+    pub(crate) fn pistons(&self) -> &[(usize, usize)] {
         &self.pistons
     }
 
     /// Moves features, given by their numbers, each by its way, m.
-    pub fn shift_features(&mut self, ways: impl Iterator<Item = (usize, DVec2)>) {
+    pub(crate) fn shift_features(&mut self, ways: impl Iterator<Item = (usize, DVec2)>) {
         let mut longest = 0f64;
         for (feature, way) in ways {
             self.features[feature].shift(way);
@@ -114,23 +114,13 @@ impl Candidates {
     }
 
     /// The gap below which a pair touches, m.
-    pub fn gap_tolerance(&self) -> f64 {
+    pub(crate) fn gap_tolerance(&self) -> f64 {
         self.reach.gap_tolerance
     }
 
     /// Candidates of grain `index`, rising.
     pub fn of(&self, index: usize) -> &[u32] {
         &self.others[self.starts[index] as usize..self.starts[index + 1] as usize]
-    }
-
-    /// Number of candidate pairs.
-    pub fn len(&self) -> usize {
-        self.others.len()
-    }
-
-    /// Whether there is no candidate.
-    pub fn is_empty(&self) -> bool {
-        self.others.is_empty()
     }
 
     /// Builds the list anew if the grains have moved too far for the present one; tells whether.
@@ -140,7 +130,11 @@ impl Candidates {
 
     /// The same where all pairs with a gap below `look_ahead` (m) are asked for. The skin grows where
     /// it is too thin for that.
-    pub fn update_ahead<const AXES: usize>(&mut self, world: &World, look_ahead: f64) -> bool {
+    pub(crate) fn update_ahead<const AXES: usize>(
+        &mut self,
+        world: &World,
+        look_ahead: f64,
+    ) -> bool {
         if self.reach.skin < 1.25 * look_ahead {
             self.reach.skin = 2.0 * look_ahead;
             let largest = self.radii.iter().copied().fold(0.0, f64::max);

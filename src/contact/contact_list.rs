@@ -23,7 +23,7 @@ pub struct Contact {
 
 impl Contact {
     /// The bodies (i, other), which contacts are sorted by.
-    pub fn pair(&self) -> (u32, u32) {
+    pub(crate) fn pair(&self) -> (u32, u32) {
         (self.grain, self.other)
     }
 }
@@ -51,7 +51,7 @@ pub struct ContactMemory {
 
 /// Which pairs with a gap are contacts too, because they may touch within the step.
 #[derive(Clone, Copy, Debug)]
-pub struct LookAhead {
+pub(crate) struct LookAhead {
     /// Δt, s.
     pub time_step_secs: f64,
     /// Pairs that would come nearer than this by themselves are contacts, m.
@@ -102,23 +102,23 @@ impl ContactList {
     }
 
     /// The contacts, with impulses and memories to be changed, one a contact.
-    pub fn parts_mut(&mut self) -> (&[Contact], &mut [Impulse], &mut [ContactMemory]) {
+    pub(crate) fn parts_mut(&mut self) -> (&[Contact], &mut [Impulse], &mut [ContactMemory]) {
         let Kept { contacts, impulses, memories, .. } = &mut self.now;
         (contacts, impulses, memories)
     }
 
     /// The contacts with their bonds, one a contact; they mean something under the law `range` alone.
-    pub fn bonds(&self) -> &[Bond] {
+    pub(crate) fn bonds(&self) -> &[Bond] {
         &self.now.bonds
     }
 
     /// The bonds, to be changed.
-    pub fn bonds_mut(&mut self) -> &mut [Bond] {
+    pub(crate) fn bonds_mut(&mut self) -> &mut [Bond] {
         &mut self.now.bonds
     }
 
     /// Whether pairs with a gap are among the contacts.
-    pub fn looks_ahead(&self) -> bool {
+    pub(crate) fn looks_ahead(&self) -> bool {
         self.looks_ahead
     }
 
@@ -128,12 +128,12 @@ impl ContactList {
     }
 
     /// Empties the memories: what comes next was not prepared by the scheme that filled them.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.now.memories.fill(ContactMemory::default());
     }
 
     /// Multiplies all impulses, so that a change of Δt leaves the forces as they were.
-    pub fn scale_impulses(&mut self, factor: f64) {
+    pub(crate) fn scale_impulses(&mut self, factor: f64) {
         for impulse in &mut self.now.impulses {
             impulse.normal *= factor;
             impulse.tangential *= factor;
@@ -141,7 +141,7 @@ impl ContactList {
     }
 
     /// Drops the contacts of a body, and numbers those after it one lower.
-    pub fn remove_body(&mut self, body: u32) {
+    pub(crate) fn remove_body(&mut self, body: u32) {
         let Kept { contacts, impulses, memories, bonds } = &mut self.now;
         let stays = |contact: &Contact| contact.grain != body && contact.other != body;
         let stay = contacts.iter().map(stays).collect::<Vec<_>>().into_iter();
@@ -166,7 +166,7 @@ impl ContactList {
     }
 
     /// Finds the pairs that touch, that are bonded, or that may come to touch within the step.
-    pub fn detect_ahead<const AXES: usize>(
+    pub(crate) fn detect_ahead<const AXES: usize>(
         &mut self,
         world: &World,
         candidates: &Candidates,

@@ -9,7 +9,7 @@ use crate::world::Boundary;
 
 /// A part of a boundary that a disc touches in at most one point.
 #[derive(Clone, Debug)]
-pub enum Feature {
+pub(crate) enum Feature {
     /// A half-space.
     HalfSpace {
         /// A point of the surface, m.
@@ -40,7 +40,11 @@ impl Feature {
     ///
     /// # Errors
     /// Names the boundary (`field`) and the part of it that makes no shape.
-    pub fn collect(boundary: &Boundary, field: &str, features: &mut Vec<Feature>) -> Result<()> {
+    pub(crate) fn collect(
+        boundary: &Boundary,
+        field: &str,
+        features: &mut Vec<Feature>,
+    ) -> Result<()> {
         let finite = |points: &[DVec2]| points.iter().all(|point| point.is_finite());
         match boundary {
             Boundary::HalfSpace { point, normal } => {
@@ -137,7 +141,7 @@ impl Feature {
 
     /// Distance of `centre` from the surface (m), corners that another feature tells of included:
     /// they may be this one's a moment later. Negative in solids.
-    pub fn distance_to_any_point(&self, centre: DVec2) -> f64 {
+    pub(crate) fn distance_to_any_point(&self, centre: DVec2) -> f64 {
         match self {
             Feature::Segment { shape, .. } => shape.distance_to_local_point(centre, false),
             Feature::HalfSpace { .. } | Feature::ConvexPolygon { .. } => {
@@ -148,7 +152,7 @@ impl Feature {
 
     /// Unit normal towards `centre` and distance of `centre` from the surface (m, negative inside),
     /// or nothing where another feature tells of this point.
-    pub fn distance(&self, centre: DVec2) -> Option<(DVec2, f64)> {
+    pub(crate) fn distance(&self, centre: DVec2) -> Option<(DVec2, f64)> {
         match self {
             Feature::HalfSpace { point, shape } => {
                 let offset = centre - *point;

@@ -15,19 +15,19 @@
 use super::lanes::Lanes;
 
 /// C₀ = Bond · m_ij · g, newton (paper eq. 10).
-pub fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: f64) -> f64 {
+pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: f64) -> f64 {
     bond * effective_mass * gravity_magnitude
 }
 
 /// Projects σ (m/s) on σ ≥ 0.
 #[inline(always)]
-pub fn signorini<T: Lanes>(shifted_impulse: T) -> T {
+pub(crate) fn signorini<T: Lanes>(shifted_impulse: T) -> T {
     shifted_impulse.larger(shifted_impulse.same(0.0))
 }
 
 /// The largest |λ_t| that a shifted normal impulse allows, m/s.
 #[inline(always)]
-pub fn friction_bound<const COMPRESSIVE_CONE: bool, T: Lanes>(
+pub(crate) fn friction_bound<const COMPRESSIVE_CONE: bool, T: Lanes>(
     friction: f64,
     shifted_impulse: T,
     capture_speed: f64,
@@ -42,7 +42,7 @@ pub fn friction_bound<const COMPRESSIVE_CONE: bool, T: Lanes>(
 
 /// Projects a tangential impulse on its absolute value ≤ `bound`, any unit.
 #[inline(always)]
-pub fn coulomb<T: Lanes>(tangential_impulse: T, bound: T) -> T {
+pub(crate) fn coulomb<T: Lanes>(tangential_impulse: T, bound: T) -> T {
     tangential_impulse.larger(-bound).smaller(bound)
 }
 

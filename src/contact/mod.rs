@@ -6,18 +6,18 @@ mod contact_list;
 mod features;
 mod grid;
 mod lanes;
-pub mod law;
+pub(crate) mod law;
 mod numbering;
-pub mod range;
+pub(crate) mod range;
 mod separate;
 mod tree;
 
 pub use candidates::{Candidates, Reach};
-pub use contact_list::{Contact, ContactList, ContactMemory, Impulse, LookAhead};
-pub use features::Feature;
+pub(crate) use contact_list::LookAhead;
+pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
+pub(crate) use features::Feature;
 pub use grid::Grid;
-pub use lanes::Lanes;
+pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;
 pub use numbering::{Numbering, Other};
-pub use tree::Tree;

@@ -35,7 +35,7 @@ impl Numbering {
     }
 
     /// That of bodies of which nothing is known but that the first are grains.
-    pub fn of_grains(grains: usize) -> Self {
+    pub(crate) fn of_grains(grains: usize) -> Self {
         Self { grains, fixed_discs: 0 }
     }
 
@@ -56,7 +56,7 @@ impl Numbering {
 
     /// The number of a body.
     #[inline(always)]
-    pub fn number(self, other: Other) -> u32 {
+    pub(crate) fn number(self, other: Other) -> u32 {
         let index = match other {
             Other::Grain(index) => index,
             Other::FixedDisc(index) => self.grains + index,

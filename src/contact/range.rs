@@ -37,11 +37,11 @@ use super::law;
 /// with less neither has its gap closed nor its overlap pushed out, and it bounces. Without that room
 /// every contact of a bonded network, which has more contacts than its grains have ways to move, would
 /// ask for a gap of zero and could not get it.
-pub const TOUCH_IN_DIAMETERS: f64 = 1e-4;
+pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 
 /// A contact's bond.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bond {
+pub(crate) struct Bond {
     /// Whether the pair has touched since it last parted.
     pub alive: bool,
     /// s: how far it has been opened against its pull, m; 0 where the pair touches.
@@ -50,7 +50,7 @@ pub struct Bond {
 
 /// The opening of one bond during one step.
 #[derive(Clone, Copy, Debug)]
-pub struct Opening {
+pub(crate) struct Opening {
     /// D = δ_c − s, m.
     pub left: f64,
     /// v, m/s.
@@ -62,7 +62,7 @@ pub struct Opening {
 impl Opening {
     /// C·min(1, τ/Δt), m/s: the largest reduced impulse that the bond can take up in a step of
     /// `time_step_secs` in which its force alone would change the speed by `capture_speed` (C).
-    pub fn bound(&self, capture_speed: f64, time_step_secs: f64) -> f64 {
+    pub(crate) fn bound(&self, capture_speed: f64, time_step_secs: f64) -> f64 {
         let Self { left, speed, load } = *self;
         let acceleration = (load - capture_speed) / time_step_secs;
         let squared = speed * speed + 2.0 * acceleration * left;
@@ -78,13 +78,14 @@ impl Opening {
 }
 
 /// √(2C₀δ_c/m_ij), m/s: a pair that is thrown apart faster parts.
-pub fn escape_speed(bond: f64, gravity_magnitude: f64, debonding_distance: f64) -> f64 {
+#[cfg(feature = "window")]
+pub(crate) fn escape_speed(bond: f64, gravity_magnitude: f64, debonding_distance: f64) -> f64 {
     (2.0 * law::cohesion_force(bond, 1.0, gravity_magnitude) * debonding_distance).sqrt()
 }
 
 /// √(2δ_c m_ij/C₀), s: the time in which the pull of a bond alone would open it, or close it, by δ_c.
 /// Infinite without cohesion.
-pub fn bond_time_secs(bond: f64, gravity_magnitude: f64, debonding_distance: f64) -> f64 {
+pub(crate) fn bond_time_secs(bond: f64, gravity_magnitude: f64, debonding_distance: f64) -> f64 {
     (2.0 * debonding_distance / law::cohesion_force(bond, 1.0, gravity_magnitude)).sqrt()
 }
 

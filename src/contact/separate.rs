@@ -10,7 +10,7 @@ impl ContactList {
     /// Moves grains that overlap by more than `allowed` (m) apart, pair by pair, each grain by the
     /// other's share of the mass. Velocities, and so kinetic energy, stay as they are. Whether there
     /// were any: one pass opens a pair and may close the next.
-    pub fn separate<const AXES: usize>(
+    pub(crate) fn separate<const AXES: usize>(
         &self,
         world: &mut World,
         candidates: &Candidates,

@@ -11,7 +11,7 @@ use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
 /// A tree over discs. Which pairs it finds depends on the discs alone, not on how it came about.
 #[derive(Clone, Default)]
-pub struct Tree {
+pub(crate) struct Tree {
     tree: Bvh,
     workspace: BvhWorkspace,
 }
@@ -24,7 +24,7 @@ impl std::fmt::Debug for Tree {
 
 impl Tree {
     /// Brings the tree up to date with discs (centre, radius; m), always the same number of them.
-    pub fn update(&mut self, discs: impl Iterator<Item = (DVec2, f64)>) {
+    pub(crate) fn update(&mut self, discs: impl Iterator<Item = (DVec2, f64)>) {
         let boxes = discs
             .map(|(centre, radius)| Aabb::from_half_extents(centre, DVec2::splat(radius)))
             .enumerate();
@@ -40,7 +40,7 @@ impl Tree {
     }
 
     /// Calls `found` once with every pair of discs whose bounding squares overlap.
-    pub fn pairs(&mut self, mut found: impl FnMut(u32, u32)) {
+    pub(crate) fn pairs(&mut self, mut found: impl FnMut(u32, u32)) {
         self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut found);
     }
 }

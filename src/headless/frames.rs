@@ -108,7 +108,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &crate::sim::Tally
 }
 
 /// The scene, with progress shown where a new pile has to settle first.
-pub fn settled(config: &Config) -> Result<Scene> {
+pub(crate) fn settled(config: &Config) -> Result<Scene> {
     let progress = Progress::new("settling", 100);
     let scene = config.scene(|Settling { time_secs, limit_secs, .. }| {
         progress.set((100.0 * time_secs / limit_secs) as u64);
@@ -205,23 +205,23 @@ pub(super) struct ObservablesTable {
 
 impl ObservablesTable {
     /// Starts `observables.csv` in a folder.
-    pub fn start(folder: &Path) -> Result<Self> {
+    pub(super) fn start(folder: &Path) -> Result<Self> {
         Self::start_as(folder.join("observables.csv"))
     }
 
     /// Starts a table at a path.
-    pub fn start_as(path: std::path::PathBuf) -> Result<Self> {
+    pub(super) fn start_as(path: std::path::PathBuf) -> Result<Self> {
         let writer = csv::Writer::from_writer(start_file(&path)?);
         Ok(Self { path, writer })
     }
 
     /// Adds a row.
-    pub fn add(&mut self, observables: &Observables) -> Result<()> {
+    pub(super) fn add(&mut self, observables: &Observables) -> Result<()> {
         self.writer.serialize(observables).map_err(|error| Error::file(&self.path, error))
     }
 
     /// Gives the table its name.
-    pub fn finish(self) -> Result<()> {
+    pub(super) fn finish(self) -> Result<()> {
         let Self { path, writer } = self;
         let file = writer.into_inner().map_err(|error| Error::file(&path, error.error()))?;
         finish_file(file, &path)

@@ -27,7 +27,7 @@ impl Animation {
     ///
     /// # Errors
     /// Names the file and what the system says.
-    pub fn start(path: &Path) -> Result<Self> {
+    pub(super) fn start(path: &Path) -> Result<Self> {
         let refuse = |error: &dyn std::fmt::Display| Error::file(path, error);
         let file = start_file(path)?;
         let handle = file.as_file().try_clone().map_err(|error| refuse(&error))?;
@@ -40,7 +40,7 @@ impl Animation {
     ///
     /// # Errors
     /// Names the file and what the encoder says.
-    pub fn add(&mut self, image: RgbaImage) -> Result<()> {
+    pub(super) fn add(&mut self, image: RgbaImage) -> Result<()> {
         let delay = Delay::from_numer_denom_ms(PICTURE_MS, 1);
         self.encoder
             .encode_frame(Frame::from_parts(image, 0, 0, delay))
@@ -51,7 +51,7 @@ impl Animation {
     ///
     /// # Errors
     /// Names the file and what the system says.
-    pub fn finish(self) -> Result<()> {
+    pub(super) fn finish(self) -> Result<()> {
         // The encoder writes the end of the file when it is dropped.
         drop(self.encoder);
         finish_file(self.file, &self.path)

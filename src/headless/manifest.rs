@@ -71,7 +71,7 @@ pub(super) struct Moment {
 }
 
 impl Manifest {
-    pub fn new(renderer: &str) -> Self {
+    pub(super) fn new(renderer: &str) -> Self {
         Self {
             program: "slump",
             version: env!("CARGO_PKG_VERSION"),
@@ -82,7 +82,7 @@ impl Manifest {
         }
     }
 
-    pub fn write(&self, path: &Path) -> Result<()> {
+    pub(super) fn write(&self, path: &Path) -> Result<()> {
         let mut text =
             serde_json::to_string_pretty(self).map_err(|error| Error::file(path, error))?;
         text.push('\n');
@@ -91,7 +91,7 @@ impl Manifest {
 }
 
 impl RunEntry {
-    pub fn new(name: &str, scene: &Scene, tally: Tally, alarms: &[Alarm]) -> Result<Self> {
+    pub(super) fn new(name: &str, scene: &Scene, tally: Tally, alarms: &[Alarm]) -> Result<Self> {
         let mut said = serde_json::to_value(scene)
             .map_err(|error| Error::value("scene", name, error.to_string()))?;
         if let Some(fields) = said.as_object_mut() {

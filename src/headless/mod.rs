@@ -6,8 +6,8 @@ mod gif;
 mod manifest;
 mod options;
 
-pub use frames::settled;
-pub use options::{HeadlessOptions, PictureSize, Show};
+pub(crate) use frames::settled;
+pub(crate) use options::HeadlessOptions;
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use crate::scene::Config;
 ///
 /// # Errors
 /// Where the folder cannot be written to.
-pub fn draw_snapshots(folder: &Path) -> Result<()> {
+pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
     figures::draw(folder, HeadlessOptions::default().renderer)
 }
 
@@ -27,7 +27,7 @@ pub fn draw_snapshots(folder: &Path) -> Result<()> {
 ///
 /// # Errors
 /// In one sentence; nothing has been written where a value is refused.
-pub fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
+pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     if options.frames.is_none() && options.gif.is_none() {
         return Err(Error::value(
             "frames",

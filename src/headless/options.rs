@@ -7,7 +7,7 @@ use crate::render::{ColourBy, RendererChoice, Style, Theme};
 
 /// Width and height of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PictureSize {
+pub(crate) struct PictureSize {
     /// Pixels.
     pub width: u32,
     /// Pixels.
@@ -30,7 +30,7 @@ impl std::str::FromStr for PictureSize {
 
 /// What can be laid over the grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Show {
+pub(crate) enum Show {
     /// Contact forces as links
     Forces,
     /// A mark on each grain that turns with it
@@ -39,7 +39,7 @@ pub enum Show {
 
 /// Options of pictures.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub struct HeadlessOptions {
+pub(crate) struct HeadlessOptions {
     /// Draw pictures without a window; with --frames alone, the paper's Fig. 3, 4 and 7
     #[arg(long, help_heading = "Pictures")]
     pub headless: bool,
@@ -93,7 +93,7 @@ const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
     /// Whether anything is said that only frames of one scene have.
-    pub fn asks_for_frames(&self) -> bool {
+    pub(crate) fn asks_for_frames(&self) -> bool {
         self.fps.is_some()
             || !self.times.is_empty()
             || self.size.is_some()
@@ -107,12 +107,12 @@ impl HeadlessOptions {
     ///
     /// # Errors
     /// Where it is none.
-    pub fn size(&self) -> Result<PictureSize> {
+    pub(crate) fn size(&self) -> Result<PictureSize> {
         self.size.as_ref().map_or(Ok(DEFAULT_SIZE), |text| text.parse())
     }
 
     /// How the scene is drawn.
-    pub fn style(&self) -> Style {
+    pub(crate) fn style(&self) -> Style {
         Style {
             colour_by: self.colour.unwrap_or_default(),
             theme: self.theme.unwrap_or_default(),
@@ -126,7 +126,7 @@ impl HeadlessOptions {
     ///
     /// # Errors
     /// Where the rate or a time is outside its range.
-    pub fn picture_times(&self, duration_secs: f64) -> Result<Vec<f64>> {
+    pub(crate) fn picture_times(&self, duration_secs: f64) -> Result<Vec<f64>> {
         if !self.times.is_empty() {
             let allowed = format!("between 0 and the duration of {duration_secs} s");
             let outside = |time: &&f64| !(0.0..=duration_secs).contains(*time);

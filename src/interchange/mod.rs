@@ -15,7 +15,7 @@ mod body_form;
 mod dump;
 mod problem_file;
 mod reading;
-pub mod siconos;
+mod siconos;
 mod solution;
 
 pub use body_form::BodyForm;

@@ -55,7 +55,7 @@ impl ProblemFile {
     }
 
     /// μ of each contact.
-    pub fn friction(&self) -> Vec<f64> {
+    pub(crate) fn friction(&self) -> Vec<f64> {
         match &self.mu {
             Friction::Same(mu) => vec![*mu; self.nc],
             Friction::Each(list) => list.clone(),
@@ -63,7 +63,7 @@ impl ProblemFile {
     }
 
     /// C₀Δt of each contact, N·s.
-    pub fn cohesion_impulses(&self) -> Vec<f64> {
+    pub(crate) fn cohesion_impulses(&self) -> Vec<f64> {
         self.c0.clone().unwrap_or_else(|| vec![0.0; self.nc])
     }
 

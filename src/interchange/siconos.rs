@@ -17,7 +17,7 @@ const COMPRESSED_COLUMNS: usize = 2;
 ///
 /// # Errors
 /// Names what was looked for and not found.
-pub fn parse(text: &str) -> Result<ProblemFile> {
+pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     let mut lines = text.lines();
     let mut number = |what: &str| first_word::<usize>(&mut lines, what);
     only("the dimension", number("the dimension")?, 2)?;

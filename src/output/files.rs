@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// Names the folder and what the system says.
-pub fn check_writable(folder: &Path) -> Result<()> {
+pub(crate) fn check_writable(folder: &Path) -> Result<()> {
     let refuse = |error| Error::file(folder, format!("cannot be written to ({error})"));
     std::fs::create_dir_all(folder).map_err(refuse)?;
     tempfile::NamedTempFile::new_in(folder).map_err(refuse)?;
@@ -23,7 +23,7 @@ pub fn check_writable(folder: &Path) -> Result<()> {
 ///
 /// # Errors
 /// Names the file and what the system says.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut file = start_file(path)?;
     file.write_all(bytes).map_err(|error| Error::file(path, error))?;
     finish_file(file, path)
@@ -33,7 +33,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 /// Names the file and what the system says.
-pub fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
+pub(crate) fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| Error::file(path, error))?;
     write_file(path, bytes.get_ref())

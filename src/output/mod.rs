@@ -3,6 +3,6 @@
 mod files;
 mod progress;
 
-pub use files::{check_writable, write_file, write_png};
+pub(crate) use files::{check_writable, write_file, write_png};
 pub(crate) use files::{finish_file, start_file};
-pub use progress::Progress;
+pub(crate) use progress::Progress;

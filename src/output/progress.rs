@@ -7,13 +7,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Progress of one piece of work on stderr.
 #[derive(Clone, Debug)]
-pub struct Progress {
+pub(crate) struct Progress {
     bar: ProgressBar,
 }
 
 impl Progress {
     /// Starts work of `length` units of any kind. `what` stands in front of the bar.
-    pub fn new(what: &str, length: u64) -> Self {
+    pub(crate) fn new(what: &str, length: u64) -> Self {
         let bar = if std::io::stderr().is_terminal() {
             let template = "{prefix} {wide_bar} {percent:>3} %  {eta} left";
             let style = ProgressStyle::with_template(template)
@@ -28,27 +28,27 @@ impl Progress {
     }
 
     /// Counts units done.
-    pub fn advance(&self, units: u64) {
+    pub(crate) fn advance(&self, units: u64) {
         self.bar.inc(units);
     }
 
     /// Sets the units done.
-    pub fn set(&self, units: u64) {
+    pub(crate) fn set(&self, units: u64) {
         self.bar.set_position(units);
     }
 
     /// Whether there is a terminal that shows a bar.
-    pub fn is_drawn(&self) -> bool {
+    pub(crate) fn is_drawn(&self) -> bool {
         !self.bar.is_hidden()
     }
 
     /// Says something in a line of its own.
-    pub fn say(&self, line: &str) {
+    pub(crate) fn say(&self, line: &str) {
         self.bar.suspend(|| eprintln!("{line}"));
     }
 
     /// Ends the work.
-    pub fn finish(&self) {
+    pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }

@@ -3,7 +3,7 @@
 /// Where a block lies relative to the point at which it is drawn, along one direction. Also how
 /// the lines of a block lie relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Align {
+pub(crate) enum Align {
     /// The point is at the left or top edge.
     #[default]
     Start,

@@ -17,7 +17,7 @@ const BARB: f64 = 0.35;
 
 /// The speed that is drawn at full length, m/s: the style's own, or a round number above the fastest
 /// grain's; 0 where nothing moves.
-pub fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
+pub(crate) fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     if let Some(reference) = style.speed_reference {
         return reference;
     }

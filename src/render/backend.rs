@@ -20,7 +20,7 @@ pub(crate) struct Gpu {
 
 impl Gpu {
     /// Opens the GPU that was asked for; the processor is none.
-    pub fn of(choice: RendererChoice) -> Result<Self> {
+    pub(crate) fn of(choice: RendererChoice) -> Result<Self> {
         match choice {
             RendererChoice::Vulkan => Self::open(Kind::Vulkan),
             RendererChoice::Gl => Self::open(Kind::Gl),
@@ -69,7 +69,7 @@ impl Gpu {
     }
 
     /// Fails if anything went wrong on the device since the last call.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         let message = self.failure.lock().ok().and_then(|mut first| first.take());
         match message {
             Some(message) => {

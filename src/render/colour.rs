@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[repr(C)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Colour {
+pub(crate) struct Colour {
     /// Red.
     pub red: f32,
     /// Green.
@@ -22,12 +22,13 @@ pub struct Colour {
 
 impl Colour {
     /// White.
-    pub const WHITE: Self = Self::grey(255);
+    pub(crate) const WHITE: Self = Self::grey(255);
     /// Black.
-    pub const BLACK: Self = Self::grey(0);
+    #[cfg(test)]
+    pub(crate) const BLACK: Self = Self::grey(0);
 
     /// The opaque colour that is written `#rrggbb` on the web.
-    pub const fn hex(rrggbb: u32) -> Self {
+    pub(crate) const fn hex(rrggbb: u32) -> Self {
         Self {
             red: ((rrggbb >> 16) & 0xff) as f32 / 255.0,
             green: ((rrggbb >> 8) & 0xff) as f32 / 255.0,
@@ -37,18 +38,18 @@ impl Colour {
     }
 
     /// An opaque grey: 0 black … 255 white.
-    pub const fn grey(tone: u8) -> Self {
+    pub(crate) const fn grey(tone: u8) -> Self {
         let level = tone as f32 / 255.0;
         Self { red: level, green: level, blue: level, alpha: 1.0 }
     }
 
     /// The same colour with another opacity.
-    pub const fn with_alpha(self, alpha: f32) -> Self {
+    pub(crate) const fn with_alpha(self, alpha: f32) -> Self {
         Self { alpha, ..self }
     }
 
     /// This colour at `part` 0, `other` at 1.
-    pub fn mix(self, other: Self, part: f32) -> Self {
+    pub(crate) fn mix(self, other: Self, part: f32) -> Self {
         let between = |a: f32, b: f32| a + (b - a) * part;
         Self {
             red: between(self.red, other.red),
@@ -65,7 +66,7 @@ impl Colour {
     }
 
     /// The pixel that stores this colour.
-    pub fn to_rgba8(self) -> image::Rgba<u8> {
+    pub(crate) fn to_rgba8(self) -> image::Rgba<u8> {
         // Casts from float to integer saturate, so a channel outside 0 … 1 ends at 0 or 255.
         let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
         image::Rgba([byte(self.red), byte(self.green), byte(self.blue), byte(self.alpha)])

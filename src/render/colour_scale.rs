@@ -22,10 +22,10 @@ const VIRIDIS: [Colour; 9] = [
 ];
 
 /// Numbers of contacts from here on share one colour.
-pub const MOST_CONTACTS: u32 = 6;
+pub(super) const MOST_CONTACTS: u32 = 6;
 
 /// The colour at `part` of the map; what lies outside 0 … 1 takes the colour of the end.
-pub fn map_colour(part: f64) -> Colour {
+pub(crate) fn map_colour(part: f64) -> Colour {
     // A value that is not a number would index nothing.
     let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
     let place = part * (VIRIDIS.len() - 1) as f64;
@@ -35,7 +35,7 @@ pub fn map_colour(part: f64) -> Colour {
 
 /// A quantity and the values at the two ends of its colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColourScale {
+pub(crate) struct ColourScale {
     /// The quantity.
     pub colour_by: ColourBy,
     /// Value at the lower end, in the unit that [`ColourBy`] states.
@@ -46,7 +46,7 @@ pub struct ColourScale {
 
 impl ColourScale {
     /// The scale that a style asks for: its own range, or one that holds the whole snapshot.
-    pub fn new(style: &Style, snapshot: &Snapshot) -> Self {
+    pub(crate) fn new(style: &Style, snapshot: &Snapshot) -> Self {
         let (low, high) = match (style.colour_by, style.range) {
             (ColourBy::Coordination, _) => (0.0, f64::from(MOST_CONTACTS)),
             (_, Some(range)) => range,
@@ -56,7 +56,7 @@ impl ColourScale {
     }
 
     /// The colour of a grain. `mean_diameter` in m.
-    pub fn colour(&self, grain: &GrainView, mean_diameter: f64) -> Colour {
+    pub(crate) fn colour(&self, grain: &GrainView, mean_diameter: f64) -> Colour {
         match self.colour_by {
             ColourBy::PaperGreys => Colour::grey(grain.tone),
             ColourBy::Coordination => contact_colour(grain.coordination),
@@ -69,7 +69,7 @@ impl ColourScale {
     }
 
     /// What the legend calls the quantity, and what its numbers are multiplied by.
-    pub fn label(&self) -> (String, f64) {
+    pub(crate) fn label(&self) -> (String, f64) {
         let (prefix, factor) = si_prefix(self.low.abs().max(self.high.abs()));
         match self.colour_by {
             ColourBy::PaperGreys => (String::new(), 1.0),
@@ -82,13 +82,13 @@ impl ColourScale {
 }
 
 /// The colour of a number of contacts.
-pub fn contact_colour(contacts: u32) -> Colour {
+pub(crate) fn contact_colour(contacts: u32) -> Colour {
     map_colour(f64::from(contacts.min(MOST_CONTACTS)) / f64::from(MOST_CONTACTS))
 }
 
 /// A range from zero to a round number that holds every grain of the snapshot. An animation takes
 /// the largest over its frames.
-pub fn automatic_range(colour_by: ColourBy, snapshot: &Snapshot) -> (f64, f64) {
+pub(crate) fn automatic_range(colour_by: ColourBy, snapshot: &Snapshot) -> (f64, f64) {
     let mean_diameter = snapshot.surroundings.mean_diameter;
     let largest = snapshot
         .grains

@@ -17,7 +17,7 @@ const LEAST_RADIUS_PX: f32 = 0.5;
 #[repr(C)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DiscInstance {
+pub(crate) struct DiscInstance {
     /// Centre.
     pub centre: [f32; 2],
     /// Radius, outline included.
@@ -36,7 +36,7 @@ pub struct DiscInstance {
 
 impl DiscInstance {
     /// A disc of one colour.
-    pub fn plain(centre: [f32; 2], radius: f32, colour: Colour) -> Self {
+    pub(crate) fn plain(centre: [f32; 2], radius: f32, colour: Colour) -> Self {
         Self {
             centre,
             radius,

@@ -46,7 +46,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// Its name on the command line.
-    pub fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Vulkan => "vulkan",
             Self::Gl => "gl",

@@ -44,7 +44,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub fn new(figure: &Figure, panel: (u32, u32), palette: &Palette) -> Self {
+    pub(super) fn new(figure: &Figure, panel: (u32, u32), palette: &Palette) -> Self {
         let columns = figure.columns as u32;
         let text_px = figure.text_size(panel.0 * columns);
         let gap = (0.6 * text_px).round() as u32;
@@ -95,7 +95,7 @@ impl Layout {
         block.as_ref().map_or(0, |block| block.height() + self.gap)
     }
 
-    pub fn size(&self, figure: &Figure) -> (u32, u32) {
+    pub(super) fn size(&self, figure: &Figure) -> (u32, u32) {
         let (rows, columns) = (figure.rows as u32, figure.columns as u32);
         let width =
             2 * self.gap + self.row_label_width + columns * self.panel.0 + (columns - 1) * self.gap;
@@ -109,7 +109,7 @@ impl Layout {
         (width, height)
     }
 
-    pub fn draw(&self, figure: &Figure, palette: &Palette, image: &mut RgbaImage) {
+    pub(super) fn draw(&self, figure: &Figure, palette: &Palette, image: &mut RgbaImage) {
         let (width, height) = (i64::from(image.width()), i64::from(image.height()));
         let gap = i64::from(self.gap);
         let panel = (i64::from(self.panel.0), i64::from(self.panel.1));

@@ -22,7 +22,7 @@ fn embedded(bytes: &'static [u8]) -> FontRef<'static> {
 
 /// Thickness of the strokes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Weight {
+pub(crate) enum Weight {
     /// Text.
     #[default]
     Regular,
@@ -32,7 +32,7 @@ pub enum Weight {
 
 /// How text looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TextStyle {
+pub(crate) struct TextStyle {
     /// Font size (em), pixels.
     pub size_px: f32,
     /// Thickness.
@@ -45,17 +45,17 @@ pub struct TextStyle {
 
 impl TextStyle {
     /// Regular text of a size, lines flush left.
-    pub fn new(size_px: f32, colour: Colour) -> Self {
+    pub(crate) fn new(size_px: f32, colour: Colour) -> Self {
         Self { size_px, weight: Weight::Regular, colour, lines: Align::Start }
     }
 
     /// The same in bold.
-    pub fn bold(self) -> Self {
+    pub(crate) fn bold(self) -> Self {
         Self { weight: Weight::Bold, ..self }
     }
 
     /// The same with centred lines.
-    pub fn centred(self) -> Self {
+    pub(crate) fn centred(self) -> Self {
         Self { lines: Align::Centre, ..self }
     }
 
@@ -98,7 +98,7 @@ impl TextStyle {
     }
 
     /// Width of one line, pixels.
-    pub fn width(&self, line: &str) -> f32 {
+    pub(crate) fn width(&self, line: &str) -> f32 {
         self.set(line).1
     }
 
@@ -108,12 +108,13 @@ impl TextStyle {
     }
 
     /// Distance from line to line, pixels.
-    pub fn line_height(&self) -> f32 {
+    pub(crate) fn line_height(&self) -> f32 {
         self.font().height()
     }
 
     /// Whether the font has a shape for this letter.
-    pub fn has(&self, letter: char) -> bool {
+    #[cfg(test)]
+    fn has(&self, letter: char) -> bool {
         // Glyph 0 is the box that stands for missing letters.
         self.font().glyph_id(letter).0 != 0
     }
@@ -161,7 +162,7 @@ fn runs(line: &str) -> Vec<(&str, Level)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::TextBlock;
+    use crate::render::text::TextBlock;
 
     const NEEDED: &str =
         "ABCXYZabcxyz0123456789 ΔδρμωΣΩτφθεπ·−–×√≤≥±≈°∞→%‖⁰¹²³⁴⁵⁶⁷⁸⁹⁻₀₁₂₃…’“”()[]/|";

@@ -14,7 +14,7 @@ const REFERENCE_QUANTILE: f64 = 0.95;
 
 /// The |N| (N) that is drawn at full width: the style's own, or the 95th percentile of the
 /// snapshot, so that a single huge force does not make all others vanish. 0 without any force.
-pub fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
+pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     style.force_reference.unwrap_or_else(|| {
         let mut forces: Vec<f64> = snapshot
             .contacts

@@ -18,7 +18,7 @@ const CENTRE_RADIUS_EM: f32 = 0.28;
 
 /// The picture of a snapshot, without words: see [`super::draw_scene`] for those. `width` and
 /// `height` are those of the scene alone, without the legend's strip.
-pub fn scene_picture(
+pub(crate) fn scene_picture(
     snapshot: &Snapshot,
     style: &Style,
     camera: &Camera,

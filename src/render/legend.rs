@@ -16,7 +16,7 @@ use crate::sim::Snapshot;
 
 /// What a legend tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Legend {
+pub(crate) struct Legend {
     /// The colours of the grains.
     pub scale: ColourScale,
     /// The |N| (N) at full width and half that width (px), where forces are drawn.
@@ -32,7 +32,7 @@ pub struct Legend {
 impl Legend {
     /// What a snapshot drawn in a style needs to be told. `text_px` is the font size of the whole
     /// picture.
-    pub fn of(snapshot: &Snapshot, style: &Style, camera: &Camera, text_px: f32) -> Self {
+    pub(crate) fn of(snapshot: &Snapshot, style: &Style, camera: &Camera, text_px: f32) -> Self {
         let mean_diameter = snapshot.surroundings.mean_diameter;
         let forces =
             || (force_reference(style, snapshot), full_half_width_px(mean_diameter, camera));
@@ -47,7 +47,7 @@ impl Legend {
     }
 
     /// Draws the strip.
-    pub fn draw(&self, width: u32, height: u32) -> RgbaImage {
+    pub(crate) fn draw(&self, width: u32, height: u32) -> RgbaImage {
         let mut strip = RgbaImage::from_pixel(width, height, self.palette.ground.to_rgba8());
         let mut bottom = i64::from(height) - self.em(1.0);
         if let Some((reference, half_width)) = self.forces {

@@ -17,7 +17,7 @@ const LEAST_HALF_WIDTH_PX: f32 = 0.5;
 #[repr(C)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinkInstance {
+pub(crate) struct LinkInstance {
     /// One end, in the middle of its round cap.
     pub start: [f32; 2],
     /// The other end.

@@ -28,7 +28,7 @@ mod legend;
 mod link;
 #[cfg(not(feature = "gpu"))]
 mod no_gpu;
-pub mod numbers;
+pub(crate) mod numbers;
 #[cfg(feature = "gpu")]
 pub(crate) mod offscreen;
 #[cfg(feature = "gpu")]
@@ -45,28 +45,30 @@ mod shade;
 mod style;
 mod text;
 
-pub use align::Align;
-pub use arrows::speed_reference;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "window")]
+pub(crate) use arrows::speed_reference;
+#[cfg(feature = "window")]
 pub(crate) use backend::Gpu;
 pub use camera::{Camera, bounds};
-pub use colour::Colour;
-pub use colour_scale::{ColourScale, automatic_range, contact_colour, map_colour};
-pub use disc::DiscInstance;
+pub(crate) use colour::Colour;
+pub(crate) use colour_scale::automatic_range;
+pub(crate) use disc::DiscInstance;
 pub use drivers::{RendererChoice, quieten_drivers};
 pub use figure::Figure;
-pub use font::{TextStyle, Weight};
-pub use forces::force_reference;
-pub use layers::scene_picture;
-pub use legend::Legend;
-pub use link::LinkInstance;
-#[cfg(feature = "gpu")]
-pub use painter::Painter;
-pub use picture::{Batch, Picture};
-#[cfg(feature = "gpu")]
-pub use primitive::{Frame, FrameUniform, Instance, PrimitivePipeline};
+pub(crate) use forces::force_reference;
+#[cfg(feature = "window")]
+pub(crate) use layers::scene_picture;
+#[cfg(feature = "window")]
+pub(crate) use legend::Legend;
+pub(crate) use link::LinkInstance;
+#[cfg(feature = "window")]
+pub(crate) use painter::Painter;
+pub(crate) use picture::{Batch, Picture};
+#[cfg(feature = "window")]
+pub(crate) use primitive::Frame;
 pub use renderer::Renderer;
-pub use scale_bar::ScaleBar;
+#[cfg(feature = "window")]
+pub(crate) use scale_bar::ScaleBar;
 pub use scene_image::draw_scene;
-pub use style::{ColourBy, Palette, Style, Theme};
-pub use text::TextBlock;
+pub(crate) use style::Palette;
+pub use style::{ColourBy, Style, Theme};

@@ -11,22 +11,22 @@ pub(super) enum Offscreen {}
 
 impl Offscreen {
     /// Says that there is none.
-    pub fn open(kind: Kind) -> Result<Self> {
+    pub(crate) fn open(kind: Kind) -> Result<Self> {
         Err(Error::Renderer(format!(
             "this build draws nothing by {}: build it with the feature gpu, or use --renderer cpu",
             kind.name()
         )))
     }
 
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         match *self {}
     }
 
-    pub fn largest_side(&self) -> u32 {
+    pub(crate) fn largest_side(&self) -> u32 {
         match *self {}
     }
 
-    pub fn draw(&mut self, _: &Picture, _: u32, _: u32) -> Result<RgbaImage> {
+    pub(crate) fn draw(&mut self, _: &Picture, _: u32, _: u32) -> Result<RgbaImage> {
         match *self {}
     }
 }

@@ -1,7 +1,7 @@
 //! Round numbers, and numbers as people write them.
 
 /// The longest of 1, 2 and 5 times a power of ten that is at most `limit`, which must be positive.
-pub fn round_below(limit: f64) -> f64 {
+pub(crate) fn round_below(limit: f64) -> f64 {
     let power = 10f64.powi(limit.log10().floor() as i32);
     // The tolerance keeps 0.2 from losing to its own logarithm's rounding.
     [10.0, 5.0, 2.0, 1.0]
@@ -12,7 +12,7 @@ pub fn round_below(limit: f64) -> f64 {
 }
 
 /// A number a little above `value`, which must be positive, at which a scale can end.
-pub fn round_above(value: f64) -> f64 {
+pub(crate) fn round_above(value: f64) -> f64 {
     let power = 10f64.powi(value.log10().floor() as i32);
     [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
         .into_iter()
@@ -22,7 +22,7 @@ pub fn round_above(value: f64) -> f64 {
 }
 
 /// Round numbers from `low` to `high`, at most `most` of them, and their distance.
-pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
+pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     let span = high - low;
     if !(span > 0.0 && span.is_finite()) {
         return (vec![low], 1.0);
@@ -40,7 +40,7 @@ pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
 }
 
 /// A number with as many decimals as tell multiples of `step` apart, and a true minus sign.
-pub fn decimal(value: f64, step: f64) -> String {
+pub(crate) fn decimal(value: f64, step: f64) -> String {
     let decimals = (-(step.abs().log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -53,7 +53,7 @@ pub fn decimal(value: f64, step: f64) -> String {
 
 /// The prefix with which numbers up to `largest` of a unit are written, and the factor it stands
 /// for. No prefix between 0.1 and 10 000.
-pub fn si_prefix(largest: f64) -> (&'static str, f64) {
+pub(crate) fn si_prefix(largest: f64) -> (&'static str, f64) {
     let largest = largest.abs();
     if largest == 0.0 || !largest.is_finite() || (0.1..1e4).contains(&largest) {
         return ("", 1.0);
@@ -65,7 +65,7 @@ pub fn si_prefix(largest: f64) -> (&'static str, f64) {
 }
 
 /// A round length, m, as people write it: "5 mm", "20 cm", "1 km".
-pub fn length(metres: f64) -> String {
+pub(crate) fn length(metres: f64) -> String {
     let (unit, factor) =
         [("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)]
             .into_iter()

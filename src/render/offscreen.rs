@@ -34,23 +34,23 @@ pub(crate) struct Target {
 
 impl Offscreen {
     /// Opens the strongest device of one kind.
-    pub fn open(kind: Kind) -> Result<Self> {
+    pub(super) fn open(kind: Kind) -> Result<Self> {
         let gpu = Gpu::open(kind)?;
         let painter = Painter::new(&gpu.device, FORMAT);
         gpu.check()?;
         Ok(Self { gpu, painter, target: None })
     }
 
-    pub fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         &self.gpu.name
     }
 
     /// Largest width and height, pixels.
-    pub fn largest_side(&self) -> u32 {
+    pub(super) fn largest_side(&self) -> u32 {
         self.gpu.device.limits().max_texture_dimension_2d
     }
 
-    pub fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
+    pub(super) fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
         if self.target.as_ref().is_some_and(|old| (old.width, old.height) != (width, height)) {
             self.target = None;
         }
@@ -97,7 +97,7 @@ fn clear_colour(colour: Colour) -> wgpu::Color {
 }
 
 impl Target {
-    pub fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self> {
+    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self> {
         let padded_row_bytes = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(padded_row_bytes) * u64::from(height);
         let largest = gpu.device.limits().max_buffer_size;
@@ -130,7 +130,7 @@ impl Target {
         Ok(Self { width, height, padded_row_bytes, texture, view, readback })
     }
 
-    pub fn record_copy(&self, encoder: &mut wgpu::CommandEncoder) {
+    pub(crate) fn record_copy(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.copy_texture_to_buffer(
             self.texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
@@ -145,7 +145,7 @@ impl Target {
         );
     }
 
-    pub fn read(&self, gpu: &Gpu) -> Result<RgbaImage> {
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<RgbaImage> {
         let failed = |what: &dyn std::fmt::Display| {
             Error::Renderer(format!("{} gave no picture back: {what}", gpu.name))
         };

@@ -10,7 +10,7 @@ use super::{Batch, DiscInstance, LinkInstance, Picture};
 
 /// Draws pictures into passes whose target has one given format.
 #[derive(Debug)]
-pub struct Painter {
+pub(crate) struct Painter {
     frame: FrameUniform,
     discs: PrimitivePipeline<DiscInstance>,
     links: PrimitivePipeline<LinkInstance>,
@@ -26,7 +26,7 @@ enum Span {
 
 impl Painter {
     /// A painter for targets of this format, which must not be an sRGB one.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let frame = FrameUniform::new(device);
         let discs = PrimitivePipeline::new(device, format, &frame);
         let links = PrimitivePipeline::new(device, format, &frame);
@@ -34,7 +34,7 @@ impl Painter {
     }
 
     /// Sends a picture to the GPU, to be drawn in the given part of the target.
-    pub fn prepare(
+    pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -55,7 +55,7 @@ impl Painter {
     }
 
     /// Records the drawing of the prepared picture. The ground is the pass's own clear colour.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         for span in &self.order {
             match span {
                 Span::Discs(range) => self.discs.draw(pass, &self.frame, range.clone()),

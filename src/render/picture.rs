@@ -8,7 +8,7 @@ use super::{Colour, DiscInstance, LinkInstance};
 
 /// Primitives of one kind that are drawn together, first to last.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Batch {
+pub(crate) enum Batch {
     /// Discs.
     Discs(Vec<DiscInstance>),
     /// Links.
@@ -17,7 +17,7 @@ pub enum Batch {
 
 /// All that a renderer needs. Later batches cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub(crate) struct Picture {
     /// Colour of the ground; its opacity is ignored.
     pub background: Colour,
     /// What lies on it.
@@ -26,19 +26,19 @@ pub struct Picture {
 
 impl Picture {
     /// A picture with nothing on its ground.
-    pub fn new(background: Colour) -> Self {
+    pub(crate) fn new(background: Colour) -> Self {
         Self { background: background.with_alpha(1.0), batches: Vec::new() }
     }
 
     /// Lays discs on top; an empty list leaves no batch.
-    pub fn push_discs(&mut self, discs: Vec<DiscInstance>) {
+    pub(crate) fn push_discs(&mut self, discs: Vec<DiscInstance>) {
         if !discs.is_empty() {
             self.batches.push(Batch::Discs(discs));
         }
     }
 
     /// Lays links on top; an empty list leaves no batch.
-    pub fn push_links(&mut self, links: Vec<LinkInstance>) {
+    pub(crate) fn push_links(&mut self, links: Vec<LinkInstance>) {
         if !links.is_empty() {
             self.batches.push(Batch::Links(links));
         }

@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 /// One instance of a primitive, as its shader reads it.
-pub trait Instance: bytemuck::Pod {
+pub(crate) trait Instance: bytemuck::Pod {
     /// Name in labels and messages.
     const NAME: &'static str;
     /// WGSL source with the entry points `vertex` and `fragment`.
@@ -21,7 +21,7 @@ pub trait Instance: bytemuck::Pod {
 /// Where in the render target the picture lies, as all shaders read it: pixels, y down.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Frame {
+pub(crate) struct Frame {
     /// Middle of the picture.
     pub centre: [f32; 2],
     /// Half of its width and height.
@@ -31,7 +31,7 @@ pub struct Frame {
 impl Frame {
     /// A picture whose upper left corner lies at (`left`, `top`). The pass's viewport must be the
     /// same rectangle.
-    pub fn new(left: f32, top: f32, width: f32, height: f32) -> Self {
+    pub(crate) fn new(left: f32, top: f32, width: f32, height: f32) -> Self {
         let half_size = [width / 2.0, height / 2.0];
         Self { centre: [left + half_size[0], top + half_size[1]], half_size }
     }
@@ -39,7 +39,7 @@ impl Frame {
 
 /// The [`Frame`] on the GPU, shared by the pipelines of one picture.
 #[derive(Debug)]
-pub struct FrameUniform {
+pub(crate) struct FrameUniform {
     buffer: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
@@ -47,7 +47,7 @@ pub struct FrameUniform {
 
 impl FrameUniform {
     /// A uniform with no valid content before [`FrameUniform::write`].
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
             size: size_of::<Frame>() as u64,
@@ -76,14 +76,14 @@ impl FrameUniform {
     }
 
     /// Sends a frame to the GPU.
-    pub fn write(&self, queue: &wgpu::Queue, frame: Frame) {
+    pub(crate) fn write(&self, queue: &wgpu::Queue, frame: Frame) {
         queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&frame));
     }
 }
 
 /// Pipeline and instances of one primitive.
 #[derive(Debug)]
-pub struct PrimitivePipeline<I> {
+pub(crate) struct PrimitivePipeline<I> {
     pipeline: wgpu::RenderPipeline,
     buffer: wgpu::Buffer,
     instance: PhantomData<I>,
@@ -92,7 +92,11 @@ pub struct PrimitivePipeline<I> {
 impl<I: Instance> PrimitivePipeline<I> {
     /// A pipeline for targets of this format. The format must not be an sRGB one: colours are
     /// written, and blended, as the file stores them.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, frame: &FrameUniform) -> Self {
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        frame: &FrameUniform,
+    ) -> Self {
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(I::NAME),
             source: wgpu::ShaderSource::Wgsl(I::SHADER.into()),
@@ -138,7 +142,7 @@ impl<I: Instance> PrimitivePipeline<I> {
     }
 
     /// Sends the instances of a picture to the GPU; the buffer grows as needed.
-    pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, instances: &[I]) {
+    pub(crate) fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, instances: &[I]) {
         let bytes: &[u8] = bytemuck::cast_slice(instances);
         if bytes.len() as u64 > self.buffer.size() {
             self.buffer = instance_buffer::<I>(device, instances.len().next_power_of_two());
@@ -147,7 +151,7 @@ impl<I: Instance> PrimitivePipeline<I> {
     }
 
     /// Records the drawing of a range of the prepared instances.
-    pub fn draw(
+    pub(crate) fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         frame: &FrameUniform,

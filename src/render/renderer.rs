@@ -55,7 +55,7 @@ impl Renderer {
     }
 
     /// Largest width and height that this renderer draws, pixels.
-    pub fn largest_side(&self) -> u32 {
+    pub(crate) fn largest_side(&self) -> u32 {
         match &self.engine {
             Engine::Gpu(offscreen) => offscreen.largest_side(),
             Engine::Cpu => CPU_LARGEST_SIDE_PX,
@@ -66,7 +66,7 @@ impl Renderer {
     ///
     /// # Errors
     /// Names `size` if it is empty or too large; otherwise says what the device reported.
-    pub fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
+    pub(crate) fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
         self.check_size(width, height)?;
         match &mut self.engine {
             Engine::Gpu(offscreen) => offscreen.draw(picture, width, height),
@@ -78,7 +78,7 @@ impl Renderer {
     ///
     /// # Errors
     /// Names `size`.
-    pub fn check_size(&self, width: u32, height: u32) -> Result<()> {
+    pub(crate) fn check_size(&self, width: u32, height: u32) -> Result<()> {
         let largest = self.largest_side();
         if (1..=largest).contains(&width) && (1..=largest).contains(&height) {
             return Ok(());

@@ -8,7 +8,7 @@ const LONGEST: f64 = 0.2;
 
 /// Where the scale bar of a picture lies, and what it says.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ScaleBar {
+pub(crate) struct ScaleBar {
     /// Length shown, m.
     pub length: f64,
     /// The length as people write it.
@@ -23,7 +23,7 @@ pub struct ScaleBar {
 
 impl ScaleBar {
     /// The bar for a picture of `width` × `height` pixels.
-    pub fn new(style: &Style, camera: &Camera, width: u32, height: u32) -> Self {
+    pub(crate) fn new(style: &Style, camera: &Camera, width: u32, height: u32) -> Self {
         let length_m = round_below(LONGEST * f64::from(width) * camera.metres_per_pixel);
         let text_px = style.text_px(width, height);
         let left = text_px - width as f32 / 2.0;

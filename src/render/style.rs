@@ -93,7 +93,7 @@ impl Default for Style {
 
 /// The colours of a theme.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Palette {
+pub(crate) struct Palette {
     /// What everything lies on.
     pub ground: Colour,
     /// Words and bars.
@@ -112,7 +112,7 @@ pub struct Palette {
 
 impl Theme {
     /// The theme's colours.
-    pub const fn palette(self) -> Palette {
+    pub(crate) const fn palette(self) -> Palette {
         match self {
             Self::Light => Palette {
                 ground: Colour::WHITE,
@@ -139,21 +139,21 @@ impl Theme {
 
 impl Style {
     /// Font size of labels on a picture of this size, pixels.
-    pub fn text_px(&self, width: u32, height: u32) -> f32 {
+    pub(crate) fn text_px(&self, width: u32, height: u32) -> f32 {
         // 16 px at 800 × 500; larger pictures are read from further away, but not in proportion.
         let side = f64::from(width).min(1.6 * f64::from(height));
         (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
     }
 
     /// Whether the colours, links or arrows of this style need a legend, and one is wanted.
-    pub fn has_legend(&self) -> bool {
+    pub(crate) fn has_legend(&self) -> bool {
         let needed =
             self.colour_by != ColourBy::PaperGreys || self.show_forces || self.show_velocities;
         self.legend && needed
     }
 
     /// Width of the strip at the right that the legend takes, pixels.
-    pub fn legend_width(&self, width: u32, height: u32) -> u32 {
+    pub(crate) fn legend_width(&self, width: u32, height: u32) -> u32 {
         let strip = (7.0 * self.text_px(width, height)).ceil() as u32;
         // A picture too narrow for both shows the scene.
         if self.has_legend() && width > 2 * strip { strip } else { 0 }

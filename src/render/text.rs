@@ -11,7 +11,7 @@ use super::font::TextStyle;
 
 /// Text laid out: a mask of pixel coverage and a colour.
 #[derive(Clone, Debug)]
-pub struct TextBlock {
+pub(crate) struct TextBlock {
     width: u32,
     height: u32,
     /// 0 … 1, row by row.
@@ -21,7 +21,7 @@ pub struct TextBlock {
 
 impl TextBlock {
     /// Lays text out; `\n` ends a line, `_{…}` lowers letters and `^{…}` raises them.
-    pub fn new(text: &str, style: &TextStyle) -> Self {
+    pub(crate) fn new(text: &str, style: &TextStyle) -> Self {
         let lines: Vec<&str> = text.split('\n').collect();
         let widest = lines.iter().map(|line| style.width(line)).fold(0.0, f32::max);
         // Slanted and accented letters may reach a pixel beyond their advance.
@@ -40,7 +40,7 @@ impl TextBlock {
 
     /// Lays text out, breaking lines at spaces so that none is wider than `largest_width_px`. If a
     /// single word is wider, the text becomes smaller.
-    pub fn wrapped(text: &str, style: &TextStyle, largest_width_px: f32) -> Self {
+    pub(crate) fn wrapped(text: &str, style: &TextStyle, largest_width_px: f32) -> Self {
         // A block is up to three pixels wider than its longest line.
         let largest = (largest_width_px - 3.0).max(1.0);
         let widest_word = text.split_whitespace().map(|word| style.width(word)).fold(0.0, f32::max);
@@ -87,22 +87,23 @@ impl TextBlock {
     }
 
     /// Width, pixels.
-    pub fn width(&self) -> u32 {
+    pub(crate) fn width(&self) -> u32 {
         self.width
     }
 
     /// Height, pixels.
-    pub fn height(&self) -> u32 {
+    pub(crate) fn height(&self) -> u32 {
         self.height
     }
 
     /// Part of the block that ink covers, 0 … 1.
-    pub fn ink(&self) -> f32 {
+    #[cfg(test)]
+    pub(crate) fn ink(&self) -> f32 {
         self.coverage.iter().sum::<f32>() / self.coverage.len().max(1) as f32
     }
 
     /// Turned by 90° anticlockwise: reads upwards, as the label of a vertical axis.
-    pub fn turned(&self) -> Self {
+    pub(crate) fn turned(&self) -> Self {
         let (width, height) = (self.height, self.width);
         let mut coverage = Vec::with_capacity(self.coverage.len());
         for row in 0..height {
@@ -116,7 +117,7 @@ impl TextBlock {
 
     /// Draws the block at the point (`x`, `y`), pixels from the upper left corner. What lies
     /// outside the image is left out.
-    pub fn draw(&self, image: &mut RgbaImage, x: i64, y: i64, across: Align, down: Align) {
+    pub(crate) fn draw(&self, image: &mut RgbaImage, x: i64, y: i64, across: Align, down: Align) {
         let left = x - i64::from(across.share(self.width));
         let top = y - i64::from(down.share(self.height));
         for (index, coverage) in self.coverage.iter().enumerate() {

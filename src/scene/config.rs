@@ -27,7 +27,7 @@ pub struct Config {
 
 impl Config {
     /// The name of the scene that is used where none is given.
-    pub const DEFAULT_SCENE: &str = "pile";
+    pub(crate) const DEFAULT_SCENE: &str = "pile";
 
     /// A scene by name or file, as it says itself.
     pub fn of_scene(name: impl Into<String>) -> Self {
@@ -36,12 +36,12 @@ impl Config {
     }
 
     /// Whether nothing is asked for.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
     /// The same with all settings given.
-    pub fn with_settings(self, settings: &Settings) -> Self {
+    pub(crate) fn with_settings(self, settings: &Settings) -> Self {
         Self {
             stepper: Some(settings.stepper),
             parameters: Changes::all_of(&settings.parameters),
@@ -52,7 +52,7 @@ impl Config {
     }
 
     /// Gives the setting of that name a value of its kind. Whether there is one of that name and kind.
-    pub fn set(&mut self, name: &str, value: Value) -> bool {
+    pub(crate) fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies, .. } = self;
         if name == Settings::STEPPER.name {
             *stepper = crate::setting::Settable::of(value);
@@ -66,7 +66,7 @@ impl Config {
     ///
     /// # Errors
     /// Names the first field that is unknown or outside its range, or the file that cannot be read.
-    pub fn without_settling(&self) -> Result<Scene> {
+    pub(crate) fn without_settling(&self) -> Result<Scene> {
         let Origin { initial, start, .. } = &self.origin;
         let name = self.origin.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
         let pile_alone = |fields: &str| match name {
@@ -115,14 +115,14 @@ impl Config {
     ///
     /// # Errors
     /// As [`Config::without_settling`].
-    pub fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
+    pub(crate) fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
         let mut pile = pile_of(settled, self.origin.rain().box_width_in_diameters);
         self.change(&mut pile)?;
         Ok(pile)
     }
 
     /// The same asked for, with every number that `scene` fills in.
-    pub fn resolved(&self, scene: &Scene) -> Self {
+    pub(crate) fn resolved(&self, scene: &Scene) -> Self {
         let named = self.origin.scene.clone().unwrap_or_else(|| Self::DEFAULT_SCENE.into());
         let origin = Origin {
             scene: Some(named),

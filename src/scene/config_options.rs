@@ -10,7 +10,7 @@ use crate::sim::Settings;
 
 impl Config {
     /// The names of all fields, as command line and study files write them.
-    pub fn names() -> Vec<String> {
+    pub(crate) fn names() -> Vec<String> {
         let command = Self::augment_args(Command::new("config"));
         command.get_arguments().filter_map(Arg::get_long).map(str::to_owned).collect()
     }
@@ -28,7 +28,7 @@ impl Args for Config {
 }
 
 /// The parser of a word, for options that are not settings.
-pub fn parser_of<T: Settable + Send + Sync + 'static>() -> ValueParser {
+pub(crate) fn parser_of<T: Settable + Send + Sync + 'static>() -> ValueParser {
     let words = if let Kind::Word(words) = T::KIND { words } else { &[] };
     let said = |said: String| {
         let word = words.iter().find(|word| word.name == said);

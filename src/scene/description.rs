@@ -178,7 +178,7 @@ impl Scene {
 
     /// What pictures of this scene show: its own view, or the grains' start with room to spread by
     /// the grains' height on either side.
-    pub fn view(&self) -> View {
+    pub(crate) fn view(&self) -> View {
         if let Some(view) = self.view {
             return view;
         }

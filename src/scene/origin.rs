@@ -67,7 +67,7 @@ impl Origin {
     }
 
     /// The rain that `grains`, `box_width` and `seed` ask for.
-    pub fn rain(&self) -> Rain {
+    pub(crate) fn rain(&self) -> Rain {
         let default = Rain::default();
         Rain {
             grains: self.grains.unwrap_or(default.grains),
@@ -77,7 +77,7 @@ impl Origin {
     }
 
     /// Whether grains have to be rained and settled.
-    pub fn makes_new_pile(&self) -> bool {
+    pub(crate) fn makes_new_pile(&self) -> bool {
         self.grains.is_some() || self.box_width.is_some() || self.seed.is_some()
     }
 }

@@ -73,7 +73,7 @@ pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
 }
 
 /// Gives grains greys by the layer they start in, so that a picture shows what moved where.
-pub fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
+pub(crate) fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
     for grain in grains {
         let layer = (grain.position.y / (LAYER_IN_DIAMETERS * diameter)).floor() as i64;
         grain.tone = LAYER_TONES[layer.rem_euclid(LAYER_TONES.len() as i64) as usize];

@@ -33,7 +33,7 @@ impl Preset {
     }
 
     /// Changes what can be changed during a run.
-    pub fn apply_to_settings(self, settings: &mut Settings) {
+    pub(crate) fn apply_to_settings(self, settings: &mut Settings) {
         let Self::Robust = self;
         let threshold = &mut settings.parameters.restitution_threshold;
         *threshold = threshold.max(RESTITUTION_THRESHOLD);

@@ -32,7 +32,7 @@ impl Rain {
     ///
     /// # Errors
     /// Names the field, its value and its range.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let width = self.box_width_in_diameters;
         if !(SPACING..1e6).contains(&width) {
             let allowed = format!("between {SPACING} and 1e6 diameters");

@@ -14,10 +14,10 @@ pub enum SceneGroup {
 
 impl SceneGroup {
     /// All groups, in the order that lists show them.
-    pub const ALL: [Self; 2] = [Self::Paper, Self::Stability];
+    pub(crate) const ALL: [Self; 2] = [Self::Paper, Self::Stability];
 
     /// Heading of the group in lists.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Paper => "Scenes",
             Self::Stability => "Scenes made to break methods",
@@ -167,7 +167,7 @@ pub const SCENES: [SceneInfo; 20] = [
 ];
 
 /// The names of all built-in scenes, for messages.
-pub fn scene_names() -> String {
+pub(crate) fn scene_names() -> String {
     SCENES.map(|scene| scene.name).join(", ")
 }
 

@@ -111,7 +111,7 @@ fn lattice(rain: &Rain) -> Vec<Grain> {
 }
 
 /// The walls of a box for the pile's scene.
-pub fn walls(box_width_in_diameters: f64) -> Vec<Boundary> {
+pub(crate) fn walls(box_width_in_diameters: f64) -> Vec<Boundary> {
     let wall = |side: f64| Boundary::HalfSpace {
         point: DVec2::new(side * 0.5 * box_width_in_diameters * DIAMETER, 0.0),
         normal: DVec2::new(-side, 0.0),
@@ -141,7 +141,7 @@ impl GrainSource {
     ///
     /// # Errors
     /// Where the file cannot be read, or a value is outside its range.
-    pub fn grains(&self) -> Result<Vec<Grain>> {
+    pub(crate) fn grains(&self) -> Result<Vec<Grain>> {
         match self {
             Self::Csv { path } => read_discs(path),
             Self::Rain(rain) => settle(rain, |_| true),

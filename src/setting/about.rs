@@ -51,13 +51,13 @@ pub struct Control {
 
 impl Control {
     /// A control without a slider, or one from 0 to 1.
-    pub const PLAIN: Self =
+    pub(crate) const PLAIN: Self =
         Self { label: "", symbol: "", unit: "", hint: "", range: [0.0, 1.0], logarithmic: false };
 }
 
 /// The declaration of a setting of one type.
 #[derive(Clone, Copy, Debug)]
-pub struct Declared<T> {
+pub(crate) struct Declared<T> {
     /// See [`About::name`].
     pub name: &'static str,
     /// See [`About::value_name`].
@@ -76,7 +76,7 @@ pub struct Declared<T> {
 
 impl<T: Settable> Declared<T> {
     /// A setting that may be any value and that the window does not show.
-    pub const ANY: Self = Self {
+    pub(crate) const ANY: Self = Self {
         name: "",
         value_name: "",
         help: "",
@@ -87,7 +87,7 @@ impl<T: Settable> Declared<T> {
     };
 
     /// The row of a table.
-    pub const fn about(&self, heading: &'static str) -> About {
+    pub(crate) const fn about(&self, heading: &'static str) -> About {
         About {
             name: self.name,
             value_name: self.value_name,

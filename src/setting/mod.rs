@@ -9,7 +9,8 @@ mod about;
 mod declare;
 mod value;
 
-pub use about::{About, Control, Declared, Needs};
+pub(crate) use about::Declared;
+pub use about::{About, Control, Needs};
 pub use declare::{Changes, Group};
 pub(crate) use declare::{settings, words};
 pub use value::{Kind, Settable, Value, Word};

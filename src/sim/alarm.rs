@@ -110,12 +110,12 @@ impl Watch {
     }
 
     /// The alarms so far, one of a kind.
-    pub fn alarms(&self) -> &[Alarm] {
+    pub(super) fn alarms(&self) -> &[Alarm] {
         &self.alarms
     }
 
     /// Looks at the state after a step; `features` are those of the boundaries where they are now.
-    pub fn look(
+    pub(super) fn look(
         &mut self,
         world: &World,
         features: &[Feature],

@@ -268,7 +268,7 @@ impl Simulation {
     ///
     /// # Errors
     /// Where it is the only one.
-    pub fn remove_last_grain(&mut self) -> Result<()> {
+    pub(crate) fn remove_last_grain(&mut self) -> Result<()> {
         let last = self.state.world.grains.len() - 1;
         if last == 0 {
             return Err(Error::value("grains", 1, "more than one where one is taken away"));

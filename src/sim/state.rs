@@ -30,7 +30,7 @@ pub(crate) struct State {
 
 impl State {
     /// Begins a step of that length: the contacts' forces stay what they were, walls get their speeds.
-    pub fn begin(&mut self, time_step_secs: f64) {
+    pub(crate) fn begin(&mut self, time_step_secs: f64) {
         let before = self.time_step_of_impulses_secs;
         if time_step_secs != before {
             self.contacts.scale_impulses(time_step_secs / before);
@@ -41,7 +41,7 @@ impl State {
 
     /// Finds the contacts: those at the present positions, or, looking ahead, those that the step may
     /// come to as well.
-    pub fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
+    pub(crate) fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
         let Self { world, candidates, contacts, .. } = self;
         match (ahead, M::Kinematics::AXES) {
             (None, 1) => {
@@ -64,17 +64,21 @@ impl State {
     }
 
     /// The push of the spring on a grain in the next `time_step_secs` ([`Pull::push`]).
-    pub fn push_of_pull(&self, axes: usize, time_step_secs: f64) -> Option<(usize, DVec2, f64)> {
+    pub(crate) fn push_of_pull(
+        &self,
+        axes: usize,
+        time_step_secs: f64,
+    ) -> Option<(usize, DVec2, f64)> {
         self.pull.and_then(|pull| pull.push(&self.world, axes, time_step_secs))
     }
 
     /// Speed of the fastest grain or wall of a step that has begun, m/s.
-    pub fn fastest(&self) -> f64 {
+    pub(crate) fn fastest(&self) -> f64 {
         self.fastest_with(self.walls.fastest())
     }
 
     /// Speed of the fastest grain or wall in the next step, if that is of such a length, m/s.
-    pub fn fastest_in(&self, time_step_secs: f64) -> f64 {
+    pub(crate) fn fastest_in(&self, time_step_secs: f64) -> f64 {
         self.fastest_with(Walls::fastest_in(&self.world, &self.candidates, time_step_secs))
     }
 
@@ -84,7 +88,7 @@ impl State {
     }
 
     /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and the angles where grains turn.
-    pub fn integrate<M: Model>(&mut self, time_step_secs: f64) {
+    pub(crate) fn integrate<M: Model>(&mut self, time_step_secs: f64) {
         let grains = &mut self.world.grains;
         for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
             if M::Kinematics::AXES == 1 {
@@ -105,7 +109,7 @@ impl State {
     }
 
     /// Whether all positions and velocities are numbers.
-    pub fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         let grains = &self.world.grains;
         // A sum is finite only where every term is (or where an overflow is close enough to count).
         let total = |vectors: &[DVec2]| vectors.iter().sum::<DVec2>().is_finite();
@@ -115,7 +119,7 @@ impl State {
     }
 
     /// Takes the last grain out. The impulses of all other contacts stay.
-    pub fn remove_last_grain(&mut self) -> Result<()> {
+    pub(crate) fn remove_last_grain(&mut self) -> Result<()> {
         let last = self.world.grains.len() - 1;
         self.world.grains.truncate(last);
         self.contacts.remove_body(last as u32);

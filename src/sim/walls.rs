@@ -26,7 +26,7 @@ struct Wall {
 
 impl Walls {
     /// Begins a step of that length.
-    pub fn begin(&mut self, world: &World, candidates: &Candidates, time_step_secs: f64) {
+    pub(crate) fn begin(&mut self, world: &World, candidates: &Candidates, time_step_secs: f64) {
         let walls = candidates.pistons().iter().map(|&(boundary, feature)| Wall {
             boundary,
             feature,
@@ -37,18 +37,18 @@ impl Walls {
     }
 
     /// Whether any wall moves.
-    pub fn any_move(&self) -> bool {
+    pub(crate) fn any_move(&self) -> bool {
         !self.moving.is_empty()
     }
 
     /// Speed of the fastest, m/s.
-    pub fn fastest(&self) -> f64 {
+    pub(crate) fn fastest(&self) -> f64 {
         self.moving.iter().map(|wall| wall.velocity.length()).fold(0.0, f64::max)
     }
 
     /// How fast the other body of a contact comes along its normal, m/s, if it is such a wall.
     #[inline]
-    pub fn speed(&self, world: &World, contact: &Contact) -> f64 {
+    pub(crate) fn speed(&self, world: &World, contact: &Contact) -> f64 {
         if self.moving.is_empty() {
             return 0.0;
         }
@@ -58,7 +58,7 @@ impl Walls {
     }
 
     /// Moves the walls for `secs`.
-    pub fn advance(&self, world: &mut World, candidates: &mut Candidates, secs: f64) {
+    pub(crate) fn advance(&self, world: &mut World, candidates: &mut Candidates, secs: f64) {
         for wall in &self.moving {
             world.boundaries[wall.boundary].advance(secs * wall.velocity);
         }
@@ -67,7 +67,7 @@ impl Walls {
     }
 
     /// Speed of the fastest wall in a next step of that length, m/s.
-    pub fn fastest_in(world: &World, candidates: &Candidates, secs: f64) -> f64 {
+    pub(crate) fn fastest_in(world: &World, candidates: &Candidates, secs: f64) -> f64 {
         let walls = candidates.pistons().iter();
         let speeds = walls.map(|&(wall, _)| world.boundaries[wall].velocity(secs).length());
         speeds.fold(0.0, f64::max)

@@ -13,19 +13,21 @@ mod problem;
 mod settings;
 mod slots;
 
-pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
+pub(crate) use delassus::Assembled;
+pub use delassus::{DelassusProblem, Triplets, solve_delassus};
+pub(crate) use methods::picked;
 #[doc(hidden)]
 pub use methods::sweep;
 pub use methods::{
     BodySystem, ContactSystem, METHODS, Memory, Method, MethodInfo, MethodOrder, Pairs,
-    SolveReport, Vectors, picked, solve, solve_system,
+    SolveReport, solve,
 };
 pub use ordering::Ordering;
 pub use problem::prepare::{Approach, ProblemNumbers};
 pub use problem::{
-    Kinematics, Line, LineBody, Measures, Model, ModelParts, ModelVisitor, Motion, Plane,
-    PlaneBody, Row, SpinningPlane, StepModel, StepProblem, for_each_row, measure,
-    relative_velocities, residual,
+    Kinematics, Line, LineBody, Measures, Model, Motion, Plane, PlaneBody, Row, SpinningPlane,
+    StepModel, StepProblem, residual,
 };
+pub(crate) use problem::{ModelParts, ModelVisitor, for_each_row, measure, relative_velocities};
 pub use settings::{SolverChanges, SolverSettings, StopTest};
-pub use slots::{Slot, SlotVisitor, Slots, visit_model};
+pub(crate) use slots::{Slot, SlotVisitor, Slots, visit_model};

@@ -117,7 +117,7 @@ impl SolverSettings {
     ///
     /// # Errors
     /// Names the field, its value and its range.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         self.validate_each()
     }
 }

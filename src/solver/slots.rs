@@ -7,7 +7,7 @@ use super::problem::{
 
 /// A problem, and what the methods keep that solve it.
 #[derive(Clone, Debug, Default)]
-pub struct Slot<K: Kinematics> {
+pub(crate) struct Slot<K: Kinematics> {
     /// The problem.
     pub problem: StepProblem<K>,
     /// What the methods keep.
@@ -16,14 +16,14 @@ pub struct Slot<K: Kinematics> {
 
 /// A slot for each kind of motion; those that a scene never uses hold no memory.
 #[derive(Clone, Debug, Default)]
-pub struct Slots {
+pub(crate) struct Slots {
     line: Slot<Line>,
     plane: Slot<Plane>,
     spinning_plane: Slot<SpinningPlane>,
 }
 
 /// Something to be done with a slot once the model is known.
-pub trait SlotVisitor {
+pub(crate) trait SlotVisitor {
     /// What it gives.
     type Output;
     /// Does it.
@@ -32,7 +32,7 @@ pub trait SlotVisitor {
 
 impl Slots {
     /// Calls `visitor` with the model that computes just these parts, and its slot.
-    pub fn visit<V: SlotVisitor>(&mut self, parts: ModelParts, visitor: V) -> V::Output {
+    pub(crate) fn visit<V: SlotVisitor>(&mut self, parts: ModelParts, visitor: V) -> V::Output {
         let ModelParts { axes, friction, rotation, compressive_cone } = parts;
         let Self { line, plane, spinning_plane: spinning } = self;
         match (axes, friction, rotation, compressive_cone) {
@@ -51,7 +51,7 @@ impl Slots {
 }
 
 /// Calls `visitor` with the model that computes just these parts.
-pub fn visit_model<V: ModelVisitor>(parts: ModelParts, visitor: V) -> V::Output {
+pub(crate) fn visit_model<V: ModelVisitor>(parts: ModelParts, visitor: V) -> V::Output {
     struct WithoutSlot<V>(V);
     impl<V: ModelVisitor> SlotVisitor for WithoutSlot<V> {
         type Output = V::Output;

@@ -26,7 +26,7 @@ const ADVANCE: SolverSettings = SolverSettings {
 
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CollectionPlan {
+pub(crate) struct CollectionPlan {
     /// Bond numbers.
     pub bonds: Vec<f64>,
     /// Δt, s.
@@ -46,7 +46,7 @@ pub struct CollectionPlan {
 impl CollectionPlan {
     /// 48 steps of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its end,
     /// and rest.
-    pub fn piles(restitution_threshold: f64) -> Self {
+    pub(crate) fn piles(restitution_threshold: f64) -> Self {
         let rain = Rain::default();
         Self {
             bonds: vec![0.0, 20.0, 50.0, 100.0],
@@ -60,12 +60,12 @@ impl CollectionPlan {
     }
 
     /// 24 of them: the first two times.
-    pub fn fewer_piles(restitution_threshold: f64) -> Self {
+    pub(crate) fn fewer_piles(restitution_threshold: f64) -> Self {
         Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
     }
 
     /// 8 steps of piles of 2,000 grains, as steep as those of 138.
-    pub fn large_piles(restitution_threshold: f64) -> Self {
+    pub(crate) fn large_piles(restitution_threshold: f64) -> Self {
         Self {
             bonds: vec![0.0, 50.0],
             time_steps_secs: vec![1e-3, 5e-3],
@@ -75,16 +75,6 @@ impl CollectionPlan {
             box_width_in_diameters: 60.0,
             ..Self::piles(restitution_threshold)
         }
-    }
-
-    /// Number of steps.
-    pub fn len(&self) -> usize {
-        self.bonds.len() * self.time_steps_secs.len() * self.times_secs.len()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// A pile for every Bond number and time step. Going on by one in both, no time step and no
@@ -114,15 +104,9 @@ impl CollectionPlan {
 
 /// One step of a collection.
 #[derive(Clone, Debug)]
-pub struct CollectedStep {
+pub(crate) struct CollectedStep {
     /// Tells it apart from the others, in words.
     pub name: String,
-    /// Bond number.
-    pub bond: f64,
-    /// Δt, s.
-    pub time_step_secs: f64,
-    /// Simulated time at which it begins, s.
-    pub time_secs: f64,
     /// The simulation just before it; `next_problem` gives its problem.
     pub simulation: Simulation,
 }
@@ -132,7 +116,7 @@ pub struct CollectedStep {
 ///
 /// # Errors
 /// Where the folder cannot be written, a state does not settle, or a pile is no longer finite.
-pub fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<CollectedStep>> {
+pub(crate) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<CollectedStep>> {
     let configs = plan.configs();
     let states = States::of(states_folder.to_owned(), configs.iter())?;
     let last_secs = plan.times_secs.last().copied().unwrap_or(0.0);
@@ -161,9 +145,6 @@ pub fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Collec
                         "{} grains, Bond {bond}, dt {time_step_secs:e}, t {time_secs}, threshold {}",
                         plan.grains, plan.restitution_threshold
                     ),
-                    bond,
-                    time_step_secs,
-                    time_secs,
                     simulation: simulation.clone(),
                 });
             }
@@ -177,6 +158,7 @@ pub fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Collec
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::Parameters;
 
     fn small() -> CollectionPlan {
         CollectionPlan {
@@ -188,6 +170,10 @@ mod tests {
             box_width_in_diameters: 8.0,
             restitution_threshold: 2.0,
         }
+    }
+
+    fn steps(plan: &CollectionPlan) -> usize {
+        plan.bonds.len() * plan.time_steps_secs.len() * plan.times_secs.len()
     }
 
     fn bits(collected: &[CollectedStep]) -> Vec<u64> {
@@ -209,7 +195,7 @@ mod tests {
         let first = collect(&plan, folder.path()).expect("a collection");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
         let again = pool.install(|| collect(&plan, folder.path())).expect("a collection");
-        assert_eq!(first.len(), plan.len());
+        assert_eq!(first.len(), steps(&plan));
         assert_eq!(bits(&first), bits(&again));
         assert!(first.iter().all(|step| !step.simulation.contacts().impulses().is_empty()));
     }
@@ -220,9 +206,12 @@ mod tests {
         let collected = collect(&small(), folder.path()).expect("a collection");
         for step in &collected {
             let simulation = &step.simulation;
-            assert!((simulation.time_secs() - step.time_secs).abs() < 1e-9);
-            assert_eq!(simulation.parameters().bond, step.bond);
-            assert_eq!(simulation.parameters().time_step_secs, step.time_step_secs);
+            let Parameters { bond, time_step_secs, .. } = simulation.parameters();
+            let told = format!(
+                "30 grains, Bond {bond}, dt {time_step_secs:e}, t {:.2}, threshold 2",
+                simulation.time_secs()
+            );
+            assert_eq!(step.name, told);
             assert_eq!(simulation.parameters().restitution_threshold, 2.0);
         }
         let mut names: Vec<_> = collected.iter().map(|step| &step.name).collect();
@@ -233,7 +222,7 @@ mod tests {
     #[test]
     fn no_bond_number_and_no_time_step_meets_one_state_alone() {
         let plan = CollectionPlan::piles(0.0);
-        assert!(plan.len() >= 40);
+        assert!(steps(&plan) >= 40);
         let configs = plan.configs();
         for bond in &plan.bonds {
             let seeds: std::collections::HashSet<_> = configs

@@ -42,7 +42,7 @@ impl Journal {
     ///
     /// # Errors
     /// Where it cannot be written, or another program is at it.
-    pub fn open(folder: &Path, name: &str) -> Result<Self> {
+    pub(super) fn open(folder: &Path, name: &str) -> Result<Self> {
         let path = path_of(folder, name);
         let refuse = |error: std::io::Error| Error::file(&path, error);
         let file = OpenOptions::new().create(true).read(true).append(true).open(&path);
@@ -57,7 +57,7 @@ impl Journal {
     }
 
     /// Adds something finished.
-    pub fn add(&self, entry: &impl Serialize) -> Result<()> {
+    pub(super) fn add(&self, entry: &impl Serialize) -> Result<()> {
         let mut line = serde_json::to_vec(entry).map_err(|error| Error::file(&self.path, error))?;
         line.push(b'\n');
         let mut file = match self.file.lock() {

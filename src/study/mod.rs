@@ -19,15 +19,14 @@ mod statistics;
 mod sweep;
 mod table;
 
-pub use collection::{CollectedStep, CollectionPlan, collect};
-pub use figures::{figure_names, reproduce};
-pub use outcome::{Outcome, Status, run_to_end};
-pub use paper::{
+pub(crate) use figures::{figure_names, reproduce};
+pub(crate) use outcome::{Outcome, Status};
+pub(crate) use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
 };
-pub use plan::{PlannedRun, SeriesSettings, Study};
-pub use run::{Recorded, record};
-pub use shard::Shard;
-pub use speed::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
-pub use sweep::{SweepOptions, merge, series_path, sweep};
-pub use table::RunsTable;
+pub(crate) use plan::{PlannedRun, SeriesSettings, Study};
+pub(crate) use run::record;
+pub(crate) use shard::Shard;
+pub(crate) use speed::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
+pub(crate) use sweep::{SweepOptions, merge, series_path, sweep};
+pub(crate) use table::RunsTable;

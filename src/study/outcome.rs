@@ -12,7 +12,7 @@ use crate::sim::{RunEnding, Simulation, Tally};
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Status {
+pub(crate) enum Status {
     /// At its full duration.
     Done,
     /// Its state was no longer finite.
@@ -21,7 +21,7 @@ pub enum Status {
 
 /// What a run comes to. A row of the study's table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
+pub(crate) struct Outcome {
     /// How it ended.
     pub status: Status,
     /// Steps taken.
@@ -49,7 +49,7 @@ pub struct Outcome {
 ///
 /// # Errors
 /// Where the scene is not sound, or `row` says so. A state that is no longer finite is an outcome.
-pub fn run_to_end(
+pub(crate) fn run_to_end(
     scene: &Scene,
     series: Option<&SeriesSettings>,
     mut row: impl FnMut(&Simulation) -> Result<()>,

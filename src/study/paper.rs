@@ -8,7 +8,7 @@ use crate::world::Boundary;
 
 /// One run of a figure, with the times that it is shown at.
 #[derive(Clone, Debug)]
-pub struct PaperRun {
+pub(crate) struct PaperRun {
     /// Name of its files, without the time.
     pub name: String,
     /// The figure that it belongs to.
@@ -20,13 +20,13 @@ pub struct PaperRun {
 }
 
 /// Bond numbers of Fig. 4, a row each.
-pub const FIG4_BONDS: [f64; 2] = [20.0, 100.0];
+pub(crate) const FIG4_BONDS: [f64; 2] = [20.0, 100.0];
 /// Time steps of Fig. 4, a column each, s.
-pub const FIG4_TIME_STEPS_SECS: [f64; 3] = [1e-4, 1e-3, 2e-3];
+pub(crate) const FIG4_TIME_STEPS_SECS: [f64; 3] = [1e-4, 1e-3, 2e-3];
 /// Time steps of Fig. 7, a column each, s.
-pub const FIG7_TIME_STEPS_SECS: [f64; 2] = [5e-4, 1e-3];
+pub(crate) const FIG7_TIME_STEPS_SECS: [f64; 2] = [5e-4, 1e-3];
 /// Times of Fig. 7, a row each, s.
-pub const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
+pub(crate) const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
 /// Relative impulse change that the piles are solved to: that of the reference results, at which
 /// the verdicts no longer hang on the solver.
 const PILE_TOLERANCE: f64 = 1e-7;
@@ -35,7 +35,7 @@ const PILE_TOLERANCE: f64 = 1e-7;
 ///
 /// # Errors
 /// As [`paper_pile`].
-pub fn paper_runs() -> Result<Vec<PaperRun>> {
+pub(crate) fn paper_runs() -> Result<Vec<PaperRun>> {
     let mut runs = Vec::new();
     let mut pile = paper_pile()?;
     pile.solver.tolerance = PILE_TOLERANCE;

@@ -3,7 +3,7 @@
 
 /// What one solve took.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Timing {
+pub(super) struct Timing {
     /// Until it was solved or given up, s.
     pub secs: f64,
     /// Whether it was solved.
@@ -11,7 +11,7 @@ pub struct Timing {
 }
 
 /// exp of the mean of logarithms; `None` of nothing.
-pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+pub(super) fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0usize);
     for value in values {
         sum += value.ln();
@@ -21,7 +21,7 @@ pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 }
 
 /// The median where what failed counts as longer than any time; `None` where half failed.
-pub fn median_with_failures(timings: &[Timing]) -> Option<f64> {
+pub(super) fn median_with_failures(timings: &[Timing]) -> Option<f64> {
     let secs = |timing: &Timing| if timing.solved { timing.secs } else { f64::INFINITY };
     let mut all: Vec<f64> = timings.iter().map(secs).collect();
     all.sort_by(f64::total_cmp);
@@ -35,14 +35,14 @@ pub fn median_with_failures(timings: &[Timing]) -> Option<f64> {
 }
 
 /// Share of the problems that were solved.
-pub fn share_solved(timings: &[Timing]) -> f64 {
+pub(super) fn share_solved(timings: &[Timing]) -> f64 {
     let solved = timings.iter().filter(|timing| timing.solved).count();
     solved as f64 / timings.len().max(1) as f64
 }
 
 /// How many times as fast one method is as another, as geometric means over problems.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SpeedRatio {
+pub(super) struct SpeedRatio {
     /// Over the problems that both solve.
     pub both: Option<f64>,
     /// How many those are.
@@ -56,7 +56,7 @@ pub struct SpeedRatio {
 
 /// The ratio of `base`'s times to `method`'s, problem by problem. What the method fails on has no
 /// ratio: it shows in [`share_solved`].
-pub fn speed_ratio(base: &[Timing], method: &[Timing]) -> SpeedRatio {
+pub(super) fn speed_ratio(base: &[Timing], method: &[Timing]) -> SpeedRatio {
     let pairs = || base.iter().zip(method).filter(|(_, method)| method.solved);
     let ratio = |(base, method): (&Timing, &Timing)| base.secs / method.secs;
     let count_both = pairs().filter(|(base, _)| base.solved).count();
@@ -71,7 +71,7 @@ pub fn speed_ratio(base: &[Timing], method: &[Timing]) -> SpeedRatio {
 /// Performance profiles (E. Dolan, J. Moré 2002): for each method, the share of problems that it
 /// solves within τ times the least time of any method, as the corners (τ, share) of a staircase that
 /// begins at τ = 1. `timings[method][problem]`. Problems that no method solves count against all.
-pub fn performance_profiles(timings: &[Vec<Timing>]) -> Vec<Vec<(f64, f64)>> {
+pub(super) fn performance_profiles(timings: &[Vec<Timing>]) -> Vec<Vec<(f64, f64)>> {
     let problems = timings.first().map_or(0, Vec::len);
     let secs = |timing: &Timing| if timing.solved { timing.secs } else { f64::INFINITY };
     let best: Vec<f64> = (0..problems)
@@ -96,7 +96,7 @@ pub fn performance_profiles(timings: &[Vec<Timing>]) -> Vec<Vec<(f64, f64)>> {
 
 /// The points (speed, error) that no other beats in both, by rising speed. Of equal ones the first
 /// is kept.
-pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
+pub(super) fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     // Fastest first; of equally fast ones the most accurate first.
     order.sort_by(|&one, &other| {

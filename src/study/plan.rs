@@ -40,7 +40,7 @@ struct Quick {
 /// What is kept of the course of each run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SeriesSettings {
+pub(crate) struct SeriesSettings {
     /// Simulated time between two rows, s.
     pub interval: f64,
     /// The grains whose positions are kept, by number.
@@ -50,13 +50,11 @@ pub struct SeriesSettings {
 
 /// A study: a list of runs in the order of its table.
 #[derive(Clone, Debug)]
-pub struct Study {
+pub(crate) struct Study {
     /// Its name.
     pub name: String,
     /// Tells studies apart: hash of the keys of all runs.
     pub fingerprint: String,
-    /// The parameters that vary; the first varies slowest.
-    pub varied: Vec<String>,
     /// What is kept of the course of each run, if anything.
     pub series: Option<SeriesSettings>,
     /// The runs.
@@ -65,7 +63,7 @@ pub struct Study {
 
 /// One run of a study.
 #[derive(Clone, Debug)]
-pub struct PlannedRun {
+pub(crate) struct PlannedRun {
     /// Names it: hash of all that its result hangs on.
     pub key: String,
     /// What it runs, every number filled in.
@@ -79,7 +77,7 @@ impl Study {
     ///
     /// # Errors
     /// Where the file cannot be read or says something that no study says.
-    pub fn read(path: &Path, quick: bool) -> Result<Self> {
+    pub(crate) fn read(path: &Path, quick: bool) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
         Self::parse(&text, path, quick)
     }
@@ -88,7 +86,7 @@ impl Study {
     ///
     /// # Errors
     /// Where it says something that no study says.
-    pub fn parse(text: &str, path: &Path, quick: bool) -> Result<Self> {
+    pub(crate) fn parse(text: &str, path: &Path, quick: bool) -> Result<Self> {
         let mut file: StudyFile = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
             let place = line.map_or(String::new(), |line| format!("line {line}: "));
@@ -122,13 +120,7 @@ impl Study {
         for run in &runs {
             hasher.update(run.key.as_bytes());
         }
-        Ok(Self {
-            name: file.name,
-            fingerprint: short(&hasher),
-            varied: file.vary.keys().cloned().collect(),
-            series: file.series,
-            runs,
-        })
+        Ok(Self { name: file.name, fingerprint: short(&hasher), series: file.series, runs })
     }
 }
 

@@ -8,7 +8,7 @@ use crate::sim::{Observables, RunEnding, Simulation, Snapshot, Tally};
 
 /// What a run leaves.
 #[derive(Debug)]
-pub struct Recorded {
+pub(crate) struct Recorded {
     /// The simulation at its end.
     pub simulation: Simulation,
     /// Sums over its steps.
@@ -23,7 +23,7 @@ pub struct Recorded {
 ///
 /// # Errors
 /// Where the scene is not sound, a time lies outside 0 … duration, or a call says so.
-pub fn record(
+pub(crate) fn record(
     scene: &Scene,
     times_secs: &[f64],
     mut picture: impl FnMut(usize, Snapshot) -> Result<()>,

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 /// Part `index` of `count`, counted from 1. Every count-th run belongs to it, so that cheap and dear
 /// runs are dealt out evenly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
+pub(crate) struct Shard {
     /// From 1 to `count`.
     pub index: usize,
     /// Number of parts.
@@ -14,7 +14,7 @@ pub struct Shard {
 
 impl Shard {
     /// Whether the run of that number belongs to this part.
-    pub fn has(self, run: usize) -> bool {
+    pub(crate) fn has(self, run: usize) -> bool {
         run % self.count == self.index - 1
     }
 }

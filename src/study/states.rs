@@ -20,7 +20,10 @@ impl States {
     ///
     /// # Errors
     /// Where a state does not settle, or the folder cannot be written.
-    pub fn of<'a>(folder: PathBuf, configs: impl Iterator<Item = &'a Config>) -> Result<Self> {
+    pub(super) fn of<'a>(
+        folder: PathBuf,
+        configs: impl Iterator<Item = &'a Config>,
+    ) -> Result<Self> {
         let mut rains: HashMap<String, Rain> = HashMap::new();
         for config in configs.filter(|config| config.origin.makes_new_pile()) {
             let rain = config.origin.rain();
@@ -60,7 +63,7 @@ impl States {
     }
 
     /// The scene of a config, with its settled grains where it makes a new pile.
-    pub fn scene(&self, config: &Config) -> Result<Scene> {
+    pub(super) fn scene(&self, config: &Config) -> Result<Scene> {
         match self.settled.get(&name(&config.origin.rain())) {
             Some(grains) if config.origin.makes_new_pile() => config.scene_from(grains.clone()),
             _ => config.scene(|_| true),

@@ -7,7 +7,7 @@ const CONFIDENCE: f64 = 0.95;
 
 /// A mean with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mean {
+pub(super) struct Mean {
     /// The mean.
     pub mean: f64,
     /// Lower end of the interval.
@@ -22,7 +22,7 @@ pub struct Mean {
 
 /// Mean of independent values with Student's interval. With fewer than two values the interval is
 /// all numbers.
-pub fn mean(values: &[f64]) -> Mean {
+pub(super) fn mean(values: &[f64]) -> Mean {
     let count = values.len();
     let mean = values.iter().sum::<f64>() / count.max(1) as f64;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
@@ -43,7 +43,7 @@ fn student(count: usize) -> Option<StudentsT> {
 impl Mean {
     /// One-sided p-value of the claim that the true mean is above `bound`: how often a mean this
     /// high comes out where the true one is no more than the bound.
-    pub fn p_above(&self, bound: f64) -> f64 {
+    pub(super) fn p_above(&self, bound: f64) -> f64 {
         let Some(student) = student(self.count) else { return 1.0 };
         if self.standard_error == 0.0 {
             return if self.mean > bound { 0.0 } else { 1.0 };
@@ -52,18 +52,18 @@ impl Mean {
     }
 
     /// As [`Mean::p_above`], for below.
-    pub fn p_below(&self, bound: f64) -> f64 {
+    pub(super) fn p_below(&self, bound: f64) -> f64 {
         Self { mean: -self.mean, ..*self }.p_above(-bound)
     }
 
     /// p-value of the claim that the true mean is within ± `margin`: two one-sided tests.
-    pub fn p_within(&self, margin: f64) -> f64 {
+    pub(super) fn p_within(&self, margin: f64) -> f64 {
         self.p_above(-margin).max(self.p_below(margin))
     }
 }
 
 /// Slope of the least-squares line through points.
-pub fn slope(points: &[(f64, f64)]) -> f64 {
+pub(super) fn slope(points: &[(f64, f64)]) -> f64 {
     let count = points.len() as f64;
     let x_mean = points.iter().map(|(x, _)| x).sum::<f64>() / count;
     let y_mean = points.iter().map(|(_, y)| y).sum::<f64>() / count;
@@ -73,7 +73,7 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
 }
 
 /// Share of `hits` in `count` with its 95 % interval (Clopper and Pearson 1934).
-pub fn share(hits: usize, count: usize) -> (f64, f64, f64) {
+pub(super) fn share(hits: usize, count: usize) -> (f64, f64, f64) {
     let tail = 0.5 * (1.0 - CONFIDENCE);
     let (k, n) = (hits as f64, count as f64);
     let quantile =
@@ -85,7 +85,7 @@ pub fn share(hits: usize, count: usize) -> (f64, f64, f64) {
 
 /// Where a curve turns: the break of the best broken line through points sorted by x, looked for
 /// among `candidates`. Both halves need at least two points.
-pub fn turning_point(points: &[(f64, f64)], candidates: &[f64]) -> Option<f64> {
+pub(super) fn turning_point(points: &[(f64, f64)], candidates: &[f64]) -> Option<f64> {
     let misfit = |at: f64| -> Option<f64> {
         let left = points.iter().filter(|(x, _)| *x < at).count();
         if left < 2 || points.len() - left < 2 {
@@ -129,7 +129,7 @@ fn determinant(m: &[[f64; 3]; 3]) -> f64 {
 }
 
 /// A p-value as it is written.
-pub fn p_value(p: f64) -> String {
+pub(super) fn p_value(p: f64) -> String {
     if p < 1e-4 { "p < 0.0001".into() } else { format!("p = {p:.4}") }
 }
 

@@ -25,7 +25,7 @@ const LINES_OF_PROGRESS: usize = 20;
 
 /// How a sweep is to run.
 #[derive(Clone, Debug, Default)]
-pub struct SweepOptions {
+pub(crate) struct SweepOptions {
     /// The part of the study to run; all of it where there is none.
     pub shard: Option<Shard>,
     /// Throw away what a folder holds of another study.
@@ -48,7 +48,11 @@ struct Label {
 ///
 /// # Errors
 /// Where the folder holds another study or cannot be written, or a state does not settle.
-pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Option<RunsTable>> {
+pub(crate) fn sweep(
+    study: &Study,
+    folder: &Path,
+    options: &SweepOptions,
+) -> Result<Option<RunsTable>> {
     check_writable(folder)?;
     claim(study, folder, options.redo)?;
     let journal_name = match options.shard {
@@ -87,7 +91,7 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
 ///
 /// # Errors
 /// Where a folder holds another study, runs are missing, or two parts disagree.
-pub fn merge(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
+pub(crate) fn merge(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
     for folder in folders {
         match read_label(folder)? {
             Some(label) if label == label_of(study) => {}
@@ -184,7 +188,7 @@ impl<'a> Course<'a> {
 }
 
 /// Where the course of a run lies.
-pub fn series_path(folder: &Path, run: &PlannedRun) -> PathBuf {
+pub(crate) fn series_path(folder: &Path, run: &PlannedRun) -> PathBuf {
     folder.join("series").join(format!("{}.csv", run.key))
 }
 

@@ -14,7 +14,7 @@ use crate::scene::Config;
 
 /// The results of a study.
 #[derive(Clone, Debug)]
-pub struct RunsTable {
+pub(crate) struct RunsTable {
     /// A run and what came of it, in the study's order.
     pub rows: Vec<(String, Config, Outcome)>,
     /// Wall-clock time of all runs together, one after the other, s. Not in the file: it is
@@ -42,7 +42,7 @@ impl RunsTable {
     }
 
     /// Runs whose state was no longer finite.
-    pub fn not_finite(&self) -> usize {
+    pub(crate) fn not_finite(&self) -> usize {
         self.rows.iter().filter(|(.., outcome)| outcome.status == Status::NotFinite).count()
     }
 
@@ -50,7 +50,7 @@ impl RunsTable {
     ///
     /// # Errors
     /// Names the file and what the system says.
-    pub fn write(&self, path: &Path) -> Result<()> {
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
         write_file(path, &self.to_csv()?)
     }
 
@@ -58,7 +58,7 @@ impl RunsTable {
     ///
     /// # Errors
     /// Where a row cannot be said in CSV.
-    pub fn to_csv(&self) -> Result<Vec<u8>> {
+    pub(crate) fn to_csv(&self) -> Result<Vec<u8>> {
         let refuse = |error: csv::Error| Error::file("runs.csv", error);
         let fields = Config::names();
         let mut writer = csv::Writer::from_writer(Vec::new());

@@ -110,7 +110,7 @@ impl Boundary {
     }
 
     /// Its mean velocity in the next `secs`, m/s.
-    pub fn velocity(&self, secs: f64) -> DVec2 {
+    pub(crate) fn velocity(&self, secs: f64) -> DVec2 {
         match *self {
             Self::Piston { normal, speed, travel, .. } => {
                 speed.signum() * speed.abs().min(travel / secs) * normal.normalize_or_zero()

@@ -35,7 +35,7 @@ fn light_grey() -> u8 {
 
 impl Grain {
     /// The grey of a grain that its scene does not colour.
-    pub const DEFAULT_TONE: u8 = 205;
+    pub(crate) const DEFAULT_TONE: u8 = 205;
 
     /// A disc at rest that feels gravity.
     pub fn at_rest(position: DVec2, radius: f64) -> Self {
@@ -93,7 +93,7 @@ impl Grains {
     }
 
     /// Leaves the first `count` discs.
-    pub fn truncate(&mut self, count: usize) {
+    pub(crate) fn truncate(&mut self, count: usize) {
         self.positions.truncate(count);
         self.velocities.truncate(count);
         self.angles.truncate(count);

@@ -33,7 +33,7 @@ impl Gravity {
     }
 
     /// The x component of the acceleration on a scene with the x axis alone, m/s².
-    pub fn acceleration_on_line(&self, x: f64) -> f64 {
+    pub(crate) fn acceleration_on_line(&self, x: f64) -> f64 {
         match *self {
             Self::Uniform { acceleration } => acceleration.x,
             Self::Attraction { centre, magnitude } => {
@@ -44,7 +44,7 @@ impl Gravity {
     }
 
     /// Potential energy per mass at a position, J/kg.
-    pub fn potential(&self, position: DVec2) -> f64 {
+    pub(crate) fn potential(&self, position: DVec2) -> f64 {
         match *self {
             Self::Uniform { acceleration } => -acceleration.dot(position),
             Self::Attraction { centre, magnitude } => magnitude * position.distance(centre),

@@ -9,9 +9,8 @@ mod physics;
 pub use boundary::{Boundary, Disc, Edge};
 pub use grains::{Grain, Grains};
 pub use gravity::Gravity;
-pub use parameters::{
-    DEBONDING_DISTANCE, FrictionCone, MAX_SUBSTEPS, ParameterChanges, Parameters,
-};
+pub(crate) use parameters::MAX_SUBSTEPS;
+pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};
 pub use physics::Physics;
 
 /// Everything that a step reads and moves.

@@ -19,7 +19,7 @@ words! {
 pub const DEBONDING_DISTANCE: f64 = 0.01;
 
 /// More substeps than this are a mistake: a single step of a pile would take many seconds.
-pub const MAX_SUBSTEPS: u32 = 100_000;
+pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 
 settings! {
     /// Numbers that may change between any two steps.
@@ -160,7 +160,7 @@ impl Parameters {
     ///
     /// # Errors
     /// Names the first field outside its range, its value and the range.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         self.validate_each()
     }
 
@@ -181,7 +181,7 @@ impl Parameters {
     }
 
     /// Bond·Δt/√(d/g), dimensionless (paper §3.3).
-    pub fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
+    pub(crate) fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
         self.bond * self.time_step_secs / (mean_diameter / gravity_magnitude).sqrt()
     }
 

@@ -27,7 +27,7 @@ impl Physics {
     ///
     /// # Errors
     /// Names the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         match (self.axes, self.friction, self.rotation) {
             (1 | 2, false, true) => {
                 Err(Error::value("physics.rotation", true, "false where physics.friction is false"))

@@ -13,10 +13,10 @@ use crate::solver::{METHODS, MethodInfo, SolverSettings};
 use crate::world::FrictionCone;
 
 /// Most worlds side by side.
-pub const MOST_WORLDS: usize = 6;
+pub(crate) const MOST_WORLDS: usize = 6;
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     ui.label(
         RichText::new("Worlds from one initial state, kept at the same simulated time.")
             .small()
@@ -183,7 +183,7 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
 }
 
 /// What tells a world from the others.
-pub fn title(state: &AppState, index: usize) -> String {
+pub(crate) fn title(state: &AppState, index: usize) -> String {
     let Some(&Controls { settings, .. }) = state.wanted.get(index) else {
         return String::new();
     };

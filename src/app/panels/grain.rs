@@ -13,7 +13,7 @@ pub fn title(state: &AppState) -> Option<String> {
 }
 
 /// Shows the panel; nothing without a pinned grain.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let Some(pinned) = state.pinned else { return };
     let Some(world) = state.frame.worlds.get(pinned.world) else { return };
     describe(ui, world, pinned.grain);
@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// The state of a grain, as a small table.
-pub fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
+pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
     let grain = &world.snapshot.grains[index];
     let diameter = world.snapshot.surroundings.mean_diameter;
     ui.label(RichText::new(format!("Grain {index}")).strong());

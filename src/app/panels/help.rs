@@ -26,7 +26,7 @@ const MOUSE: [(&str, &str); 6] = [
 ];
 
 /// Shows the overlay where it is wanted.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     if !state.help {
         return;
     }

@@ -12,10 +12,10 @@ use crate::sim::{Settings, Stepper};
 use crate::world::{Parameters, Physics};
 
 /// The paper's time steps, s.
-pub const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
+pub(crate) const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let index = state.selected;
     let (Some(wanted), Some(start)) = (state.wanted.get(index), state.frame.start.clone()) else {
         return;

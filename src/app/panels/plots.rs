@@ -11,7 +11,7 @@ use crate::sim::live::Command;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     header(ui, state);
     let data = data(ui, state);
     if let Some(time_secs) = draw(ui, &data) {

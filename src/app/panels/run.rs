@@ -20,7 +20,7 @@ struct Draft {
 }
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     scene_box(ui, state);
     if state.config.origin.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE)
         == Config::DEFAULT_SCENE

@@ -21,7 +21,7 @@ const TITLE_HEIGHT: f32 = 22.0;
 const GAP: f32 = 6.0;
 
 /// Shows all worlds in the space that is left.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let area = ui.available_rect_before_wrap();
     let response = ui.allocate_rect(area, Sense::hover());
     let dark = ui.visuals().dark_mode;
@@ -257,7 +257,7 @@ impl Place<'_> {
 }
 
 /// Saves the selected world as it is seen, in the size of the preferences.
-pub fn save_picture(context: &egui::Context, state: &mut AppState) {
+pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
     let dark = context.theme() == egui::Theme::Dark;
     let style = shared_style(state, dark);
     let Some(world) = state.world() else { return };
@@ -273,7 +273,7 @@ pub fn save_picture(context: &egui::Context, state: &mut AppState) {
 }
 
 /// How the names of saved files begin.
-pub fn file_stem(state: &AppState) -> String {
+pub(crate) fn file_stem(state: &AppState) -> String {
     let name = state.frame.start.as_ref().map_or("scene", |start| start.name.as_str());
     let name: String = name.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
     format!("slump-{name}-{:.4}s", state.frame.time_secs())

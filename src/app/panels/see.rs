@@ -16,7 +16,7 @@ const COLOURS: [(ColourBy, &str); 5] = [
 ];
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let style = &mut state.preferences.style;
     ui.horizontal(|ui| {
         let label = ui.label("Colour by");

@@ -12,7 +12,7 @@ use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest, picked};
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let index = state.selected;
     let (Some(wanted), Some(start)) = (state.wanted.get(index), state.frame.start.clone()) else {
         return;

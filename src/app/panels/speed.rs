@@ -51,7 +51,7 @@ fn chart() -> &'static (String, Vec<Curve>) {
 }
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let dark = ui.visuals().dark_mode;
     let (caption, curves) = chart();
     let worlds = state.frame.worlds.iter().enumerate().filter_map(|(index, world)| {

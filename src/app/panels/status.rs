@@ -7,7 +7,7 @@ use crate::app::theme;
 use crate::sim::live::WorldFrame;
 
 /// Shows the bar.
-pub fn show(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 12.0;
         if let Some(world) = state.world() {

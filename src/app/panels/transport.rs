@@ -7,7 +7,7 @@ use crate::app::theme;
 use crate::sim::live::Command;
 
 /// The one button that nobody can miss.
-pub fn release_button(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn release_button(ui: &mut Ui, state: &mut AppState) {
     let frame = &state.frame;
     let failed = frame.worlds.iter().any(|world| world.failure.is_some());
     let (text, hint) = if frame.playing {
@@ -36,7 +36,7 @@ pub fn release_button(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// The row below the scene.
-pub fn timeline(ui: &mut Ui, state: &mut AppState) {
+pub(crate) fn timeline(ui: &mut Ui, state: &mut AppState) {
     let ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
     ui.add_enabled_ui(ready, |ui| {
         ui.horizontal(|ui| {

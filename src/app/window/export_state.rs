@@ -40,11 +40,11 @@ struct State<'a> {
 }
 
 impl StateFile {
-    pub fn new(path: PathBuf) -> Self {
+    pub(super) fn new(path: PathBuf) -> Self {
         Self { path, written: None }
     }
 
-    pub fn write(&mut self, state: &AppState, window: &Window, devices: u32) {
+    pub(super) fn write(&mut self, state: &AppState, window: &Window, devices: u32) {
         if self.written.is_some_and(|at| at.elapsed() < INTERVAL && state.frame.playing) {
             return;
         }

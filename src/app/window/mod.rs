@@ -32,7 +32,7 @@ const SIZE: [f64; 2] = [1280.0, 800.0];
 const LEAST_SIZE: [f64; 2] = [720.0, 480.0];
 /// Least time between two frames that only the run asks for. A software rasteriser takes processor
 /// time that the solver needs; the eye follows a pile at 25 frames a second.
-pub const FRAME_INTERVAL: Duration = Duration::from_millis(16);
+pub(crate) const FRAME_INTERVAL: Duration = Duration::from_millis(16);
 /// The same, where the processor draws.
 pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
 /// A device that is lost this many times in a row does not come back.
@@ -50,7 +50,11 @@ enum Message {
 /// # Errors
 /// Says what is missing where there is no display or no graphics driver, and which package brings
 /// it; otherwise what the system reports.
-pub fn run(config: &Config, pictures: &HeadlessOptions, options: &WindowOptions) -> Result<()> {
+pub(crate) fn run(
+    config: &Config,
+    pictures: &HeadlessOptions,
+    options: &WindowOptions,
+) -> Result<()> {
     if options.reset_ui {
         storage::forget();
     }

@@ -47,7 +47,7 @@ impl Surface {
     ///
     /// # Errors
     /// Where there is none, or the processor alone is asked for, which draws no window.
-    pub fn new(
+    pub(super) fn new(
         events: &ActiveEventLoop,
         window: &Arc<Window>,
         renderer: RendererChoice,
@@ -127,17 +127,17 @@ impl Surface {
     }
 
     /// Whether the processor draws.
-    pub fn is_software(&self) -> bool {
+    pub(super) fn is_software(&self) -> bool {
         self.software
     }
 
     /// Largest side of a texture, pixels.
-    pub fn largest_side(&self) -> usize {
+    pub(super) fn largest_side(&self) -> usize {
         self.screen.device.limits().max_texture_dimension_2d.max(LARGEST_SIDE_NEEDED) as usize
     }
 
     /// Follows the window's size, pixels.
-    pub fn resize(&mut self, size: PhysicalSize<u32>) {
+    pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
         let largest = self.screen.device.limits().max_texture_dimension_2d;
         let [width, height] = [size.width, size.height].map(|side| side.clamp(1, largest));
         if (self.configuration.width, self.configuration.height) != (width, height) {
@@ -151,12 +151,12 @@ impl Surface {
     }
 
     /// Gives the device up, as if the driver had.
-    pub fn destroy_device(&self) {
+    pub(super) fn destroy_device(&self) {
         self.screen.device.destroy();
     }
 
     /// Draws what a pass of egui put out.
-    pub fn draw(&mut self, context: &egui::Context, output: egui::FullOutput) -> Drawn {
+    pub(super) fn draw(&mut self, context: &egui::Context, output: egui::FullOutput) -> Drawn {
         self.textures.append(output.textures_delta);
         // Callbacks of the device, the one that tells of its loss included, run in here.
         let polled = self.screen.device.poll(wgpu::PollType::Poll);

@@ -12,7 +12,7 @@ use glam::DVec2;
 const OVERLAP: f64 = 1e-3;
 
 /// A chain of `count` discs.
-pub fn hanging_chain(count: usize, bond: f64) -> Scene {
+pub(crate) fn hanging_chain(count: usize, bond: f64) -> Scene {
     let place = |k: usize| -(k as f64) * (1.0 - OVERLAP);
     let mut scene = dry("chain", (1..=count).map(|k| disc(0.0, place(k))).collect());
     scene.parameters.bond = bond;
@@ -26,6 +26,6 @@ pub fn hanging_chain(count: usize, bond: f64) -> Scene {
 }
 
 /// The Bond number below which a chain of `count` discs breaks.
-pub fn breaking_bond(count: usize) -> f64 {
+pub(crate) fn breaking_bond(count: usize) -> f64 {
     (count as f64).max(2.0 * (count as f64 - 1.0))
 }

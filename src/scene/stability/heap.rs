@@ -38,7 +38,7 @@ pub fn heap(rows: usize) -> Scene {
 }
 
 /// The same heap with one disc more that falls on its slope, `distance` diameters from the origin along both axes.
-pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
+pub(crate) fn heap_far_away(rows: usize, distance: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "far".into();
     scene.grains.push(disc(FALLING[0], rows as f64 * 0.75f64.sqrt() + FALLING[1]));

@@ -11,7 +11,7 @@ use crate::world::Grain;
 const BELOW: usize = 5;
 
 /// A column of five, and on it, the last in the list, a disc `ratio` times as heavy.
-pub fn lift_off(ratio: f64) -> Scene {
+pub(crate) fn lift_off(ratio: f64) -> Scene {
     let mut scene = column(BELOW);
     scene.name = "lift-off".into();
     let heavy = &mass_ratio(ratio).grains[1];

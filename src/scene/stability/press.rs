@@ -35,7 +35,7 @@ fn places(spacing: f64) -> Vec<DVec2> {
 }
 
 /// 18 discs and the two walls.
-pub fn press() -> Scene {
+pub(crate) fn press() -> Scene {
     let widest = 0.75f64.sqrt();
     let grains = places(widest).into_iter().map(|place| place * (1.0 - TOUCH));
     let mut scene = dry("moving-walls", grains.map(|place| disc(place.x, place.y)).collect());
@@ -55,11 +55,11 @@ pub fn press() -> Scene {
 }
 
 /// Where the discs have to be in the end, m, in the order of the scene's.
-pub fn pressed_places() -> Vec<DVec2> {
+pub(crate) fn pressed_places() -> Vec<DVec2> {
     places(NARROWEST).into_iter().map(|place| DIAMETER * place).collect()
 }
 
 /// When the walls have come to their ends, s.
-pub fn pressing_secs() -> f64 {
+pub(crate) fn pressing_secs() -> f64 {
     DIAMETER * (0.75f64.sqrt() - NARROWEST) / SPEED
 }

@@ -22,10 +22,10 @@ use super::{DIAMETER, heap};
 use crate::scene::{Scene, View};
 
 /// The steepest slope on which the heap stands, degrees.
-pub const STEEPEST_DEGREES: f64 = 30.0;
+pub(crate) const STEEPEST_DEGREES: f64 = 30.0;
 
 /// The heap of `rows` rows on a base that falls to the right at `degrees`.
-pub fn heap_on_slope(rows: usize, degrees: f64) -> Scene {
+pub(crate) fn heap_on_slope(rows: usize, degrees: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "repose-angle".into();
     let slope = DVec2::from_angle(-degrees.to_radians());

@@ -61,7 +61,7 @@ pub fn breaking_bond_of_cantilever(length: i32) -> f64 {
 }
 
 /// Two rows between two walls, the lower one of `length` grains.
-pub fn bridge(length: i32) -> Scene {
+pub(crate) fn bridge(length: i32) -> Scene {
     let mut grains: Vec<_> = (0..length).map(lower).collect();
     grains.extend((0..length - 1).map(upper));
     truss("bridge", grains, vec![lower(-1), upper(-1), lower(length), upper(length - 1)])

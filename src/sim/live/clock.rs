@@ -22,7 +22,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let now = Instant::now();
         Self {
             pace: Pace::RealTime(1.0),
@@ -35,14 +35,14 @@ impl Clock {
     }
 
     /// Time starts to pass at this simulated time.
-    pub fn start(&mut self, time_secs: f64) {
+    pub(super) fn start(&mut self, time_secs: f64) {
         let now = Instant::now();
         self.anchor = (now, time_secs);
         self.window = (now, time_secs, self.steps);
     }
 
     /// How long to wait before the step from `time_secs` is due.
-    pub fn wait(&mut self, time_secs: f64) -> Duration {
+    pub(super) fn wait(&mut self, time_secs: f64) -> Duration {
         let Pace::RealTime(factor) = self.pace else { return Duration::ZERO };
         let (anchor, anchor_secs) = self.anchor;
         let due_secs = ((time_secs - anchor_secs) / factor.max(1e-6)).clamp(0.0, 1e6);
@@ -55,7 +55,7 @@ impl Clock {
     }
 
     /// Counts steps that led to `time_secs`.
-    pub fn count(&mut self, steps: u64, time_secs: f64) {
+    pub(super) fn count(&mut self, steps: u64, time_secs: f64) {
         self.steps += steps;
         let (since, secs, steps) = self.window;
         let elapsed = since.elapsed();

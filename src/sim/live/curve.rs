@@ -47,12 +47,12 @@ impl Curve {
     }
 
     /// The last row.
-    pub fn last(&self) -> Option<&Observables> {
+    pub(crate) fn last(&self) -> Option<&Observables> {
         self.tail.last().or_else(|| self.chunks.last().and_then(|chunk| chunk.last()))
     }
 
     /// Appends a step's observables.
-    pub fn push(&mut self, row: Observables) {
+    pub(crate) fn push(&mut self, row: Observables) {
         if !row.step.is_multiple_of(self.stride) {
             return;
         }
@@ -68,7 +68,7 @@ impl Curve {
     }
 
     /// Forgets all steps after `step`.
-    pub fn truncate(&mut self, step: u64) {
+    pub(crate) fn truncate(&mut self, step: u64) {
         if self.last().is_some_and(|row| row.step > step) {
             self.keep(|row| row.step <= step);
         }

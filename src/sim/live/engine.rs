@@ -45,7 +45,7 @@ pub(super) struct Engine {
 }
 
 impl Engine {
-    pub fn new(
+    pub(super) fn new(
         inbox: Receiver<(u64, Command)>,
         output: Input<Frame>,
         options: LiveOptions,
@@ -75,7 +75,7 @@ impl Engine {
         }
     }
 
-    pub fn run(mut self) {
+    pub(super) fn run(mut self) {
         while !self.quit {
             if !self.receive() {
                 return;

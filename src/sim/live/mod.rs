@@ -23,4 +23,5 @@ pub use curve::Curve;
 pub use frame::{Frame, StartInfo, WorldFrame};
 pub use handle::Live;
 pub use options::LiveOptions;
-pub use recording::{Controls, Recording};
+pub use recording::Controls;
+pub(crate) use recording::Recording;

@@ -21,14 +21,14 @@ pub struct Controls {
 
 impl Controls {
     /// Those of a simulation's next step.
-    pub fn of(simulation: &Simulation) -> Self {
+    pub(crate) fn of(simulation: &Simulation) -> Self {
         Self { settings: *simulation.settings(), pull: simulation.pull() }
     }
 }
 
 /// The recorded part of a run.
 #[derive(Clone, Debug)]
-pub struct Recording {
+pub(crate) struct Recording {
     keyframes: Vec<Keyframe>,
     /// Controls of all steps after the numbered one, up to the next change.
     changes: Vec<(u64, Controls)>,
@@ -52,7 +52,7 @@ impl Keyframe {
 
 impl Recording {
     /// A recording that starts with this state and keeps about `budget_bytes` of keyframes.
-    pub fn new(start: &Simulation, budget_bytes: usize) -> Self {
+    pub(crate) fn new(start: &Simulation, budget_bytes: usize) -> Self {
         Self {
             keyframes: vec![Keyframe { simulation: Box::new(start.clone()), unconverged: 0 }],
             changes: Vec::new(),
@@ -64,22 +64,17 @@ impl Recording {
     }
 
     /// The last recorded step.
-    pub fn end_step(&self) -> u64 {
+    pub(crate) fn end_step(&self) -> u64 {
         self.end_step
     }
 
     /// Simulated time of the last recorded step, s.
-    pub fn end_secs(&self) -> f64 {
+    pub(crate) fn end_secs(&self) -> f64 {
         self.end_secs
     }
 
-    /// Number of keyframes.
-    pub fn keyframes(&self) -> usize {
-        self.keyframes.len()
-    }
-
     /// Notes a state that is about to take a step. What was recorded after it is forgotten.
-    pub fn before_step(&mut self, simulation: &Simulation, unconverged: u64) {
+    pub(crate) fn before_step(&mut self, simulation: &Simulation, unconverged: u64) {
         let step = simulation.observables().step;
         if self.end_step > step {
             self.keyframes.retain(|keyframe| keyframe.step() <= step);
@@ -98,7 +93,7 @@ impl Recording {
     }
 
     /// Notes a state that has just taken a step.
-    pub fn after_step(&mut self, simulation: &Simulation) {
+    pub(crate) fn after_step(&mut self, simulation: &Simulation) {
         self.end_step = simulation.observables().step;
         self.end_secs = simulation.time_secs();
     }
@@ -119,7 +114,7 @@ impl Recording {
     }
 
     /// The keyframe at or before a simulated time, and the number of unconverged steps up to it.
-    pub fn keyframe_before(&self, time_secs: f64) -> (&Simulation, u64) {
+    pub(crate) fn keyframe_before(&self, time_secs: f64) -> (&Simulation, u64) {
         let after = |keyframe: &Keyframe| keyframe.simulation.time_secs() <= time_secs;
         let index = self.keyframes.partition_point(after).saturating_sub(1);
         let keyframe = &self.keyframes[index];
@@ -127,7 +122,7 @@ impl Recording {
     }
 
     /// The controls of the step that follows `step`; none before anything was recorded.
-    pub fn controls_after(&self, step: u64) -> Option<&Controls> {
+    pub(crate) fn controls_after(&self, step: u64) -> Option<&Controls> {
         let count = self.changes.partition_point(|(after, _)| *after <= step);
         count.checked_sub(1).map(|index| &self.changes[index].1)
     }

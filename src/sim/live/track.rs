@@ -25,7 +25,7 @@ pub(super) struct Track {
 }
 
 impl Track {
-    pub fn new(start: &Simulation, variant: &Settings, budget_bytes: usize) -> Self {
+    pub(super) fn new(start: &Simulation, variant: &Settings, budget_bytes: usize) -> Self {
         let mut simulation = start.clone();
         // A variant is checked where it is made; what is refused here stays as the start has it.
         let _ = simulation.change(*variant);
@@ -42,20 +42,20 @@ impl Track {
         }
     }
 
-    pub fn variant(&self) -> Settings {
+    pub(super) fn variant(&self) -> Settings {
         *self.simulation.settings()
     }
 
-    pub fn time_secs(&self) -> f64 {
+    pub(super) fn time_secs(&self) -> f64 {
         self.simulation.time_secs()
     }
 
-    pub fn time_step_secs(&self) -> f64 {
+    pub(super) fn time_step_secs(&self) -> f64 {
         self.simulation.parameters().time_step_secs
     }
 
     /// Takes a step and records it. Whether it succeeded.
-    pub fn step(&mut self) -> bool {
+    pub(super) fn step(&mut self) -> bool {
         if self.failure.is_some() {
             return false;
         }
@@ -85,7 +85,7 @@ impl Track {
     }
 
     /// Steps until the time of the world is the one nearest to `time_secs`. Whether all succeeded.
-    pub fn catch_up(&mut self, time_secs: f64) -> bool {
+    pub(super) fn catch_up(&mut self, time_secs: f64) -> bool {
         while self.time_secs() + 0.5 * self.time_step_secs() < time_secs {
             if !self.step() {
                 return false;
@@ -95,7 +95,7 @@ impl Track {
     }
 
     /// Starts on the way to a recorded moment.
-    pub fn seek(&mut self, time_secs: f64) {
+    pub(super) fn seek(&mut self, time_secs: f64) {
         let (keyframe, unconverged) = self.recording.keyframe_before(time_secs);
         self.simulation.clone_from(keyframe);
         self.unconverged = unconverged;
@@ -105,7 +105,7 @@ impl Track {
     }
 
     /// Takes one step of a seek. Whether it has arrived.
-    pub fn advance_seek(&mut self) -> bool {
+    pub(super) fn advance_seek(&mut self) -> bool {
         let Some(goal) = self.goal_secs else { return true };
         let there = self.time_secs() + 0.5 * self.time_step_secs() >= goal
             || self.simulation.observables().step >= self.recording.end_step();

@@ -14,17 +14,17 @@ pub(super) struct Worlds {
 
 impl Worlds {
     /// Worlds at one start, with `recording_bytes` for the keyframes of all of them.
-    pub fn new(start: &Simulation, variants: &[Settings], recording_bytes: usize) -> Self {
+    pub(super) fn new(start: &Simulation, variants: &[Settings], recording_bytes: usize) -> Self {
         let budget_bytes = recording_bytes / variants.len().max(1);
         let track = |variant: &Settings| Track::new(start, variant, budget_bytes);
         Self { tracks: variants.iter().map(track).collect() }
     }
 
-    pub fn variants(&self) -> Vec<Settings> {
+    pub(super) fn variants(&self) -> Vec<Settings> {
         self.tracks.iter().map(Track::variant).collect()
     }
 
-    pub fn has_failed(&self) -> bool {
+    pub(super) fn has_failed(&self) -> bool {
         self.tracks.iter().any(|track| track.failure.is_some())
     }
 
@@ -35,18 +35,18 @@ impl Worlds {
     }
 
     /// Simulated time of the leader, s.
-    pub fn time_secs(&self) -> f64 {
+    pub(super) fn time_secs(&self) -> f64 {
         self.leader().map_or(0.0, Track::time_secs)
     }
 
     /// Time step of the leader, s.
-    pub fn time_step_secs(&self) -> f64 {
+    pub(super) fn time_step_secs(&self) -> f64 {
         self.leader().map_or(0.0, Track::time_step_secs)
     }
 
     /// One step of the leader, and as many of the others as bring them to the same time. Returns
     /// the number of steps of all worlds, and whether all succeeded.
-    pub fn tick(&mut self) -> (u64, bool) {
+    pub(super) fn tick(&mut self) -> (u64, bool) {
         let steps_before = self.steps();
         let target_secs = self.time_secs() + self.time_step_secs();
         let all_well = match self.tracks.as_mut_slice() {
@@ -64,14 +64,14 @@ impl Worlds {
     }
 
     /// Starts on the way to a recorded moment.
-    pub fn seek(&mut self, time_secs: f64) {
+    pub(super) fn seek(&mut self, time_secs: f64) {
         for track in &mut self.tracks {
             track.seek(time_secs);
         }
     }
 
     /// Takes one step of a seek. Whether all worlds have arrived.
-    pub fn advance_seek(&mut self) -> bool {
+    pub(super) fn advance_seek(&mut self) -> bool {
         match self.tracks.as_mut_slice() {
             [track] => track.advance_seek(),
             tracks => tracks

@@ -5,7 +5,7 @@ use crate::sim::steppers::stepper::Stepper;
 
 /// What there is to know of a remedy.
 #[derive(Clone, Copy, Debug)]
-pub struct Remedy {
+pub(crate) struct Remedy {
     /// The name of its setting.
     pub name: &'static str,
     /// The steppers that take it; others have their own ways, or none.

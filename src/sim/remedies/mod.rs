@@ -14,7 +14,8 @@ pub(super) mod push_out;
 pub(super) mod sequential_impacts;
 pub(super) mod speculative;
 
-pub use declared::{Remedies, Remedy, RemedyChanges};
+pub(crate) use declared::Remedy;
+pub use declared::{Remedies, RemedyChanges};
 
 use super::settings::Settings;
 use super::stepping::Stage;
@@ -22,7 +23,7 @@ use crate::setting::Group;
 use crate::solver::{Model, SolveReport};
 
 /// All remedies, in the order of their settings.
-pub const ROWS: [Remedy; 5] = [
+pub(crate) const ROWS: [Remedy; 5] = [
     push_out::REMEDY,
     max_travel::REMEDY,
     calm_unsolved::REMEDY,

@@ -34,7 +34,7 @@ pub(super) struct Works {
 
 impl<K: Kinematics> Course<K> {
     /// Begins a step in so many substeps: its problem is set up, and the bodies are where they were.
-    pub fn begin_step<M: Model<Kinematics = K>>(
+    pub(super) fn begin_step<M: Model<Kinematics = K>>(
         stage: &mut Stage<'_, M>,
         settings: &Settings,
         substeps: u32,
@@ -50,7 +50,11 @@ impl<K: Kinematics> Course<K> {
     }
 
     /// Ends the step, after so many passes over its contacts.
-    pub fn end_step<M: Model<Kinematics = K>>(&self, stage: &Stage<'_, M>, sweeps: u32) -> Outcome {
+    pub(super) fn end_step<M: Model<Kinematics = K>>(
+        &self,
+        stage: &Stage<'_, M>,
+        sweeps: u32,
+    ) -> Outcome {
         let Works { normal, tangential, gravity: gravity_work } = self.works;
         let measures = measure::<M>(stage.problem);
         let measures = Measures { normal_work: normal, tangential_work: tangential, ..measures };
@@ -59,7 +63,7 @@ impl<K: Kinematics> Course<K> {
     }
 
     /// Begins a substep: gravity and a spring that pulls act on the bodies.
-    pub fn begin<M: Model<Kinematics = K>>(&mut self, stage: &mut Stage<'_, M>) {
+    pub(super) fn begin<M: Model<Kinematics = K>>(&mut self, stage: &mut Stage<'_, M>) {
         let push = stage.state.push_of_pull(K::AXES, self.substep_secs);
         let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies);
         self.start.clone_from(bodies);
@@ -75,20 +79,20 @@ impl<K: Kinematics> Course<K> {
     }
 
     /// Moves the grains for h with the bodies' velocities.
-    pub fn place<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
+    pub(super) fn place<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
         self.store(stage);
         stage.state.integrate::<M>(self.substep_secs);
     }
 
     /// Hands the bodies' velocities to the world.
-    pub fn store<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
+    pub(super) fn store<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
         for (index, body) in stage.problem.bodies.iter().enumerate() {
             K::store(body, &mut stage.state.world, index);
         }
     }
 
     /// Counts the work of gravity and of the spring in the substep that ends with `bodies`.
-    pub fn add_gravity_work(&mut self, bodies: &[K::Body<f64>], masses: &[f64]) {
+    pub(super) fn add_gravity_work(&mut self, bodies: &[K::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
             self.works.gravity += K::work_of_gravity(start, body, free, masses[index]);
@@ -99,7 +103,7 @@ impl<K: Kinematics> Course<K> {
 impl Works {
     /// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step
     /// (`solver::measure`), impulse times the mean of the velocities at its beginning and its end.
-    pub fn add(&mut self, mass: f64, impulse: [f64; 2], start: [f64; 2], end: [f64; 2]) {
+    pub(super) fn add(&mut self, mass: f64, impulse: [f64; 2], start: [f64; 2], end: [f64; 2]) {
         self.normal += 0.5 * mass * impulse[0] * (start[0] + end[0]);
         self.tangential += 0.5 * mass * impulse[1] * (start[1] + end[1]);
     }

@@ -31,7 +31,7 @@ impl Stepper {
     }
 
     /// Whether it reads the setting of that name.
-    pub fn reads(self, name: &str) -> bool {
+    pub(crate) fn reads(self, name: &str) -> bool {
         self.info().settings.contains(&name)
     }
 
@@ -65,7 +65,7 @@ impl Advance for Memory {
 
 impl Memory {
     /// Detects the contacts of the next step and sets up its problem, as it is before any solution.
-    pub fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
+    pub(super) fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
             Stepper::Range => range::prepare(stage, settings),
             Stepper::Moreau | Stepper::TgsSoft | Stepper::Dem => moreau::set_up(stage, settings),
@@ -74,7 +74,7 @@ impl Memory {
 
     /// Sets up the first problem that the method gets in the next step; where no method gets any, the
     /// problem that the step is judged by.
-    pub fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
+    pub(super) fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
             Stepper::Moreau => moreau::set_up_with_impacts(stage, settings),
             Stepper::Range => range::set_up(stage, settings, &mut self.range),

@@ -8,7 +8,7 @@ use super::blocks::Triplets;
 use crate::solver::problem::{Kinematics, Row, StepProblem};
 
 /// W and q of a step's problem, its contacts in the order of its rows.
-pub struct Assembled {
+pub(crate) struct Assembled {
     /// W, 1/kg, exactly symmetric, sorted by row and column, without zeros.
     pub matrix: Triplets,
     /// q, m/s.
@@ -18,7 +18,7 @@ pub struct Assembled {
 impl Assembled {
     /// Works W and q out. On a line, where there is no tangent, a tangential row has W_tt = W_nn and
     /// meets nothing.
-    pub fn of<K: Kinematics>(problem: &StepProblem<K>) -> Self {
+    pub(crate) fn of<K: Kinematics>(problem: &StepProblem<K>) -> Self {
         let rows = || problem.fixed_rows.iter().map(|row| (row, false));
         let rows = rows().chain(problem.pair_rows.iter().map(|row| (row, true)));
         let contacts: Vec<_> = rows.collect();

@@ -20,7 +20,7 @@ pub struct Triplets {
 
 impl Triplets {
     /// (row, column, entry), in the order in which they stand.
-    pub fn entries(&self) -> impl Iterator<Item = (u32, u32, f64)> {
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (u32, u32, f64)> {
         let places = self.row.iter().zip(&self.col);
         places.zip(&self.val).map(|((&row, &column), &value)| (row, column, value))
     }

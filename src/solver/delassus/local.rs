@@ -33,7 +33,7 @@ pub(super) struct LocalBlock {
 
 impl LocalBlock {
     /// `block` is W_kk, positive definite.
-    pub fn new(block: [[f64; 2]; 2], friction: f64, cohesion_impulse: f64) -> Self {
+    pub(super) fn new(block: [[f64; 2]; 2], friction: f64, cohesion_impulse: f64) -> Self {
         let [[normal, mixed], [_, tangential]] = block;
         let determinant = normal * tangential - mixed * mixed;
         Self {
@@ -49,7 +49,10 @@ impl LocalBlock {
 
     /// (p, P_t), N·s, that solves the contact where the others leave it the velocity `free` (m/s).
     #[inline(always)]
-    pub fn solve<const COMPRESSIVE_CONE: bool>(&self, [normal, tangential]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn solve<const COMPRESSIVE_CONE: bool>(
+        &self,
+        [normal, tangential]: [f64; 2],
+    ) -> [f64; 2] {
         if normal >= 0.0 {
             return [0.0, 0.0];
         }

@@ -7,7 +7,7 @@ mod problem;
 mod sweeps;
 mod system;
 
-pub use self::assembly::Assembled;
+pub(crate) use self::assembly::Assembled;
 pub use self::blocks::Triplets;
 pub use self::problem::DelassusProblem;
 pub use self::sweeps::solve_delassus;

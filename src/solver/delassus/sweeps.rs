@@ -50,7 +50,7 @@ fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveRepo
 
 impl DelassusProblem {
     /// One pass over all contacts; gives Σ‖ΔP‖², (N·s)².
-    pub fn sweep(&mut self) -> f64 {
+    pub(crate) fn sweep(&mut self) -> f64 {
         if self.compressive_cone { self.pass::<true>() } else { self.pass::<false>() }
     }
 

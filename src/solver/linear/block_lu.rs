@@ -8,11 +8,11 @@
 use super::elimination::Elimination;
 
 /// A block of D × D numbers.
-pub type Block<const D: usize> = [[f64; D]; D];
+pub(super) type Block<const D: usize> = [[f64; D]; D];
 
 /// A matrix, then its factors. Memory is kept between matrices.
 #[derive(Clone, Debug, Default)]
-pub struct BlockMatrix<const D: usize> {
+pub(crate) struct BlockMatrix<const D: usize> {
     /// Diagonal blocks by place; inverted by [`BlockMatrix::factorise`].
     diagonal: Vec<Block<D>>,
     /// Block (b, a) for each pair a < b of neighbours, numbered as in [`Elimination::later`].
@@ -23,7 +23,7 @@ pub struct BlockMatrix<const D: usize> {
 
 impl<const D: usize> BlockMatrix<D> {
     /// A zero matrix of the given structure.
-    pub fn clear(&mut self, elimination: &Elimination) {
+    pub(crate) fn clear(&mut self, elimination: &Elimination) {
         let zero = [[0.0; D]; D];
         for (blocks, count) in [
             (&mut self.diagonal, elimination.body_at.len()),
@@ -36,14 +36,14 @@ impl<const D: usize> BlockMatrix<D> {
     }
 
     /// The diagonal block of a place.
-    pub fn diagonal_mut(&mut self, place: u32) -> &mut Block<D> {
+    pub(crate) fn diagonal_mut(&mut self, place: u32) -> &mut Block<D> {
         &mut self.diagonal[place as usize]
     }
 
     /// Blocks (i, j) and (j, i) of two places that are neighbours, `number` being the index of the
     /// later one among [`Elimination::later`].
     #[inline(always)]
-    pub fn off_diagonal_mut(
+    pub(crate) fn off_diagonal_mut(
         &mut self,
         number: u32,
         i_is_earlier: bool,
@@ -53,7 +53,7 @@ impl<const D: usize> BlockMatrix<D> {
     }
 
     /// Factorises in place: L with unit diagonal below, U above, inverses of U's diagonal blocks.
-    pub fn factorise(&mut self, elimination: &Elimination) {
+    pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         let mut targets = elimination.targets.iter();
         for place in 0..self.diagonal.len() {
             let inverse = inverse(&self.diagonal[place]);
@@ -80,7 +80,7 @@ impl<const D: usize> BlockMatrix<D> {
     }
 
     /// Solves with the factors: `vector` (by place) is the right-hand side and becomes the solution.
-    pub fn solve(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
+    pub(crate) fn solve(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
         for place in 0..vector.len() {
             let here = vector[place];
             for edge in elimination.starts[place] as usize..elimination.starts[place + 1] as usize {

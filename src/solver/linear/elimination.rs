@@ -13,7 +13,7 @@ type Neighbours = SmallVec<[u32; 12]>;
 /// An order of elimination and the structure of the factors. Bodies are called by their place in the
 /// order from here on.
 #[derive(Clone, Debug, Default)]
-pub struct Elimination {
+pub(crate) struct Elimination {
     /// The body at each place.
     pub body_at: Vec<u32>,
     /// The place of each body.
@@ -35,7 +35,7 @@ const NOT_YET: u32 = u32::MAX;
 
 impl Elimination {
     /// Orders `bodies` bodies with the given pairs of neighbours (in any order, repeats allowed).
-    pub fn analyse(&mut self, bodies: usize, pairs: impl Iterator<Item = (u32, u32)>) {
+    pub(crate) fn analyse(&mut self, bodies: usize, pairs: impl Iterator<Item = (u32, u32)>) {
         self.neighbours.resize_with(bodies.max(self.neighbours.len()), Neighbours::new);
         for list in &mut self.neighbours {
             list.clear();
@@ -53,7 +53,7 @@ impl Elimination {
     }
 
     /// The block of places a < b, which must be neighbours.
-    pub fn block(&self, a: u32, b: u32) -> usize {
+    pub(crate) fn block(&self, a: u32, b: u32) -> usize {
         let (start, end) = (self.starts[a as usize], self.starts[a as usize + 1]);
         let row = &self.later[start as usize..end as usize];
         start as usize + row.partition_point(|&place| place < b)

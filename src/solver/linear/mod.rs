@@ -3,5 +3,5 @@
 mod block_lu;
 mod elimination;
 
-pub use self::block_lu::BlockMatrix;
-pub use self::elimination::Elimination;
+pub(super) use self::block_lu::BlockMatrix;
+pub(super) use self::elimination::Elimination;

@@ -30,7 +30,7 @@ const CONTACTS_FOR_NEWTON: usize = 1_000;
 
 /// What the methods keep that it picks from.
 #[derive(Clone, Debug, Default)]
-pub struct AutoMemory {
+pub(super) struct AutoMemory {
     newton: NewtonMemory,
     nncg: SystemMemory,
 }
@@ -50,7 +50,7 @@ pub(super) fn solve<M: Model>(
 
 /// The method that solves a problem of so many contacts: that of the settings, unless they leave it
 /// to `auto`.
-pub fn picked(settings: &SolverSettings, contacts: usize) -> Method {
+pub(crate) fn picked(settings: &SolverSettings, contacts: usize) -> Method {
     if settings.method != Method::Auto {
         return settings.method;
     }

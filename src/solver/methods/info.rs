@@ -33,7 +33,7 @@ pub enum MethodOrder {
 
 impl MethodOrder {
     /// The order of the rows where the settings ask for `asked`.
-    pub fn of_rows(self, asked: Ordering) -> Ordering {
+    pub(crate) fn of_rows(self, asked: Ordering) -> Ordering {
         match self {
             Self::Always(needed) => needed,
             Self::OfSettings | Self::AllAtOnce => asked,

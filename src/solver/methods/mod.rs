@@ -18,7 +18,7 @@ mod shared;
 use std::fmt;
 use std::marker::PhantomData;
 
-pub use self::auto::picked;
+pub(crate) use self::auto::picked;
 pub use self::info::{MethodInfo, MethodOrder};
 pub use self::method::Method;
 #[doc(hidden)]
@@ -26,7 +26,8 @@ pub use self::nsgs::sweep;
 pub use self::report::SolveReport;
 pub use self::shared::body_system::BodySystem;
 use self::shared::body_system::SystemMemory;
-pub use self::shared::contact_system::{ContactSystem, Pairs, Vectors};
+pub(crate) use self::shared::contact_system::Vectors;
+pub use self::shared::contact_system::{ContactSystem, Pairs};
 pub(super) use self::shared::iterate::sweep_until_settled;
 use super::problem::{Kinematics, Model, StepProblem};
 use super::settings::SolverSettings;
@@ -129,7 +130,7 @@ pub fn solve<M: Model>(
 
 /// Solves any contact system, from its present impulses, with the method of the settings. Gives
 /// nothing where that method needs bodies.
-pub fn solve_system<S: ContactSystem>(
+pub(crate) fn solve_system<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
     vectors: &mut Vectors,

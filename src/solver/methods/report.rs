@@ -15,7 +15,7 @@ pub struct SolveReport {
 
 impl SolveReport {
     /// Of solves that are still to come.
-    pub fn nothing_yet() -> Self {
+    pub(crate) fn nothing_yet() -> Self {
         Self { converged: true, ..Self::default() }
     }
 
@@ -29,7 +29,7 @@ impl SolveReport {
     }
 
     /// The same with the work of solves that came before, and of whose outcome nothing is left.
-    pub fn after(self, earlier: Self) -> Self {
+    pub(crate) fn after(self, earlier: Self) -> Self {
         Self {
             sweeps: self.sweeps + earlier.sweeps,
             factorisations: self.factorisations + earlier.factorisations,

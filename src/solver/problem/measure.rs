@@ -58,7 +58,7 @@ pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
 /// ½(v^n + v^{n−1})·(ΔtF + HP), so a contact impulse does the work P·½(u^n + u^{n−1}) with u its
 /// relative velocity. Summed with gravity's this closes the budget to rounding, whatever the solver
 /// left undone.
-pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
+pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
     let mut sums = Sums::default();
     let mut measures = Measures::default();
     for_each_row::<M::Kinematics>(problem, |number, row, motion| {
@@ -86,7 +86,7 @@ pub struct Motion {
 }
 
 /// Visits the rows with their numbers and motions.
-pub fn for_each_row<K: Kinematics>(
+pub(crate) fn for_each_row<K: Kinematics>(
     problem: &StepProblem<K>,
     mut visit: impl FnMut(usize, &Row<K>, Motion),
 ) {
@@ -105,7 +105,7 @@ pub fn for_each_row<K: Kinematics>(
 }
 
 /// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
-pub fn relative_velocities<K: Kinematics>(
+pub(crate) fn relative_velocities<K: Kinematics>(
     problem: &StepProblem<K>,
     bodies: &[K::Body<f64>],
     speeds: &mut Vec<f64>,

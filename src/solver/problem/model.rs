@@ -43,7 +43,7 @@ impl<K: Kinematics, const FRICTION: bool, const COMPRESSIVE_CONE: bool> Model
 }
 
 /// Something to be done once the model is known.
-pub trait ModelVisitor {
+pub(crate) trait ModelVisitor {
     /// What it gives.
     type Output;
     /// Does it.
@@ -52,7 +52,7 @@ pub trait ModelVisitor {
 
 /// What a model computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ModelParts {
+pub(crate) struct ModelParts {
     /// 1 or 2.
     pub axes: u8,
     /// Whether contacts carry tangential impulses.
@@ -67,7 +67,7 @@ impl ModelParts {
     /// The leanest model that computes what the scene has (`physics`) and what is switched on at
     /// present: without friction where μ = 0, with one cone where Bond = 0. Each gives the same
     /// impulses as the fuller model would.
-    pub fn leanest(physics: Physics, parameters: &Parameters) -> Self {
+    pub(crate) fn leanest(physics: Physics, parameters: &Parameters) -> Self {
         let cohesion = physics.cohesion && parameters.bond > 0.0;
         Self {
             axes: physics.axes,

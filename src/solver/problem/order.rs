@@ -31,7 +31,7 @@ pub(super) struct Sorter {
 impl Sorter {
     /// Appends the contacts `numbers` of one kind, given in the order of detection, to `rows`. Where
     /// they are coloured, `ends` gets the end of each colour among what was appended.
-    pub fn append(
+    pub(super) fn append(
         &mut self,
         ordering: Ordering,
         (world, contacts): (&World, &[Contact]),
@@ -50,7 +50,7 @@ impl Sorter {
 
     /// Appends contacts of one kind by colours, as [`Sorter::append`] does, where nothing is known
     /// of them but their grains.
-    pub fn append_coloured(
+    pub(super) fn append_coloured(
         &mut self,
         (grains, contacts): (usize, &[Contact]),
         numbers: impl Iterator<Item = u32>,

@@ -153,7 +153,7 @@ impl<K: Kinematics> StepProblem<K> {
     /// Relative to a wall of speed V a grain has v_n − V and, since the wall is a plane, the same v_t
     /// as ever. So the law's v_n + ρ v_n^{n−1} becomes v_n − V + ρ (v_n^{n−1} − V): what is added to v_n
     /// is another number, and no method has to know.
-    pub fn drive(
+    pub(crate) fn drive(
         &mut self,
         contacts: &ContactList,
         rebound: impl Fn(Approach) -> f64,

@@ -94,7 +94,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
 
 impl<K: Kinematics> StepProblem<K> {
     /// Moves the bodies from their free velocities by the rows' impulses.
-    pub fn form_velocities(&mut self) {
+    pub(crate) fn form_velocities(&mut self) {
         self.bodies.clone_from(&self.free);
         for (at, row) in self.fixed_rows.iter().enumerate() {
             let impulse = self.reduced_impulse(at, row);
@@ -111,7 +111,7 @@ impl<K: Kinematics> StepProblem<K> {
 
     /// Puts rows that were not made by [`StepProblem::prepare`] in the order of colours, for the
     /// method that needs it.
-    pub fn sort_by_colours(&mut self) {
+    pub(crate) fn sort_by_colours(&mut self) {
         let Self { fixed_rows, pair_rows, contact_of_row, colour_ends, sorter, .. } = self;
         let contact = |row: &Row<K>, other: u32| Contact {
             grain: row.i,
@@ -161,7 +161,7 @@ impl<K: Kinematics> StepProblem<K> {
     }
 
     /// Every row, to be changed, with how fast its wall comes, m/s: 0 where that does not move.
-    pub fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<K>, f64)> {
+    pub(crate) fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<K>, f64)> {
         let Self { fixed_rows, pair_rows, wall_speeds, .. } = self;
         let walls = wall_speeds.iter().copied().chain(std::iter::repeat(0.0));
         fixed_rows.iter_mut().chain(pair_rows).zip(walls)
@@ -174,7 +174,7 @@ impl<K: Kinematics> StepProblem<K> {
     }
 
     /// Hands the rows' impulses back to the contacts, in N·s.
-    pub fn store_impulses(&self, contacts: &mut ContactList) {
+    pub(crate) fn store_impulses(&self, contacts: &mut ContactList) {
         let impulses = contacts.impulses_mut();
         for ((number, row), &index) in self.rows().zip(&self.contact_of_row) {
             let [normal, tangential] = self.reduced_impulse(number, row);
@@ -185,7 +185,7 @@ impl<K: Kinematics> StepProblem<K> {
     }
 
     /// Gives the rows the impulses of a step that was taken in another way, one a contact, N·s.
-    pub fn set_impulses(&mut self, impulses: &[Impulse]) {
+    pub(crate) fn set_impulses(&mut self, impulses: &[Impulse]) {
         let Self { fixed_rows, pair_rows, contact_of_row, capture_speed, captures, .. } = self;
         let rows = fixed_rows.iter_mut().chain(pair_rows).enumerate();
         for ((number, row), &index) in rows.zip(&*contact_of_row) {

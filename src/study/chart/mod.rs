@@ -9,4 +9,5 @@ mod sheet;
 
 pub use draw::{png, svg};
 pub use scale::Scale;
-pub use sheet::{Axis, Cell, Chart, Corner, INK, Layer, Look, PALETTE, Point, Rgb, Sheet, points};
+pub use sheet::{Axis, Cell, Chart, Corner, Layer, Look, PALETTE, Point, Rgb, Sheet};
+pub(crate) use sheet::{INK, points};

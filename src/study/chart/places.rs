@@ -17,7 +17,7 @@ pub(super) struct Places {
 
 impl Places {
     /// Those of an axis.
-    pub fn of(axis: &Axis) -> Self {
+    pub(super) fn of(axis: &Axis) -> Self {
         let place = |number| axis.scale.place(number);
         let marks = if axis.ticks.is_empty() {
             axis.scale.marks(axis.from, axis.to)

@@ -6,7 +6,7 @@ use super::Scale;
 pub type Rgb = (u8, u8, u8);
 
 /// Ink of axes and words.
-pub const INK: Rgb = (40, 40, 40);
+pub(crate) const INK: Rgb = (40, 40, 40);
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
 pub const PALETTE: [Rgb; 7] = [
     (0, 0, 0),
@@ -60,7 +60,7 @@ pub struct Point {
 }
 
 /// Points without intervals.
-pub fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point> {
+pub(crate) fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point> {
     places.into_iter().map(|(x, y)| Point { x, y, interval: None }).collect()
 }
 
@@ -143,7 +143,12 @@ impl Layer {
     }
 
     /// A curve that the legend leaves out.
-    pub fn quiet(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
+    pub(crate) fn quiet(
+        name: impl Into<String>,
+        points: Vec<Point>,
+        colour: Rgb,
+        look: Look,
+    ) -> Self {
         Self::Curve { name: name.into(), in_legend: false, points, colour, look, aside: 0.0 }
     }
 }
@@ -196,7 +201,7 @@ impl Chart {
     }
 
     /// Moves what the legends of some charts say into a column of its own, each name once.
-    pub fn legend_of(charts: &mut [Self], width: f64) -> Self {
+    pub(crate) fn legend_of(charts: &mut [Self], width: f64) -> Self {
         let nowhere = Axis::linear("", 0.0, 1.0);
         let mut column = Self::new("", nowhere.clone(), nowhere);
         column.width = width;
@@ -232,7 +237,7 @@ pub struct Sheet {
 
 impl Sheet {
     /// One chart of the usual size.
-    pub fn of(chart: Chart) -> Self {
+    pub(crate) fn of(chart: Chart) -> Self {
         Self { size: (1200, 820), charts: vec![chart], caption: Vec::new() }
     }
 }

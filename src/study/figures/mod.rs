@@ -18,7 +18,7 @@ mod two_body;
 mod verdict;
 mod workshop;
 
-pub use reproduce::{figure_names, reproduce};
+pub(crate) use reproduce::{figure_names, reproduce};
 
 use figure::Figure;
 use verdict::Claim;

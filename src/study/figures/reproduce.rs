@@ -18,7 +18,7 @@ const ALL: &str = "all";
 const APART: [&str; 1] = ["range"];
 
 /// The names that [`reproduce`] knows.
-pub fn figure_names() -> Vec<&'static str> {
+pub(crate) fn figure_names() -> Vec<&'static str> {
     let charts = FIGURES.iter().map(|figure| figure.name);
     [ALL, SNAPSHOTS].into_iter().chain(charts).collect()
 }
@@ -29,7 +29,7 @@ pub fn figure_names() -> Vec<&'static str> {
 ///
 /// # Errors
 /// Where a name is unknown, the folder cannot be written, or a study fails.
-pub fn reproduce(
+pub(crate) fn reproduce(
     names: &[String],
     folder: &Path,
     quick: bool,

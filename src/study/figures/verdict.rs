@@ -1,14 +1,14 @@
 //! Claims and what became of them.
 
 /// p-values below this count as evidence.
-pub const SIGNIFICANT: f64 = 0.05;
+pub(super) const SIGNIFICANT: f64 = 0.05;
 
 /// Ratio of the ends of an interval that is narrow enough to confirm what lies in it.
 const NARROW: f64 = 3.0;
 
 /// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub(super) enum Verdict {
     /// The data show it.
     Holds,
     /// The data show the contrary.
@@ -19,7 +19,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// A claim that is shown where `p` is small, and its contrary where `p_contrary` is.
-    pub fn of(p: f64, p_contrary: f64) -> Self {
+    pub(super) fn of(p: f64, p_contrary: f64) -> Self {
         match (p < SIGNIFICANT, p_contrary < SIGNIFICANT) {
             (true, _) => Self::Holds,
             (false, true) => Self::Fails,
@@ -29,7 +29,7 @@ impl Verdict {
 
     /// A guess at a ratio: it fails outside the interval, and an interval wider than a factor of
     /// [`NARROW`] decides nothing.
-    pub fn of_interval(guess: f64, low: f64, high: f64) -> Self {
+    pub(super) fn of_interval(guess: f64, low: f64, high: f64) -> Self {
         if guess < low || guess > high {
             Self::Fails
         } else if high < NARROW * low {
@@ -40,7 +40,7 @@ impl Verdict {
     }
 
     /// In words.
-    pub fn words(self) -> &'static str {
+    pub(super) fn words(self) -> &'static str {
         match self {
             Self::Holds => "holds",
             Self::Fails => "does not hold",
@@ -57,7 +57,7 @@ impl From<bool> for Verdict {
 
 /// What is said, what was measured, and whether it holds.
 #[derive(Clone, Debug)]
-pub struct Claim {
+pub(super) struct Claim {
     /// What the paper says, or is asked beyond it.
     pub said: String,
     /// What was measured, with its interval or p-value.
@@ -68,7 +68,11 @@ pub struct Claim {
 
 impl Claim {
     /// A claim.
-    pub fn new(said: impl Into<String>, measured: impl Into<String>, verdict: Verdict) -> Self {
+    pub(super) fn new(
+        said: impl Into<String>,
+        measured: impl Into<String>,
+        verdict: Verdict,
+    ) -> Self {
         Self { said: said.into(), measured: measured.into(), verdict }
     }
 }

@@ -21,7 +21,7 @@ const STUDIES: [(&str, &str); 8] = [
 ];
 
 /// Finished studies by name.
-pub struct Workshop {
+pub(super) struct Workshop {
     folder: PathBuf,
     /// Whether studies run their quick pass.
     pub quick: bool,
@@ -31,7 +31,7 @@ pub struct Workshop {
 
 impl Workshop {
     /// A workshop that keeps its studies in `folder`.
-    pub fn new(folder: PathBuf, quick: bool) -> Self {
+    pub(super) fn new(folder: PathBuf, quick: bool) -> Self {
         Self { folder, quick, finished: BTreeMap::new() }
     }
 
@@ -39,7 +39,7 @@ impl Workshop {
     ///
     /// # Errors
     /// As [`sweep`].
-    pub fn run(&mut self, wanted: &str) -> Result<()> {
+    pub(super) fn run(&mut self, wanted: &str) -> Result<()> {
         let Some(&(name, text)) = STUDIES.iter().find(|(name, _)| *name == wanted) else {
             return Err(Error::value("study", wanted, "one that is shipped"));
         };
@@ -99,12 +99,12 @@ pub(super) struct Rows<'a>(pub Vec<(&'a Config, &'a Outcome)>);
 
 impl<'a> Rows<'a> {
     /// Those that a condition picks.
-    pub fn such_that(&self, holds: impl Fn(&Config) -> bool) -> Self {
+    pub(super) fn such_that(&self, holds: impl Fn(&Config) -> bool) -> Self {
         Self(self.0.iter().copied().filter(|(config, _)| holds(config)).collect())
     }
 
     /// The different values of a number, rising.
-    pub fn values(&self, number: impl Fn(&Config) -> Option<f64>) -> Vec<f64> {
+    pub(super) fn values(&self, number: impl Fn(&Config) -> Option<f64>) -> Vec<f64> {
         let mut values: Vec<f64> = self.0.iter().filter_map(|(config, _)| number(config)).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
@@ -112,12 +112,12 @@ impl<'a> Rows<'a> {
     }
 
     /// An outcome of all runs.
-    pub fn outcomes(&self, number: impl Fn(&Outcome) -> f64) -> Vec<f64> {
+    pub(super) fn outcomes(&self, number: impl Fn(&Outcome) -> f64) -> Vec<f64> {
         self.0.iter().map(|(_, outcome)| number(outcome)).collect()
     }
 
     /// Seeds that are there, rising.
-    pub fn seeds(&self) -> Vec<u64> {
+    pub(super) fn seeds(&self) -> Vec<u64> {
         let mut seeds: Vec<u64> =
             self.0.iter().filter_map(|(config, _)| config.origin.seed).collect();
         seeds.sort_unstable();

@@ -32,12 +32,12 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    pub fn states_folder(&self) -> PathBuf {
+    pub(super) fn states_folder(&self) -> PathBuf {
         self.folder.join("states")
     }
 
     /// A journal for the measurements of this program on this machine, and what it holds.
-    pub fn journal<T: Serialize + DeserializeOwned>(
+    pub(super) fn journal<T: Serialize + DeserializeOwned>(
         &self,
         name: &str,
     ) -> Result<(Journal, Vec<T>)> {
@@ -54,7 +54,7 @@ impl Bench {
     }
 
     /// Lines below a chart: what it shows, then where it was measured.
-    pub fn caption(&self, lines: &[&str]) -> Vec<String> {
+    pub(super) fn caption(&self, lines: &[&str]) -> Vec<String> {
         let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
         let quick = if self.quick { "Quick pass. " } else { "" };
         caption.push(format!("{quick}{}", self.machine.words()));

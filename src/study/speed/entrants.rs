@@ -66,12 +66,12 @@ pub(super) fn of_problems(orders: bool) -> Vec<Entrant> {
 
 impl Entrant {
     /// Its method, if it has one.
-    pub fn method(&self) -> Option<Method> {
+    pub(super) fn method(&self) -> Option<Method> {
         self.stepper.uses_method().then_some(self.solver.method)
     }
 
     /// Warm-started, down to a residual.
-    pub fn to_residual(&self, tolerance: f64, max_sweeps: u32) -> Way {
+    pub(super) fn to_residual(&self, tolerance: f64, max_sweeps: u32) -> Way {
         let solver = SolverSettings {
             stop: StopTest::Residual,
             tolerance,
@@ -83,19 +83,19 @@ impl Entrant {
     }
 
     /// With so many sweeps, whatever they come to.
-    pub fn sweeps(&self, count: u32) -> Way {
+    pub(super) fn sweeps(&self, count: u32) -> Way {
         self.to_residual(f64::MIN_POSITIVE, count)
     }
 
     /// With so many substeps; its own number where that is 0.
-    pub fn substeps(&self, count: u32) -> Way {
+    pub(super) fn substeps(&self, count: u32) -> Way {
         Way { substeps: count, ..self.sweeps(1) }
     }
 }
 
 impl Way {
     /// The settings, stepped this way.
-    pub fn over(&self, settings: &Settings) -> Settings {
+    pub(super) fn over(&self, settings: &Settings) -> Settings {
         let Self { stepper, solver, substeps } = *self;
         let mut settings = Settings { stepper, solver, ..*settings };
         settings.parameters.substeps = substeps;
@@ -103,7 +103,7 @@ impl Way {
     }
 
     /// Has a scene stepped this way.
-    pub fn take(&self, scene: &mut Scene) {
+    pub(super) fn take(&self, scene: &mut Scene) {
         scene.set_settings(self.over(&scene.settings()));
     }
 }

@@ -22,7 +22,7 @@ impl Machine {
     ///
     /// # Errors
     /// Where the program cannot read itself.
-    pub fn this() -> Result<Self> {
+    pub(super) fn this() -> Result<Self> {
         let processor = processor();
         let program = std::env::current_exe().map_err(|error| Error::file("slump", error))?;
         let bytes = std::fs::read(&program).map_err(|error| Error::file(&program, error))?;
@@ -40,7 +40,7 @@ impl Machine {
     }
 
     /// A line for a caption.
-    pub fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         let Self { processor, cores, date, command, .. } = self;
         let cores = if *cores == 1 { "1 core".into() } else { format!("{cores} cores") };
         format!("{processor}, {cores}; {date}; {command}")

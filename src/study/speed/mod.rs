@@ -28,7 +28,7 @@ use crate::output::{check_writable, write_file};
 
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum ChartPart {
+pub(crate) enum ChartPart {
     /// Residual against the time of a step, and performance profiles
     Step,
     /// Error of the slump against simulated seconds per second
@@ -41,7 +41,7 @@ pub enum ChartPart {
 
 /// What to chart, and how.
 #[derive(Clone, Debug)]
-pub struct ChartOptions {
+pub(crate) struct ChartOptions {
     /// Folder for pictures, tables and measurements.
     pub out: PathBuf,
     /// Coarser, in a few minutes.
@@ -58,7 +58,7 @@ pub struct ChartOptions {
 ///
 /// # Errors
 /// Where the folder cannot be written, or a simulation fails.
-pub fn chart_speed(options: &ChartOptions) -> Result<()> {
+pub(crate) fn chart_speed(options: &ChartOptions) -> Result<()> {
     check_writable(&options.out)?;
     let bench = Bench {
         folder: options.out.clone(),
@@ -104,6 +104,6 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
 }
 
 /// Where the tables of other engines lie in the source tree.
-pub fn default_peers_folder() -> &'static Path {
+pub(crate) fn default_peers_folder() -> &'static Path {
     Path::new("benches/peers/results")
 }

@@ -33,12 +33,12 @@ pub(super) struct PeerRun {
 
 impl PeerRun {
     /// Whether it is a collapse of so many grains.
-    pub fn is_collapse_of(&self, grains: usize) -> bool {
+    pub(super) fn is_collapse_of(&self, grains: usize) -> bool {
         self.scene == "collapse" && self.grains == grains
     }
 
     /// Simulated seconds per second.
-    pub fn speed(&self) -> f64 {
+    pub(super) fn speed(&self) -> f64 {
         1.0 / self.secs_per_simulated_sec
     }
 }

@@ -51,7 +51,7 @@ pub(super) struct Race {
 
 impl Race {
     /// The time to one of the residuals that were asked for.
-    pub fn timing(&self, tolerance: f64) -> Timing {
+    pub(super) fn timing(&self, tolerance: f64) -> Timing {
         let reached = self.reached.iter().find(|(asked, _)| *asked == tolerance);
         match (reached, self.gave_up_secs) {
             (Some(&(_, secs)), _) => Timing { secs, solved: true },

@@ -36,7 +36,7 @@ impl Challenge {
     ///
     /// # Errors
     /// Where there is none.
-    pub fn named(name: &str) -> Result<&'static Self> {
+    pub(crate) fn named(name: &str) -> Result<&'static Self> {
         let names = || CHALLENGES.map(|challenge| challenge.name).join(", ");
         CHALLENGES
             .iter()
@@ -48,7 +48,7 @@ impl Challenge {
     ///
     /// # Errors
     /// Where the scene is not sound.
-    pub fn error(&self, trial: &Trial) -> Result<f64> {
+    pub(crate) fn error(&self, trial: &Trial) -> Result<f64> {
         match (self.error)(trial) {
             Ok(error) if error.is_nan() => Ok(f64::INFINITY),
             Err(Error::NonFinite { .. }) => Ok(f64::INFINITY),

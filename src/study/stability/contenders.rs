@@ -28,7 +28,7 @@ enum Way {
 
 impl Contender {
     /// Changes a scene to be stepped this way; whatever else it says stays.
-    pub fn apply(&self, scene: &mut Scene) {
+    pub(crate) fn apply(&self, scene: &mut Scene) {
         match self.way {
             Way::Method(method) => scene.solver.method = method,
             Way::Order(ordering) => {
@@ -41,18 +41,18 @@ impl Contender {
     }
 
     /// Whether it is a method or a stepper, and not settings of one.
-    pub fn is_of_registry(&self) -> bool {
+    pub(crate) fn is_of_registry(&self) -> bool {
         matches!(self.way, Way::Method(_) | Way::Stepper(_))
     }
 
     /// The contender of that name.
-    pub fn named(name: &str) -> Option<&'static Self> {
+    pub(crate) fn named(name: &str) -> Option<&'static Self> {
         CONTENDERS.iter().find(|contender| contender.name == name)
     }
 }
 
 /// All contenders: every method, every stepper without one, and settings that mend a known failure.
-pub static CONTENDERS: LazyLock<Vec<Contender>> = LazyLock::new(|| {
+pub(crate) static CONTENDERS: LazyLock<Vec<Contender>> = LazyLock::new(|| {
     let methods =
         METHODS.iter().map(|info| Contender { name: info.name, way: Way::Method(info.method) });
     let steppers = Stepper::ALL.iter().filter(|stepper| !stepper.uses_method());

@@ -185,7 +185,7 @@ fn class(contender: &Contender, scene: &Scene, may_swing: bool) -> Result<f64> {
 ///
 /// # Errors
 /// Where a scene is not sound.
-pub fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
+pub(crate) fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
     let mut sheets = Vec::new();
     let contenders = || CONTENDERS.iter().filter(|one| one.is_of_registry());
     for map in &MAPS {
@@ -212,7 +212,7 @@ pub fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>>
 }
 
 /// Number of charts of all maps.
-pub fn count_of_maps() -> usize {
+pub(crate) fn count_of_maps() -> usize {
     MAPS.len() * METHODS.len()
 }
 

@@ -13,8 +13,9 @@ mod trial;
 
 pub use borders::contraction_of_column;
 pub use challenges::{CHALLENGES, Challenge, Limits};
-pub use contenders::{CONTENDERS, Contender};
-pub use maps::{count_of_maps, maps};
-pub use picture::picture;
+pub(crate) use contenders::CONTENDERS;
+pub use contenders::Contender;
+pub(crate) use maps::{count_of_maps, maps};
+pub(crate) use picture::picture;
 pub use table::{Cell, StabilityTable, Verdict};
 pub use trial::Trial;

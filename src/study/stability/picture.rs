@@ -21,7 +21,7 @@ pub(super) fn colour(verdict: f64) -> Rgb {
 }
 
 /// The table as a picture.
-pub fn picture(table: &StabilityTable) -> Sheet {
+pub(crate) fn picture(table: &StabilityTable) -> Sheet {
     let challenges = table.challenges();
     let (columns, rows) = (CONTENDERS.len(), challenges.len());
     let mut x = Axis::linear("", 0.0, columns as f64);

@@ -22,7 +22,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// The verdict on an error.
-    pub fn of(error: f64, limits: Limits) -> Self {
+    pub(crate) fn of(error: f64, limits: Limits) -> Self {
         // Written so that NaN fails.
         if error <= limits.holds {
             Self::Holds
@@ -87,7 +87,7 @@ impl StabilityTable {
     }
 
     /// Number of cells that [`StabilityTable::run`] fills.
-    pub fn count(challenges: &[&'static Challenge], quick: bool) -> usize {
+    pub(crate) fn count(challenges: &[&'static Challenge], quick: bool) -> usize {
         Self::plan(challenges, quick).len()
     }
 
@@ -108,7 +108,7 @@ impl StabilityTable {
     ///
     /// # Errors
     /// Where a row cannot be said in CSV.
-    pub fn to_csv(&self) -> Result<Vec<u8>> {
+    pub(crate) fn to_csv(&self) -> Result<Vec<u8>> {
         let refuse = |error: csv::Error| Error::file("table.csv", error);
         let mut writer = csv::Writer::from_writer(Vec::new());
         for cell in &self.cells {
@@ -128,13 +128,13 @@ impl StabilityTable {
     }
 
     /// What came of a contender on a challenge, level by level.
-    pub fn levels(&self, challenge: &Challenge, contender: &Contender) -> Vec<&Cell> {
+    pub(crate) fn levels(&self, challenge: &Challenge, contender: &Contender) -> Vec<&Cell> {
         let of_both = |cell: &&Cell| cell.scene == challenge.name && cell.method == contender.name;
         self.cells.iter().filter(of_both).collect()
     }
 
     /// The challenges that were tried.
-    pub fn challenges(&self) -> Vec<&'static Challenge> {
+    pub(crate) fn challenges(&self) -> Vec<&'static Challenge> {
         let tried =
             |challenge: &&Challenge| self.cells.iter().any(|cell| cell.scene == challenge.name);
         CHALLENGES.iter().filter(tried).collect()

@@ -66,7 +66,7 @@ impl SpringDashpot {
     }
 
     /// γ of a contact, N·s/m.
-    pub fn damping(&self, effective_mass: f64) -> f64 {
+    pub(crate) fn damping(&self, effective_mass: f64) -> f64 {
         2.0 * self.damping_ratio * (self.stiffness * effective_mass).sqrt()
     }
 

@@ -18,7 +18,7 @@ pub(super) struct StepNumbers {
 
 impl StepNumbers {
     /// Those of a step with these settings.
-    pub fn of(world: &World, settings: &Settings) -> Self {
+    pub(super) fn of(world: &World, settings: &Settings) -> Self {
         let parameters = &settings.parameters;
         Self {
             time_step_secs: parameters.time_step_secs,

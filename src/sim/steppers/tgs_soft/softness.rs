@@ -51,7 +51,7 @@ pub(super) struct Softness {
 }
 
 impl Softness {
-    pub fn new(world: &World, parameters: &Parameters, substep_secs: f64) -> Self {
+    pub(super) fn new(world: &World, parameters: &Parameters, substep_secs: f64) -> Self {
         let diameter = world.mean_diameter;
         let g = match world.gravity.magnitude() {
             0.0 => GRAVITY_IF_NONE,
@@ -71,7 +71,7 @@ impl Softness {
 
     /// Projects the impulses of the substep before on what the contact allows now.
     #[inline(always)]
-    pub fn warm_start<M: Model>(&self, contact: &mut SoftContact) -> [f64; 2] {
+    pub(super) fn warm_start<M: Model>(&self, contact: &mut SoftContact) -> [f64; 2] {
         let shifted = law::signorini(contact.impulse[0] + contact.capture_speed);
         let bound = self.bound::<M>(shifted, contact.capture_speed);
         contact.impulse =
@@ -81,7 +81,7 @@ impl Softness {
 
     /// One contact of a sweep, with its relative velocities: the change of its impulses.
     #[inline(always)]
-    pub fn solve<M: Model, const SOFT: bool>(
+    pub(super) fn solve<M: Model, const SOFT: bool>(
         &self,
         contact: &mut SoftContact,
         [normal_velocity, tangential_velocity]: [f64; 2],

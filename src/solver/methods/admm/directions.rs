@@ -7,7 +7,7 @@ use crate::solver::problem::{Kinematics, Model, Row, StepProblem};
 
 /// The directions for each number of degrees of freedom; those that are not used hold no memory.
 #[derive(Debug, Default)]
-pub struct AdmmMemory {
+pub(crate) struct AdmmMemory {
     pub(super) one: Directions<1>,
     pub(super) two: Directions<2>,
     pub(super) three: Directions<3>,
@@ -39,7 +39,11 @@ pub(super) struct Directions<const D: usize> {
 
 impl<const D: usize> Directions<D> {
     /// Factorises the matrix of a compliance ε.
-    pub fn factorise<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>, compliance: f64) {
+    pub(super) fn factorise<M: Model>(
+        &mut self,
+        problem: &StepProblem<M::Kinematics>,
+        compliance: f64,
+    ) {
         let Self { elimination, matrix, .. } = self;
         matrix.clear(elimination);
         for (body, &mass) in problem.masses.iter().enumerate() {
@@ -80,7 +84,7 @@ impl<const D: usize> Directions<D> {
     }
 
     /// V and z of the present impulses.
-    pub fn start<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>) {
+    pub(super) fn start<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>) {
         let bodies = self.elimination.body_at.iter().map(|&body| &problem.bodies[body as usize]);
         self.vector.clear();
         self.vector.extend(bodies.map(|body| {
@@ -111,7 +115,7 @@ impl<const D: usize> Directions<D> {
 
     /// Takes the rows' impulses and z from V. Gives the factor by which ε would have to change for
     /// the two residuals to be alike.
-    pub fn apply_law<M: Model>(
+    pub(super) fn apply_law<M: Model>(
         &mut self,
         problem: &mut StepProblem<M::Kinematics>,
         compliance: f64,
@@ -150,7 +154,11 @@ impl<const D: usize> Directions<D> {
     }
 
     /// The right-hand side from impulses and z.
-    pub fn take_loads<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>, compliance: f64) {
+    pub(super) fn take_loads<M: Model>(
+        &mut self,
+        problem: &StepProblem<M::Kinematics>,
+        compliance: f64,
+    ) {
         let Self { elimination, vector, targets, .. } = self;
         for (place, &body) in elimination.body_at.iter().enumerate() {
             let free = M::Kinematics::coordinates(&problem.free[body as usize]);

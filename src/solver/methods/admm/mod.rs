@@ -18,7 +18,7 @@
 
 mod directions;
 
-pub use self::directions::AdmmMemory;
+pub(super) use self::directions::AdmmMemory;
 use self::directions::Directions;
 use super::info::{BOUND_BY_BOUND, MethodInfo, MethodOrder};
 use super::method::Method;

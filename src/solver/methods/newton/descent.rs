@@ -22,19 +22,19 @@ pub(super) struct Descent {
 
 impl Descent {
     /// From a residual.
-    pub fn new(residual: f64) -> Self {
+    pub(super) fn new(residual: f64) -> Self {
         let mut history = [0.0; MEMORY];
         history[0] = residual;
         Self { history, accepted: 0, best: residual, milestone: residual, since_milestone: 0 }
     }
 
     /// The residual that a step has to be below.
-    pub fn bound(&self) -> f64 {
+    pub(super) fn bound(&self) -> f64 {
         ENOUGH * self.history.iter().copied().fold(0.0, f64::max)
     }
 
     /// Accepts a state of that residual; whether it is the best.
-    pub fn accept(&mut self, residual: f64) -> bool {
+    pub(super) fn accept(&mut self, residual: f64) -> bool {
         self.accepted += 1;
         self.history[self.accepted % MEMORY] = residual;
         let is_best = residual < self.best;

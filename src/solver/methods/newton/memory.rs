@@ -5,7 +5,7 @@ use crate::solver::methods::shared::body_system::SystemMemory;
 
 /// A workspace for each number of degrees of freedom; those that are not used hold no memory.
 #[derive(Clone, Debug, Default)]
-pub struct NewtonMemory {
+pub(crate) struct NewtonMemory {
     pub(super) one: Workspace<1>,
     pub(super) two: Workspace<2>,
     pub(super) three: Workspace<3>,

@@ -30,7 +30,7 @@ mod memory;
 
 use self::assembly::assemble;
 use self::descent::Descent;
-pub use self::memory::NewtonMemory;
+pub(super) use self::memory::NewtonMemory;
 use self::memory::{Guess, Workspace};
 use super::info::{COULOMB, MethodInfo, MethodOrder};
 use super::method::Method;

@@ -28,7 +28,7 @@ pub(super) struct Block {
 
 impl Block {
     /// The block of these rows.
-    pub fn of<K: Kinematics>(rows: &[Row<K>; LANES]) -> Self {
+    pub(super) fn of<K: Kinematics>(rows: &[Row<K>; LANES]) -> Self {
         let rows = rows.each_ref();
         Self {
             i: rows.map(|row| row.i),
@@ -43,7 +43,7 @@ impl Block {
     }
 
     /// Gives the rows their impulses.
-    pub fn store<M: Model>(&self, rows: &mut [Row<M::Kinematics>; LANES]) {
+    pub(super) fn store<M: Model>(&self, rows: &mut [Row<M::Kinematics>; LANES]) {
         for (lane, row) in rows.iter_mut().enumerate() {
             row.shifted_impulse = self.shifted_impulse[lane];
             if M::FRICTION {
@@ -54,7 +54,7 @@ impl Block {
 
     /// P² of each contact, (N·s)², given the capture speeds.
     #[inline(always)]
-    pub fn squared_impulses(&self, captures: [f64; LANES]) -> [f64; LANES] {
+    pub(super) fn squared_impulses(&self, captures: [f64; LANES]) -> [f64; LANES] {
         std::array::from_fn(|lane| {
             let normal = self.shifted_impulse[lane] - captures[lane];
             let impulse = [normal, self.tangential_impulse[lane]];
@@ -96,7 +96,7 @@ unsafe impl<M: Model> Sync for Bodies<M> {}
 
 impl<M: Model> Bodies<M> {
     /// These bodies.
-    pub fn new(bodies: &mut [Body<M, f64>]) -> Self {
+    pub(super) fn new(bodies: &mut [Body<M, f64>]) -> Self {
         Self(bodies.as_mut_ptr())
     }
 

@@ -42,7 +42,7 @@ const WORTH_THREADS: usize = 4 * PORTION;
 
 /// The rows of a problem in blocks.
 #[derive(Clone, Debug, Default)]
-pub struct BlockMemory {
+pub(super) struct BlockMemory {
     /// The last colour that each grain was seen in.
     seen: Vec<usize>,
     /// Colour by colour the blocks of its rows; the last rows of a colour may fill none.

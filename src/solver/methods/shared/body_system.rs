@@ -7,14 +7,14 @@ use crate::solver::settings::{SolverSettings, StopTest};
 
 /// What is kept by a method that works on a system of bodies.
 #[derive(Clone, Debug, Default)]
-pub struct SystemMemory {
+pub(crate) struct SystemMemory {
     vectors: Vectors,
     root_masses: Vec<f64>,
 }
 
 impl SystemMemory {
     /// A problem as a system, and vectors to work with.
-    pub fn system<'a, M: Model>(
+    pub(crate) fn system<'a, M: Model>(
         &'a mut self,
         problem: &'a mut StepProblem<M::Kinematics>,
     ) -> (BodySystem<'a, M>, &'a mut Vectors) {

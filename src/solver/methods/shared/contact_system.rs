@@ -20,7 +20,7 @@ pub type Pairs = Vec<[f64; 2]>;
 
 /// Vectors that a method works with. Memory is kept between steps, contents are not.
 #[derive(Debug, Default)]
-pub struct Vectors {
+pub(crate) struct Vectors {
     /// As many vectors as the hungriest method needs.
     pub pairs: [Pairs; 8],
     /// One number a contact.

@@ -17,7 +17,7 @@ const TEST_INTERVAL: u32 = 8;
 const LOOK_INTERVAL: u32 = 16;
 
 /// Whether the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
-pub fn is_tested(sweeps: u32, settings: &SolverSettings) -> bool {
+pub(crate) fn is_tested(sweeps: u32, settings: &SolverSettings) -> bool {
     sweeps <= SWEEPS_TESTED_EACH
         || sweeps.is_multiple_of(TEST_INTERVAL)
         || sweeps == settings.max_sweeps
@@ -26,7 +26,7 @@ pub fn is_tested(sweeps: u32, settings: &SolverSettings) -> bool {
 
 /// Sweeps over `problem` until `sweep`, which is given the number of the sweep from 1, says that the
 /// stopping test is met, until nothing is gained any more, or up to the limit.
-pub fn sweep_until_settled<P>(
+pub(crate) fn sweep_until_settled<P>(
     problem: &mut P,
     settings: &SolverSettings,
     mut sweep: impl FnMut(&mut P, u32) -> bool,
@@ -50,7 +50,7 @@ pub fn sweep_until_settled<P>(
 /// What the contact laws make of impulses that a step has led to: the nearest normal impulse that
 /// is allowed, then the nearest tangential one that this allows.
 #[inline(always)]
-pub fn projected<S: ContactSystem>(
+pub(crate) fn projected<S: ContactSystem>(
     system: &S,
     contact: usize,
     [normal, tangential]: [f64; 2],
@@ -63,7 +63,7 @@ pub fn projected<S: ContactSystem>(
 }
 
 /// Σ a·b, in four sums that do not wait for each other.
-pub fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     let mut sums = [0.0; 4];
     let (mut pairs_of_a, mut pairs_of_b) = (a.chunks_exact(2), b.chunks_exact(2));
     for (a, b) in (&mut pairs_of_a).zip(&mut pairs_of_b) {
@@ -80,7 +80,7 @@ pub fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 }
 
 /// The impulses of the smallest residual seen so far.
-pub struct Best<'a> {
+pub(crate) struct Best<'a> {
     impulses: &'a mut Pairs,
     residual: f64,
     watch: StallWatch,
@@ -88,14 +88,14 @@ pub struct Best<'a> {
 
 impl<'a> Best<'a> {
     /// Starts with the present impulses of a system.
-    pub fn new<S: ContactSystem>(system: &S, impulses: &'a mut Pairs) -> Self {
+    pub(crate) fn new<S: ContactSystem>(system: &S, impulses: &'a mut Pairs) -> Self {
         system.read(impulses);
         Self { impulses, residual: system.residual(), watch: StallWatch::default() }
     }
 
     /// Looks at `impulses`, which are the system's present ones, after iteration `sweeps`; now and
     /// then only. Tells whether to stop, since nothing better is to be had.
-    pub fn look<S: ContactSystem>(
+    pub(crate) fn look<S: ContactSystem>(
         &mut self,
         system: &S,
         impulses: &[[f64; 2]],
@@ -116,7 +116,7 @@ impl<'a> Best<'a> {
 
     /// The end of a solve that failed: the system has the best impulses of all, its present ones
     /// included.
-    pub fn restore<S: ContactSystem>(self, system: &mut S, sweeps: u32) -> SolveReport {
+    pub(crate) fn restore<S: ContactSystem>(self, system: &mut S, sweeps: u32) -> SolveReport {
         let residual = system.residual();
         // Not a number is not better than anything.
         let present_is_best = residual <= self.residual;

@@ -1,7 +1,7 @@
 //! What several methods stand on.
 
-pub mod body_system;
-pub mod contact_system;
-pub mod iterate;
-pub mod stall;
-pub mod update;
+pub(super) mod body_system;
+pub(super) mod contact_system;
+pub(super) mod iterate;
+pub(super) mod stall;
+pub(super) mod update;

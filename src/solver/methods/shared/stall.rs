@@ -38,7 +38,7 @@ impl StallWatch {
     /// Looks at the residual after a number of sweeps, now and then only. Tells whether to stop:
     /// where a residual is aimed at, nothing is gained by more sweeps. Other stopping tests are
     /// those of published schemes, which sweep on.
-    pub fn look(
+    pub(super) fn look(
         &mut self,
         sweeps: u32,
         settings: &SolverSettings,
@@ -56,7 +56,7 @@ impl StallWatch {
 
     /// Whether a solve that was given up after so many sweeps with this residual had stalled.
     /// Compared is the last look at no more than half as many sweeps.
-    pub fn has_stalled(&self, sweeps: u32, residual: f64) -> bool {
+    pub(super) fn has_stalled(&self, sweeps: u32, residual: f64) -> bool {
         let last_look = self.next_look / 2;
         let before = if 2 * last_look <= sweeps { self.looks[1] } else { self.looks[0] };
         sweeps >= 2 * FIRST_LOOK && residual >= FLAT * before

@@ -10,12 +10,12 @@ use crate::contact::{Lanes, law};
 use crate::solver::problem::{Kinematics, Model, Row, StepProblem};
 
 /// A body of a model; with several lanes, a body a lane.
-pub type Body<M, T> = <<M as Model>::Kinematics as Kinematics>::Body<T>;
+pub(crate) type Body<M, T> = <<M as Model>::Kinematics as Kinematics>::Body<T>;
 
 /// What an update needs of a row beside its impulses; with several lanes, of a row a lane. Units as
 /// in [`Row`].
 #[derive(Clone, Copy)]
-pub struct Local<K: Kinematics, T: Lanes> {
+pub(crate) struct Local<K: Kinematics, T: Lanes> {
     pub normal: K::Normal<T>,
     pub share: T,
     pub restitution_velocity: T,
@@ -31,20 +31,20 @@ fn parts<K: Kinematics>(row: &mut Row<K>) -> (Local<K, f64>, [&mut f64; 2]) {
 }
 
 /// The numbers of the contact law that all rows share.
-pub struct Law {
+pub(crate) struct Law {
     friction: f64,
     capture_speed: f64,
 }
 
 impl Law {
     /// Those of a problem.
-    pub fn of<K: Kinematics>(problem: &StepProblem<K>) -> Self {
+    pub(crate) fn of<K: Kinematics>(problem: &StepProblem<K>) -> Self {
         Self { friction: problem.friction, capture_speed: problem.capture_speed }
     }
 
     /// Solves the contact of a row: of grain i with a fixed body.
     #[inline(always)]
-    pub fn solve_single_row<M: Model, const MEASURE: bool>(
+    pub(crate) fn solve_single_row<M: Model, const MEASURE: bool>(
         &self,
         row: &mut Row<M::Kinematics>,
         i: &mut Body<M, f64>,
@@ -56,7 +56,7 @@ impl Law {
 
     /// Solves the contact of a row: between grains i and j.
     #[inline(always)]
-    pub fn solve_pair_row<M: Model, const MEASURE: bool>(
+    pub(crate) fn solve_pair_row<M: Model, const MEASURE: bool>(
         &self,
         row: &mut Row<M::Kinematics>,
         i: &mut Body<M, f64>,
@@ -69,7 +69,7 @@ impl Law {
 
     /// Solves contacts of grains i with fixed bodies.
     #[inline(always)]
-    pub fn solve_single<M: Model, T: Lanes, const MEASURE: bool>(
+    pub(crate) fn solve_single<M: Model, T: Lanes, const MEASURE: bool>(
         &self,
         (local, impulse): (&Local<M::Kinematics, T>, [&mut T; 2]),
         i: &mut Body<M, T>,
@@ -83,7 +83,7 @@ impl Law {
 
     /// Solves contacts between grains i and j.
     #[inline(always)]
-    pub fn solve_pair<M: Model, T: Lanes, const MEASURE: bool>(
+    pub(crate) fn solve_pair<M: Model, T: Lanes, const MEASURE: bool>(
         &self,
         (local, impulse): (&Local<M::Kinematics, T>, [&mut T; 2]),
         i: &mut Body<M, T>,
@@ -120,7 +120,7 @@ impl Law {
 
 /// P² of an impulse (λ_n, λ_t) of an effective mass, (N·s)².
 #[inline(always)]
-pub fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
+pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
     mass * mass * (normal * normal + tangential * tangential)
 }
 
@@ -136,7 +136,7 @@ pub struct Change<T = f64> {
 
 impl Change {
     /// Adds the change of other contacts.
-    pub fn add_all(&mut self, other: Self) {
+    pub(crate) fn add_all(&mut self, other: Self) {
         self.squared += other.squared;
         self.absolute += other.absolute;
     }

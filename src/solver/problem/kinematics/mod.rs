@@ -12,8 +12,8 @@
 //! so that λ_n changes v_n by λ_n, and λ_t changes v_t by λ_t (1 + 2) = 3 λ_t: m_n/m_t = 3, with
 //! rotation held still 1. Against a fixed body g_i = 1.
 
-pub mod line;
-pub mod plane;
+pub(crate) mod line;
+pub(crate) mod plane;
 
 use std::fmt::Debug;
 

@@ -43,7 +43,7 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub fn new(quick: bool) -> Self {
+    pub(super) fn new(quick: bool) -> Self {
         let residuals: &[f64] =
             if quick { &[1e-2, 1e-4, 1e-6] } else { &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8] };
         let sweeps: &[u32] = if quick { &[20] } else { &[10, 40] };

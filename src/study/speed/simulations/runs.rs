@@ -43,7 +43,7 @@ pub(super) struct References(HashMap<(Stepper, u64, usize), f64>);
 
 impl References {
     /// Slump of that pile. There is one for every law, Δt and pile of the plan, and at the finest Δt.
-    pub fn slump(&self, law: Stepper, time_step_secs: f64, pile: usize) -> f64 {
+    pub(super) fn slump(&self, law: Stepper, time_step_secs: f64, pile: usize) -> f64 {
         self.0.get(&(law, time_step_secs.to_bits(), pile)).copied().unwrap_or(f64::NAN)
     }
 }

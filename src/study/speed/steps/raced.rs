@@ -25,12 +25,12 @@ pub(super) struct Raced {
 }
 
 impl Raced {
-    pub fn timings(&self, method: usize, tolerance: f64) -> Vec<Timing> {
+    pub(super) fn timings(&self, method: usize, tolerance: f64) -> Vec<Timing> {
         self.races[method].iter().map(|race| race.timing(tolerance)).collect()
     }
 
     /// The steps that begin far from their solution.
-    pub fn far(&self) -> Self {
+    pub(super) fn far(&self) -> Self {
         let far = |races: &Vec<Race>| {
             races.iter().filter(|race| race.start_residual > FAR).cloned().collect()
         };
@@ -40,12 +40,12 @@ impl Raced {
         Self { label: self.label, title, entrants: self.entrants.clone(), races }
     }
 
-    pub fn all_timings(&self, tolerance: f64) -> Vec<Vec<Timing>> {
+    pub(super) fn all_timings(&self, tolerance: f64) -> Vec<Vec<Timing>> {
         (0..self.races.len()).map(|method| self.timings(method, tolerance)).collect()
     }
 
     /// The smallest residual that any method reached, problem by problem.
-    pub fn floors(&self) -> Vec<f64> {
+    pub(super) fn floors(&self) -> Vec<f64> {
         let problems = self.races.first().map_or(0, Vec::len);
         let smallest = |problem: usize| {
             let of_method = self.races.iter().map(|races| races[problem].smallest_residual);

@@ -26,7 +26,7 @@ const BRIDGE: i32 = 10;
 const SHOCK_STEP_SECS: f64 = 5e-4;
 
 /// Relative error of the Bond number at which a chain breaks.
-pub fn chain(trial: &Trial) -> Result<f64> {
+pub(crate) fn chain(trial: &Trial) -> Result<f64> {
     let right = breaking_bond(CHAIN);
     let found = threshold([0.25 * right, 4.0 * right], HALVINGS, |bond| {
         let mut scene = hanging_chain(CHAIN, SURE * right);
@@ -41,12 +41,12 @@ pub fn chain(trial: &Trial) -> Result<f64> {
 }
 
 /// How far the grain of a cantilever that moves most goes, in d.
-pub fn cantilever(trial: &Trial) -> Result<f64> {
+pub(crate) fn cantilever(trial: &Trial) -> Result<f64> {
     watched(trial, stability::cantilever(CANTILEVER))
 }
 
 /// How far the grain of a bridge that moves most goes, in d.
-pub fn bridge(trial: &Trial) -> Result<f64> {
+pub(crate) fn bridge(trial: &Trial) -> Result<f64> {
     watched(trial, stability::bridge(BRIDGE))
 }
 
@@ -58,7 +58,7 @@ fn watched(trial: &Trial, mut scene: Scene) -> Result<f64> {
 }
 
 /// Gap between i and j of the paper's cradle after the shock, in d: solved well, it stays closed.
-pub fn shock(trial: &Trial) -> Result<f64> {
+pub(crate) fn shock(trial: &Trial) -> Result<f64> {
     let mut scene = cradle();
     scene.parameters.time_step_secs = SHOCK_STEP_SECS;
     scene.solver.tolerance = trial.level;

@@ -16,7 +16,7 @@ const FEW_SWEEPS: u32 = 100;
 pub(in crate::study::stability) const SAGGING_DISCS: usize = 20;
 
 /// Greatest error of the floor's force in the last quarter of the run, over the weight.
-pub fn column(trial: &Trial) -> Result<f64> {
+pub(crate) fn column(trial: &Trial) -> Result<f64> {
     let mut scene = column_of(trial.count());
     scene.solver.max_sweeps = FEW_SWEEPS;
     let mut simulation = trial.start(scene)?;
@@ -42,19 +42,19 @@ pub(in crate::study::stability) fn sagging(count: usize, sweeps: u32) -> Scene {
 }
 
 /// How far the top of a column sinks, in d.
-pub fn sag(trial: &Trial) -> Result<f64> {
+pub(crate) fn sag(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &sagging(SAGGING_DISCS, trial.count() as u32))
 }
 
 /// How far a heavy disc on a light one sinks, in d.
-pub fn mass_ratio(trial: &Trial) -> Result<f64> {
+pub(crate) fn mass_ratio(trial: &Trial) -> Result<f64> {
     let mut scene = stability::mass_ratio(trial.level);
     scene.solver.max_sweeps = FEW_SWEEPS;
     sunk_in(trial, &scene)
 }
 
 /// How far a large disc on two small ones sinks, in d.
-pub fn size_ratio(trial: &Trial) -> Result<f64> {
+pub(crate) fn size_ratio(trial: &Trial) -> Result<f64> {
     let mut scene = logs(trial.level);
     scene.solver.max_sweeps = FEW_SWEEPS;
     sunk_in(trial, &scene)

@@ -12,7 +12,7 @@ const AFTER_SECS: f64 = 0.1;
 /// Error of the first bounce's height, over that of the fall; with that, for ρ < 1, the speed left
 /// when all bounces are over, over that of the first impact; for ρ = 1, the relative error of the
 /// energy after ten falls.
-pub fn bounce(trial: &Trial) -> Result<f64> {
+pub(crate) fn bounce(trial: &Trial) -> Result<f64> {
     let restitution = trial.level;
     let scene = bounce_of(restitution);
     let radius = scene.grains[0].radius;
@@ -47,7 +47,7 @@ pub fn bounce(trial: &Trial) -> Result<f64> {
 }
 
 /// Relative error of the last ball's speed.
-pub fn newtons_cradle(trial: &Trial) -> Result<f64> {
+pub(crate) fn newtons_cradle(trial: &Trial) -> Result<f64> {
     let scene = balls(trial.count());
     let right = scene.grains[0].velocity.x;
     let mut simulation = trial.start(scene)?;
@@ -57,7 +57,7 @@ pub fn newtons_cradle(trial: &Trial) -> Result<f64> {
 }
 
 /// Share of phases in which the disc goes through the wall.
-pub fn thin_wall(trial: &Trial) -> Result<f64> {
+pub(crate) fn thin_wall(trial: &Trial) -> Result<f64> {
     let mut through = 0;
     for phase in 0..PHASES {
         let scene = wall_of(trial.level, (f64::from(phase) + 0.5) / f64::from(PHASES));

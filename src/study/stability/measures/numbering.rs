@@ -21,7 +21,7 @@ const SPEED: f64 = 0.05;
 
 /// Largest difference of the ways of a grain between a run far from the origin and the same at the
 /// origin, in d.
-pub fn far(trial: &Trial) -> Result<f64> {
+pub(crate) fn far(trial: &Trial) -> Result<f64> {
     let [here, there] = [0.0, trial.level].map(|distance| heap_far_away(FAR_ROWS, distance));
     let ways = |scene: Scene| -> Result<Vec<DVec2>> {
         let mut simulation = trial.start(scene.clone())?;
@@ -37,7 +37,7 @@ pub fn far(trial: &Trial) -> Result<f64> {
 
 /// Largest difference of velocities after a step between two numberings of the same grains, over the
 /// largest velocity.
-pub fn shuffle(trial: &Trial) -> Result<f64> {
+pub(crate) fn shuffle(trial: &Trial) -> Result<f64> {
     let mut random = Pcg64::seed_from_u64(7);
     let mut scene = heap(SHUFFLED_ROWS);
     scene.solver.tolerance = trial.level;

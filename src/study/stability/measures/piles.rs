@@ -26,7 +26,7 @@ const ANGLE_RANGE: f64 = 2.0;
 const HALVINGS: u32 = 8;
 
 /// How far the grain of a heap that moves most goes, in d.
-pub fn repose(trial: &Trial) -> Result<f64> {
+pub(crate) fn repose(trial: &Trial) -> Result<f64> {
     let mut scene = heap(ROWS);
     scene.parameters.time_step_secs = trial.level;
     let mut simulation = trial.start(scene.clone())?;
@@ -35,12 +35,12 @@ pub fn repose(trial: &Trial) -> Result<f64> {
 }
 
 /// Relative error of the friction at which three piled logs slide apart.
-pub fn friction_limit(trial: &Trial) -> Result<f64> {
+pub(crate) fn friction_limit(trial: &Trial) -> Result<f64> {
     least_friction(trial, &logs(1.0), FRICTION_OF_LOGS)
 }
 
 /// Relative error of the friction at which the keystone of an arch slips through.
-pub fn arch(trial: &Trial) -> Result<f64> {
+pub(crate) fn arch(trial: &Trial) -> Result<f64> {
     least_friction(trial, &arch_of(), FRICTION_OF_ARCH)
 }
 
@@ -56,7 +56,7 @@ fn least_friction(trial: &Trial, scene: &Scene, right: f64) -> Result<f64> {
 }
 
 /// Relative error of the steepest slope on which a heap stands.
-pub fn repose_angle(trial: &Trial) -> Result<f64> {
+pub(crate) fn repose_angle(trial: &Trial) -> Result<f64> {
     let range = [STEEPEST_DEGREES / ANGLE_RANGE, STEEPEST_DEGREES * ANGLE_RANGE];
     let found = threshold(range, HALVINGS, |degrees| {
         let mut scene = heap_on_slope(trial.count(), degrees);
@@ -75,7 +75,7 @@ fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
 
 /// After very many steps at rest: the longest way of any grain, in d, or the speed that is left, in
 /// √(g d), whichever is larger.
-pub fn rest(trial: &Trial) -> Result<f64> {
+pub(crate) fn rest(trial: &Trial) -> Result<f64> {
     let scene = heap(SMALL_ROWS);
     let mut simulation = trial.start(scene.clone())?;
     simulation.take_steps(trial.count() as u64)?;

@@ -12,7 +12,7 @@ const WATCHED_STEPS: u64 = 100;
 
 /// Two discs that overlap: the share of the overlap that is left after 0.3 s, or the largest kinetic
 /// energy on the way, over m g d, whichever is larger.
-pub fn overlap(trial: &Trial) -> Result<f64> {
+pub(crate) fn overlap(trial: &Trial) -> Result<f64> {
     let scene = overlapped(trial.level);
     let mut simulation = trial.start(scene)?;
     let world = simulation.world();
@@ -27,7 +27,7 @@ pub fn overlap(trial: &Trial) -> Result<f64> {
 
 /// Share of the steps that were not solved to their tolerance, or the mean over the last hundred of
 /// the speed that does not die out, in √(g d), whichever is larger.
-pub fn squeeze(trial: &Trial) -> Result<f64> {
+pub(crate) fn squeeze(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(squeeze_of(trial.level))?;
     let (mut unsolved, mut speeds) = (0u64, 0.0);
     let settling = simulation.parameters().steps_in(SETTLING_SECS);
@@ -43,7 +43,7 @@ pub fn squeeze(trial: &Trial) -> Result<f64> {
 
 /// When walls have moved in and the grains had time to come to rest: how far the grain that is furthest
 /// from its place is from it, in d, or the speed that is left, in √(g d), whichever is larger.
-pub fn moving_walls(trial: &Trial) -> Result<f64> {
+pub(crate) fn moving_walls(trial: &Trial) -> Result<f64> {
     let mut scene = press();
     scene.parameters.time_step_secs = trial.level;
     let mut simulation = trial.start(scene)?;

@@ -25,7 +25,7 @@ const CHANGE_SECS: f64 = 0.05;
 const LIVE_SWEEPS: u32 = 200;
 
 /// Largest kinetic energy after a heavy disc is taken off a column, over m g d of one of its discs.
-pub fn lift_off(trial: &Trial) -> Result<f64> {
+pub(crate) fn lift_off(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(lift_off_of(trial.level))?;
     simulation.take_steps(BEFORE)?;
     simulation.remove_last_grain()?;
@@ -40,7 +40,7 @@ pub fn lift_off(trial: &Trial) -> Result<f64> {
 
 /// A heap at rest whose time step grows: the longest way of any grain, in d, or the speed that is
 /// left, in √(g d), whichever is larger.
-pub fn time_step_switch(trial: &Trial) -> Result<f64> {
+pub(crate) fn time_step_switch(trial: &Trial) -> Result<f64> {
     let mut scene = heap(ROWS);
     scene.parameters.time_step_secs = SMALL_STEP_SECS;
     let mut simulation = trial.start(scene.clone())?;
@@ -53,7 +53,7 @@ pub fn time_step_switch(trial: &Trial) -> Result<f64> {
 
 /// Grains that have left their box after so many seconds with every slider moved at random, and a
 /// hand that pulls at grains.
-pub fn sliders(trial: &Trial) -> Result<f64> {
+pub(crate) fn sliders(trial: &Trial) -> Result<f64> {
     let mut scene = heap(ROWS);
     scene.solver.max_sweeps = LIVE_SWEEPS;
     let half = BOX * scene.mean_diameter;
