@@ -32,7 +32,7 @@ pub struct Notice {
     /// The sentence.
     pub text: String,
     /// Whether it tells of a failure.
-    pub failure: bool,
+    pub(crate) failure: bool,
     since: Instant,
 }
 
@@ -43,11 +43,11 @@ pub struct AppState {
     /// Its newest frame.
     pub frame: Frame,
     /// What the controls show, one entry a world: ahead of the frame by what is on its way.
-    pub wanted: Vec<Controls>,
+    pub(crate) wanted: Vec<Controls>,
     /// The world that the controls are about.
-    pub selected: usize,
+    pub(crate) selected: usize,
     /// What was loaded last.
-    pub config: Config,
+    pub(crate) config: Config,
     /// What outlives the window.
     pub preferences: Preferences,
     /// Which part of the scene shows.
@@ -57,13 +57,13 @@ pub struct AppState {
     /// The grain at the end of the mouse's spring.
     pub grabbed: Option<GrainRef>,
     /// Whether the help overlay shows.
-    pub help: bool,
+    pub(crate) help: bool,
     /// Writes files without keeping the window waiting.
-    pub exporter: Exporter,
+    pub(crate) exporter: Exporter,
     /// Where controls lie, points: for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
     /// Set where the window is to open its graphics device anew.
-    pub restart_graphics: bool,
+    pub(crate) restart_graphics: bool,
     pub(super) legend: LegendCache,
     notice: Option<Notice>,
     seen_start: u64,

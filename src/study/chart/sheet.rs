@@ -25,15 +25,15 @@ const ASIDE: f64 = 0.006;
 #[derive(Clone, Debug)]
 pub struct Axis {
     /// What it stands for, with its unit.
-    pub label: String,
+    pub(crate) label: String,
     /// Linear or logarithmic.
-    pub scale: Scale,
+    pub(crate) scale: Scale,
     /// Where it begins.
-    pub from: f64,
+    pub(crate) from: f64,
     /// Where it ends.
-    pub to: f64,
+    pub(crate) to: f64,
     /// Places with words of their own; where there are none, round numbers.
-    pub ticks: Vec<(f64, String)>,
+    pub(crate) ticks: Vec<(f64, String)>,
 }
 
 impl Axis {
@@ -171,19 +171,19 @@ pub enum Corner {
 #[derive(Clone, Debug)]
 pub struct Chart {
     /// Above it.
-    pub title: String,
+    pub(crate) title: String,
     /// Horizontal.
-    pub x: Axis,
+    pub(crate) x: Axis,
     /// Vertical.
-    pub y: Axis,
+    pub(crate) y: Axis,
     /// From back to front.
     pub layers: Vec<Layer>,
     /// Where the legend stands.
-    pub legend: Corner,
+    pub(crate) legend: Corner,
     /// Its share of the width of the sheet.
-    pub width: f64,
+    pub(crate) width: f64,
     /// Whether it is nothing but a legend, without axes: for long ones, beside other charts.
-    pub only_legend: bool,
+    pub(crate) only_legend: bool,
 }
 
 impl Chart {

@@ -8,9 +8,9 @@ use crate::error::{Error, Result};
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Up to this error it holds.
-    pub holds: f64,
+    pub(crate) holds: f64,
     /// Above this error it fails; between the two it degrades.
-    pub fails: f64,
+    pub(crate) fails: f64,
 }
 
 /// A scene made to break methods, and what is measured on it.
@@ -19,15 +19,15 @@ pub struct Challenge {
     /// Its name on the command line and in the table.
     pub name: &'static str,
     /// What drives it into failure, with its unit.
-    pub driver: &'static str,
+    pub(crate) driver: &'static str,
     /// The values of the driver that a quick pass tries, from harmless to harmful.
     pub quick: &'static [f64],
     /// Further values of a full pass, more harmful still.
-    pub further: &'static [f64],
+    pub(crate) further: &'static [f64],
     /// What the error is, with its unit.
-    pub measure: &'static str,
+    pub(crate) measure: &'static str,
     /// What counts as holding and as failing.
-    pub limits: Limits,
+    pub(crate) limits: Limits,
     error: fn(&Trial) -> Result<f64>,
 }
 

@@ -10,7 +10,7 @@ use crate::solver::{METHODS, Method, Ordering};
 #[derive(Clone, Copy, Debug)]
 pub struct Contender {
     /// Its name in the table.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     way: Way,
 }
 

@@ -10,9 +10,9 @@ use crate::sim::Simulation;
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
     /// Who is tried.
-    pub contender: &'static Contender,
+    pub(crate) contender: &'static Contender,
     /// The value of the parameter that drives the scene into failure.
-    pub level: f64,
+    pub(crate) level: f64,
 }
 
 impl Trial {
