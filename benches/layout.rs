@@ -36,14 +36,14 @@ struct Lists {
 
 impl Lists {
     fn of(problem: &StepProblem<SpinningPlane>) -> Self {
-        let mut lists = Self { friction: problem.friction, ..Self::default() };
-        for body in &problem.bodies {
+        let mut lists = Self { friction: problem.friction(), ..Self::default() };
+        for body in problem.bodies() {
             lists.x.push(body.velocity[0]);
             lists.y.push(body.velocity[1]);
             lists.spin.push(body.spin);
         }
         for (rows, source) in
-            [(&mut lists.fixed, &problem.fixed_rows), (&mut lists.pairs, &problem.pair_rows)]
+            [(&mut lists.fixed, problem.fixed_rows()), (&mut lists.pairs, problem.pair_rows())]
         {
             for row in source {
                 rows.i.push(row.i);
@@ -144,10 +144,10 @@ fn main() {
             sweep::<Full, false>(&mut structures);
             lists.sweep();
         }
-        for (k, PlaneBody { velocity, spin }) in structures.bodies.iter().enumerate() {
+        for (k, PlaneBody { velocity, spin }) in structures.bodies().iter().enumerate() {
             assert_eq!([*velocity, [*spin, 0.0]], [[lists.x[k], lists.y[k]], [lists.spin[k], 0.0]]);
         }
-        let updates = structures.contact_of_row.len() as f64;
+        let updates = structures.contact_of_row().len() as f64;
         let of_structures = least_secs(&mut criterion, &format!("structures/{count}"), || {
             black_box(sweep::<Full, false>(&mut structures));
         });

@@ -5,7 +5,7 @@
 use slump::error::Result;
 use slump::scene::built_in;
 use slump::sim::{Advance, Outcome, Settings, Stage};
-use slump::solver::{BodySystem, ContactSystem, Model, SolveReport};
+use slump::solver::{ContactSystem, Model, SolveReport};
 
 /// Sweeps with this ω, down to a residual.
 struct OverRelaxed {
@@ -23,7 +23,7 @@ impl Advance for OverRelaxed {
             parameters.restitution_velocity(approach.velocity, gravity)
         });
         let mut root_masses = Vec::new();
-        let mut system = BodySystem::<M>::new(stage.problem, &mut root_masses);
+        let mut system = stage.system(&mut root_masses);
         let (mut before, mut after) = (Vec::new(), Vec::new());
         let mut report = SolveReport::default();
         while !report.converged && report.sweeps < 5_000 {

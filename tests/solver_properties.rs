@@ -170,10 +170,10 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
         lean.prepare::<Lean>(world, contacts, numbers, &settings, rebound);
         solve::<Full>(&mut full, &mut Memory::default(), &settings);
         solve::<Lean>(&mut lean, &mut Memory::default(), &settings);
-        for (a, b) in full.bodies.iter().zip(&lean.bodies) {
+        for (a, b) in full.bodies().iter().zip(lean.bodies()) {
             prop_assert_eq!(a.velocity, b.velocity);
         }
-        let mut ends = lean.bodies.iter().zip(&lean.free);
+        let mut ends = lean.bodies().iter().zip(lean.free_bodies());
         prop_assert!(ends.any(|(end, free)| end.velocity != free.velocity), "contacts acted");
         Ok(())
     });

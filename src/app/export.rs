@@ -41,7 +41,7 @@ impl Export {
 
 /// Hands exports to their thread, which starts with the first one.
 #[derive(Default)]
-pub struct Exporter {
+pub(crate) struct Exporter {
     thread: Option<(Sender<Job>, Receiver<Result<PathBuf>>)>,
     pending: usize,
 }

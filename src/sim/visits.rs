@@ -12,7 +12,7 @@ use crate::solver::{Model, Slot, SlotVisitor, StepProblem};
 pub trait ProblemVisitor {
     /// What it gives.
     type Output;
-    /// Does it; row `k` of the problem is contact `problem.contact_of_row[k]` of `contacts`.
+    /// Does it; row `k` of the problem is contact `problem.contact_of_row()[k]` of `contacts`.
     fn visit<M: Model>(
         self,
         problem: &mut StepProblem<M::Kinematics>,

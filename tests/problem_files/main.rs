@@ -96,8 +96,7 @@ impl ProblemVisitor for Swept {
             let never = SolverSettings { max_sweeps: self.0, ..settings(Method::Nsgs, 1e-300) };
             solve::<M>(problem, &mut Memory::default(), &never);
         }
-        let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-        let impulses = rows.enumerate().map(|(number, row)| {
+        let impulses = problem.rows().map(|(number, row)| {
             problem.reduced_impulse(number, row).map(|p| row.effective_mass * p)
         });
         (residual::<M>(problem), impulses.collect())

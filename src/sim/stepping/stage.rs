@@ -6,8 +6,8 @@ use crate::sim::pull;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::solver::{
-    Approach, Kinematics, Memory, Model, ProblemNumbers, Slot, SolveReport, StepProblem, measure,
-    solve,
+    Approach, BodySystem, Kinematics, Memory, Model, ProblemNumbers, Slot, SolveReport,
+    StepProblem, measure, solve,
 };
 use crate::world::World;
 
@@ -22,8 +22,7 @@ pub trait Advance {
 #[derive(Debug)]
 pub struct Stage<'a, M: Model> {
     pub(crate) state: &'a mut State,
-    /// The step's contact problem, once it is prepared.
-    pub problem: &'a mut StepProblem<M::Kinematics>,
+    pub(crate) problem: &'a mut StepProblem<M::Kinematics>,
     pub(crate) memory: &'a mut Memory<M::Kinematics>,
 }
 
@@ -38,7 +37,17 @@ impl<'a, M: Model> Stage<'a, M> {
         &self.state.world
     }
 
-    /// The contacts of the step; row k of the problem is contact `problem.contact_of_row[k]` of them.
+    /// The step's contact problem, once it is prepared.
+    pub fn problem(&self) -> &StepProblem<M::Kinematics> {
+        self.problem
+    }
+
+    /// The same for a method of your own, whose impulses move the bodies ([`BodySystem::new`]).
+    pub fn system<'b>(&'b mut self, root_masses: &'b mut Vec<f64>) -> BodySystem<'b, M> {
+        BodySystem::new(self.problem, root_masses)
+    }
+
+    /// The contacts of the step; row k of the problem is contact `contact_of_row()[k]` of them.
     pub fn contacts(&self) -> &ContactList {
         &self.state.contacts
     }

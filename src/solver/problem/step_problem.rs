@@ -11,7 +11,7 @@ use crate::contact::{Contact, ContactList, Impulse, Numbering, Other};
 /// λ = P/m_ij (see `problem::kinematics` and `contact::law`).
 ///
 /// Array of structures was measured against structure of arrays before it was chosen
-/// (`cargo bench --bench layout`).
+/// (`cargo bench --bench layout`). Plain data: a problem shows its rows and takes none.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Row<K: Kinematics> {
@@ -37,37 +37,39 @@ pub struct Row<K: Kinematics> {
 /// All contacts of one step. Memory is kept between steps.
 ///
 /// Rows are in the order of the sweep (`problem::order`): first the contacts with fixed bodies, then
-/// those between grains.
+/// those between grains. From outside a problem can be looked at; its impulses are changed by the
+/// methods, and by one of your own through [`BodySystem`](crate::solver::BodySystem), which keeps bodies
+/// and rows in step.
 #[derive(Clone, Debug)]
 pub struct StepProblem<K: Kinematics> {
     /// Bodies as the sweep moves them.
-    pub bodies: Vec<K::Body<f64>>,
+    pub(crate) bodies: Vec<K::Body<f64>>,
     /// Bodies at the beginning of the step.
-    pub before: Vec<K::Body<f64>>,
+    pub(crate) before: Vec<K::Body<f64>>,
     /// Bodies at the end of the step if no contact acted.
-    pub free: Vec<K::Body<f64>>,
+    pub(crate) free: Vec<K::Body<f64>>,
     /// Rows against fixed bodies.
-    pub fixed_rows: Vec<Row<K>>,
+    pub(crate) fixed_rows: Vec<Row<K>>,
     /// Rows between grains.
-    pub pair_rows: Vec<Row<K>>,
+    pub(crate) pair_rows: Vec<Row<K>>,
     /// The contact behind each row: fixed rows, then pair rows.
-    pub contact_of_row: Vec<u32>,
+    pub(crate) contact_of_row: Vec<u32>,
     /// μ.
-    pub friction: f64,
+    pub(crate) friction: f64,
     /// C₀Δt/m_ij = Bond·g·Δt, m/s; 0 in a scene without cohesion.
-    pub capture_speed: f64,
+    pub(crate) capture_speed: f64,
     /// The same row by row, where rows differ in it (law `range`); else empty. Sweeps need it not:
     /// they see σ alone.
-    pub captures: Vec<f64>,
+    pub(crate) captures: Vec<f64>,
     /// How fast the wall of each fixed row comes along the normal, m/s; empty where no wall moves.
-    pub wall_speeds: Vec<f64>,
+    pub(crate) wall_speeds: Vec<f64>,
     /// Masses of the bodies, kg.
-    pub masses: Vec<f64>,
+    pub(crate) masses: Vec<f64>,
     /// Mean mass of the grains, kg.
-    pub mean_mass: f64,
+    pub(crate) mean_mass: f64,
     /// Ends of the colours in the rows against fixed bodies and in those between grains; empty where
     /// rows are not coloured.
-    pub colour_ends: [Vec<usize>; 2],
+    pub(crate) colour_ends: [Vec<usize>; 2],
     pub(super) sorter: Sorter,
 }
 
@@ -93,6 +95,36 @@ impl<K: Kinematics> Default for StepProblem<K> {
 }
 
 impl<K: Kinematics> StepProblem<K> {
+    /// Bodies as the rows' impulses move them, one a grain.
+    pub fn bodies(&self) -> &[K::Body<f64>] {
+        &self.bodies
+    }
+
+    /// Bodies at the end of the step if no contact acted, one a grain.
+    pub fn free_bodies(&self) -> &[K::Body<f64>] {
+        &self.free
+    }
+
+    /// Rows against fixed bodies.
+    pub fn fixed_rows(&self) -> &[Row<K>] {
+        &self.fixed_rows
+    }
+
+    /// Rows between grains.
+    pub fn pair_rows(&self) -> &[Row<K>] {
+        &self.pair_rows
+    }
+
+    /// The contact behind each row: fixed rows, then pair rows.
+    pub fn contact_of_row(&self) -> &[u32] {
+        &self.contact_of_row
+    }
+
+    /// μ.
+    pub fn friction(&self) -> f64 {
+        self.friction
+    }
+
     /// Moves the bodies from their free velocities by the rows' impulses.
     pub(crate) fn form_velocities(&mut self) {
         self.bodies.clone_from(&self.free);

@@ -25,7 +25,7 @@ pub struct Challenge {
     /// Further values of a full pass, more harmful still.
     pub(crate) further: &'static [f64],
     /// What the error is, with its unit.
-    pub(crate) measure: &'static str,
+    pub measure: &'static str,
     /// What counts as holding and as failing.
     pub(crate) limits: Limits,
     error: fn(&Trial) -> Result<f64>,
