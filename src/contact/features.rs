@@ -110,7 +110,7 @@ impl Feature {
     }
 
     /// Moves it, m.
-    pub fn shift(&mut self, by: DVec2) {
+    pub(crate) fn shift(&mut self, by: DVec2) {
         let shift =
             |segment: &mut Segment| (segment.a, segment.b) = (segment.a + by, segment.b + by);
         match self {
@@ -124,7 +124,7 @@ impl Feature {
     }
 
     /// Whether it goes on for ever, and what is on it may roll as far as it likes.
-    pub fn is_endless(&self) -> bool {
+    pub(crate) fn is_endless(&self) -> bool {
         match self {
             Feature::HalfSpace { .. } => true,
             Feature::Segment { .. } | Feature::ConvexPolygon { .. } => false,
@@ -132,7 +132,7 @@ impl Feature {
     }
 
     /// Whether it is solid: what is deep inside is lost.
-    pub fn is_solid(&self) -> bool {
+    pub(crate) fn is_solid(&self) -> bool {
         match self {
             Feature::HalfSpace { .. } | Feature::ConvexPolygon { .. } => true,
             Feature::Segment { .. } => false,

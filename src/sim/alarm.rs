@@ -95,7 +95,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// Watches over a world, whose boundaries are `features`, from now on.
-    pub fn new(world: &World, features: &[Feature]) -> Self {
+    pub(super) fn new(world: &World, features: &[Feature]) -> Self {
         let open_ground = features.iter().any(Feature::is_endless);
         // On open ground grains may roll as far as they like.
         let corners = (!world.fixed_discs.is_empty() && !open_ground).then(|| {

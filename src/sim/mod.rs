@@ -21,9 +21,7 @@ mod walls;
 pub use alarm::{Alarm, AlarmKind};
 pub use observables::{Beside, Observables, QUANTITIES, Quantity};
 pub use pull::Pull;
-#[cfg(feature = "window")]
-pub(crate) use remedies::ROWS as REMEDIES;
-pub use remedies::{Remedies, RemedyChanges};
+pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};
 pub use run::RunEnding;
 pub use settings::Settings;
 pub use simulation::Simulation;

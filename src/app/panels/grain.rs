@@ -8,7 +8,7 @@ use crate::render::numbers::si_prefix;
 use crate::sim::live::WorldFrame;
 
 /// Its heading, where a grain is pinned.
-pub fn title(state: &AppState) -> Option<String> {
+pub(super) fn title(state: &AppState) -> Option<String> {
     state.pinned.map(|_| "Grain".into())
 }
 

@@ -5,7 +5,7 @@ use crate::sim::steppers::stepper::Stepper;
 
 /// What there is to know of a remedy.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Remedy {
+pub struct Remedy {
     /// The name of its setting.
     pub name: &'static str,
     /// The steppers that take it; others have their own ways, or none.
@@ -16,12 +16,12 @@ pub(crate) struct Remedy {
 
 impl Remedy {
     /// Whether it is asked for.
-    pub fn is_on(&self, remedies: &Remedies) -> bool {
+    pub(crate) fn is_on(&self, remedies: &Remedies) -> bool {
         remedies.get(self.name) != Remedies::default().get(self.name)
     }
 
     /// Asks for it no more.
-    pub fn leave_out(&self, remedies: &mut Remedies) {
+    pub(crate) fn leave_out(&self, remedies: &mut Remedies) {
         if let Some(value) = Remedies::default().get(self.name) {
             remedies.set(self.name, value);
         }

@@ -14,7 +14,7 @@ pub(super) mod push_out;
 pub(super) mod sequential_impacts;
 pub(super) mod speculative;
 
-pub(crate) use declared::Remedy;
+pub use declared::Remedy;
 pub use declared::{Remedies, RemedyChanges};
 
 use super::settings::Settings;
@@ -23,7 +23,7 @@ use crate::setting::Group;
 use crate::solver::{Model, SolveReport};
 
 /// All remedies, in the order of their settings.
-pub(crate) const ROWS: [Remedy; 5] = [
+pub const ROWS: [Remedy; 5] = [
     push_out::REMEDY,
     max_travel::REMEDY,
     calm_unsolved::REMEDY,

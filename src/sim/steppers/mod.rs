@@ -31,7 +31,7 @@ impl Stepper {
     }
 
     /// Whether it reads the setting of that name.
-    pub(crate) fn reads(self, name: &str) -> bool {
+    pub fn reads(self, name: &str) -> bool {
         self.info().settings.contains(&name)
     }
 
