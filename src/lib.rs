@@ -1,12 +1,30 @@
 //! Slump: a laboratory for Contact Dynamics of cohesive grains.
 //!
 //! The source is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics
-//! Algorithm* (2020, hal-02570097), "the paper" throughout. Modules depend downward only: [`world`] ←
-//! [`contact`] ← [`solver`] ← [`sim`] ← [`scene`] ← [`render`], [`interchange`] ← [`study`] ← [`headless`] ← the
-//! window (`app`, feature `window`) ← [`cli`]; `tests/house` checks it. The physics knows no screen.
-//! Without the feature `gpu` pictures are drawn by the processor alone.
+//! Algorithm* (2020, hal-02570097), "the paper" throughout. A pile and how far it slumps:
+//!
+//! ```
+//! let mut scene = slump::scene::built_in("pile")?;
+//! scene.parameters.bond = 20.0;
+//! let mut simulation = scene.simulation()?;
+//! simulation.take_steps(5)?;
+//! println!("slump {:.3}", simulation.observables().slump);
+//! # Ok::<(), slump::error::Error>(())
+//! ```
+//!
+//! Programs start from a [`scene`] and step its [`sim::Simulation`]. A way to step, a contact law or a method
+//! of one's own is a [`sim::Advance`]; one problem by itself is shown by
+//! [`next_problem`](sim::Simulation::next_problem) to a [`sim::ProblemVisitor`], and solved by
+//! [`solver::solve`]. Three such programs are in `examples/`.
+//!
+//! Modules depend downward only: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`] ←
+//! [`render`], [`interchange`] ← the program, which is `study`, `headless`, the window (`app`, feature
+//! `window`) and `cli`; `tests/house` checks it. The physics knows no screen. Without the feature `gpu`
+//! pictures are drawn by the processor alone.
 
 #![warn(missing_docs, unreachable_pub)]
+// They panic where a stream is closed or full: `output` has lines that do not.
+#![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod contact;
 pub mod error;

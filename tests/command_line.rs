@@ -243,9 +243,28 @@ fn a_run_that_blows_up_leaves_its_frames_and_says_so_in_its_manifest() {
     let alarm = alarms.iter().find(|alarm| alarm["kind"] == "not-finite").expect("the alarm");
     let message = alarm["message"].as_str().expect("words");
     assert!(message.contains("more than 1 substeps"), "{message}");
-    // The step that blew up is no row, and all before it are.
+    // The step that blew up is the last row, counted like all before it.
     let steps = run["tally"]["steps"].as_u64().expect("a number");
     assert!((3..1000).contains(&steps), "it blows up on the way: {steps} steps");
-    assert_eq!(alarm["step"].as_u64(), Some(steps + 1));
+    assert_eq!(alarm["step"].as_u64(), Some(steps));
     assert_eq!(read("observables.csv").lines().count() as u64, 1 + steps);
+}
+
+#[test]
+fn waiting_for_a_common_scale_changes_no_picture() {
+    // All states at once against one at a time with the last state's scale: the last frame's own.
+    let (all, last) = (folder(), folder());
+    let style = ["--show", "forces,angles", "--colour", "overlap"];
+    let run = |out: &Path, times: &str| {
+        let mut command = slump();
+        command.args(["--headless", "--size", "160x120", "--renderer", "cpu", "--dt", "1e-3"]);
+        command.args(style).args(["--times", times, "--frames"]).arg(out).assert().success();
+    };
+    run(all.path(), "0.02,0.02");
+    run(last.path(), "0.02");
+    let read = |path: &Path| std::fs::read(path).expect("a picture");
+    let one = read(&last.path().join("frame_00000.png"));
+    for name in ["frame_00000.png", "frame_00001.png"] {
+        assert_eq!(read(&all.path().join(name)), one);
+    }
 }

@@ -15,7 +15,7 @@ use slump::world::{FrictionCone, Physics};
 fn falling_pile(seed: u64) -> Scene {
     let rain = Rain { grains: 50, box_width_in_diameters: 9.0, seed };
     let grains = settle(&rain, |_| true).expect("a pile at rest");
-    let mut scene = pile_of(grains, rain.box_width_in_diameters);
+    let mut scene = pile_of(grains, rain.box_width_in_diameters).expect("a pile");
     scene.parameters.restitution_threshold = 2.0;
     scene
 }

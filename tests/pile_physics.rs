@@ -25,7 +25,7 @@ fn states() -> Vec<Vec<Grain>> {
 
 fn slumps(states: &[Vec<Grain>], bond: f64, dt: f64) -> Vec<f64> {
     let slump = |grains: &Vec<Grain>| {
-        let mut scene = pile_of(grains.clone(), BOX_WIDTH_IN_DIAMETERS);
+        let mut scene = pile_of(grains.clone(), BOX_WIDTH_IN_DIAMETERS).expect("a pile");
         scene.parameters.bond = bond;
         scene.parameters.time_step_secs = dt;
         scene.solver.tolerance = 1e-5;

@@ -157,10 +157,10 @@ fn a_bad_line_of_discs_is_named() {
     bad("x,y,radius\n# one\n0,0,1\n# two\n\n# three\n0,inf,1", "line 7: y is inf");
     bad("x,y,radius\r\n\r\n# one\r\n0,0,inf\r\n", "line 4: radius is inf");
     bad("x,y,radius\n0,0,1\n0,0\n", "line");
-    bad("x,y,mass\n0,0,1\n", "'x,y,mass', but must name x, y and radius");
+    bad("x,y,mass\n0,0,1\n", "'x,y,mass', but must be one that names x, y and radius");
     bad("x,y,radius,colour\n0,0,1,2\n", "colour");
     bad("x,y,radius\n", "no disc");
-    bad("", "must name x, y and radius");
+    bad("", "one that names x, y and radius");
 }
 
 /// Writes a file into a folder of its own and reads it as a scene.

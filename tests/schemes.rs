@@ -206,7 +206,7 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
         .map(|seed| {
             let rain = Rain { seed, ..Rain::default() };
             let grains = settle(&rain, |_| true).expect("it comes to rest");
-            let mut pile = pile_of(grains, rain.box_width_in_diameters);
+            let mut pile = pile_of(grains, rain.box_width_in_diameters).expect("a pile");
             pile.parameters.bond = 0.0;
             pile
         })

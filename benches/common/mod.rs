@@ -59,7 +59,7 @@ pub fn settled(count: usize) -> Simulation {
         point: DVec2::new(side * 0.5 * width_in_diameters * DIAMETER, 0.0),
         normal: DVec2::new(-side, 0.0),
     };
-    let pile = pile_of(grains, width_in_diameters);
+    let pile = pile_of(grains, width_in_diameters).expect("a pile");
     let mut scene = Scene {
         boundaries: vec![wall(-1.0), wall(1.0)],
         parameters: Parameters { bond: 0.0, time_step_secs: 5e-4, ..pile.parameters },

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::error::Result;
-use crate::output::{Progress, check_writable, write_file};
+use crate::output::{Progress, check_file, print_line, write_file};
 use crate::scene::{Rain, Settling, settle, write_discs};
 
 /// Arguments of `slump generate`.
@@ -27,9 +27,7 @@ impl GenerateCommand {
     /// Does what is asked.
     pub(super) fn run(self) -> Result<()> {
         let Self { grains: count, box_width: width, seed, out } = self;
-        if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-            check_writable(folder)?;
-        }
+        check_file(&out)?;
         let rain = Rain { grains: count, box_width_in_diameters: width, seed };
         let progress = Progress::new("settling", 100);
         let grains = settle(&rain, |Settling { time_secs, limit_secs, .. }| {
@@ -42,7 +40,7 @@ impl GenerateCommand {
              slump generate --grains {count} --box-width {width} --seed {seed}"
         );
         write_file(&out, write_discs(&grains?, &comment).as_bytes())?;
-        println!("{}", out.display());
+        print_line(out.display());
         Ok(())
     }
 }

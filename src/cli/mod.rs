@@ -4,6 +4,7 @@ mod chart;
 mod generate;
 mod list;
 mod problem;
+mod refusal;
 mod reproduce;
 mod run;
 mod scene;
@@ -12,9 +13,10 @@ mod sweep;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::output::{lost_stdout, note_line};
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
@@ -49,21 +51,24 @@ enum Command {
     Scene(scene::SceneCommand),
 }
 
+/// Exit code of all that went wrong, but for a signal.
+const REFUSED: u8 = 2;
+
 /// Does what the command line of this process asks for. What goes wrong is one sentence on stderr,
-/// and exit code 2.
+/// and exit code 2; a run that a signal ended has the code that shells know for it.
 pub fn main() -> ExitCode {
-    let outcome = match Cli::try_parse() {
-        Ok(cli) => run(cli).map_err(|error| error.to_string()),
+    let (code, message) = match Cli::try_parse().map(run) {
+        Ok(Ok(())) => match lost_stdout() {
+            Some(loss) => (REFUSED, loss),
+            None => return ExitCode::SUCCESS,
+        },
+        Ok(Err(error @ Error::Interrupted { exit_code, .. })) => (exit_code, error.to_string()),
+        Ok(Err(error)) => (REFUSED, error.to_string()),
         Err(error) if !error.use_stderr() => error.exit(),
-        Err(error) => Err(one_sentence(&error.to_string())),
+        Err(error) => (REFUSED, refusal::sentence(&error, Cli::command())),
     };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
-            eprintln!("slump: {message}");
-            ExitCode::from(2)
-        }
-    }
+    note_line(format_args!("slump: {message}"));
+    ExitCode::from(code)
 }
 
 fn run(cli: Cli) -> Result<()> {
@@ -81,11 +86,4 @@ fn run(cli: Cli) -> Result<()> {
         Some(Command::Scene(command)) => command.run(),
         None => cli.run.run(),
     }
-}
-
-/// The first sentence of what the argument parser says: it also gives usage and hints.
-fn one_sentence(message: &str) -> String {
-    let message = message.trim_start_matches("error: ");
-    let lines = message.lines().take_while(|line| !line.is_empty() && !line.starts_with("Usage"));
-    lines.map(str::trim).collect::<Vec<_>>().join(" ")
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::error::Result;
 use crate::headless::settled;
 use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
-use crate::output::{Progress, write_file};
+use crate::output::{Progress, check_file, print_line, warn_of_steps, write_file};
 use crate::scene::{Config, parser_of};
 use crate::solver::{Method, SolverSettings, StopTest};
 
@@ -53,7 +53,10 @@ impl ProblemCommand {
     pub(super) fn run(self) -> Result<()> {
         match self {
             Self::Dump { config, at, out } => {
+                check_file(&out)?;
                 let scene = settled(&config)?;
+                scene.parameters.check_steps("at", at)?;
+                warn_of_steps(scene.parameters.steps_in(at));
                 let progress = Progress::new("running", 100);
                 let file = problem_file_at(&scene, at, |time| {
                     progress.set((100.0 * time / at) as u64);
@@ -61,10 +64,11 @@ impl ProblemCommand {
                 progress.finish();
                 let file = file?;
                 write_file(&out, file.text().as_bytes())?;
-                println!("{} contacts in {}", file.nc, out.display());
+                print_line(format_args!("{} contacts in {}", file.nc, out.display()));
                 Ok(())
             }
             Self::Solve { file, method, tolerance, max_sweeps, repeat, without_bodies, out } => {
+                out.as_deref().map(check_file).transpose()?;
                 let mut problem = ProblemFile::read(&file)?;
                 if without_bodies {
                     problem.bodies = None;
@@ -90,16 +94,19 @@ impl ProblemCommand {
 
 fn tell(solution: &Solution) {
     let Solution { contacts, method, sweeps, factorisations, seconds, residual, .. } = solution;
-    println!("contacts        {contacts}");
-    println!("method          {method} on {}", if solution.on_bodies { "bodies" } else { "W" });
-    println!("sweeps          {sweeps}");
-    println!("factorisations  {factorisations}");
-    println!("seconds         {seconds:.3e}");
-    println!("residual        {residual:.3e}");
+    print_line(format_args!("contacts        {contacts}"));
+    print_line(format_args!(
+        "method          {method} on {}",
+        if solution.on_bodies { "bodies" } else { "W" }
+    ));
+    print_line(format_args!("sweeps          {sweeps}"));
+    print_line(format_args!("factorisations  {factorisations}"));
+    print_line(format_args!("seconds         {seconds:.3e}"));
+    print_line(format_args!("residual        {residual:.3e}"));
     let converged = match (solution.converged, solution.stalled) {
         (true, _) => "yes",
         (false, true) => "no: stalled, more sweeps are of no use",
         (false, false) => "no: stopped too early",
     };
-    println!("converged       {converged}");
+    print_line(format_args!("converged       {converged}"));
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::headless::settled;
+use crate::output::print_text;
 use crate::scene::{Config, scene_to_toml};
 
 /// Arguments of `slump scene`.
@@ -14,7 +15,7 @@ pub(super) struct SceneCommand {
 impl SceneCommand {
     /// Does what is asked.
     pub(super) fn run(&self) -> Result<()> {
-        print!("{}", scene_to_toml(&settled(&self.config)?)?);
+        print_text(scene_to_toml(&settled(&self.config)?)?);
         Ok(())
     }
 }

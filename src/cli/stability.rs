@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::output::{Progress, check_writable, write_file};
+use crate::output::{Progress, check_file, check_writable, print_line, print_text, write_file};
 use crate::study::chart::{png, svg};
 use crate::study::stability::{
     CHALLENGES, Challenge, StabilityTable, count_of_maps, maps, picture,
@@ -37,6 +37,7 @@ impl StabilityCommand {
         if let Some(folder) = &self.out {
             check_writable(folder)?;
         }
+        self.table.as_deref().map(check_file).transpose()?;
         let count = StabilityTable::count(&challenges, self.quick) as u64;
         let progress = Progress::new("stability", count);
         let table = StabilityTable::run(&challenges, self.quick, || {
@@ -44,15 +45,15 @@ impl StabilityCommand {
         });
         progress.finish();
         let table = table?;
-        print!("{table}");
+        print_text(&table);
         if let Some(folder) = &self.out {
             write_file(&folder.join("table.csv"), &table.to_csv()?)?;
             self.draw(&table, folder)?;
-            println!("{}", folder.display());
+            print_line(folder.display());
         }
         if let Some(path) = &self.table {
             write_file(path, &table.to_csv()?)?;
-            println!("{}", path.display());
+            print_line(path.display());
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::error::{Error, Result};
+use crate::output::{note_line, print_line};
 use crate::study::{RunsTable, Shard, Study, SweepOptions, merge, sweep};
 
 /// Arguments of `slump sweep`.
@@ -21,7 +22,7 @@ pub(super) struct SweepCommand {
     /// Run the study's quick pass, which is coarser
     #[arg(long)]
     quick: bool,
-    /// Throw away what the folder holds of another study
+    /// Throw away what the folder holds of another study, or what cannot be read
     #[arg(long)]
     redo: bool,
     #[command(subcommand)]
@@ -65,7 +66,7 @@ impl SweepCommand {
                 Ok(())
             }
             Some(Action::Count { study, quick }) => {
-                println!("{}", Study::read(&study, quick)?.runs.len());
+                print_line(Study::read(&study, quick)?.runs.len());
                 Ok(())
             }
             None => {
@@ -76,7 +77,9 @@ impl SweepCommand {
                 let options = SweepOptions { shard, redo: self.redo, states: None };
                 match sweep(&study, &out, &options)? {
                     Some(table) => tell(&table, &out),
-                    None => println!("a part of {} in {}", study.name, out.display()),
+                    None => {
+                        print_line(format_args!("a part of {} in {}", study.name, out.display()))
+                    }
                 }
                 Ok(())
             }
@@ -86,13 +89,19 @@ impl SweepCommand {
 
 fn tell(table: &RunsTable, folder: &std::path::Path) {
     let file = folder.join("runs.csv");
-    println!(
+    print_line(format_args!(
         "{} runs in {} ({:.0} core seconds)",
         table.rows.len(),
         file.display(),
         table.core_secs
-    );
+    ));
     if table.not_finite() > 0 {
-        eprintln!("{} runs ended early: their state was no longer finite", table.not_finite());
+        note_line(format_args!(
+            "{} runs ended early: their state was no longer finite",
+            table.not_finite()
+        ));
+    }
+    if let Some(told) = table.alarms() {
+        note_line(format_args!("{told}"));
     }
 }

@@ -4,6 +4,7 @@ use glam::DVec2;
 use parry2d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry2d_f64::shape::{HalfSpace, Segment, SegmentPointLocation};
 
+use super::corners::{check_convex, check_finite, count_of};
 use crate::error::{Error, Result};
 use crate::world::Boundary;
 
@@ -45,7 +46,6 @@ impl Feature {
         field: &str,
         features: &mut Vec<Feature>,
     ) -> Result<()> {
-        let finite = |points: &[DVec2]| points.iter().all(|point| point.is_finite());
         match boundary {
             Boundary::HalfSpace { point, normal } => {
                 let length = normal.length();
@@ -66,20 +66,16 @@ impl Feature {
                 Self::collect(&at_rest, field, features)?;
             }
             Boundary::Segment { from, to } => {
-                Self::collect_chain(&[*from, *to], field, features)?;
+                let name = |index| format!("{field}.{}", ["from", "to"][index]);
+                Self::collect_chain(&[*from, *to], field, name, features)?;
             }
-            Boundary::Polyline { points } => Self::collect_chain(points, field, features)?,
+            Boundary::Polyline { points } => {
+                let name = |index| format!("{field}.points[{index}]");
+                Self::collect_chain(points, field, name, features)?;
+            }
             Boundary::ConvexPolygon { points } => {
+                check_convex(points, field)?;
                 let count = points.len();
-                let turn = |k: usize| {
-                    let [a, b, c] = [points[k], points[(k + 1) % count], points[(k + 2) % count]];
-                    (b - a).perp_dot(c - b)
-                };
-                let convex = count >= 3 && finite(points) && (0..count).all(|k| turn(k) > 0.0);
-                if !convex {
-                    let allowed = "at least three finite corners, anticlockwise and convex";
-                    return Err(Error::value(field, format!("{count} corners"), allowed));
-                }
                 let sides =
                     (0..count).map(|k| Segment::new(points[k], points[(k + 1) % count])).collect();
                 features.push(Feature::ConvexPolygon { sides });
@@ -88,16 +84,24 @@ impl Feature {
         Ok(())
     }
 
-    fn collect_chain(points: &[DVec2], field: &str, features: &mut Vec<Feature>) -> Result<()> {
-        let proper = points.windows(2).all(|ends| ends[0].distance(ends[1]) > 0.0)
-            && points.iter().all(|point| point.is_finite());
-        if points.len() < 2 || !proper {
-            let found = format!("{} points", points.len());
-            return Err(Error::value(
-                field,
-                found,
-                "at least two finite points, no two in a row equal",
-            ));
+    /// `name` gives what the user calls a point.
+    fn collect_chain(
+        points: &[DVec2],
+        field: &str,
+        name: impl Fn(usize) -> String,
+        features: &mut Vec<Feature>,
+    ) -> Result<()> {
+        if points.len() < 2 {
+            return Err(Error::value(field, count_of(points, "point"), "at least two points"));
+        }
+        check_finite(points, &name)?;
+        let apart = |ends: &[DVec2]| {
+            let distance = ends[0].distance(ends[1]);
+            distance > 0.0 && distance.is_finite()
+        };
+        if let Some(index) = points.windows(2).position(|ends| !apart(ends)) {
+            let allowed = format!("apart from {}, at a finite distance", name(index));
+            return Err(Error::value(name(index + 1), points[index + 1], allowed));
         }
         let mut before = None;
         for (index, ends) in points.windows(2).enumerate() {
@@ -120,22 +124,6 @@ impl Feature {
                 before.iter_mut().for_each(shift);
             }
             Feature::ConvexPolygon { sides } => sides.iter_mut().for_each(shift),
-        }
-    }
-
-    /// Whether it goes on for ever, and what is on it may roll as far as it likes.
-    pub(crate) fn is_endless(&self) -> bool {
-        match self {
-            Feature::HalfSpace { .. } => true,
-            Feature::Segment { .. } | Feature::ConvexPolygon { .. } => false,
-        }
-    }
-
-    /// Whether it is solid: what is deep inside is lost.
-    pub(crate) fn is_solid(&self) -> bool {
-        match self {
-            Feature::HalfSpace { .. } | Feature::ConvexPolygon { .. } => true,
-            Feature::Segment { .. } => false,
         }
     }
 
@@ -212,85 +200,4 @@ fn outward(centre: DVec2, nearest: DVec2, fallback: DVec2) -> (DVec2, f64) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn features(boundary: Boundary) -> Vec<Feature> {
-        let mut features = Vec::new();
-        Feature::collect(&boundary, "boundary", &mut features).expect("a proper boundary");
-        features
-    }
-
-    fn hits(features: &[Feature], x: f64, y: f64) -> Vec<(DVec2, f64)> {
-        features.iter().filter_map(|feature| feature.distance(DVec2::new(x, y))).collect()
-    }
-
-    #[test]
-    fn a_convex_corner_of_a_polyline_touches_once_and_a_valley_twice() {
-        let ridge = features(Boundary::Polyline {
-            points: vec![DVec2::new(-1.0, 0.0), DVec2::ZERO, DVec2::new(1.0, -1.0)],
-        });
-        let above_the_corner = hits(&ridge, 0.1, 1.0);
-        assert_eq!(above_the_corner.len(), 1);
-        assert!((above_the_corner[0].1 - 1.01f64.sqrt()).abs() < 1e-15);
-        let valley = features(Boundary::Polyline {
-            points: vec![DVec2::new(-1.0, 1.0), DVec2::ZERO, DVec2::new(1.0, 1.0)],
-        });
-        assert_eq!(hits(&valley, 0.0, 0.5).len(), 2);
-    }
-
-    #[test]
-    fn a_polygon_pushes_out_through_its_nearest_side() {
-        let square = features(Boundary::ConvexPolygon {
-            points: vec![
-                DVec2::ZERO,
-                DVec2::new(1.0, 0.0),
-                DVec2::new(1.0, 1.0),
-                DVec2::new(0.0, 1.0),
-            ],
-        });
-        let (normal, distance) = hits(&square, 0.5, 0.9)[0];
-        assert!(normal.distance(DVec2::Y) < 1e-15 && (distance + 0.1).abs() < 1e-15);
-        let (normal, distance) = hits(&square, 1.3, 1.4)[0];
-        assert!(normal.distance(DVec2::new(0.6, 0.8)) < 1e-14 && (distance - 0.5).abs() < 1e-15);
-    }
-
-    #[test]
-    fn a_feature_that_is_shifted_takes_all_of_its_surface_along() {
-        let corners = [DVec2::ZERO, DVec2::X, DVec2::new(0.5, 1.0)].to_vec();
-        let by = DVec2::new(4.0, -8.0);
-        for boundary in [
-            Boundary::HalfSpace { point: DVec2::ONE, normal: DVec2::new(1.0, 2.0) },
-            Boundary::Polyline { points: corners.clone() },
-            Boundary::ConvexPolygon { points: corners },
-        ] {
-            for mut feature in features(boundary) {
-                for centre in [DVec2::new(0.5, 0.25), DVec2::new(1.5, -0.5), DVec2::new(0.5, 2.0)] {
-                    let before = feature.clone();
-                    feature.shift(by);
-                    let [then, now] = [before.distance(centre), feature.distance(centre + by)];
-                    assert_eq!(then.is_some(), now.is_some());
-                    for ((old, far), (new, distance)) in then.into_iter().zip(now) {
-                        assert!(old.distance(new) < 1e-14 && (far - distance).abs() < 1e-14);
-                    }
-                    feature = before;
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn shapes_that_are_none_are_refused_with_their_field() {
-        let clockwise = vec![DVec2::ZERO, DVec2::new(0.0, 1.0), DVec2::new(1.0, 0.0)];
-        for boundary in [
-            Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::ZERO },
-            Boundary::Segment { from: DVec2::ONE, to: DVec2::ONE },
-            Boundary::Polyline { points: vec![DVec2::ONE] },
-            Boundary::ConvexPolygon { points: clockwise },
-            Boundary::HalfSpace { point: DVec2::NAN, normal: DVec2::Y },
-        ] {
-            let error = Feature::collect(&boundary, "boundaries[3]", &mut Vec::new());
-            assert!(error.is_err_and(|error| error.to_string().starts_with("boundaries[3] is")));
-        }
-    }
-}
+mod tests;

@@ -3,6 +3,7 @@
 mod approach;
 mod candidates;
 mod contact_list;
+mod corners;
 mod features;
 mod grid;
 mod lanes;
@@ -10,6 +11,7 @@ pub(crate) mod law;
 mod numbering;
 pub(crate) mod range;
 mod separate;
+mod too_close;
 mod tree;
 
 pub use candidates::{Candidates, Reach};
@@ -21,3 +23,4 @@ pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;
 pub use numbering::{Numbering, Other};
+pub(crate) use too_close::check_distances;

@@ -1,5 +1,6 @@
 //! The paper's Fig. 3, 4 and 7, from simulation to finished figure.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
@@ -8,16 +9,18 @@ use glam::DVec2;
 use image::RgbaImage;
 use rayon::prelude::*;
 
-use super::frames::{ObservablesTable, tell_of_alarms, tell_of_unconverged_steps};
-use super::manifest::{Manifest, Moment, PictureEntry, RunEntry};
+use super::folder::{Earlier, RunFolder};
+use super::frames::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
+use super::manifest::{Ended, Manifest, Moment, PictureEntry, RunEntry};
+use super::table::ObservablesTable;
 use crate::error::Result;
-use crate::output::{Progress, check_writable, write_png};
+use crate::output::{Progress, caught_signal, note_line, print_line, write_png};
 use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::View;
-use crate::sim::{Alarm, Snapshot, Tally};
+use crate::sim::{Observables, Snapshot};
 use crate::study::{
-    FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
-    record,
+    FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, Recorded,
+    Recorder, paper_runs, record,
 };
 
 /// Width of a panel of Fig. 4, pixels.
@@ -27,44 +30,50 @@ const FIG3_WIDTH: u32 = 1280;
 /// Width of a panel of Fig. 7, pixels.
 const CRADLE_PANEL_WIDTH: u32 = 720;
 
-/// One finished run.
+/// One run that has ended.
 struct Outcome {
     run: PaperRun,
     snapshots: Vec<Snapshot>,
-    tally: Tally,
-    alarms: Vec<Alarm>,
+    recorded: Recorded,
 }
 
 /// Simulates the runs on all cores and draws the figures into `folder`.
-pub(super) fn draw(folder: &Path, renderer: RendererChoice) -> Result<()> {
+pub(super) fn draw(folder: &Path, earlier: Earlier, renderer: RendererChoice) -> Result<()> {
     let mut renderer = Renderer::new(renderer)?;
-    check_writable(folder)?;
-    eprintln!("drawing with {}", renderer.name());
-    let outcomes = simulate(folder)?;
-
+    let claimed = RunFolder::claim(folder, earlier)?;
+    let runs = paper_runs()?;
     let mut manifest = Manifest::new(renderer.name());
-    for outcome in &outcomes {
-        manifest.runs.push(RunEntry::new(
-            &outcome.run.name,
-            &outcome.run.scene,
-            outcome.tally,
-            &outcome.alarms,
-        )?);
-        tell_of_unconverged_steps(&outcome.run.scene, &outcome.tally);
-        tell_of_alarms(&outcome.run.scene, &outcome.alarms);
+    for run in &runs {
+        manifest.runs.push(RunEntry::start(&run.name, &run.scene)?);
     }
+    claimed.clear()?;
+    note_line(format_args!("drawing with {}", renderer.name()));
     let mut press = Press { folder, renderer: &mut renderer, manifest };
-    press.fig3(&outcomes)?;
-    press.fig4(&outcomes)?;
-    press.fig7(&outcomes)?;
-    press.manifest.write(&folder.join("manifest.json"))?;
-    println!("{} pictures in {}", press.manifest.pictures.len(), folder.display());
+    press.write_manifest()?;
+    let mut outcomes = simulate(folder, runs)?;
+
+    let mut failure = None;
+    for (entry, outcome) in press.manifest.runs.iter_mut().zip(&mut outcomes) {
+        let Outcome { run: PaperRun { scene, .. }, recorded, .. } = outcome;
+        entry.end(Ended::of(recorded), recorded);
+        tell_of_unconverged_steps(scene, &recorded.tally);
+        tell_of_alarms(scene, recorded.simulation.alarms());
+        let signal = caught_signal().filter(|_| recorded.interrupted);
+        let by_signal = signal.map(|signal| interrupted(signal, recorded.simulation.observables()));
+        failure = failure.or(recorded.failure.take()).or(by_signal);
+    }
+    let drawn = match failure {
+        Some(failure) => Err(failure),
+        None => press.figures(&outcomes),
+    };
+    let written = press.write_manifest();
+    drawn.and(written)?;
+    print_line(format_args!("{} pictures in {}", press.manifest.pictures.len(), folder.display()));
     Ok(())
 }
 
 /// Runs everything, dearest first, so that no core waits long for the last one.
-fn simulate(folder: &Path) -> Result<Vec<Outcome>> {
-    let runs = paper_runs()?;
+fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<Outcome>> {
     let steps = |run: &PaperRun| run.scene.duration_secs / run.scene.parameters.time_step_secs;
     let progress = Progress::new("simulating", runs.iter().map(|run| steps(run) as u64).sum());
     let said = Mutex::new(());
@@ -73,34 +82,41 @@ fn simulate(folder: &Path) -> Result<Vec<Outcome>> {
         .with_max_len(1)
         .map(|run| {
             let started = Instant::now();
-            let mut table = ObservablesTable::start_as(folder.join(format!("{}.csv", run.name)))?;
-            let mut snapshots = Vec::new();
-            let recorded = record(
-                &run.scene,
-                &run.times_secs,
-                |_, snapshot| {
-                    snapshots.push(snapshot);
-                    Ok(())
-                },
-                |observables| {
-                    progress.advance(1);
-                    table.add(observables)
-                },
-            )?;
-            if recorded.tally.steps > 0 {
-                table.finish()?;
-            }
+            let until_secs = run.times_secs.iter().copied().fold(0.0, f64::max);
+            // A run that takes no step has no table.
+            let path = folder.join(format!("{}.csv", run.name));
+            let table = (until_secs > 0.0).then(|| ObservablesTable::start_as(path)).transpose()?;
+            let mut notes = Notes { table, snapshots: Vec::new(), progress: &progress };
+            let mut recorded = record(&run.scene, &run.times_secs, until_secs, &mut notes)?;
+            let table = notes.table.map_or(Ok(()), ObservablesTable::finish);
+            recorded.failure = recorded.failure.or(table.err());
             let _one_at_a_time = said.lock();
             progress.say(&format!("{}: {:.1} s", run.name, started.elapsed().as_secs_f64()));
-            if let Some(failure) = recorded.failure {
-                return Err(failure);
-            }
-            let alarms = recorded.simulation.alarms().to_vec();
-            Ok(Outcome { run, snapshots, tally: recorded.tally, alarms })
+            Ok(Outcome { run, snapshots: notes.snapshots, recorded })
         })
         .collect();
     progress.finish();
     outcomes
+}
+
+/// What is taken down of a run.
+struct Notes<'a> {
+    table: Option<ObservablesTable>,
+    snapshots: Vec<Snapshot>,
+    progress: &'a Progress,
+}
+
+impl Recorder for Notes<'_> {
+    fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>> {
+        self.progress.advance(1);
+        self.table.as_mut().map_or(Ok(()), |table| table.add(observables))?;
+        Ok(go_on())
+    }
+
+    fn picture(&mut self, _: usize, snapshot: Snapshot) -> Result<()> {
+        self.snapshots.push(snapshot);
+        Ok(())
+    }
 }
 
 /// Draws figures and keeps the books.
@@ -111,6 +127,16 @@ struct Press<'a> {
 }
 
 impl Press<'_> {
+    fn figures(&mut self, outcomes: &[Outcome]) -> Result<()> {
+        self.fig3(outcomes)?;
+        self.fig4(outcomes)?;
+        self.fig7(outcomes)
+    }
+
+    fn write_manifest(&self) -> Result<()> {
+        self.manifest.write(&self.folder.join("manifest.json"))
+    }
+
     fn fig3(&mut self, outcomes: &[Outcome]) -> Result<()> {
         let Some(outcome) = of_figure(outcomes, "fig3").next() else { return Ok(()) };
         let view = outcome.run.scene.view();

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::output::write_file;
 use crate::scene::Scene;
 use crate::sim::{Alarm, Observables, Tally};
+use crate::study::Recorded;
 
 /// `manifest.json`.
 #[derive(Debug, Serialize)]
@@ -22,10 +23,43 @@ pub(super) struct Manifest {
     pub pictures: Vec<PictureEntry>,
 }
 
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Ended {
+    /// Not yet; or it was killed.
+    Running,
+    /// At its full duration.
+    Complete,
+    /// By a signal.
+    Interrupted,
+    /// Its state was no longer finite.
+    NotFinite,
+    /// It could not be written down.
+    Failed,
+}
+
+impl Ended {
+    /// How a recorded run ended.
+    pub(super) fn of(recorded: &Recorded) -> Self {
+        match &recorded.failure {
+            Some(Error::NonFinite { .. }) => Self::NotFinite,
+            Some(_) => Self::Failed,
+            None if recorded.interrupted => Self::Interrupted,
+            None => Self::Complete,
+        }
+    }
+}
+
 /// One run.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RunEntry {
     pub name: String,
+    pub ended: Ended,
+    /// Steps that it got to.
+    pub step: u64,
+    /// Simulated time that it got to, s.
+    pub time_secs: f64,
     /// All that the scene says, except for its lists of discs.
     pub scene: serde_json::Value,
     pub grains: usize,
@@ -75,7 +109,8 @@ impl Manifest {
         Self {
             program: "slump",
             version: env!("CARGO_PKG_VERSION"),
-            command: std::env::args().collect(),
+            // What is not UTF-8 cannot be told in JSON as it is.
+            command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
             renderer: renderer.to_owned(),
             runs: Vec::new(),
             pictures: Vec::new(),
@@ -91,7 +126,8 @@ impl Manifest {
 }
 
 impl RunEntry {
-    pub(super) fn new(name: &str, scene: &Scene, tally: Tally, alarms: &[Alarm]) -> Result<Self> {
+    /// The entry of a run that begins.
+    pub(super) fn start(name: &str, scene: &Scene) -> Result<Self> {
         let mut said = serde_json::to_value(scene)
             .map_err(|error| Error::value("scene", name, error.to_string()))?;
         if let Some(fields) = said.as_object_mut() {
@@ -102,23 +138,30 @@ impl RunEntry {
         let start = scene.simulation()?;
         Ok(Self {
             name: name.to_owned(),
+            ended: Ended::Running,
+            step: 0,
+            time_secs: 0.0,
             scene: said,
             grains: scene.grains.len(),
             fixed_discs: scene.fixed_discs.len(),
             initial_state: format!("{:016x}", fingerprint(scene)),
-            tally,
-            alarms: alarms
-                .iter()
-                .map(|alarm| AlarmEntry {
-                    alarm: *alarm,
-                    message: alarm.message(&scene.settings()),
-                })
-                .collect(),
+            tally: Tally::default(),
+            alarms: Vec::new(),
             cohesive_time: scene.parameters.cohesive_time(scene.mean_diameter, gravity),
             capture_speed: scene.parameters.capture_speed(gravity),
             substeps: start.substeps(),
             critical_time_step_secs: start.critical_time_step_secs(),
         })
+    }
+
+    /// Tells what came of the run.
+    pub(super) fn end(&mut self, ended: Ended, recorded: &Recorded) {
+        let Recorded { simulation, tally, .. } = recorded;
+        let Observables { step, time_secs, .. } = *simulation.observables();
+        let settings = simulation.settings();
+        let entry = |alarm: &Alarm| AlarmEntry { alarm: *alarm, message: alarm.message(settings) };
+        let alarms = simulation.alarms().iter().map(entry).collect();
+        *self = Self { ended, step, time_secs, tally: *tally, alarms, ..self.clone() };
     }
 }
 

@@ -1,17 +1,22 @@
 //! Pictures without a window: the paper's figures, or frames of one scene.
 
 mod figures;
+mod folder;
 mod frames;
 mod gif;
+mod kept;
 mod manifest;
 mod options;
+mod table;
 
 pub(crate) use frames::settled;
 pub(crate) use options::HeadlessOptions;
 
 use std::path::Path;
 
+use self::folder::Earlier;
 use crate::error::{Error, Result};
+use crate::output::heed_signals;
 use crate::scene::Config;
 
 /// Draws the paper's snapshots into a folder, with whatever renderer there is.
@@ -19,14 +24,15 @@ use crate::scene::Config;
 /// # Errors
 /// Where the folder cannot be written to.
 pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
-    figures::draw(folder, HeadlessOptions::default().renderer)
+    figures::draw(folder, Earlier::Kept, HeadlessOptions::default().renderer)
 }
 
 /// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
 /// figures.
 ///
 /// # Errors
-/// In one sentence; nothing has been written where a value is refused.
+/// In one sentence; nothing has been written where a value is refused. Where a signal or a full disk
+/// ends the run, what it came to until then has been written.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     if options.frames.is_none() && options.gif.is_none() {
         return Err(Error::value(
@@ -35,10 +41,12 @@ pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
             "a folder (--frames out/), or give --gif FILE",
         ));
     }
+    heed_signals();
+    let earlier = if options.overwrite { Earlier::Cleared } else { Earlier::Refused };
     match &options.frames {
         Some(folder) if config.is_empty() && !options.asks_for_frames() => {
-            figures::draw(folder, options.renderer)
+            figures::draw(folder, earlier, options.renderer)
         }
-        _ => frames::draw(config, options),
+        _ => frames::draw(config, options, earlier),
     }
 }

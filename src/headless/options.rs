@@ -46,6 +46,9 @@ pub(crate) struct HeadlessOptions {
     /// Folder for pictures, observables.csv and manifest.json
     #[arg(long, value_name = "DIR", help_heading = "Pictures")]
     pub frames: Option<PathBuf>,
+    /// Remove what an earlier run left in the folder; without it such a folder is refused
+    #[arg(long, help_heading = "Pictures", requires = "frames")]
+    pub overwrite: bool,
     /// Size of a picture, pixels [default: 960x540]
     #[arg(long, value_name = "WxH", help_heading = "Pictures")]
     pub size: Option<String>,
@@ -58,7 +61,7 @@ pub(crate) struct HeadlessOptions {
         allow_negative_numbers = true
     )]
     pub fps: Option<f64>,
-    /// Pictures at these simulated times, seconds
+    /// Pictures at these simulated times, seconds; the last ends the run unless --duration is given
     #[arg(
         long,
         value_name = "T1,T2",

@@ -19,6 +19,7 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
     if !(at_secs >= 0.0 && at_secs.is_finite()) {
         return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
     }
+    scene.parameters.check_steps("at", at_secs)?;
     let mut simulation = scene.simulation()?;
     let ended = simulation.run(scene.parameters.steps_in(at_secs), |simulation| {
         progress(simulation.time_secs());

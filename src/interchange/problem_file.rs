@@ -17,7 +17,7 @@ pub enum Friction {
     Each(Vec<f64>),
 }
 
-/// What stands in a problem file; see the module above for units.
+/// What stands in a problem file; see the module above for units. Plain data, checked where it is solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProblemFile {
@@ -72,6 +72,14 @@ impl ProblemFile {
     /// # Errors
     /// Names what does not fit.
     pub fn delassus(&self) -> Result<DelassusProblem> {
+        if self.nc == 0 {
+            return Err(Error::value("nc", 0, "at least 1"));
+        }
+        // Before anything is made that is as long as the file says, rather than as the file is.
+        if Some(self.q.len()) != self.nc.checked_mul(2) {
+            let allowed = format!("{} (2 nc)", 2 * self.nc as u128);
+            return Err(Error::value("the length of q", self.q.len(), allowed));
+        }
         let friction = self.friction();
         if friction.len() != self.nc {
             let allowed = format!("{} (nc)", self.nc);

@@ -5,14 +5,17 @@ use std::path::Path;
 use super::{ProblemFile, siconos};
 use crate::error::{Error, Result};
 
+/// What a problem file must be, for messages.
+const FORM: &str = "the JSON of a contact problem, or Siconos' text of a plane one";
+
 impl ProblemFile {
     /// Reads a problem file, or a text file of Siconos', and checks it.
     ///
     /// # Errors
     /// In one sentence that names the file and what is wrong in it.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
-        let text = String::from_utf8(bytes).map_err(|error| Error::file(path, error))?;
+        let bytes = std::fs::read(path).map_err(|error| Error::unread(path, error, FORM))?;
+        let text = String::from_utf8(bytes).map_err(|error| Error::unread(path, error, FORM))?;
         Self::parse(&text).map_err(|error| Error::file(path, error))
     }
 

@@ -22,6 +22,10 @@ pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     let mut number = |what: &str| first_word::<usize>(&mut lines, what);
     only("the dimension", number("the dimension")?, 2)?;
     let nc = number("the number of contacts")?;
+    if nc > text.len() {
+        let allowed = format!("no more than the file of {} bytes has room for", text.len());
+        return Err(Error::value("the number of contacts", nc, allowed));
+    }
     only("the kind of storage", number("the kind of storage")?, SPARSE)?;
     for what in ["the number of rows", "the number of columns"] {
         only(what, number(what)?, 2 * nc)?;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{BodyForm, ProblemFile};
 use crate::error::Result;
+use crate::output::number;
 use crate::solver::{
     Kinematics, Memory, MethodOrder, Model, ModelVisitor, Ordering, SolveReport, SolverSettings,
     solve, solve_delassus, visit_model,
@@ -31,6 +32,7 @@ pub struct Solution {
     /// Whether it did not because it had stalled, rather than being stopped too early.
     pub stalled: bool,
     /// The common residual of `r`, from the file's W and q.
+    #[serde(with = "number")]
     pub residual: f64,
     /// (v_n, v_t) of each contact at the end of the step, restitution's term included, W r + q, m/s.
     pub u: Vec<f64>,
@@ -73,6 +75,7 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
     };
     let Solved { seconds, report, impulses, velocities } = solved;
     delassus.set_impulses(impulses.iter().copied());
+    let residual = delassus.residual();
     Ok(Solution {
         contacts: file.nc,
         method: settings.method.name().into(),
@@ -80,9 +83,9 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
         sweeps: report.sweeps,
         factorisations: report.factorisations,
         seconds,
-        converged: report.converged,
+        converged: report.converged && residual.is_finite(),
         stalled: report.stalled,
-        residual: delassus.residual(),
+        residual,
         u: delassus.velocities().flatten().collect(),
         r: impulses.into_iter().flatten().collect(),
         velocities,

@@ -1,8 +1,18 @@
-//! What all long work shares: files that are whole or not there, and how far it has come.
+//! What all long work shares: files that are whole or not there, words on streams that may be closed,
+//! signals that ask for an end, and how far it has come.
 
+mod draft;
 mod files;
+mod lines;
+mod lock;
+pub(crate) mod number;
 mod progress;
+mod signals;
+mod target;
 
-pub(crate) use files::{check_writable, write_file, write_png};
-pub(crate) use files::{finish_file, start_file};
-pub(crate) use progress::Progress;
+pub(crate) use draft::Draft;
+pub(crate) use files::{check_file, check_writable, start_stream, write_file, write_png};
+pub(crate) use lines::{lost_stdout, note_line, print_line, print_text};
+pub(crate) use lock::FolderLock;
+pub(crate) use progress::{Progress, warn_of_steps};
+pub(crate) use signals::{Signal, caught_signal, heed_signals};

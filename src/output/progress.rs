@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::lines::note_line;
+
 /// Progress of one piece of work on stderr.
 #[derive(Clone, Debug)]
 pub(crate) struct Progress {
@@ -44,11 +46,21 @@ impl Progress {
 
     /// Says something in a line of its own.
     pub(crate) fn say(&self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
+        self.bar.suspend(|| note_line(line));
     }
 
     /// Ends the work.
     pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// More steps than this are told of before they begin: they take minutes of the smallest scene.
+const MANY_STEPS: u64 = 100_000_000;
+
+/// Says on stderr how many steps were asked for, where they are very many.
+pub(crate) fn warn_of_steps(steps: u64) {
+    if steps > MANY_STEPS {
+        note_line(format_args!("slump: this asks for {steps} steps, which take long"));
     }
 }

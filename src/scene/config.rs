@@ -1,16 +1,16 @@
 //! What a user asks of a run: where the scene comes from, and changes to it. The same structure is the
 //! command line's options, a run of a study, and what is written beside results.
 
-use super::{
-    Origin, Scene, Settling, built_in, cradle_from, pile_of, read_discs, read_scene, settle,
-};
+use super::file::read_unsettled;
+use super::{Origin, Rain, Scene, Settling, built_in, cradle_from, pile_of, read_discs, settle};
 use crate::error::{Error, Result};
 use crate::setting::{Changes, Value};
 use crate::sim::{RemedyChanges, Settings, Stepper};
 use crate::solver::SolverChanges;
 use crate::world::{Grain, ParameterChanges};
 
-/// A scene and changes to it. What is left out stays as the scene says.
+/// A scene and changes to it. What is left out stays as the scene says. Plain data, checked where the
+/// scene is made ([`Config::scene`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Config {
     /// Where the scene comes from.
@@ -25,9 +25,19 @@ pub struct Config {
     pub remedies: RemedyChanges,
 }
 
+/// A scene before anything of it is changed.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    scene: Scene,
+    /// What its grains are the start of, where they have to settle.
+    rain: Option<Rain>,
+}
+
 impl Config {
     /// The name of the scene that is used where none is given.
-    pub(crate) const DEFAULT_SCENE: &str = "pile";
+    pub const DEFAULT_SCENE: &str = "pile";
+    /// The scene whose start can be chosen.
+    const CRADLE: &str = "cradle";
 
     /// A scene by name or file, as it says itself.
     pub fn of_scene(name: impl Into<String>) -> Self {
@@ -36,12 +46,12 @@ impl Config {
     }
 
     /// Whether nothing is asked for.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
     /// The same with all settings given.
-    pub(crate) fn with_settings(self, settings: &Settings) -> Self {
+    pub fn with_settings(self, settings: &Settings) -> Self {
         Self {
             stepper: Some(settings.stepper),
             parameters: Changes::all_of(&settings.parameters),
@@ -52,7 +62,7 @@ impl Config {
     }
 
     /// Gives the setting of that name a value of its kind. Whether there is one of that name and kind.
-    pub(crate) fn set(&mut self, name: &str, value: Value) -> bool {
+    pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies, .. } = self;
         if name == Settings::STEPPER.name {
             *stepper = crate::setting::Settable::of(value);
@@ -61,78 +71,142 @@ impl Config {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// The scene with the changes made, checked, but for the grains of a new pile: those of the
-    /// built-in one stand in for them. Quick, so that a wrong value is told of before long work.
+    /// The scene with the changes made, checked, but for grains that are rained: those of the built-in
+    /// pile, or of the start of the rain, stand in for them. Quick, so that a wrong value is told of
+    /// before long work.
     ///
     /// # Errors
     /// Names the first field that is unknown or outside its range, or the file that cannot be read.
-    pub(crate) fn without_settling(&self) -> Result<Scene> {
-        let Origin { initial, start, .. } = &self.origin;
-        let name = self.origin.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
-        let pile_alone = |fields: &str| match name {
-            Self::DEFAULT_SCENE => Ok(()),
-            _ => Err(Error::value("scene", name, format!("pile where {fields} are given"))),
-        };
-        let mut scene = if let Some(path) = initial {
-            pile_alone("initial grains")?;
-            pile_of(read_discs(path)?, self.origin.rain().box_width_in_diameters)
-        } else if name.ends_with(".toml") {
-            read_scene(name.as_ref())?
-        } else {
-            built_in(name)?
-        };
-        if self.origin.makes_new_pile() {
-            pile_alone("grains, box-width or seed")?;
-            self.origin.rain().validate()?;
-        }
-        if let Some(start) = *start {
-            if name != "cradle" {
-                return Err(Error::value("scene", name, "cradle where start is given"));
-            }
-            if !(start >= 1.0 && start.is_finite()) {
-                return Err(Error::value("start", start, "a finite number of diameters ≥ 1"));
-            }
-            scene = cradle_from(start);
-        }
-        self.change(&mut scene)?;
-        Ok(scene)
+    pub fn without_settling(&self) -> Result<Scene> {
+        self.change(&self.ground()?)
     }
 
-    /// The scene with the changes made, checked. A new pile is settled here, which takes a while:
+    /// The scene with the changes made, checked. Rained grains are settled here, which takes a while:
     /// `progress` is told, and can end it by returning false.
     ///
     /// # Errors
     /// As [`Config::without_settling`], and where the grains do not come to rest.
     pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
-        let scene = self.without_settling()?;
-        if !self.origin.makes_new_pile() {
-            return Ok(scene);
+        let ground = self.ground()?;
+        let scene = self.change(&ground)?;
+        match self.rain_on(&ground) {
+            None => Ok(scene),
+            Some(rain) => self.settled_on(ground, settle(&rain, progress)?),
         }
-        self.scene_from(settle(&self.origin.rain(), progress)?)
     }
 
-    /// The scene of a new pile whose settled grains are at hand.
+    /// The scene whose settled grains are at hand.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
-    pub(crate) fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
-        let mut pile = pile_of(settled, self.origin.rain().box_width_in_diameters);
-        self.change(&mut pile)?;
-        Ok(pile)
+    pub fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
+        self.settled_on(self.ground()?, settled)
+    }
+
+    /// What has to be rained for this scene, if anything.
+    ///
+    /// # Errors
+    /// As [`Config::without_settling`].
+    pub fn rain(&self) -> Result<Option<Rain>> {
+        if self.origin.makes_new_pile() {
+            return Ok(Some(self.origin.rain()));
+        }
+        Ok(self.ground()?.rain)
+    }
+
+    /// The scene as its file or its name says it.
+    ///
+    /// # Errors
+    /// As [`Config::without_settling`].
+    pub fn ground(&self) -> Result<Ground> {
+        self.check_origin()?;
+        let Origin { initial, start, .. } = &self.origin;
+        let name = self.named();
+        let (scene, rain) = if let Some(path) = initial {
+            (pile_of(read_discs(path)?, self.origin.rain().box_width_in_diameters)?, None)
+        } else if name.ends_with(".toml") {
+            read_unsettled(name.as_ref())?
+        } else if let (Self::CRADLE, Some(start)) = (name, *start) {
+            (cradle_from(start), None)
+        } else {
+            (built_in(name)?, None)
+        };
+        Ok(Ground { scene, rain })
+    }
+
+    /// What of a config its [`Config::ground`] hangs on: equal for all that share one.
+    pub fn name_of_ground(&self) -> String {
+        let Origin { initial, box_width, start, .. } = &self.origin;
+        let box_width = box_width.filter(|_| initial.is_some());
+        format!("{:?}", (self.named(), initial, box_width, start))
+    }
+
+    /// The scene of [`Config::without_settling`] where its ground is at hand.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn change(&self, ground: &Ground) -> Result<Scene> {
+        self.check_origin()?;
+        let mut scene = ground.scene.clone();
+        self.change_scene(&mut scene)?;
+        Ok(scene)
+    }
+
+    fn named(&self) -> &str {
+        self.origin.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE)
+    }
+
+    /// Whether what is said of the scene's origin goes together.
+    fn check_origin(&self) -> Result<()> {
+        let name = self.named();
+        let pile_alone = |fields: &str| match name {
+            Self::DEFAULT_SCENE => Ok(()),
+            _ => Err(Error::value("scene", name, format!("pile where {fields} are given"))),
+        };
+        if self.origin.initial.is_some() {
+            pile_alone("initial grains")?;
+        }
+        if self.origin.makes_new_pile() {
+            pile_alone("grains, box-width or seed")?;
+            self.origin.rain().validate()?;
+        }
+        match self.origin.start {
+            Some(_) if name != Self::CRADLE => {
+                Err(Error::value("scene", name, "cradle where start is given"))
+            }
+            Some(start) if !(start >= 1.0 && start.is_finite()) => {
+                Err(Error::value("start", start, "a finite number of diameters ≥ 1"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn rain_on(&self, ground: &Ground) -> Option<Rain> {
+        let new_pile = self.origin.makes_new_pile();
+        if new_pile { Some(self.origin.rain()) } else { ground.rain.clone() }
+    }
+
+    fn settled_on(&self, ground: Ground, settled: Vec<Grain>) -> Result<Scene> {
+        let mut scene = if self.origin.makes_new_pile() {
+            pile_of(settled, self.origin.rain().box_width_in_diameters)?
+        } else {
+            ground.scene.with_settled(settled)
+        };
+        self.change_scene(&mut scene)?;
+        Ok(scene)
     }
 
     /// The same asked for, with every number that `scene` fills in.
-    pub(crate) fn resolved(&self, scene: &Scene) -> Self {
-        let named = self.origin.scene.clone().unwrap_or_else(|| Self::DEFAULT_SCENE.into());
+    pub fn resolved(&self, scene: &Scene) -> Self {
         let origin = Origin {
-            scene: Some(named),
+            scene: Some(self.named().into()),
             duration: Some(scene.duration_secs),
             ..self.origin.clone()
         };
         Self { origin, ..self.clone() }.with_settings(&scene.settings())
     }
 
-    fn change(&self, scene: &mut Scene) -> Result<()> {
+    fn change_scene(&self, scene: &mut Scene) -> Result<()> {
         scene.stepper = self.stepper.unwrap_or(scene.stepper);
         // A preset leaves out what the stepper does not take.
         if let Some(preset) = self.origin.preset {

@@ -7,8 +7,15 @@ use std::path::Path;
 use glam::DVec2;
 use serde::Deserialize;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, with_allowed};
 use crate::world::Grain;
+
+/// What a file of discs must be, for messages.
+const FORM: &str = "a CSV of discs: a header line x,y,radius, with vx,vy,omega where they move, and as \
+                    many numbers in each line below";
+
+/// Characters of a header that a message shows.
+const MOST_SHOWN: usize = 80;
 
 /// One line. Velocities may be left out.
 #[derive(Deserialize)]
@@ -30,7 +37,7 @@ struct Line {
 /// # Errors
 /// Where the file cannot be read, or a line is none; the message names the line.
 pub fn read_discs(path: &Path) -> Result<Vec<Grain>> {
-    let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
+    let text = std::fs::read_to_string(path).map_err(|error| Error::unread(path, error, FORM))?;
     parse_discs(&text, path)
 }
 
@@ -43,11 +50,13 @@ pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let headers = reader.headers().map_err(|error| Error::file(path, error))?.clone();
+    let headers = reader.headers().map_err(|error| Error::unread(path, error, FORM))?.clone();
     for needed in ["x", "y", "radius"] {
         if !headers.iter().any(|header| header == needed) {
             let found = headers.iter().collect::<Vec<_>>().join(",");
-            let reason = format!("the header line is '{found}', but must name x, y and radius");
+            let found: String = found.chars().take(MOST_SHOWN).collect();
+            let reason =
+                format!("the header line is '{found}', but must be one that names x, y and radius");
             return Err(Error::file(path, reason));
         }
     }
@@ -57,7 +66,7 @@ pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
         match reader.read_record(&mut record) {
             Ok(true) => {}
             Ok(false) => break,
-            Err(error) => return Err(Error::file(path, error)),
+            Err(error) => return Err(Error::unread(path, error, FORM)),
         }
         let line_number = record.position().map_or(0, |place| line_of_record(text, place));
         let refuse = |reason: String| Error::file(path, format!("line {line_number}: {reason}"));
@@ -65,9 +74,10 @@ pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
             let reason = match error.kind() {
                 csv::ErrorKind::Deserialize { err, .. } => {
                     let field = err.field().and_then(|field| headers.get(field as usize));
-                    format!("{}{}", field.map_or(String::new(), |f| format!("{f}: ")), err.kind())
+                    let place = field.map_or(String::new(), |field| format!("{field}: "));
+                    with_allowed(&format!("{place}{}", err.kind()), FORM)
                 }
-                _ => error.to_string(),
+                _ => with_allowed(&error.to_string(), FORM),
             };
             refuse(reason)
         })?;

@@ -10,6 +10,7 @@ use crate::solver::SolverSettings;
 use crate::world::{Boundary, Disc, Grain, Grains, Gravity, Parameters, Physics, World};
 
 /// A scene, built-in or from a TOML file, which says the same things by the same names.
+/// Plain data, checked where a simulation is made of it ([`Scene::validate`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -84,6 +85,19 @@ fn one() -> f64 {
     1.0
 }
 
+/// Farther than this many of its radii from the origin a disc's place is rounded by more than a
+/// ten-thousandth of one, and soon to where others are as well.
+const FARTHEST_IN_RADII: f64 = 1e15;
+
+fn within_reach(field: &str, place: DVec2, radius: f64) -> Result<()> {
+    let farthest = FARTHEST_IN_RADII * radius;
+    if place.abs().max_element() <= farthest {
+        return Ok(());
+    }
+    let allowed = format!("within {farthest} m of the origin, {FARTHEST_IN_RADII} radii");
+    Err(Error::value(field, place, allowed))
+}
+
 impl Scene {
     /// How it is stepped.
     pub fn settings(&self) -> Settings {
@@ -115,6 +129,7 @@ impl Scene {
         positive("areal_density", self.areal_density, " kg/m²")?;
         positive("duration", self.duration_secs, " s")?;
         positive("mean_diameter", self.mean_diameter, " m")?;
+        self.parameters.check_steps("duration", self.duration_secs)?;
         if self.grains.is_empty() {
             return Err(Error::value("grains", 0, "at least one disc"));
         }
@@ -127,6 +142,7 @@ impl Scene {
                 let found = format!("{grain:?}");
                 return Err(Error::value(format!("grains[{index}]"), found, "finite throughout"));
             }
+            within_reach(&format!("grains[{index}].position"), grain.position, grain.radius)?;
         }
         for (index, disc) in self.fixed_discs.iter().enumerate() {
             positive(&format!("fixed_discs[{index}].radius"), disc.radius, " m")?;
@@ -134,6 +150,7 @@ impl Scene {
                 let field = format!("fixed_discs[{index}].position");
                 return Err(Error::value(field, disc.position, "finite"));
             }
+            within_reach(&format!("fixed_discs[{index}].position"), disc.position, disc.radius)?;
         }
         let magnitude = self.gravity.magnitude();
         if !(magnitude >= 0.0 && magnitude.is_finite()) {

@@ -2,8 +2,13 @@
 
 use std::path::Path;
 
-use super::{GrainSource, Scene, pile};
+use super::settling::lattice;
+use super::{GrainSource, Rain, Scene, pile, read_discs, settle};
 use crate::error::{Error, Result};
+use crate::world::Grain;
+
+/// What a scene file must be, for messages.
+const FORM: &str = "a scene file in TOML, such as `slump scene` prints";
 
 /// Reads a scene from a TOML file. Grains that come from a CSV or from rain are read or made.
 ///
@@ -11,28 +16,54 @@ use crate::error::{Error, Result};
 /// Where the file cannot be read, is no TOML, or says something that no scene says (the message
 /// names line and column), or where a value is outside its range.
 pub fn read_scene(path: &Path) -> Result<Scene> {
-    let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
+    match read_unsettled(path)? {
+        (scene, Some(rain)) => Ok(scene.with_settled(settle(&rain, |_| true)?)),
+        (scene, None) => Ok(scene),
+    }
+}
+
+/// The same but for the settling: where grains are rained, the rain is given as well, and the scene
+/// has them where they start from. Quick.
+///
+/// # Errors
+/// As [`read_scene`].
+pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<Rain>)> {
+    let text = std::fs::read_to_string(path).map_err(|error| Error::unread(path, error, FORM))?;
     let mut scene: Scene = toml::from_str(&text).map_err(|error| {
         let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
         let place = line.map_or(String::new(), |line| format!("line {line}: "));
-        Error::file(path, format!("{place}{}", error.message()))
+        Error::unread(path, format!("{place}{}", error.message()), FORM)
     })?;
+    let mut rained = None;
     if let Some(source) = scene.source.take() {
         if !scene.grains.is_empty() {
             let allowed = "left out where grains are listed";
             return Err(Error::value("source", "given", allowed));
         }
-        let source = match source {
+        let grains = match source {
             GrainSource::Csv { path: csv } => {
-                GrainSource::Csv { path: path.parent().unwrap_or(Path::new("")).join(csv) }
+                read_discs(&path.parent().unwrap_or(Path::new("")).join(csv))?
             }
-            rain @ GrainSource::Rain(_) => rain,
+            GrainSource::Rain(rain) => {
+                rain.validate()?;
+                let start = lattice(&rain);
+                rained = Some(rain);
+                start
+            }
         };
-        scene.grains = source.grains()?;
-        pile::tone_in_layers(&mut scene.grains, scene.mean_diameter);
+        scene = scene.with_settled(grains);
     }
     scene.validate()?;
-    Ok(scene)
+    Ok((scene, rained))
+}
+
+impl Scene {
+    /// The same with these grains, told apart by the layers that they lie in.
+    pub(super) fn with_settled(mut self, grains: Vec<Grain>) -> Self {
+        self.grains = grains;
+        pile::tone_in_layers(&mut self.grains, self.mean_diameter);
+        self
+    }
 }
 
 /// The TOML file that says what a scene says.

@@ -18,7 +18,7 @@ mod settling;
 pub mod stability;
 
 pub use collision::collision;
-pub use config::Config;
+pub use config::{Config, Ground};
 pub(crate) use config_options::parser_of;
 pub use cradle::{cradle, cradle_from};
 pub use csv_states::{parse_discs, read_discs, write_discs};

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Rain, Scene, csv_states};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::sim::{Remedies, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
@@ -15,6 +15,9 @@ pub(super) const GRAVITY: f64 = 9.8;
 /// How far the rough base reaches beyond the box on either side, in heights of the pile: further
 /// than any grain of a collapsing pile gets in the paper's second.
 const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
+/// Grains of a pile may be this high above the base, and two diameters more for each of them: the
+/// loosest lattice that rain starts from is a column with 1.3 for each.
+const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
 /// Height of the layers that are told apart by their grey, in diameters.
 const LAYER_IN_DIAMETERS: f64 = 2.0;
 /// The greys of the layers.
@@ -29,15 +32,26 @@ const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
 /// None in a program as shipped; a changed asset is told of with its line.
 pub fn paper_pile() -> Result<Scene> {
     let grains = csv_states::parse_discs(INITIAL_STATE, "assets/pile_138.csv".as_ref())?;
-    Ok(pile_of(grains, Rain::default().box_width_in_diameters))
+    pile_of(grains, Rain::default().box_width_in_diameters)
 }
 
 /// A pile of the given grains, for a box that was `box_width_in_diameters` wide.
-pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
+///
+/// # Errors
+/// Where a grain is so high up that the base, which is as wide as a collapse may reach, would have
+/// far more discs than the pile.
+pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Scene> {
+    let highest = DIAMETER * (LEAST_ROOM_IN_DIAMETERS + 2.0 * grains.len() as f64);
+    if let Some(index) = grains.iter().position(|grain| grain.position.y > highest) {
+        let found = format!("at y = {} m", grains[index].position.y);
+        let allowed =
+            format!("within {highest:.3} m of the base where there are {} grains", grains.len());
+        return Err(Error::value(format!("grains[{index}]"), found, allowed));
+    }
     let height = grains.iter().map(|grain| grain.position.y).fold(0.0, f64::max) / DIAMETER;
     let base_width = box_width_in_diameters + 2.0 * BASE_MARGIN_IN_HEIGHTS * height;
     tone_in_layers(&mut grains, DIAMETER);
-    Scene {
+    Ok(Scene {
         name: "pile".into(),
         mean_diameter: DIAMETER,
         areal_density: 1.0,
@@ -60,7 +74,7 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
         boundaries: Vec::new(),
         fixed_discs: rough_base(base_width, DIAMETER),
         grains,
-    }
+    })
 }
 
 /// Fixed discs of diameter d, centres on y = 0 and spaced d, symmetric about x = 0, at least

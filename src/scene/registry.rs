@@ -173,6 +173,14 @@ pub(crate) fn scene_names() -> String {
 
 /// A built-in scene by name.
 ///
+/// ```
+/// let mut scene = slump::scene::built_in("pile")?;
+/// scene.parameters.bond = 20.0;
+/// assert_eq!(scene.simulation()?.world().grains.len(), scene.grains.len());
+/// assert!(slump::scene::built_in("plie").is_err());
+/// # Ok::<(), slump::error::Error>(())
+/// ```
+///
 /// # Errors
 /// Where there is none of that name.
 pub fn built_in(name: &str) -> Result<Scene> {

@@ -11,7 +11,7 @@ use rand_pcg::Pcg64;
 
 use super::pile::{DIAMETER, GRAVITY};
 use super::rain::SPACING;
-use super::{GrainSource, Rain, Scene, pile_of, read_discs};
+use super::{Rain, Scene, pile_of};
 use crate::error::{Error, Result};
 use crate::sim::Simulation;
 use crate::solver::SolverSettings;
@@ -48,7 +48,7 @@ const STEPS_PER_LOOK: u32 = 100;
 pub fn settle(rain: &Rain, mut progress: impl FnMut(Settling) -> bool) -> Result<Vec<Grain>> {
     rain.validate()?;
     let columns = rain.columns();
-    let scene = box_of(lattice(rain), rain.box_width_in_diameters);
+    let scene = box_of(lattice(rain), rain.box_width_in_diameters)?;
     let mut simulation = scene.simulation()?;
 
     let rows = (rain.grains as f64 / columns as f64).ceil();
@@ -93,7 +93,7 @@ pub fn settle(rain: &Rain, mut progress: impl FnMut(Settling) -> bool) -> Result
 }
 
 /// Discs on a jittered lattice, row by row from below.
-fn lattice(rain: &Rain) -> Vec<Grain> {
+pub(super) fn lattice(rain: &Rain) -> Vec<Grain> {
     let columns = rain.columns();
     let mut random = Pcg64::seed_from_u64(rain.seed);
     let spacing = SPACING * DIAMETER;
@@ -120,31 +120,18 @@ pub(crate) fn walls(box_width_in_diameters: f64) -> Vec<Boundary> {
 }
 
 /// The pile's scene without cohesion and with walls.
-fn box_of(grains: Vec<Grain>, box_width_in_diameters: f64) -> Scene {
-    let pile = pile_of(grains, box_width_in_diameters);
-    Scene {
+fn box_of(grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Scene> {
+    let pile = pile_of(grains, box_width_in_diameters)?;
+    Ok(Scene {
         boundaries: walls(box_width_in_diameters),
         parameters: Parameters { bond: 0.0, time_step_secs: TIME_STEP_SECS, ..pile.parameters },
         solver: SolverSettings { tolerance: 1e-4, max_sweeps: 1000, ..pile.solver },
         ..pile
-    }
+    })
 }
 
 fn fastest(simulation: &Simulation) -> f64 {
     let grains = &simulation.world().grains;
     let turning = grains.angular_velocities.iter().zip(&grains.radii).map(|(w, r)| (w * r).abs());
     grains.velocities.iter().map(|velocity| velocity.length()).chain(turning).fold(0.0, f64::max)
-}
-
-impl GrainSource {
-    /// The grains, read or made.
-    ///
-    /// # Errors
-    /// Where the file cannot be read, or a value is outside its range.
-    pub(crate) fn grains(&self) -> Result<Vec<Grain>> {
-        match self {
-            Self::Csv { path } => read_discs(path),
-            Self::Rain(rain) => settle(rain, |_| true),
-        }
-    }
 }

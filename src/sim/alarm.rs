@@ -1,23 +1,19 @@
 //! What a run says when it goes wrong: in which way, since when, and the one change that is most
 //! likely to help.
 
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::losses::Losses;
 use super::{Observables, Settings};
 use crate::contact::Feature;
 use crate::solver::Method;
-use crate::world::World;
+use crate::world::{Physics, World};
 
 /// Steps in a row at the sweep limit that raise an alarm. Fewer: single hard steps, which do no
 /// harm, would raise it.
 const STEPS_AT_LIMIT: u32 = 100;
 /// Overlap of a contact that raises an alarm, in d: the paper's own curves end at 0.06.
 const LARGEST_OVERLAP: f64 = 0.05;
-/// How far the world reaches beyond the box of all that was there at the start, in sides of the box.
-const ROOM_IN_SIDES: f64 = 3.0;
-/// How deep a centre is behind a boundary when it is lost, in d: no contact brings it back from there.
-const LOST_DEPTH: f64 = 1.0;
 
 /// A way to go wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -25,12 +21,27 @@ const LOST_DEPTH: f64 = 1.0;
 pub enum AlarmKind {
     /// A position or velocity is no longer a number.
     NotFinite,
-    /// A grain went through the ground, or far away.
+    /// A grain went through a wall or the ground, or far away.
     GrainLost,
     /// A hundred steps in a row ended at the sweep limit, or stalled before it.
     SweepLimit,
     /// A contact overlaps by more than 5 % of d.
     Overlap,
+}
+
+impl AlarmKind {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::NotFinite, Self::GrainLost, Self::SweepLimit, Self::Overlap];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NotFinite => "not-finite",
+            Self::GrainLost => "grain-lost",
+            Self::SweepLimit => "sweep-limit",
+            Self::Overlap => "overlap",
+        }
+    }
 }
 
 /// Something went wrong.
@@ -49,7 +60,7 @@ impl Alarm {
     pub fn message(&self, settings: &Settings) -> String {
         let what = match self.kind {
             AlarmKind::NotFinite => "the state is no longer finite",
-            AlarmKind::GrainLost => "a grain has left the world",
+            AlarmKind::GrainLost => "a grain has gone through a wall or left the world",
             AlarmKind::SweepLimit => "100 steps in a row were not solved to their tolerance",
             AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
         };
@@ -89,24 +100,13 @@ impl Alarm {
 pub(super) struct Watch {
     unfinished_in_a_row: u32,
     alarms: Vec<Alarm>,
-    /// Corners of the world, m; none where nothing is fixed and grains may fly where they like.
-    corners: Option<[DVec2; 2]>,
+    losses: Losses,
 }
 
 impl Watch {
     /// Watches over a world, whose boundaries are `features`, from now on.
-    pub(super) fn new(world: &World, features: &[Feature]) -> Self {
-        let open_ground = features.iter().any(Feature::is_endless);
-        // On open ground grains may roll as far as they like.
-        let corners = (!world.fixed_discs.is_empty() && !open_ground).then(|| {
-            let fixed = world.fixed_discs.iter().map(|disc| disc.position);
-            let all = || world.grains.positions.iter().copied().chain(fixed.clone());
-            let min = all().fold(DVec2::INFINITY, DVec2::min);
-            let max = all().fold(DVec2::NEG_INFINITY, DVec2::max);
-            let side = (max - min).max_element() + world.mean_diameter;
-            [min - ROOM_IN_SIDES * side, max + ROOM_IN_SIDES * side]
-        });
-        Self { corners, ..Self::default() }
+    pub(super) fn new(world: &World, features: &[Feature], physics: Physics) -> Self {
+        Self { losses: Losses::new(world, features, physics), ..Self::default() }
     }
 
     /// The alarms so far, one of a kind.
@@ -114,17 +114,27 @@ impl Watch {
         &self.alarms
     }
 
-    /// Looks at the state after a step; `features` are those of the boundaries where they are now.
+    /// Looks at the state after a step, and leaves grains that are lost out of its slump; `features`
+    /// are those of the boundaries where they are now.
     pub(super) fn look(
         &mut self,
         world: &World,
-        features: &[Feature],
-        observables: &Observables,
+        (features, walls_move): (&[Feature], bool),
+        observables: &mut Observables,
         finite: bool,
     ) {
         self.unfinished_in_a_row =
             if observables.converged { 0 } else { self.unfinished_in_a_row + 1 };
+        if finite {
+            self.losses.look(world, features, walls_move);
+        }
+        observables.lost_grains = self.losses.count();
+        if observables.lost_grains > 0 {
+            observables.slump = self.losses.slump(world);
+            self.raise(AlarmKind::GrainLost, observables);
+        }
         if !finite {
+            observables.converged = false;
             self.raise(AlarmKind::NotFinite, observables);
             return;
         }
@@ -134,21 +144,11 @@ impl Watch {
         if observables.max_overlap > LARGEST_OVERLAP {
             self.raise(AlarmKind::Overlap, observables);
         }
-        if !self.has(AlarmKind::GrainLost) && self.any_lost(world, features) {
-            self.raise(AlarmKind::GrainLost, observables);
-        }
     }
 
-    fn any_lost(&self, world: &World, features: &[Feature]) -> bool {
-        let deep = -LOST_DEPTH * world.mean_diameter;
-        let outside = |place: DVec2| {
-            self.corners
-                .is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
-                || features.iter().filter(|feature| feature.is_solid()).any(|feature| {
-                    feature.distance(place).is_some_and(|(_, distance)| distance < deep)
-                })
-        };
-        world.grains.positions.iter().any(|place| outside(*place))
+    /// Forgets the last grain, which is taken out of the world.
+    pub(super) fn remove_last_grain(&mut self) {
+        self.losses.remove_last();
     }
 
     fn has(&self, kind: AlarmKind) -> bool {

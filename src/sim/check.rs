@@ -1,9 +1,40 @@
-//! Whether settings go together. Every simulation is asked, so no door leads around it.
+//! Whether settings go together, and whether a world's lengths do. Every simulation is asked, so no
+//! door leads around it.
 
 use super::remedies::ROWS;
 use super::settings::Settings;
+use super::state::SKIN_IN_DIAMETERS;
+use crate::contact::{Reach, check_distances};
 use crate::error::{Error, Result};
 use crate::setting::Group;
+use crate::world::World;
+
+/// The diameter that lengths are measured in is at most this many radii of the largest grain: the
+/// skin goes with it, and all that lie within the skin are candidates.
+const MOST_RADII_OF_DIAMETER: f64 = 200.0;
+
+/// How far a world's candidate search looks, where its lengths leave each disc few others to touch.
+///
+/// # Errors
+/// Names the length that does not, or two discs that are too close.
+pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
+    let diameter = world.mean_diameter;
+    if !(diameter > 0.0 && diameter.is_finite()) {
+        return Err(Error::value("mean_diameter", diameter, "a finite length > 0 m"));
+    }
+    let most = MOST_RADII_OF_DIAMETER * world.grains.radii.iter().copied().fold(0.0, f64::max);
+    if diameter > most {
+        let allowed = format!("at most {most} m, 100 times the diameter of the largest grain");
+        return Err(Error::value("mean_diameter", diameter, allowed));
+    }
+    let skin = SKIN_IN_DIAMETERS * diameter;
+    if !(0.0..0.1 * skin).contains(&gap_tolerance) {
+        let allowed = format!("≥ 0 and below {} m", 0.1 * skin);
+        return Err(Error::value("gap_tolerance", gap_tolerance, allowed));
+    }
+    check_distances(world)?;
+    Ok(Reach { skin, gap_tolerance })
+}
 
 impl Settings {
     /// Checks every number against its range, and what goes with the stepper.

@@ -3,6 +3,7 @@
 mod alarm;
 mod check;
 pub mod live;
+mod losses;
 mod observables;
 mod pull;
 mod remedies;

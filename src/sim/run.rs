@@ -1,8 +1,11 @@
-//! Many steps in a row.
+//! Many steps in a row, and what is done to the grains between them.
 
 use std::ops::ControlFlow;
 
+use glam::DVec2;
+
 use super::simulation::Simulation;
+use super::state::State;
 use crate::error::{Error, Result};
 
 /// How many steps in a row ended.
@@ -48,6 +51,26 @@ impl Simulation {
         match self.run(steps, |_| Ok(ControlFlow::Continue(())))? {
             RunEnding::NotFinite(failure) => Err(failure),
             RunEnding::Done | RunEnding::Stopped => Ok(()),
+        }
+    }
+
+    /// Sets all velocities to zero and forgets the contacts' impulses.
+    pub fn bring_to_rest(&mut self) {
+        let State { world, contacts, .. } = &mut self.state;
+        world.grains.velocities.fill(DVec2::ZERO);
+        world.grains.angular_velocities.fill(0.0);
+        contacts.scale_impulses(0.0);
+        contacts.forget();
+    }
+
+    /// Multiplies all velocities, as a drag during the last step would have.
+    pub fn scale_velocities(&mut self, factor: f64) {
+        let grains = &mut self.state.world.grains;
+        for velocity in &mut grains.velocities {
+            *velocity *= factor;
+        }
+        for spin in &mut grains.angular_velocities {
+            *spin *= factor;
         }
     }
 }

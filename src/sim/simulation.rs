@@ -2,18 +2,17 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
-
 use super::alarm::Watch;
+use super::check::reach_in;
 use super::remedies::max_travel;
 use super::snapshot::Surroundings;
-use super::state::{SKIN_IN_DIAMETERS, State};
+use super::state::State;
 use super::steppers::{Memory, Stepper};
 use super::stepping::Advance;
 use super::visits::{ProblemVisitor, Show, Start, Step};
 use super::walls::Walls;
 use super::{Alarm, Observables, Pull, Settings};
-use crate::contact::{Candidates, ContactList, Reach};
+use crate::contact::{Candidates, ContactList};
 use crate::error::{Error, Result};
 use crate::solver::{ModelParts, Slots, SolverSettings};
 use crate::world::{Gravity, Parameters, Physics, World};
@@ -50,16 +49,8 @@ impl Simulation {
     ) -> Result<Self> {
         physics.validate()?;
         settings.validate()?;
-        let diameter = world.mean_diameter;
-        if !(diameter > 0.0 && diameter.is_finite()) {
-            return Err(Error::value("mean_diameter", diameter, "a finite length > 0 m"));
-        }
-        let skin = SKIN_IN_DIAMETERS * diameter;
-        if !(0.0..0.1 * skin).contains(&gap_tolerance) {
-            let allowed = format!("≥ 0 and below {} m", 0.1 * skin);
-            return Err(Error::value("gap_tolerance", gap_tolerance, allowed));
-        }
-        let candidates = Candidates::new(&world, Reach { skin, gap_tolerance })?;
+        world.grains.validate()?;
+        let candidates = Candidates::new(&world, reach_in(&world, gap_tolerance)?)?;
         let surroundings = Arc::new(Surroundings {
             fixed_discs: world.fixed_discs.clone(),
             boundaries: world.boundaries.clone(),
@@ -67,12 +58,12 @@ impl Simulation {
                 Gravity::Attraction { centre, .. } => Some(centre),
                 Gravity::Uniform { .. } => None,
             },
-            mean_diameter: diameter,
+            mean_diameter: world.mean_diameter,
             gravity_magnitude: world.gravity.magnitude(),
         });
         let mut simulation = Self {
             initial_heights: world.grains.positions.iter().map(|position| position.y).sum(),
-            watch: Watch::new(&world, candidates.features()),
+            watch: Watch::new(&world, candidates.features(), physics),
             state: State {
                 world,
                 physics,
@@ -109,6 +100,26 @@ impl Simulation {
 
     /// Takes one step in a way of your own, in place of the settings' stepper.
     ///
+    /// ```
+    /// use slump::sim::{Advance, Outcome, Settings, Stage};
+    /// use slump::solver::Model;
+    ///
+    /// /// Contacts that never throw grains back.
+    /// struct Dead;
+    ///
+    /// impl Advance for Dead {
+    ///     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+    ///         stage.prepare(settings, |_approach| 0.0);
+    ///         let report = stage.solve(settings);
+    ///         stage.move_by(report, settings)
+    ///     }
+    /// }
+    ///
+    /// let mut simulation = slump::scene::built_in("collision")?.simulation()?;
+    /// assert_eq!(simulation.step_by(&mut Dead)?.step, 1);
+    /// # Ok::<(), slump::error::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_by(&mut self, own: &mut impl Advance) -> Result<&Observables> {
@@ -136,16 +147,15 @@ impl Simulation {
     fn look(&mut self) -> Result<&Observables> {
         let finite = self.state.is_finite();
         let State { world, candidates, .. } = &self.state;
-        self.watch.look(world, candidates.features(), &self.observables, finite);
+        let walls = (candidates.features(), !candidates.pistons().is_empty());
+        self.watch.look(world, walls, &mut self.observables, finite);
         if finite {
             return Ok(&self.observables);
         }
         let Observables { step, time_secs, .. } = self.observables;
         let Parameters { bond, time_step_secs, restitution, friction, .. } =
             self.settings.parameters;
-        let failure =
-            Error::NonFinite { step, time_secs, bond, time_step_secs, restitution, friction };
-        Err(failure)
+        Err(Error::NonFinite { step, time_secs, bond, time_step_secs, restitution, friction })
     }
 
     /// Measures the initial state.
@@ -274,26 +284,7 @@ impl Simulation {
             return Err(Error::value("grains", 1, "more than one where one is taken away"));
         }
         self.initial_heights -= self.state.world.grains.positions[last].y;
+        self.watch.remove_last_grain();
         self.state.remove_last_grain()
-    }
-
-    /// Sets all velocities to zero and forgets the contacts' impulses.
-    pub fn bring_to_rest(&mut self) {
-        let State { world, contacts, .. } = &mut self.state;
-        world.grains.velocities.fill(DVec2::ZERO);
-        world.grains.angular_velocities.fill(0.0);
-        contacts.scale_impulses(0.0);
-        contacts.forget();
-    }
-
-    /// Multiplies all velocities, as a drag during the last step would have.
-    pub fn scale_velocities(&mut self, factor: f64) {
-        let grains = &mut self.state.world.grains;
-        for velocity in &mut grains.velocities {
-            *velocity *= factor;
-        }
-        for spin in &mut grains.angular_velocities {
-            *spin *= factor;
-        }
     }
 }

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Observables;
+use crate::output::number;
+use crate::solver::worst;
 
 /// Sums over the steps of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -17,22 +19,25 @@ pub struct Tally {
     /// Sweeps of all steps.
     pub sweeps: u64,
     /// Largest common residual of any step.
+    #[serde(with = "number")]
     pub largest_residual: f64,
     /// Mean over the steps of the mean overlap, in units of d.
+    #[serde(with = "number")]
     pub mean_overlap: f64,
     /// Largest overlap of any contact in any step, in units of d.
+    #[serde(with = "number")]
     pub max_overlap: f64,
 }
 
 impl Tally {
-    /// Counts one more step.
+    /// Counts one more step; the last one too if its state is no longer finite.
     pub fn add(&mut self, step: &Observables) {
         self.steps += 1;
         self.unconverged_steps += u64::from(!step.converged);
         self.stalled_steps += u64::from(step.stalled);
         self.sweeps += u64::from(step.sweeps);
-        self.largest_residual = self.largest_residual.max(step.residual);
+        self.largest_residual = worst(self.largest_residual, step.residual);
         self.mean_overlap += (step.mean_overlap - self.mean_overlap) / self.steps as f64;
-        self.max_overlap = self.max_overlap.max(step.max_overlap);
+        self.max_overlap = worst(self.max_overlap, step.max_overlap);
     }
 }

@@ -24,6 +24,7 @@ pub use methods::{
 };
 pub use ordering::Ordering;
 pub use problem::prepare::{Approach, ProblemNumbers};
+pub(crate) use problem::worst;
 pub use problem::{
     Kinematics, Line, LineBody, Measures, Model, Motion, Plane, PlaneBody, Row, SpinningPlane,
     StepModel, StepProblem, residual,

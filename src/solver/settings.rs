@@ -21,7 +21,7 @@ words! {
 }
 
 settings! {
-    /// Method, stopping test and limits.
+    /// Method, stopping test and limits. Plain data, checked where a simulation takes them on.
     ///
     /// The default is for watching a pile: ten times looser than the figures of the paper are solved. A
     /// step that needs more than the limit has, as a rule, no solution to converge to: restitution asks

@@ -1,5 +1,6 @@
 //! One varied parameter of a study: a list of values or a range.
 
+use std::collections::HashSet;
 use std::fmt::Display;
 
 use toml::Value;
@@ -31,23 +32,18 @@ pub(super) fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
     if values.is_empty() {
         return Err(Error::value(field, "empty", "at least one value"));
     }
-    for (index, value) in values.iter().enumerate() {
-        if values[..index].iter().any(|earlier| same(earlier, value)) {
-            return Err(Error::value(
-                field,
-                format!("{value} twice"),
-                "a list of different values",
-            ));
-        }
+    let mut earlier = HashSet::with_capacity(values.len());
+    if let Some(value) = values.iter().find(|value| !earlier.insert(meaning(value))) {
+        return Err(Error::value(field, format!("{value} twice"), "a list of different values"));
     }
     Ok(values)
 }
 
-/// Whether two values mean the same number or word: 1 and 1.0 do.
-fn same(one: &Value, other: &Value) -> bool {
-    match (number(one), number(other)) {
-        (Some(one), Some(other)) => one == other,
-        _ => one == other,
+/// What two values share that mean the same number or word: 1 and 1.0 do, 0 and -0.0 as well.
+fn meaning(value: &Value) -> (Option<u64>, String) {
+    match number(value) {
+        Some(number) => (Some((number + 0.0).to_bits()), String::new()),
+        None => (None, value.to_string()),
     }
 }
 

@@ -1,17 +1,19 @@
 //! Results as they come: a line of JSON a run, appended when the run ends, so that a program that is
-//! killed loses no finished run. A half line at the end, which a kill can leave, is cut off.
+//! killed loses no finished run. Each line has a checksum. A half line at the end, which a kill can
+//! leave, is cut off; a line that is damaged is told of and counts as not there.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::Outcome;
+use super::{Outcome, record};
 use crate::error::{Error, Result};
+use crate::output::note_line;
 
 /// Ending of a journal's name.
 const ENDING: &str = "jsonl";
@@ -38,7 +40,8 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Opens a journal for appending and cuts off a half line at its end.
+    /// Opens a journal for appending and cuts off a half line at its end. Damaged lines are told of and
+    /// blanked.
     ///
     /// # Errors
     /// Where it cannot be written, or another program is at it.
@@ -53,36 +56,38 @@ impl Journal {
         let bytes = std::fs::read(&path).map_err(refuse)?;
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
         file.set_len(whole as u64).map_err(refuse)?;
+        blank_damaged(&path, &bytes[..whole]).map_err(refuse)?;
         Ok(Self { path, file: Mutex::new(file) })
     }
 
     /// Adds something finished.
     pub(super) fn add(&self, entry: &impl Serialize) -> Result<()> {
-        let mut line = serde_json::to_vec(entry).map_err(|error| Error::file(&self.path, error))?;
-        line.push(b'\n');
+        let line = serde_json::to_string(entry).map_err(|error| Error::file(&self.path, error))?;
+        let line = record::sealed_line(&line);
         let mut file = match self.file.lock() {
             Ok(file) => file,
             // A thread that fell over between two lines leaves the file sound.
             Err(poisoned) => poisoned.into_inner(),
         };
         // One write a line: a kill between two leaves whole lines.
-        file.write_all(&line).map_err(|error| Error::file(&self.path, error))
+        file.write_all(line.as_bytes()).map_err(|error| Error::file(&self.path, error))
     }
 }
 
 /// All finished runs that the journals of some folders tell of, by key.
 ///
 /// # Errors
-/// Where a journal cannot be read, a line of it is none, or two disagree about a run.
+/// Where a journal cannot be read, or two disagree about a run.
 pub(super) fn read_all(folders: &[PathBuf]) -> Result<HashMap<String, Entry>> {
     let mut all: HashMap<String, Entry> = HashMap::new();
     for path in journals(folders)? {
-        for (number, entry) in read::<Entry>(&path)?.into_iter().enumerate() {
+        for entry in read::<Entry>(&path)? {
+            // As they are written: what is not a number is not even equal to itself.
+            let written = |entry: &Entry| serde_json::to_string(&entry.outcome).ok();
             if let Some(known) = all.get(&entry.key)
-                && known.outcome != entry.outcome
+                && written(known) != written(&entry)
             {
-                let reason =
-                    format!("line {}: run {} came out otherwise before", number + 1, entry.key);
+                let reason = format!("run {} came out otherwise before", entry.key);
                 return Err(Error::file(&path, reason));
             }
             all.insert(entry.key.clone(), entry);
@@ -91,18 +96,50 @@ pub(super) fn read_all(folders: &[PathBuf]) -> Result<HashMap<String, Entry>> {
     Ok(all)
 }
 
-/// The whole lines of one journal.
+/// The records of one journal. Lines that are damaged are told of and left out.
 ///
 /// # Errors
-/// Where it cannot be read, or a line of it is none.
+/// Where it cannot be read.
 pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
-    let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
-    let whole = text.rfind('\n').map_or("", |last| &text[..=last]);
-    let entries = whole.lines().enumerate().map(|(number, line)| {
-        serde_json::from_str(line)
-            .map_err(|error| Error::file(path, format!("line {}: {error}", number + 1)))
-    });
-    entries.collect()
+    let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
+    let mut entries = Vec::new();
+    for (number, line) in lines(&bytes) {
+        let entry = record::of_line(line).and_then(|record| serde_json::from_str(record).ok());
+        match entry {
+            Some(entry) => entries.push(entry),
+            None => tell_of_damage(path, number),
+        }
+    }
+    Ok(entries)
+}
+
+/// The whole lines of a journal that are not blank, with their numbers from 1.
+fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
+    let whole = bytes.iter().rposition(|&byte| byte == b'\n').unwrap_or(0);
+    let lines = bytes[..whole].split(|&byte| byte == b'\n').zip(1..);
+    lines.map(|(line, number)| (number, line)).filter(|(_, line)| !line.trim_ascii().is_empty())
+}
+
+fn tell_of_damage(path: &Path, line: usize) {
+    note_line(format_args!(
+        "{}: line {line} is damaged; what it told of is computed anew",
+        path.display()
+    ));
+}
+
+/// Writes spaces over damaged lines, so that they are told of once. Stopped midway it leaves what it was:
+/// damaged lines.
+fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    // What is appended to cannot be written to elsewhere.
+    let mut file = OpenOptions::new().write(true).open(path)?;
+    for (number, line) in lines(bytes).filter(|(_, line)| record::of_line(line).is_none()) {
+        tell_of_damage(path, number);
+        // Both are parts of one allocation.
+        let offset = line.as_ptr().addr() - bytes.as_ptr().addr();
+        file.seek(SeekFrom::Start(offset as u64))?;
+        file.write_all(&vec![b' '; line.len()])?;
+    }
+    Ok(())
 }
 
 /// The journals of some folders, in the order of their names.
@@ -118,4 +155,18 @@ pub(super) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     }
     paths.sort();
     Ok(paths)
+}
+
+/// Removes the journals of a folder that no program is at. Whoever is at one has begun anew.
+///
+/// # Errors
+/// Where one cannot be removed.
+pub(super) fn remove_all(folder: &Path) -> Result<()> {
+    for path in journals(&[folder.to_owned()])? {
+        let is_in_use = File::open(&path).is_ok_and(|file| file.try_lock_shared().is_err());
+        if !is_in_use {
+            std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
+        }
+    }
+    Ok(())
 }

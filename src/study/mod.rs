@@ -1,6 +1,7 @@
 //! Runs of scenes: one to given times, the sets that the paper's figures show, and sweeps over
 //! parameters.
 
+mod alarms;
 mod axis;
 pub mod chart;
 mod collection;
@@ -10,6 +11,7 @@ mod outcome;
 mod paper;
 mod performance;
 mod plan;
+mod record;
 mod run;
 mod shard;
 mod speed;
@@ -24,8 +26,8 @@ pub(crate) use outcome::{Outcome, Status};
 pub(crate) use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
 };
-pub(crate) use plan::{PlannedRun, SeriesSettings, Study};
-pub(crate) use run::record;
+pub use plan::{PlannedRun, SeriesSettings, Study};
+pub use run::{Recorded, Recorder, record};
 pub(crate) use shard::Shard;
 pub(crate) use speed::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
 pub(crate) use sweep::{SweepOptions, merge, series_path, sweep};

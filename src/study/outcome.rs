@@ -5,7 +5,9 @@ use std::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 
 use super::SeriesSettings;
+use super::alarms::Alarms;
 use crate::error::{Error, Result};
+use crate::output::number;
 use crate::scene::Scene;
 use crate::sim::{RunEnding, Simulation, Tally};
 
@@ -19,7 +21,8 @@ pub(crate) enum Status {
     NotFinite,
 }
 
-/// What a run comes to. A row of the study's table.
+/// What a run comes to. A row of the study's table. Numbers of a run whose state was no longer finite
+/// are those that it ended with, finite or not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Outcome {
     /// How it ended.
@@ -27,12 +30,16 @@ pub(crate) struct Outcome {
     /// Steps taken.
     pub steps: u64,
     /// Δy_G at the end (paper eq. 11).
+    #[serde(with = "number")]
     pub slump: f64,
     /// Mean over the steps of the mean overlap, in diameters.
+    #[serde(with = "number")]
     pub mean_overlap: f64,
     /// Largest overlap of any contact in any step, in diameters.
+    #[serde(with = "number")]
     pub max_overlap: f64,
     /// Gap between the first two grains at the end, in diameters; 0 where there is one grain.
+    #[serde(with = "number")]
     pub first_gap: f64,
     /// Steps whose stopping test was not met.
     pub unconverged_steps: u64,
@@ -42,7 +49,12 @@ pub(crate) struct Outcome {
     /// Sweeps of all steps.
     pub sweeps: u64,
     /// Largest common residual of any step.
+    #[serde(with = "number")]
     pub largest_residual: f64,
+    /// Grains that went through a wall or left the world.
+    pub lost_grains: u32,
+    /// The kinds of alarms that it raised.
+    pub alarms: Alarms,
 }
 
 /// Takes a scene to its end. With `series`, `row` is called at the start and then at every interval.
@@ -76,22 +88,25 @@ pub(crate) fn run_to_end(
         Ok(ControlFlow::Continue(()))
     })?;
     let status = match ended {
-        RunEnding::NotFinite(_) => Status::NotFinite,
+        RunEnding::NotFinite(_) => {
+            tally.add(simulation.observables());
+            Status::NotFinite
+        }
         RunEnding::Done | RunEnding::Stopped => Status::Done,
     };
-    // What is not finite has no place in a table of numbers.
-    let finite = |number: f64| if number.is_finite() { number } else { 0.0 };
     Ok(Outcome {
         status,
         steps: tally.steps,
-        slump: finite(simulation.observables().slump),
-        mean_overlap: finite(tally.mean_overlap),
-        max_overlap: finite(tally.max_overlap),
-        first_gap: finite(first_gap(&simulation)),
+        slump: simulation.observables().slump,
+        mean_overlap: tally.mean_overlap,
+        max_overlap: tally.max_overlap,
+        first_gap: first_gap(&simulation),
         unconverged_steps: tally.unconverged_steps,
         stalled_steps: tally.stalled_steps,
         sweeps: tally.sweeps,
-        largest_residual: finite(tally.largest_residual),
+        largest_residual: tally.largest_residual,
+        lost_grains: simulation.observables().lost_grains,
+        alarms: simulation.alarms().iter().map(|alarm| alarm.kind).collect(),
     })
 }
 

@@ -1,16 +1,21 @@
 //! A study as its file says it, laid out as runs.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::axis;
-use crate::error::{Error, Result};
-use crate::scene::Config;
+use crate::error::{Error, Result, in_words};
+use crate::scene::{Config, Ground};
 
 /// More runs than this are a mistake rather than a wish.
 const MOST_RUNS: usize = 10_000_000;
+
+/// What a study file must be, for messages.
+const FORM: &str = "a study file in TOML with name, base and vary";
 
 /// A study file. Tables are read by hand below, since what they may hold is what a [`Config`] holds.
 #[derive(Clone, Debug, Deserialize)]
@@ -40,7 +45,7 @@ struct Quick {
 /// What is kept of the course of each run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct SeriesSettings {
+pub struct SeriesSettings {
     /// Simulated time between two rows, s.
     pub interval: f64,
     /// The grains whose positions are kept, by number.
@@ -50,7 +55,7 @@ pub(crate) struct SeriesSettings {
 
 /// A study: a list of runs in the order of its table.
 #[derive(Clone, Debug)]
-pub(crate) struct Study {
+pub struct Study {
     /// Its name.
     pub name: String,
     /// Tells studies apart: hash of the keys of all runs.
@@ -63,7 +68,7 @@ pub(crate) struct Study {
 
 /// One run of a study.
 #[derive(Clone, Debug)]
-pub(crate) struct PlannedRun {
+pub struct PlannedRun {
     /// Names it: hash of all that its result hangs on.
     pub key: String,
     /// What it runs, every number filled in.
@@ -77,8 +82,9 @@ impl Study {
     ///
     /// # Errors
     /// Where the file cannot be read or says something that no study says.
-    pub(crate) fn read(path: &Path, quick: bool) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|error| Error::file(path, error))?;
+    pub fn read(path: &Path, quick: bool) -> Result<Self> {
+        let text =
+            std::fs::read_to_string(path).map_err(|error| Error::unread(path, error, FORM))?;
         Self::parse(&text, path, quick)
     }
 
@@ -86,11 +92,11 @@ impl Study {
     ///
     /// # Errors
     /// Where it says something that no study says.
-    pub(crate) fn parse(text: &str, path: &Path, quick: bool) -> Result<Self> {
+    pub fn parse(text: &str, path: &Path, quick: bool) -> Result<Self> {
         let mut file: StudyFile = toml::from_str(text).map_err(|error| {
             let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
             let place = line.map_or(String::new(), |line| format!("line {line}: "));
-            Error::file(path, format!("{place}{}", one_line(error.message())))
+            Error::unread(path, format!("{place}{}", one_line(error.message())), FORM)
         })?;
         if quick {
             replace(
@@ -164,6 +170,7 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
             format!("no more than {MOST_RUNS}"),
         ));
     }
+    let mut grounds = HashMap::new();
     let run = |mut number: usize| {
         let mut chosen = Vec::new();
         for Axis { names, values } in axes.iter().rev() {
@@ -171,7 +178,7 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
             number /= values.len();
         }
         chosen.extend(&file.base);
-        PlannedRun::new(&config_of("base", chosen)?, file.series.as_ref())
+        PlannedRun::new(&config_of("base", chosen)?, file.series.as_ref(), &mut grounds)
     };
     (0..count).map(run).collect()
 }
@@ -216,16 +223,28 @@ fn config_of<'a>(
         match reason.split_once("expected ") {
             Some((_, expected)) => {
                 let expected = expected.split(" in '").next().unwrap_or(expected);
-                Error::value(format!("{table}.{key}"), value, expected)
+                Error::value(format!("{table}.{key}"), value, in_words(expected))
             }
-            None => Error::value(format!("{table}.{key}"), value, reason),
+            None => {
+                let allowed = format!("of its range: {reason}");
+                Error::value(format!("{table}.{key}"), value, allowed)
+            }
         }
     })
 }
 
 impl PlannedRun {
-    fn new(config: &Config, series: Option<&SeriesSettings>) -> Result<Self> {
-        let scene = config.without_settling()?;
+    /// `grounds` keeps what has been read, by name.
+    fn new(
+        config: &Config,
+        series: Option<&SeriesSettings>,
+        grounds: &mut HashMap<String, Ground>,
+    ) -> Result<Self> {
+        let ground = match grounds.entry(config.name_of_ground()) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(place) => place.insert(config.ground()?),
+        };
+        let scene = config.change(ground)?;
         let config = config.resolved(&scene);
         let grains = config.origin.grains.unwrap_or(scene.grains.len());
         if let Some(grain) = series.and_then(|series| series.grains.iter().find(|&&g| g >= grains))

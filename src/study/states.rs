@@ -1,13 +1,14 @@
-//! Initial states of new piles: settled once, kept in memory and on disk, shared by all runs.
+//! Initial states that are rained: settled once, kept in memory and on disk, shared by all runs.
 
-use std::collections::HashMap;
-use std::path::PathBuf;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::error::Result;
-use crate::output::{Progress, check_writable, write_file};
-use crate::scene::{Config, Rain, Scene, read_discs, settle, write_discs};
+use super::record;
+use crate::error::{Error, Result};
+use crate::output::{Progress, check_writable, note_line, write_file};
+use crate::scene::{Config, Rain, Scene, parse_discs, settle, write_discs};
 use crate::world::Grain;
 
 /// Settled grains by the rain they come from.
@@ -25,9 +26,12 @@ impl States {
         configs: impl Iterator<Item = &'a Config>,
     ) -> Result<Self> {
         let mut rains: HashMap<String, Rain> = HashMap::new();
-        for config in configs.filter(|config| config.origin.makes_new_pile()) {
-            let rain = config.origin.rain();
-            rains.insert(name(&rain), rain);
+        let mut looked_at = HashSet::new();
+        for config in configs {
+            // A scene file is read once, whatever the number of its runs.
+            if config.origin.makes_new_pile() || looked_at.insert(config.name_of_ground()) {
+                rains.extend(config.rain()?.map(|rain| (name(&rain), rain)));
+            }
         }
         if rains.is_empty() {
             return Ok(Self { settled: HashMap::new() });
@@ -44,15 +48,14 @@ impl States {
             .map(|(name, rain)| {
                 let path = folder.join(format!("{name}.csv"));
                 // A state reads back bit for bit, so that it does not matter which way it came.
-                let grains = if path.exists() {
-                    read_discs(&path)?
-                } else {
-                    let grains = settle(&rain, |_| true)?;
-                    write_file(
-                        &path,
-                        write_discs(&grains, "An initial state; metres.").as_bytes(),
-                    )?;
-                    grains
+                let grains = match kept(&path)? {
+                    Some(grains) => grains,
+                    None => {
+                        let grains = settle(&rain, |_| true)?;
+                        let text = write_discs(&grains, "An initial state; metres.");
+                        write_file(&path, record::sealed_text(&text).as_bytes())?;
+                        grains
+                    }
                 };
                 progress.advance(cost(&rain));
                 Ok((name, grains))
@@ -64,11 +67,25 @@ impl States {
 
     /// The scene of a config, with its settled grains where it makes a new pile.
     pub(super) fn scene(&self, config: &Config) -> Result<Scene> {
-        match self.settled.get(&name(&config.origin.rain())) {
-            Some(grains) if config.origin.makes_new_pile() => config.scene_from(grains.clone()),
-            _ => config.scene(|_| true),
+        match config.rain()?.and_then(|rain| self.settled.get(&name(&rain))) {
+            Some(grains) => config.scene_from(grains.clone()),
+            None => config.scene(|_| true),
         }
     }
+}
+
+/// The grains that a file holds; nothing where it is not there, or damaged, which is told of.
+fn kept(path: &Path) -> Result<Option<Vec<Grain>>> {
+    let bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(Error::file(path, error)),
+    };
+    let grains = record::of_text(&bytes).and_then(|text| parse_discs(text, path).ok());
+    if grains.is_none() {
+        note_line(format_args!("{}: is damaged; the state is settled anew", path.display()));
+    }
+    Ok(grains)
 }
 
 fn name(rain: &Rain) -> String {

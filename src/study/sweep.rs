@@ -4,6 +4,7 @@
 //! A folder of results holds `study.json` (which study it is), journals (results as they come),
 //! `states/` (initial states), `series/` (courses of runs) and, once all runs are there, `runs.csv`.
 
+use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -16,10 +17,14 @@ use super::states::States;
 use super::table::RunsTable;
 use super::{PlannedRun, Shard, Study};
 use crate::error::{Error, Result};
-use crate::output::{Progress, check_writable, write_file};
+use crate::output::{Progress, check_writable, note_line, write_file};
 
 /// File that says which study a folder holds.
 const STUDY_FILE: &str = "study.json";
+/// Folder of the runs' courses.
+const SERIES: &str = "series";
+/// The table of a finished study.
+const TABLE: &str = "runs.csv";
 /// Lines that tell of progress where there is no terminal to draw a bar on.
 const LINES_OF_PROGRESS: usize = 20;
 
@@ -28,7 +33,7 @@ const LINES_OF_PROGRESS: usize = 20;
 pub(crate) struct SweepOptions {
     /// The part of the study to run; all of it where there is none.
     pub shard: Option<Shard>,
-    /// Throw away what a folder holds of another study.
+    /// Throw away what a folder holds of another study, or what cannot be read.
     pub redo: bool,
     /// Where initial states are kept; in the folder of results where nothing is said.
     pub states: Option<PathBuf>,
@@ -59,9 +64,22 @@ pub(crate) fn sweep(
         Some(Shard { index, count }) => format!("runs-{index}-of-{count}"),
         None => "runs".to_owned(),
     };
-    let journal = Journal::open(folder, &journal_name)?;
     let folders = [folder.to_owned()];
-    let done = journal::read_all(&folders)?;
+    let open = || -> Result<_> {
+        let journal = Journal::open(folder, &journal_name)?;
+        Ok((journal, journal::read_all(&folders)?))
+    };
+    let (journal, mut done) = match open() {
+        Err(error) if options.redo => {
+            note_line(format_args!("{error}; thrown away"));
+            throw_away(folder)?;
+            open()?
+        }
+        opened => opened?,
+    };
+    if study.series.is_some() {
+        done.retain(|key, _| series_path(folder, key).exists());
+    }
 
     let mine = |index: usize| options.shard.is_none_or(|shard| shard.has(index));
     let mut part: Vec<&PlannedRun> = study
@@ -74,7 +92,11 @@ pub(crate) fn sweep(
     let of_part = part.len();
     part.retain(|run| !done.contains_key(&run.key));
     if part.len() < of_part {
-        eprintln!("{}: {} of {of_part} runs were there", study.name, of_part - part.len());
+        note_line(format_args!(
+            "{}: {} of {of_part} runs were there",
+            study.name,
+            of_part - part.len()
+        ));
     }
     // Longest first, so that no core waits long for the last one. The sort is stable.
     part.sort_by(|one, other| other.cost.total_cmp(&one.cost));
@@ -110,7 +132,7 @@ pub(crate) fn merge(study: &Study, folders: &[PathBuf], out: &Path) -> Result<Ru
 
 fn join(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
     let table = RunsTable::new(study, &journal::read_all(folders)?)?;
-    table.write(&out.join("runs.csv"))?;
+    table.write(&out.join(TABLE))?;
     Ok(table)
 }
 
@@ -179,7 +201,7 @@ impl<'a> Course<'a> {
     fn finish(self, folder: &Path, run: &PlannedRun) -> Result<()> {
         let Some(writer) = self.writer else { return Ok(()) };
         let bytes = writer.into_inner().map_err(|error| Error::file("series", error.error()))?;
-        let path = series_path(folder, run);
+        let path = series_path(folder, &run.key);
         if let Some(series) = path.parent() {
             std::fs::create_dir_all(series).map_err(|error| Error::file(series, error))?;
         }
@@ -187,9 +209,9 @@ impl<'a> Course<'a> {
     }
 }
 
-/// Where the course of a run lies.
-pub(crate) fn series_path(folder: &Path, run: &PlannedRun) -> PathBuf {
-    folder.join("series").join(format!("{}.csv", run.key))
+/// Where the course of the run with a key lies.
+pub(crate) fn series_path(folder: &Path, key: &str) -> PathBuf {
+    folder.join(SERIES).join(format!("{key}.csv"))
 }
 
 fn label_of(study: &Study) -> Label {
@@ -207,29 +229,52 @@ fn read_label(folder: &Path) -> Result<Option<Label>> {
         Ok(bytes) => {
             serde_json::from_slice(&bytes).map(Some).map_err(|error| Error::file(&path, error))
         }
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) if error.kind() == NotFound => Ok(None),
         Err(error) => Err(Error::file(&path, error)),
     }
 }
 
 /// Makes the folder that of this study, or finds that it is.
+///
+/// The label is what makes it one study's. Before it is written the folder is the old study's without
+/// its table, which comes again from the journals; after it, the new study's. What is left of the old
+/// one then counts for nothing, as runs are known by their keys, and is swept out.
 fn claim(study: &Study, folder: &Path, redo: bool) -> Result<()> {
     let label = label_of(study);
-    match read_label(folder)? {
-        Some(found) if found == label => return Ok(()),
-        Some(found) if !redo => return Err(other_study(folder, study, &found)),
-        Some(_) => {
-            for path in journal::journals(&[folder.to_owned()])? {
-                std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
-            }
-        }
-        None => {}
+    let anew = match read_label(folder) {
+        Ok(Some(found)) if found == label => return Ok(()),
+        Ok(Some(found)) if !redo => return Err(other_study(folder, study, &found)),
+        Err(error) if !redo => return Err(error),
+        Ok(Some(_)) | Err(_) => true,
+        Ok(None) => false,
+    };
+    if anew {
+        remove(&folder.join(TABLE))?;
     }
     let path = folder.join(STUDY_FILE);
     let mut text =
         serde_json::to_string_pretty(&label).map_err(|error| Error::file(&path, error))?;
     text.push('\n');
-    write_file(&path, text.as_bytes())
+    write_file(&path, text.as_bytes())?;
+    if anew { throw_away(folder) } else { Ok(()) }
+}
+
+/// Sweeps out a folder's results, but for those that other programs are writing.
+fn throw_away(folder: &Path) -> Result<()> {
+    remove(&folder.join(TABLE))?;
+    journal::remove_all(folder)?;
+    let series = folder.join(SERIES);
+    match std::fs::remove_dir_all(&series) {
+        Err(error) if error.kind() != NotFound => Err(Error::file(&series, error)),
+        _ => Ok(()),
+    }
+}
+
+fn remove(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != NotFound => Err(Error::file(path, error)),
+        _ => Ok(()),
+    }
 }
 
 fn other_study(folder: &Path, study: &Study, found: &Label) -> Error {

@@ -5,12 +5,14 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use super::alarms::Alarms;
 use super::journal::Entry;
 use super::outcome::{cells_of, names_of};
 use super::{Outcome, Status, Study};
 use crate::error::{Error, Result};
 use crate::output::write_file;
 use crate::scene::Config;
+use crate::sim::AlarmKind;
 
 /// The results of a study.
 #[derive(Clone, Debug)]
@@ -44,6 +46,11 @@ impl RunsTable {
     /// Runs whose state was no longer finite.
     pub(crate) fn not_finite(&self) -> usize {
         self.rows.iter().filter(|(.., outcome)| outcome.status == Status::NotFinite).count()
+    }
+
+    /// How many runs raised alarms, and of which kinds, in words; nothing where none did.
+    pub(crate) fn alarms(&self) -> Option<String> {
+        alarms_of(self.rows.iter().map(|(.., outcome)| outcome))
     }
 
     /// Writes the table as CSV.
@@ -82,4 +89,21 @@ impl RunsTable {
         }
         writer.into_inner().map_err(|error| Error::file("runs.csv", error.error()))
     }
+}
+
+/// How many of some runs raised alarms, in words: "3 of 40 runs raised alarms (overlap 2, grain-lost 1)";
+/// nothing where none did.
+pub(super) fn alarms_of<'a>(outcomes: impl Iterator<Item = &'a Outcome>) -> Option<String> {
+    let (mut all, mut alarmed, mut by_kind) = (0, 0, [0; AlarmKind::ALL.len()]);
+    for outcome in outcomes {
+        all += 1;
+        alarmed += u32::from(outcome.alarms != Alarms::default());
+        for (count, kind) in by_kind.iter_mut().zip(AlarmKind::ALL) {
+            *count += u32::from(outcome.alarms.has(kind));
+        }
+    }
+    let counts = AlarmKind::ALL.iter().zip(by_kind).filter(|(_, count)| *count > 0);
+    let counts: Vec<_> = counts.map(|(kind, count)| format!("{} {count}", kind.name())).collect();
+    let counts = counts.join(", ");
+    (alarmed > 0).then(|| format!("{alarmed} of {all} runs raised alarms ({counts})"))
 }

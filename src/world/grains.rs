@@ -3,7 +3,9 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// One disc as a scene describes it.
+use crate::error::{Error, Result};
+
+/// One disc as a scene describes it. Plain data, checked with the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grain {
@@ -55,6 +57,8 @@ impl Grain {
 /// The lists are apart because the passes that stream over all grains (prediction, integration,
 /// detection) each need few of them; the sweep, which needs a body's whole motion at random
 /// places, works on a packed copy (`solver::problem`).
+///
+/// Plain data, checked where a simulation takes it on; a running one shows its own and lends none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Grains {
     /// Centres, m.
@@ -90,6 +94,33 @@ impl Grains {
             lists.tones.push(grain.tone);
         }
         lists
+    }
+
+    /// Checks that there are discs, and that each list says something of each.
+    ///
+    /// # Errors
+    /// Names the first list that is not as long as `positions`.
+    pub(crate) fn validate(&self) -> Result<()> {
+        let count = self.len();
+        if count == 0 {
+            return Err(Error::value("grains", 0, "at least one disc"));
+        }
+        let lengths = [
+            ("velocities", self.velocities.len()),
+            ("angles", self.angles.len()),
+            ("angular_velocities", self.angular_velocities.len()),
+            ("radii", self.radii.len()),
+            ("masses", self.masses.len()),
+            ("feels_gravity", self.feels_gravity.len()),
+            ("tones", self.tones.len()),
+        ];
+        match lengths.into_iter().find(|&(_, length)| length != count) {
+            None => Ok(()),
+            Some((list, length)) => {
+                let field = format!("the length of grains.{list}");
+                Err(Error::value(field, length, format!("{count}, one a disc")))
+            }
+        }
     }
 
     /// Leaves the first `count` discs.

@@ -13,7 +13,8 @@ pub(crate) use parameters::MAX_SUBSTEPS;
 pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};
 pub use physics::Physics;
 
-/// Everything that a step reads and moves.
+/// Everything that a step reads and moves. Plain data, checked where a simulation takes it on; a running
+/// one shows its own and lends none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     /// The moving discs.

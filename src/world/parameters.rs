@@ -1,6 +1,6 @@
 //! The numbers of the contact laws and the time step, which may change between any two steps.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::setting::{Group, settings, words};
 
 words! {
@@ -21,8 +21,13 @@ pub const DEBONDING_DISTANCE: f64 = 0.01;
 /// More substeps than this are a mistake: a single step of a pile would take many seconds.
 pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 
+/// More steps than this take months, of the smallest scene.
+const MOST_STEPS: f64 = 1e12;
+/// Below this a time step is what is odd about too many steps.
+const SMALL_TIME_STEP_SECS: f64 = 1e-7;
+
 settings! {
-    /// Numbers that may change between any two steps.
+    /// Numbers that may change between any two steps. Plain data, checked where a simulation takes them on.
     ///
     /// The default is the paper's scheme at Δt = 1e-3 s, with contacts that neither pull, bounce nor rub.
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
@@ -172,6 +177,26 @@ impl Parameters {
     /// Steps that a simulated time takes.
     pub fn steps_in(&self, secs: f64) -> u64 {
         (secs / self.time_step_secs).round() as u64
+    }
+
+    /// Checks that a simulated time (s) takes no more steps than anyone can wait for.
+    ///
+    /// # Errors
+    /// Names `field`, which says the time, or Δt where that is the odd one of the two.
+    pub fn check_steps(&self, field: &str, secs: f64) -> Result<()> {
+        let steps = secs / self.time_step_secs;
+        if steps <= MOST_STEPS {
+            return Ok(());
+        }
+        let (least, most) = (secs / MOST_STEPS, MOST_STEPS * self.time_step_secs);
+        let asked = format!("which asks for {steps:.1e} steps");
+        Err(if self.time_step_secs < SMALL_TIME_STEP_SECS {
+            let found = format!("{} s where {field} is {secs} s, {asked}", self.time_step_secs);
+            Error::value("dt", found, format!("at least {least:e} s: no more than 1e12 steps"))
+        } else {
+            let found = format!("{secs} s where dt is {} s, {asked}", self.time_step_secs);
+            Error::value(field, found, format!("at most {most:e} s: no more than 1e12 steps"))
+        })
     }
 
     /// ρ v_n^{n−1}, m/s, of a contact with that normal velocity at the beginning of the step.

@@ -57,7 +57,8 @@ pub struct Observables {
     pub tangential_work: f64,
     /// Work of the gravity field, and of a spring that pulls a grain, in this step, J.
     pub gravity_work: f64,
-    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11); 0 where Σ y_i(0) is 0.
+    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11), both sums over the grains that are not
+    /// lost; 0 where Σ y_i(0) is 0.
     pub slump: f64,
     /// Work that bonds did in this step, a part of `normal_work`, J: negative while they are
     /// stretched. None but under the law `range`, as all that is told of bonds.
@@ -69,6 +70,9 @@ pub struct Observables {
     /// What bonds took that have broken since the start, J: C₀ δ_c each.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_bond_energy: Option<f64>,
+    /// Grains that went through a wall or left the world since the start.
+    #[serde(default)]
+    pub lost_grains: u32,
 }
 
 impl Observables {
@@ -176,7 +180,8 @@ fn of_state<M: Model>(
         time_step_secs,
         sweeps,
         factorisations,
-        converged,
+        // What a method says of its own stopping test counts no more than what came of it.
+        converged: converged && residual.is_finite(),
         stalled,
         residual,
         contacts: (0..state.contacts.contacts().len()).filter(in_touch).count() as u32,
@@ -198,6 +203,8 @@ fn of_state<M: Model>(
         bond_work: bonds.map(|bonds| bonds.work),
         bond_energy: bonds.map(|bonds| bonds.stored),
         broken_bond_energy: bonds.map(|bonds| bonds.broken),
+        // Who watches over the run knows (`sim::losses`).
+        lost_grains: 0,
     }
 }
 
@@ -208,7 +215,7 @@ mod tests {
     /// Columns that the window does not plot.
     const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled \
         contacts compressive_contacts tensile_contacts max_overlap potential_energy normal_work \
-        tangential_work gravity_work bond_work";
+        tangential_work gravity_work bond_work lost_grains";
 
     #[test]
     fn every_column_is_plotted_or_said_not_to_be() {

@@ -6,7 +6,8 @@ use crate::error::{Error, Result};
 /// file of six digits loses.
 const ASYMMETRY: f64 = 1e-5;
 
-/// Entries of a sparse matrix; those of one place are added.
+/// Entries of a sparse matrix; those of one place are added. Plain data, checked where a problem
+/// is made of it.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Triplets {

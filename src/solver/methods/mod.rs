@@ -117,6 +117,29 @@ impl fmt::Display for Method {
 
 /// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
 /// the rows' impulses.
+///
+/// ```
+/// use slump::contact::ContactList;
+/// use slump::sim::ProblemVisitor;
+/// use slump::solver::{Memory, Method, Model, SolverSettings, StepProblem, residual, solve};
+///
+/// /// What one method leaves undone.
+/// struct Left(Method);
+///
+/// impl ProblemVisitor for Left {
+///     type Output = f64;
+///
+///     fn visit<M: Model>(self, problem: &mut StepProblem<M::Kinematics>, _: &ContactList) -> f64 {
+///         let settings = SolverSettings { method: self.0, ..SolverSettings::default() };
+///         solve::<M>(problem, &mut Memory::default(), &settings);
+///         residual::<M>(problem)
+///     }
+/// }
+///
+/// let simulation = slump::scene::built_in("column")?.simulation()?;
+/// assert!(simulation.next_problem(Left(Method::Newton)) < 1e-3);
+/// # Ok::<(), slump::error::Error>(())
+/// ```
 pub fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     memory: &mut Memory<M::Kinematics>,

@@ -76,8 +76,10 @@ pub(super) fn is_settled<P>(
 ) -> bool {
     let tolerance = settings.tolerance;
     match settings.stop {
+        // An infinite change is no larger than infinite impulses, and settles nothing.
         StopTest::RelativeChange => {
-            change.squared <= tolerance * tolerance * squared_impulses(problem)
+            change.squared.is_finite()
+                && change.squared <= tolerance * tolerance * squared_impulses(problem)
         }
         StopTest::ImpulsePerMass => change.absolute <= tolerance * mean_mass,
         StopTest::Residual => residual(problem) <= tolerance,

@@ -5,6 +5,11 @@ use super::model::Model;
 use super::step_problem::{Row, StepProblem};
 use crate::contact::law;
 
+/// Where nothing would move without contacts, errors of up to this share of the impulses are what
+/// rounding left, and no residual. Smaller: methods that scale impulses would not have solved a step in
+/// which nothing happens; larger: errors would go unseen.
+const ROUNDING: f64 = 1e-14;
+
 /// What one pass over the rows tells of a solved step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
@@ -25,7 +30,7 @@ impl Measures {
     pub fn add(&mut self, piece: Self) {
         let Self { residual, compressive_contacts, tensile_contacts, normal_work, tangential_work } =
             piece;
-        self.residual = self.residual.max(residual);
+        self.residual = worst(self.residual, residual);
         self.compressive_contacts = compressive_contacts;
         self.tensile_contacts = tensile_contacts;
         self.normal_work += normal_work;
@@ -42,14 +47,20 @@ impl Measures {
 /// > residual = ‖(e_n, e_t)‖₂ / ‖(m_n v_n^free, m_t v_t^free)‖₂,
 ///
 /// with v^free the relative velocity without any contact impulse, restitution's term included. It
-/// is 0 where nothing moves and nothing errs. Rows hold p/m_n and P_t/m_n, so each row's terms are
+/// is 0 where nothing moves and nothing errs beyond rounding, and infinite where nothing would move and
+/// something errs. Rows hold p/m_n and P_t/m_n, so each row's terms are
 /// formed in m/s and weighted by m_n.
 pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
     let mut sums = Sums::default();
     for_each_row::<M::Kinematics>(problem, |_, row, motion| {
         sums.add_error::<M>(problem, row, &motion)
     });
-    sums.residual()
+    sums.residual::<M>(problem)
+}
+
+/// The larger of two residuals or other measures of what went wrong: not a number where one is none.
+pub(crate) fn worst(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
 }
 
 /// Residual, contact counts and works in one pass.
@@ -72,7 +83,7 @@ pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measure
             measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
         }
     });
-    Measures { residual: sums.residual(), ..measures }
+    Measures { residual: sums.residual::<M>(problem), ..measures }
 }
 
 /// Relative (normal, tangential) velocities of one contact, m/s.
@@ -152,7 +163,16 @@ impl Sums {
         }
     }
 
-    fn residual(&self) -> f64 {
+    fn residual<M: Model>(&self, problem: &StepProblem<M::Kinematics>) -> f64 {
+        if self.error > 0.0 && self.scale == 0.0 {
+            let squared = |row: &Row<M::Kinematics>| {
+                let [normal, tangential] = [row.shifted_impulse, row.tangential_impulse];
+                row.effective_mass.powi(2) * (normal * normal + tangential * tangential)
+            };
+            let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
+            let impulses: f64 = rows.map(squared).sum();
+            return if self.error <= ROUNDING * ROUNDING * impulses { 0.0 } else { f64::INFINITY };
+        }
         if self.error > 0.0 { (self.error / self.scale).sqrt() } else { self.error.sqrt() }
     }
 }

@@ -11,7 +11,7 @@ pub use self::kinematics::Kinematics;
 pub use self::kinematics::line::{Line, LineBody};
 pub use self::kinematics::plane::{Plane, PlaneBody, SpinningPlane};
 pub use self::measure::{Measures, Motion, residual};
-pub(crate) use self::measure::{for_each_row, measure, relative_velocities};
+pub(crate) use self::measure::{for_each_row, measure, relative_velocities, worst};
 pub use self::model::{Model, StepModel};
 pub(crate) use self::model::{ModelParts, ModelVisitor};
 pub use self::step_problem::{Row, StepProblem};

@@ -138,6 +138,8 @@ mod tests {
             stalled_steps: 0,
             sweeps: 1,
             largest_residual: 0.0,
+            lost_grains: 0,
+            alarms: Default::default(),
         }
     }
 

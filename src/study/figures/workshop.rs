@@ -4,9 +4,11 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::verdict::{Claim, Verdict};
 use crate::error::{Error, Result};
 use crate::scene::Config;
-use crate::study::{Outcome, RunsTable, Study, SweepOptions, series_path, sweep};
+use crate::study::table::alarms_of;
+use crate::study::{Outcome, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
 /// The studies that are shipped.
 const STUDIES: [(&str, &str); 8] = [
@@ -57,23 +59,49 @@ impl Workshop {
         Ok(())
     }
 
-    /// The results of a study that was run.
+    /// The results of a study that was run, but for runs without a finite end: they have no numbers.
     pub(super) fn rows(&self, name: &str) -> Result<Rows<'_>> {
         let found = self.finished.get(name);
         let (_, table) =
             found.ok_or_else(|| Error::value("study", name, "run before its figures"))?;
-        Ok(Rows(table.rows.iter().map(|(_, config, outcome)| (config, outcome)).collect()))
+        let ended = table.rows.iter().filter(|(.., outcome)| outcome.status == Status::Done);
+        let rows: Vec<_> = ended.map(|(_, config, outcome)| (config, outcome)).collect();
+        if rows.is_empty() {
+            return Err(Error::value(name, "without a run that ended", "run to some finite end"));
+        }
+        Ok(Rows(rows))
     }
 
     /// The courses of a study's runs, each with its config: its file as text.
     pub(super) fn courses(&self, name: &str) -> Result<Vec<(Config, String)>> {
         let Some((study, _)) = self.finished.get(name) else { return Ok(Vec::new()) };
         let read = |run: &crate::study::PlannedRun| {
-            let path = series_path(&self.study_folder(name), run);
+            let path = series_path(&self.study_folder(name), &run.key);
             let text = std::fs::read_to_string(&path).map_err(|error| Error::file(&path, error))?;
             Ok((run.config.clone(), text))
         };
         study.runs.iter().map(read).collect()
+    }
+
+    /// Says of each claim of a figure which alarms the runs of its studies raised: claims that rest on runs
+    /// without a finite end, or that lost grains, are not decided.
+    pub(super) fn qualify(&self, studies: &[&str], claims: &mut [Claim]) {
+        let of_studies = studies.iter().filter_map(|name| self.finished.get(name));
+        let outcomes = || {
+            let tables = of_studies.clone().map(|(_, table)| table);
+            tables.flat_map(|table| table.rows.iter().map(|(.., outcome)| outcome))
+        };
+        let Some(told) = alarms_of(outcomes()) else { return };
+        let spoilt = |outcome: &&Outcome| outcome.status != Status::Done || outcome.lost_grains > 0;
+        let spoilt = outcomes().filter(spoilt).count();
+        for claim in claims {
+            claim.measured = format!("{}; {told}", claim.measured);
+            if spoilt > 0 {
+                claim.measured =
+                    format!("{}, and {spoilt} lost grains or did not end", claim.measured);
+                claim.verdict = Verdict::Open;
+            }
+        }
     }
 
     fn study_folder(&self, name: &str) -> PathBuf {

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 
 use super::machine::Machine;
 use crate::error::Result;
-use crate::output::check_writable;
+use crate::output::{check_writable, note_line};
 use crate::study::chart::Sheet;
 use crate::study::journal::{self, Journal};
 
@@ -48,7 +48,7 @@ impl Bench {
         let journal = Journal::open(&folder, name)?;
         let done: Vec<T> = journal::read(&journal::path_of(&folder, name))?;
         if !done.is_empty() {
-            eprintln!("{name}: {} measurements were there", done.len());
+            note_line(format_args!("{name}: {} measurements were there", done.len()));
         }
         Ok((journal, done))
     }

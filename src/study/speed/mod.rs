@@ -24,7 +24,7 @@ use self::bench::{Bench, Part};
 use self::machine::Machine;
 use super::chart::{png, svg};
 use crate::error::Result;
-use crate::output::{check_writable, write_file};
+use crate::output::{check_writable, note_line, print_line, print_text, write_file};
 
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -94,12 +94,12 @@ pub(crate) fn chart_speed(options: &ChartOptions) -> Result<()> {
             }
             report.push_str(&format!("\n![{name}]({name}.png)\n\n{told}\n"));
         }
-        eprintln!("{title}: {:.0} s", begun.elapsed().as_secs_f64());
+        note_line(format_args!("{title}: {:.0} s", begun.elapsed().as_secs_f64()));
     }
     let path = options.out.join("chart.md");
     write_file(&path, report.as_bytes())?;
-    print!("{report}");
-    println!("\n{}", path.display());
+    print_text(&report);
+    print_line(format_args!("\n{}", path.display()));
     Ok(())
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::entrants::Entrant;
 use crate::contact::ContactList;
+use crate::output::number;
 use crate::sim::ProblemVisitor;
 use crate::solver::{Memory, Model, SolverSettings, StepProblem, residual, solve};
 use crate::study::performance::Timing;
@@ -40,8 +41,10 @@ pub(super) struct Race {
     /// Contacts of the problem.
     pub contacts: usize,
     /// Residual of the start, with the impulses of the step before.
+    #[serde(with = "number")]
     pub start_residual: f64,
     /// Smallest residual of any of its solves.
+    #[serde(with = "number")]
     pub smallest_residual: f64,
     /// (residual asked for, s) of what was reached.
     pub reached: Vec<(f64, f64)>,

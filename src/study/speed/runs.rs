@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
+use crate::output::number;
 use crate::scene::Scene;
 use crate::sim::{RunEnding, Simulation, Tally};
 
@@ -39,8 +40,10 @@ pub(super) struct TimedRun {
     pub steps: u64,
     pub unconverged_steps: u64,
     /// Δy_G at the end.
+    #[serde(with = "number")]
     pub slump: f64,
     /// Mean over the steps, in diameters.
+    #[serde(with = "number")]
     pub mean_overlap: f64,
 }
 
@@ -98,11 +101,12 @@ fn once(key: String, start: &Simulation, steps: u64, limit_secs: f64) -> Result<
     let ending = match ended {
         RunEnding::Done => Ending::Done,
         RunEnding::Stopped => Ending::TooSlow,
-        RunEnding::NotFinite(_) => Ending::NotFinite,
+        RunEnding::NotFinite(_) => {
+            tally.add(simulation.observables());
+            Ending::NotFinite
+        }
     };
     let wall_secs = started.elapsed().as_secs_f64();
-    // What is not finite has no place in a journal of numbers.
-    let finite = |number: f64| if number.is_finite() { number } else { 0.0 };
     Ok(TimedRun {
         key,
         ending,
@@ -110,7 +114,7 @@ fn once(key: String, start: &Simulation, steps: u64, limit_secs: f64) -> Result<
         simulated_secs: simulation.time_secs() - start.time_secs(),
         steps: tally.steps,
         unconverged_steps: tally.unconverged_steps,
-        slump: finite(simulation.observables().slump),
-        mean_overlap: finite(tally.mean_overlap),
+        slump: simulation.observables().slump,
+        mean_overlap: tally.mean_overlap,
     })
 }

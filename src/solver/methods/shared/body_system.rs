@@ -177,7 +177,8 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
         }
         match settings.stop {
             StopTest::ImpulsePerMass => absolute <= tolerance * self.problem.mean_mass,
-            _ => squared <= tolerance * tolerance * whole,
+            // An infinite change is no larger than infinite impulses, and settles nothing.
+            _ => squared.is_finite() && squared <= tolerance * tolerance * whole,
         }
     }
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::super::runs::{Ending, TimedRun, timed_run};
 use super::plan::{FINEST_SECS, Plan, REFERENCE, config};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::Progress;
 use crate::sim::Stepper;
 use crate::solver::{Method, SolverSettings, StopTest};
@@ -93,6 +93,9 @@ pub(super) fn references(
                     run
                 }
             };
+            if run.ending != Ending::Done {
+                return Err(Error::value(&run.key, "not finite", "finite to compare with it"));
+            }
             progress.advance(1);
             Ok((number, (law, time_step_secs.to_bits(), pile), run.slump))
         })

@@ -1,5 +1,7 @@
 //! Sweeps as a user starts them: results, resuming, parts, and what is said of a bad study file.
 
+mod damage;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

@@ -1,0 +1,128 @@
+//! Discs that lie so deep in one another at the start that no scene can mean it.
+//!
+//! Of n discs whose centres keep a distance, each touches few others, and pairs, contacts and time
+//! grow with n. Of n discs in one place all n²/2 pairs touch. A pair is too close where its centres
+//! are nearer than half the smaller radius, which is looked for level by level: on the level of radii
+//! from 2^e to 2^(e + 1) cells are 2^e wide, so that a disc sees all that is too close to it in
+//! its own cell and the 8 around it. Discs are sorted by cell, so three stretches hold those nine.
+
+use glam::DVec2;
+
+use crate::error::{Error, Result};
+use crate::world::World;
+
+/// Centres of a grain and another disc keep this part of the smaller radius. What is pressed in
+/// practice keeps more than 1.8; two discs of the challenge `overlap` start with 1.
+const LEAST_DISTANCE_IN_RADII: f64 = 0.5;
+/// A wall may be made smooth of fixed discs that overlap, but of no more than this many within
+/// that distance: a grain would touch them all.
+const MOST_FIXED_TOO_CLOSE: usize = 1000;
+
+/// The number of a cell along each axis.
+type Cell = [i64; 2];
+
+/// Checks that no two discs are too close, in time and memory that grow with their number.
+///
+/// # Errors
+/// Names the two discs.
+pub(crate) fn check_distances(world: &World) -> Result<()> {
+    let grains = &world.grains;
+    let fixed = world.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
+    let discs: Vec<(DVec2, f64)> =
+        grains.positions.iter().copied().zip(grains.radii.iter().copied()).chain(fixed).collect();
+    let Some((one, other)) = first_too_close(&discs, grains.len()) else { return Ok(()) };
+    let name = |index: usize| match index.checked_sub(grains.len()) {
+        Some(fixed) => format!("fixed_discs[{fixed}]"),
+        None => format!("grains[{index}]"),
+    };
+    let ((place, radius), (place_of_other, radius_of_other)) = (discs[one], discs[other]);
+    let distance = place.distance(place_of_other);
+    let found = format!("{place} m, {distance} m from that of {}", name(other));
+    let least = LEAST_DISTANCE_IN_RADII * radius.min(radius_of_other);
+    let allowed = format!("at least {least} m from it, half the smaller radius");
+    Err(Error::value(format!("{}.position", name(one)), found, allowed))
+}
+
+/// Two discs (centre, radius; m) that are too close; the first `grain_count` ones are grains.
+fn first_too_close(discs: &[(DVec2, f64)], grain_count: usize) -> Option<(usize, usize)> {
+    let level = |radius: f64| radius.to_bits() >> 52;
+    let mut levels: Vec<u64> = discs.iter().map(|&(_, radius)| level(radius)).collect();
+    levels.sort_unstable();
+    levels.dedup();
+    let mut places: Vec<(Cell, u32)> = Vec::with_capacity(discs.len());
+    // The largest first: what a smaller disc sees of them is then known to keep its distance.
+    for &now in levels.iter().rev() {
+        let width = f64::from_bits(now << 52).max(f64::MIN_POSITIVE);
+        let cell = |centre: DVec2| [(centre.x / width).floor(), (centre.y / width).floor()];
+        let larger = (0..).zip(discs).filter(|(_, (_, radius))| level(*radius) >= now);
+        places.clear();
+        places
+            .extend(larger.map(|(index, &(centre, _))| (cell(centre).map(|at| at as i64), index)));
+        places.sort_unstable();
+        for &([x, y], index) in &places {
+            let (centre, radius) = discs[index as usize];
+            if level(radius) != now {
+                continue;
+            }
+            let mut fixed_too_close = 0;
+            for column in [x.saturating_sub(1), x, x.saturating_add(1)] {
+                let below = [column, y.saturating_sub(1)];
+                let start = places.partition_point(|&(cell, _)| cell < below);
+                let above = [column, y.saturating_add(1)];
+                let stretch = places[start..].iter().take_while(|&&(cell, _)| cell <= above);
+                for &(_, other) in stretch.filter(|&&(_, other)| other != index) {
+                    let (centre_of_other, radius_of_other) = discs[other as usize];
+                    let least = LEAST_DISTANCE_IN_RADII * radius.min(radius_of_other);
+                    if centre.distance(centre_of_other) >= least {
+                        continue;
+                    }
+                    let pair = (index.max(other) as usize, index.min(other) as usize);
+                    fixed_too_close += 1;
+                    if pair.1 < grain_count || fixed_too_close > MOST_FIXED_TOO_CLOSE {
+                        return Some(pair);
+                    }
+                }
+            }
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `count` discs of many sizes on a lattice that leaves each its room.
+    fn apart(count: usize) -> Vec<(DVec2, f64)> {
+        let place = |k: usize| DVec2::new((k % 100) as f64, (k / 100) as f64);
+        (0..count).map(|k| (place(k), 0.5 / (1 + k % 7) as f64)).collect()
+    }
+
+    #[test]
+    fn two_discs_in_one_place_are_found_among_many_of_any_size() {
+        let mut discs = apart(10_000);
+        assert_eq!(first_too_close(&discs, discs.len()), None);
+        for (one, radius) in [(17, 0.5), (5_000, 1e-6), (9_999, 30.0)] {
+            let mut spoilt = discs.clone();
+            spoilt.push((discs[one].0 + 0.2 * discs[one].1.min(radius) * DVec2::X, radius));
+            let found = first_too_close(&spoilt, spoilt.len()).expect("a pair");
+            assert_eq!(found.0, 10_000, "{radius}");
+        }
+        // All within one cell, and apart by half a radius and a bit.
+        discs.truncate(0);
+        discs.extend((0..9).map(|k| (0.51 * DVec2::new((k % 3) as f64, (k / 3) as f64), 1.0)));
+        assert_eq!(first_too_close(&discs, 9), None);
+        discs[8].0 -= 0.03 * DVec2::X;
+        assert_eq!(first_too_close(&discs, 9), Some((8, 7)));
+    }
+
+    #[test]
+    fn a_hundred_thousand_discs_in_one_place_are_told_of_at_once() {
+        let start = std::time::Instant::now();
+        let discs = vec![(DVec2::ONE, 0.1); 100_000];
+        assert!(first_too_close(&discs, discs.len()).is_some());
+        assert!(first_too_close(&discs, 0).is_some(), "fixed ones, too many to touch at once");
+        assert_eq!(first_too_close(&discs[..1000], 0), None, "a smooth wall");
+        assert!(start.elapsed().as_secs_f64() < 10.0);
+    }
+}

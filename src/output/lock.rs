@@ -1,0 +1,69 @@
+//! One run at a time in a folder.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::path::{Path, PathBuf};
+
+use super::lines::note_line;
+use crate::error::{Error, Result};
+
+/// Name of the file that a run in the folder holds locked. The lock ends with the process, however
+/// that ends; a file that was left behind locks nothing.
+const NAME: &str = ".slump.lock";
+
+/// A folder that this process alone writes to until this is dropped.
+pub(crate) struct FolderLock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl FolderLock {
+    /// Locks a folder that is there.
+    ///
+    /// # Errors
+    /// Where another process has it, or no file can be written in it.
+    pub(crate) fn of(folder: &Path) -> Result<Self> {
+        let path = folder.join(NAME);
+        loop {
+            let file = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
+            let file = file.map_err(|error| Error::file(&path, error))?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => {
+                    let reason = "is being written by another run, which must end first";
+                    return Err(Error::file(folder, reason));
+                }
+                // Some file systems have no locks; to write there at all is worth more.
+                Err(TryLockError::Error(error)) => {
+                    let folder = folder.display();
+                    note_line(format_args!(
+                        "{folder}: cannot be locked ({error}), so nothing keeps a second run out"
+                    ));
+                }
+            }
+            // Another run may have removed its file between opening and locking it here.
+            if is_at(&file, &path) {
+                return Ok(Self { path, _file: file });
+            }
+        }
+    }
+}
+
+impl Drop for FolderLock {
+    fn drop(&mut self) {
+        // While it is still locked. A file that stays does no harm.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |metadata: std::fs::Metadata| (metadata.dev(), metadata.ino());
+    let there = std::fs::metadata(path).ok().map(place);
+    there.is_some() && file.metadata().ok().map(place) == there
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
+}

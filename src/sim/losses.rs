@@ -1,0 +1,213 @@
+//! Grains that are lost: through a wall, or out of the world.
+//!
+//! A wall may be thin, so that it is not the place of a centre that tells, but its way: a centre that
+//! comes from one side of a segment to the other, or through a polygon, has gone where no disc can go.
+//! Half-spaces and polygons push grains out again that are not deep inside. Ways are looked at once
+//! they are a quarter of a radius long. A disc that goes around the end of a wall stays by its radius
+//! off that end, so that no such way cuts the wall.
+
+use glam::DVec2;
+use parry2d_f64::shape::Segment;
+
+use crate::contact::Feature;
+use crate::world::{Gravity, Physics, World};
+
+/// How far the world reaches beyond the box of all that was there at the start, in sides of the box.
+const ROOM_IN_SIDES: f64 = 3.0;
+/// How deep a centre is in a solid, or below all that was there at the start, when it is lost, in d: no
+/// contact brings it back from there.
+const LOST_DEPTH: f64 = 1.0;
+/// Length of a way that is looked at, in radii. Longer: one around the end of a wall might cut it;
+/// shorter: every step costs as much as one in a collapse.
+const WAY_IN_RADII: f64 = 0.25;
+
+/// What watches over a world's grains.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Losses {
+    /// Where each grain's way begins that has not been looked at, m.
+    from: Vec<DVec2>,
+    lost: Vec<bool>,
+    count: u32,
+    /// y_i(0), m.
+    initial_heights: Vec<f64>,
+    world: Edges,
+    /// On a line nothing can slump.
+    on_line: bool,
+    /// Whether all grains have been looked at once: some may be in a wall from the start.
+    begun: bool,
+}
+
+/// Where the world ends.
+#[derive(Clone, Copy, Debug, Default)]
+struct Edges {
+    /// Corners, m; none where nothing is fixed, or on open ground: grains may go where they like.
+    corners: Option<[DVec2; 2]>,
+    /// A direction and how far it goes, m: down, to below all that was there at the start.
+    bottom: Option<(DVec2, f64)>,
+}
+
+impl Losses {
+    /// Of a world whose boundaries are `features`, from now on.
+    pub(super) fn new(world: &World, features: &[Feature], physics: Physics) -> Self {
+        let positions = &world.grains.positions;
+        Self {
+            from: positions.clone(),
+            lost: vec![false; positions.len()],
+            count: 0,
+            initial_heights: positions.iter().map(|position| position.y).collect(),
+            world: Edges::of(world, features),
+            on_line: physics.axes == 1,
+            begun: false,
+        }
+    }
+
+    /// Number of grains lost so far.
+    pub(super) fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Looks where the grains have gone. Walls may have moved: `features` are where they are now.
+    pub(super) fn look(&mut self, world: &World, features: &[Feature], walls_move: bool) {
+        if features.is_empty() && self.world.corners.is_none() {
+            return;
+        }
+        let look_at_all = walls_move || !std::mem::replace(&mut self.begun, true);
+        let deep = -LOST_DEPTH * world.mean_diameter;
+        for (index, &to) in world.grains.positions.iter().enumerate() {
+            let way = WAY_IN_RADII * world.grains.radii[index];
+            let from = self.from[index];
+            let is_long = from.distance_squared(to) > way * way;
+            if !(is_long || look_at_all) || self.lost[index] {
+                continue;
+            }
+            let fate = features.iter().map(|feature| fate(feature, from, to, deep)).max();
+            match fate.unwrap_or(Fate::There) {
+                Fate::Inside => {}
+                Fate::There if !self.world.is_outside(to) => {
+                    if is_long {
+                        self.from[index] = to;
+                    }
+                }
+                _ => {
+                    self.lost[index] = true;
+                    self.count += 1;
+                }
+            }
+        }
+    }
+
+    /// Δy_G (paper eq. 11) of the grains that are still there: what is lost is in neither sum.
+    pub(super) fn slump(&self, world: &World) -> f64 {
+        let there = || (0..self.lost.len()).filter(|&index| !self.lost[index]);
+        let initial: f64 = there().map(|index| self.initial_heights[index]).sum();
+        let heights: f64 = there().map(|index| world.grains.positions[index].y).sum();
+        if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
+    }
+
+    /// Forgets the last grain, which is taken out of the world.
+    pub(super) fn remove_last(&mut self) {
+        self.from.pop();
+        self.initial_heights.pop();
+        self.count -= u32::from(self.lost.pop() == Some(true));
+    }
+}
+
+impl Edges {
+    fn of(world: &World, features: &[Feature]) -> Self {
+        let discs = world.fixed_discs.iter().map(|disc| disc.position);
+        let mut fixed: Vec<DVec2> = discs.collect();
+        for feature in features {
+            match feature {
+                // On open ground grains may roll as far as they like.
+                Feature::HalfSpace { .. } => return Self::default(),
+                Feature::Segment { shape, .. } => fixed.extend([shape.a, shape.b]),
+                Feature::ConvexPolygon { sides } => fixed.extend(sides.iter().map(|side| side.a)),
+            }
+        }
+        if fixed.is_empty() {
+            return Self::default();
+        }
+        let all = || world.grains.positions.iter().chain(&fixed).copied();
+        let min = all().fold(DVec2::INFINITY, DVec2::min);
+        let max = all().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let side = (max - min).max_element() + world.mean_diameter;
+        let down = match world.gravity {
+            Gravity::Uniform { acceleration } => acceleration.normalize_or_zero(),
+            Gravity::Attraction { .. } => DVec2::ZERO,
+        };
+        let lowest = all().map(|place| place.dot(down)).fold(f64::NEG_INFINITY, f64::max);
+        Self {
+            corners: Some([min - ROOM_IN_SIDES * side, max + ROOM_IN_SIDES * side]),
+            bottom: (down != DVec2::ZERO)
+                .then_some((down, lowest + LOST_DEPTH * world.mean_diameter)),
+        }
+    }
+
+    fn is_outside(&self, place: DVec2) -> bool {
+        let Self { corners, bottom } = self;
+        corners.is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
+            || bottom.is_some_and(|(down, lowest)| place.dot(down) > lowest)
+    }
+}
+
+/// What a wall did to a grain, the worst last.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Fate {
+    There,
+    /// Its centre is in a solid polygon, and where it comes out will tell.
+    Inside,
+    Lost,
+}
+
+/// What became of a grain that went `from` a place that is in no polygon `to` another one.
+fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
+    let if_lost = |lost: bool| if lost { Fate::Lost } else { Fate::There };
+    match feature {
+        Feature::HalfSpace { .. } => if_lost(feature.distance_to_any_point(to) < deep),
+        Feature::Segment { shape, .. } => if_lost(crosses(from, to, shape)),
+        Feature::ConvexPolygon { sides } => {
+            let depth = |place: DVec2| {
+                let above = |side: &Segment| (place - side.a).dot(outward(side));
+                sides.iter().map(above).fold(f64::NEG_INFINITY, f64::max)
+            };
+            match (depth(from), depth(to)) {
+                (_, now) if now < deep => Fate::Lost,
+                (before, now) if before > 0.0 && now <= 0.0 => Fate::Inside,
+                (before, now) => if_lost(before > 0.0 && now > 0.0 && cuts(from, to, sides)),
+            }
+        }
+    }
+}
+
+/// The unit normal on the right of a segment; outward for the side of an anticlockwise polygon.
+fn outward(side: &Segment) -> DVec2 {
+    -(side.b - side.a).perp().normalize_or_zero()
+}
+
+/// Whether the way `from` … `to` crosses a segment. A point that is shared by two segments in a row
+/// belongs to one side of the way, so that nothing slips through between them.
+fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
+    let is_left = |a: DVec2, b: DVec2, place: DVec2| (b - a).perp_dot(place - a) >= 0.0;
+    // Most walls are far from most ways.
+    let (low, high) = (from.min(to), from.max(to));
+    wall.a.min(wall.b).cmple(high).all()
+        && wall.a.max(wall.b).cmpge(low).all()
+        && is_left(wall.a, wall.b, from) != is_left(wall.a, wall.b, to)
+        && is_left(from, to, wall.a) != is_left(from, to, wall.b)
+}
+
+/// Whether the way `from` … `to`, both outside of a convex polygon, goes through it.
+fn cuts(from: DVec2, to: DVec2, sides: &[Segment]) -> bool {
+    let (mut enters, mut leaves) = (0f64, 1f64);
+    for side in sides {
+        let normal = outward(side);
+        let (start, end) = ((from - side.a).dot(normal), (to - side.a).dot(normal));
+        match (start > 0.0, end > 0.0) {
+            (true, true) => return false,
+            (true, false) => enters = enters.max(start / (start - end)),
+            (false, true) => leaves = leaves.min(start / (start - end)),
+            (false, false) => {}
+        }
+    }
+    enters < leaves
+}
