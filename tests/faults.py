@@ -57,8 +57,8 @@ def check_folder(out, killed):
     manifest = os.path.join(out, "manifest.json")
     if os.path.exists(manifest):
         try:
-            ended = json.load(open(manifest)).get("ended")
-            if not killed and ended not in ("interrupted", "complete"):
+            ended = [run["ended"] for run in json.load(open(manifest))["runs"]]
+            if not killed and not set(ended) <= {"interrupted", "complete"}:
                 wrong.append(f"ended: {ended}")
         except ValueError:
             wrong.append("the manifest is no JSON")

@@ -18,6 +18,7 @@ pub use candidates::{Candidates, Reach};
 pub(crate) use contact_list::LookAhead;
 pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
 pub(crate) use features::Feature;
+#[doc(hidden)]
 pub use grid::Grid;
 pub(crate) use lanes::Lanes;
 #[cfg(test)]

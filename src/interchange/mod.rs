@@ -6,7 +6,7 @@
 //! `c0`, the cohesion impulse C₀Δt of each contact (N·s), and `cone`, `"shifted"` or `"compressive"`.
 //! A solution is u = W r + q with r = (P_n, P_t) in N·s; `start` may give impulses to start from.
 //! Problems of our own have their `bodies` beside W ([`BodyForm`]). Siconos' text files of plane
-//! problems are read as well ([`siconos`]).
+//! problems are read as well (`siconos`).
 //!
 //! This stands beside `study`, above the scenes: a problem is taken from a simulation.
 

@@ -1,9 +1,9 @@
 //! Pictures of snapshots.
 //!
 //! From the bottom up: `colour`; the primitives `disc` and `link`, each one Rust file and one shader;
-//! [`Picture`], lists of primitives in pixels; [`Renderer`], which draws them on Vulkan, OpenGL or
+//! `Picture`, lists of primitives in pixels; [`Renderer`], which draws them on Vulkan, OpenGL or
 //! the processor; [`Camera`] and [`Style`], which turn a snapshot into a picture
-//! ([`scene_picture`]); [`draw_scene`], which adds scale bar, legend and words; [`Figure`], which
+//! (`scene_picture`); [`draw_scene`], which adds scale bar, legend and words; [`Figure`], which
 //! arranges several pictures as a journal does.
 
 #[cfg(all(test, feature = "gpu"))]

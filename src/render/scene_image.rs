@@ -17,7 +17,7 @@ use crate::sim::Snapshot;
 /// at the part left of the legend; [`Style::camera`] makes one.
 ///
 /// # Errors
-/// As [`Renderer::draw`].
+/// Names `size` if it is empty or too large; otherwise says what the device reported.
 pub fn draw_scene(
     renderer: &mut Renderer,
     snapshot: &Snapshot,

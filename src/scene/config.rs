@@ -85,7 +85,8 @@ impl Config {
     /// `progress` is told, and can end it by returning false.
     ///
     /// # Errors
-    /// As [`Config::without_settling`], and where the grains do not come to rest.
+    /// Names the first field that is unknown or outside its range, or the file that cannot be read; and
+    /// where the grains do not come to rest.
     pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
         let ground = self.ground()?;
         let scene = self.change(&ground)?;

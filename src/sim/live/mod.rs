@@ -2,7 +2,7 @@
 //!
 //! Commands go in by a channel ([`Command`]); the newest moment comes out by a triple buffer
 //! ([`Frame`]). Neither side ever waits for the other. The thread records what it computes, so that
-//! a run can be looked at again and continued from any moment ([`Recording`]); several worlds that
+//! a run can be looked at again and continued from any moment (`recording`); several worlds that
 //! start from one state are kept at the same simulated time.
 
 mod clock;

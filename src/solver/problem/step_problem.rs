@@ -24,7 +24,7 @@ pub struct Row<K: Kinematics> {
     /// g_i = m_ij/m_i; 1 against a fixed body.
     pub share: f64,
     /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold, and less
-    /// the speed of a wall that comes ([`StepProblem::drive`]).
+    /// the speed of a wall that comes (`StepProblem::drive`).
     pub restitution_velocity: f64,
     /// σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
