@@ -14,8 +14,8 @@ use crate::world::{Gravity, Physics, World};
 
 /// How far the world reaches beyond the box of all that was there at the start, in sides of the box.
 const ROOM_IN_SIDES: f64 = 3.0;
-/// How deep a centre is in a solid, or below all that was there at the start, when it is lost, in d: no
-/// contact brings it back from there.
+/// How deep a centre is in a solid, or below all that was there at the start, when it is lost, in d. A
+/// half-space may push it out again; it stays lost, since where it was is no place of the scene.
 const LOST_DEPTH: f64 = 1.0;
 /// Length of a way that is looked at, in radii. Longer: one around the end of a wall might cut it;
 /// shorter: every step costs as much as one in a collapse.
