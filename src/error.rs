@@ -40,9 +40,12 @@ pub enum Error {
     },
     /// A simulation whose state is no longer finite.
     #[error(
-        "the state is no longer finite at step {step} (t = {time_secs} s) with Bond {bond}, \
-         time step {time_step_secs} s, restitution {restitution}, friction {friction}; \
-         a smaller time step is the change most likely to help"
+        "{}",
+        legible(&format!(
+            "the state is no longer finite at step {step} (t = {time_secs} s) with Bond {bond}, \
+             time step {time_step_secs} s, restitution {restitution}, friction {friction}; \
+             a smaller time step is the change most likely to help"
+        ))
     )]
     NonFinite {
         /// The step after which it was seen.
@@ -173,7 +176,7 @@ fn place(path: &Path) -> String {
 }
 
 /// What moves the cursor or turns the direction of writing, escaped.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for char in text.chars() {
         let turns = matches!(char, '\u{200e}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
@@ -203,6 +206,12 @@ mod tests {
         assert!(number.to_string().len() > 300, "the situation");
         assert_eq!(said(&format!("({number}, 2)")), "bond is (1e-300, 2), but must be a number");
         assert_eq!(said("0.1234567890123456"), "bond is 0.1234567890123456, but must be a number");
+        let [bond, time_step_secs] = [f64::MAX, 1e-300];
+        let (step, time_secs, restitution, friction) = (1, time_step_secs, 0.0, 0.5);
+        let gone =
+            Error::NonFinite { step, time_secs, bond, time_step_secs, restitution, friction };
+        let gone = gone.to_string();
+        assert!(gone.contains("Bond 1.7976931348623157e308, time step 1e-300 s"), "{gone}");
         for long in
             ["1".repeat(100_000), "x".repeat(100_000), "x ".repeat(100_000), "é".repeat(999)]
         {

@@ -100,7 +100,8 @@ fn a_folder_that_cannot_be_written_is_named() {
     std::fs::write(&file, "kept").expect("a file");
     let said =
         refusal(&["--headless", "--scene", "cradle", "--frames", file.to_str().expect("UTF-8")]);
-    assert!(said.contains("file") && said.contains("cannot be written"), "{said}");
+    let sentence = format!("slump: frames is {}, but must be a folder that can", file.display());
+    assert!(said.starts_with(&sentence), "{said}");
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), "kept");
     assert!(refusal(&["--headless"]).contains("frames is missing"));
 }

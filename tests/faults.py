@@ -3,10 +3,12 @@
 
 tests/faults.py target/release/slump [FAULTS] > table
 
-Signals at random times x frames, GIF, sweep; a file system that is full (needs root, else left out); folders
-that are read-only or missing; streams that are closed or full. After each fault everything that was finished
-must be there and readable, nothing half-written under a final name, and the same command must go on. Prints a
-line for each kind of fault: how many, and what was lost. Exit code 1 where anything was.
+Signals at random times x frames, GIF, sweep, reproduce, chart; a file system that is full (needs root, else
+left out); folders that are read-only or missing; streams that are closed or full. After each fault everything
+that was finished must be there and readable, nothing half-written under a final name, and the same command must
+go on. Of sweep, reproduce and chart each finished run counts for itself: its record, and its course where it has
+one, must be the same afterwards, and it must not be computed again. Prints a line for each kind of fault: how
+many, how many finished runs were there, and what was lost. Exit code 1 where anything was.
 """
 import collections, csv, glob, json, os, random, shutil, signal, subprocess, sys, tempfile, time
 
@@ -20,33 +22,69 @@ scene = "cradle"
 duration = 1.5
 [vary]
 dt = { from = 1e-4, to = 1e-2, count = 24, scale = "log" }
+[series]
+interval = 0.01
+grains = [0, 1, 2]
 """
+ENDINGS = {".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".json": b"}\n", ".csv": b"\n", ".md": b"\n"}
+# Figures of one study with courses, in a few seconds.
+FIGURES = ["reproduce", "fig8", "fig8-strip", "--quick"]
+CHART = ["chart", "--quick", "--only", "simulation"]
 random.seed(1)
-counts, losses = collections.Counter(), collections.defaultdict(list)
+counts, losses, finished = collections.Counter(), collections.defaultdict(list), collections.Counter()
 
 
-def start(*words, **more):
-    return subprocess.Popen([BINARY, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **more)
+def heed_signals():
+    """What is ignored here, as under nohup, the program ignores as well."""
+    for number in SIGNALS.values():
+        if number != signal.SIGKILL:
+            signal.signal(number, signal.SIG_DFL)
 
 
-def rows_of(path):
-    with open(path, newline="") as file:
-        return list(csv.reader(file))
+def start(*words):
+    return subprocess.Popen([BINARY, *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=heed_signals)
+
+
+def hit(run, name, after, before):
+    """Sends a signal at a random time; the exit code."""
+    time.sleep(random.uniform(after, before))
+    run.send_signal(SIGNALS[name])
+    try:
+        return run.wait(timeout=60)
+    except subprocess.TimeoutExpired:
+        run.kill()
+        run.wait()
+        return "of none that ends"
+
+
+def note(kind, wrong):
+    counts[kind] += 1
+    losses[kind] += wrong
+
+
+def half_written(out):
+    """Files under their final names that do not end as such files do. Journals and tables of observables are
+    written as they come."""
+    wrong = []
+    for path in glob.glob(os.path.join(glob.escape(out), "**", "*.*"), recursive=True):
+        ending = ENDINGS.get(os.path.splitext(path)[1])
+        streamed = os.path.basename(path) == "observables.csv"
+        if ending and os.path.isfile(path) and not streamed:
+            if not open(path, "rb").read().endswith((ending, ending + b"\n")):
+                wrong.append(f"half a file: {os.path.basename(path)}")
+    return wrong
 
 
 def check_folder(out, killed):
     """What is wrong with a folder of frames."""
-    wrong = []
+    wrong = half_written(out)
     left = [name for name in os.listdir(out) if "tmp" in name] if os.path.isdir(out) else []
     if left and not killed:
         wrong.append(f"left behind: {left}")
-    for path in glob.glob(os.path.join(out, "frame_*.png")):
-        with open(path, "rb") as file:
-            if not file.read().endswith(b"IEND\xaeB`\x82"):
-                wrong.append(f"half a picture: {path}")
     table = os.path.join(out, "observables.csv")
     if os.path.exists(table):
-        rows = rows_of(table)
+        with open(table, newline="") as file:
+            rows = list(csv.reader(file))
         whole = [row for row in rows if len(row) == len(rows[0])]
         # The last row of a process that was killed may be cut; no other one.
         if len(whole) < len(rows) - (1 if killed else 0):
@@ -57,31 +95,27 @@ def check_folder(out, killed):
     manifest = os.path.join(out, "manifest.json")
     if os.path.exists(manifest):
         try:
-            ended = [run["ended"] for run in json.load(open(manifest))["runs"]]
-            if not killed and not set(ended) <= {"interrupted", "complete"}:
-                wrong.append(f"ended: {ended}")
+            told = json.load(open(manifest))
         except ValueError:
-            wrong.append("the manifest is no JSON")
+            return wrong + ["the manifest is no JSON"]
+        ended = [run["ended"] for run in told["runs"]]
+        if not killed and not set(ended) <= {"interrupted", "complete"}:
+            wrong.append(f"ended: {ended}")
+        listed = [picture["file"] for picture in told["pictures"]]
+        there = sorted(os.path.basename(path) for path in glob.glob(os.path.join(out, "frame_*.png")))
+        if listed != there[:len(listed)] or not killed and len(listed) < len(there):
+            wrong.append("the manifest lists other pictures")
     elif not killed and os.path.exists(table):
         wrong.append("no manifest")
     return wrong
-
-
-def note(kind, wrong):
-    counts[kind] += 1
-    losses[kind] += wrong
 
 
 def frames_or_gif(folder, name, gif):
     out = os.path.join(folder, "out")
     words = ["--headless", "--renderer", "cpu", "--size", "64x36", "--duration", "3", "--dt", "1e-3", "--solver", "newton"]
     words += ["--gif", os.path.join(folder, "a.gif")] if gif else ["--frames", out]
-    if random.random() < 0.5:
-        words += ["--colour", "speed"]
-    run = start(*words)
-    time.sleep(random.uniform(0.02, 1.0))
-    run.send_signal(SIGNALS[name])
-    code = run.wait(timeout=30)
+    words += random.choice([[], ["--colour", "speed"], ["--colour", "speed", "--colour-scale", "0,2"]])
+    code = hit(start(*words), name, 0.02, 1.0)
     wrong = [] if code in (CODES[name], 0) else [f"exit code {code} after {name}"]
     killed = name == "KILL"
     if gif:
@@ -95,20 +129,77 @@ def frames_or_gif(folder, name, gif):
     note(f"{'gif' if gif else 'frames'}, {name}", wrong)
 
 
-def sweep_once(folder, name, whole):
-    study = os.path.join(folder, "study.toml")
-    open(study, "w").write(STUDY)
-    out = os.path.join(folder, "out")
-    run = start("sweep", study, "--out", out)
-    time.sleep(random.uniform(0.01, 0.6))
-    run.send_signal(SIGNALS[name])
-    run.wait(timeout=60)
+def name_of(line):
+    record = json.loads(line)["record"]
+    return record.get("key") or (record["problem"], record["method"])
+
+
+def kept_in(out):
+    """The finished runs of a folder: the whole lines of each journal, and the bytes of their courses."""
+    kept = {}
+    for path in glob.glob(os.path.join(out, "**", "*.jsonl"), recursive=True):
+        # A kill can leave a half line at the end.
+        lines = open(path, "rb").read().split(b"\n")[:-1]
+        courses = {}
+        for line in lines:
+            course = os.path.join(os.path.dirname(path), "series", f"{name_of(line)}.csv")
+            if os.path.exists(course):
+                courses[course] = open(course, "rb").read()
+        kept[path] = (lines, courses)
+    return kept
+
+
+def number_of(kept):
+    return sum(len(lines) for lines, _ in kept.values())
+
+
+def compare(before, after):
+    """What of the runs that were finished before is not so any more."""
     wrong = []
-    if start("sweep", study, "--out", out).wait(timeout=120) != 0:
+    for path, (lines, courses) in before.items():
+        now, courses_now = after.get(path, ([], {}))
+        if now[:len(lines)] != lines:
+            wrong.append(f"{os.path.basename(path)}: records that were there are gone or others")
+        if any(courses_now.get(course) != text for course, text in courses.items()):
+            wrong.append("a course that was there is gone or another")
+    for path, (lines, _) in after.items():
+        again = [name for name, times in collections.Counter(map(name_of, lines)).items() if times > 1]
+        if again:
+            wrong.append(f"{os.path.basename(path)}: {len(again)} finished runs were computed again")
+    return wrong
+
+
+def outcome_of(out):
+    """What finished work of that kind comes to, but for reports, which have times in them."""
+    names = [name for name in sorted(os.listdir(out)) if name.endswith((".csv", ".svg", ".png"))]
+    return {name: open(os.path.join(out, name), "rb").read() for name in names}
+
+
+def resumed(folder, name, words, longest, whole):
+    """A sweep or a set of figures that is interrupted, and then runs to its end."""
+    out = os.path.join(folder, "out")
+    code = hit(start(*words, "--out", out), name, 0.01, longest)
+    before, wrong = kept_in(out), half_written(out)
+    if code not in (-SIGNALS[name], 0):
+        wrong.append(f"exit code {code}")
+    if start(*words, "--out", out).wait(timeout=300) != 0:
         wrong.append("does not go on")
-    elif open(os.path.join(out, "runs.csv")).read() != whole:
-        wrong.append("another table")
-    note(f"sweep, {name}", wrong)
+    elif outcome_of(out) != whole:
+        wrong.append("another table or picture")
+    wrong += compare(before, kept_in(out))
+    finished[f"{words[0]}, {name}"] += number_of(before)
+    note(f"{words[0]}, {name}", wrong)
+
+
+def chart_once(name, out):
+    """A chart that is interrupted again and again: each time it goes on where it was."""
+    run = start(*CHART, "--out", out)
+    before = kept_in(out)
+    code = hit(run, name, 0.1, 6.0)
+    wrong = [] if code in (-SIGNALS[name], 0) else [f"exit code {code}"]
+    after = kept_in(out)
+    finished[f"chart, {name}"] += number_of(before)
+    note(f"chart, {name}", wrong + half_written(out) + compare(before, after))
 
 
 def full_disk(folder):
@@ -126,40 +217,53 @@ def full_disk(folder):
         subprocess.run(["umount", disk])
 
 
-def closed_stream(folder):
+def closed_stream():
     words = random.choice([["list"], ["scene"], ["--help"], ["scene", "--scene", "cradle"]])
     stream = random.choice([">&-", "2>&-", "> /dev/full", "2> /dev/full", "| head -1 > /dev/null"])
     run = subprocess.run(f"{BINARY} {' '.join(words)} {stream}", shell=True, capture_output=True, text=True)
     note(f"stream {stream}", ["panic"] if "panicked" in run.stderr or run.returncode > 2 else [])
 
 
-def bad_folder(folder):
+def bad_folder():
     missing = random.random() < 0.5
     place = "/proc/no/such/folder" if missing else "/proc"
     words = random.choice([["--headless", "--frames", place], ["generate", "--grains", "5", "--out", f"{place}/a.csv"],
-        ["--headless", "--gif", f"{place}/a.gif", "--scene", "cradle"]])
+        ["--headless", "--gif", f"{place}/a.gif", "--scene", "cradle"], [*CHART, "--out", place], [*FIGURES, "--out", place]])
     run = subprocess.run([BINARY, *words], capture_output=True, text=True)
     said = [line for line in run.stderr.splitlines() if line.startswith("slump:")]
-    fine = run.returncode == 2 and len(said) == 1
+    option = "gif" if "--gif" in words else "frames" if "--frames" in words else "out"
+    fine = run.returncode == 2 and len(said) == 1 and said[0].startswith(f"slump: {option} is ") and "must be" in said[0]
     note("a folder that is none", [] if fine else [f"{words}: code {run.returncode}, {run.stderr[-200:]!r}"])
 
 
 def main():
-    with tempfile.TemporaryDirectory() as folder:
-        study = os.path.join(folder, "study.toml")
-        open(study, "w").write(STUDY)
-        assert start("sweep", study, "--out", os.path.join(folder, "out")).wait() == 0
-        whole = open(os.path.join(folder, "out", "runs.csv")).read()
-    kinds = [lambda f: frames_or_gif(f, random.choice(list(SIGNALS)), False), lambda f: frames_or_gif(f, random.choice(list(SIGNALS)), True),
-        lambda f: sweep_once(f, random.choice(list(SIGNALS)), whole), full_disk, closed_stream, bad_folder]
+    home = tempfile.mkdtemp()
+    study, charts = os.path.join(home, "study.toml"), os.path.join(home, "chart")
+    open(study, "w").write(STUDY)
+    sweep, whole, secs = ["sweep", study], {}, {}
+    for words in (sweep, FIGURES):
+        begun, out = time.time(), os.path.join(home, words[0])
+        assert start(*words, "--out", out).wait() == 0
+        whole[words[0]], secs[words[0]] = outcome_of(out), time.time() - begun
+    any_signal = lambda: random.choice(list(SIGNALS))
+    again = lambda words: lambda folder: resumed(folder, any_signal(), words, secs[words[0]], whole[words[0]])
+    kinds = [lambda folder: frames_or_gif(folder, any_signal(), False), lambda folder: frames_or_gif(folder, any_signal(), True),
+        again(sweep), again(FIGURES), lambda folder: chart_once(any_signal(), charts), full_disk,
+        lambda folder: closed_stream(), lambda folder: bad_folder()]
     for number in range(FAULTS):
         folder = tempfile.mkdtemp()
         kinds[number % len(kinds)](folder)
         shutil.rmtree(folder, ignore_errors=True)
-    print(f"{'fault':28} times  lost")
-    for kind in sorted(counts):
-        print(f"{kind:28} {counts[kind]:5}  {len(losses[kind])} {'; '.join(sorted(set(losses[kind])))[:300]}")
-    print(f"{sum(counts.values())} faults, {sum(map(len, losses.values()))} losses")
+    before = kept_in(charts)
+    if start(*CHART, "--out", charts).wait() != 0 or not os.path.exists(os.path.join(charts, "chart.md")):
+        losses["chart"].append("does not come to its end")
+    losses["chart"] += compare(before, kept_in(charts))
+    shutil.rmtree(home, ignore_errors=True)
+    print(f"{'fault':28} times  finished runs  lost")
+    for kind in sorted(set(counts) | {kind for kind in losses if losses[kind]}):
+        runs = finished.get(kind, "")
+        print(f"{kind:28} {counts[kind]:5}  {runs:13}  {len(losses[kind])} {'; '.join(sorted(set(losses[kind])))[:300]}")
+    print(f"{sum(counts.values())} faults, {sum(finished.values())} finished runs, {sum(map(len, losses.values()))} losses")
     return 1 if any(losses.values()) else 0
 
 

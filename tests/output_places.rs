@@ -130,15 +130,38 @@ fn where_nothing_can_be_written_is_told_before_the_work() {
     ];
     for work in works {
         let places = [
-            (folder.path().to_owned(), "is a folder"),
-            (kept.clone(), "read-only"),
-            (kept.join("inside"), "cannot be written to"),
+            (folder.path().to_owned(), "must be a file, and this is a folder"),
+            (kept.clone(), "must be a file that can be written to, and this one is read-only"),
+            (kept.join("inside"), "must be a file in a folder that can be written to ("),
         ];
         for (place, reason) in places {
             let output = at_once(work, &place);
             let said = said(&output);
             assert_eq!(output.status.code(), Some(2), "{work:?} {}: {said}", place.display());
             assert!(said.contains(reason) && said.lines().count() == 1, "{work:?}: {said}");
+            let option = work.last().expect("an option").trim_start_matches('-');
+            let named = format!("slump: {option} is {}, but ", place.display());
+            assert!(said.starts_with(&named), "{work:?}: {said}");
+        }
+    }
+    let study = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/studies/cradle.toml");
+    let works: [&[&str]; 5] = [
+        &["--headless", "--duration", "1000", "--renderer", "cpu", "--frames"],
+        &["sweep", study, "--out"],
+        &["reproduce", "all", "--out"],
+        &["chart", "--out"],
+        &["stability", "--out"],
+    ];
+    for work in works {
+        for place in [kept.clone(), kept.join("inside")] {
+            let output = at_once(work, &place);
+            let option = work.last().expect("an option").trim_start_matches('-');
+            let sentence = format!(
+                "slump: {option} is {}, but must be a folder that can be written to (",
+                place.display()
+            );
+            assert_eq!(output.status.code(), Some(2), "{work:?}");
+            assert!(said(&output).starts_with(&sentence), "{work:?}: {}", said(&output));
         }
     }
     assert_eq!(std::fs::read_to_string(&kept).expect("a file"), "mine");
@@ -146,7 +169,8 @@ fn where_nothing_can_be_written_is_told_before_the_work() {
 
 #[test]
 fn a_full_or_closed_stdout_is_no_panic() {
-    let printing: [&[&str]; 4] = [
+    let printing: [&[&str]; 5] = [
+        &["--help"],
         &["list"],
         &["scene", "--scene", "cradle"],
         &["problem", "solve", PROBLEM],

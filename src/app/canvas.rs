@@ -4,8 +4,8 @@ use image::RgbaImage;
 
 use super::graphics::Screen;
 use crate::error::{Error, Result};
+use crate::render::Gpu;
 use crate::render::offscreen::{FORMAT, Target};
-use crate::render::{Gpu, RendererChoice};
 
 /// A graphics device without a window.
 pub struct Canvas {
@@ -20,7 +20,7 @@ impl Canvas {
     /// # Errors
     /// Where there is none; says what brings one.
     pub fn new() -> Result<Self> {
-        let gpu = Gpu::of(RendererChoice::Auto)?;
+        let gpu = Gpu::any()?;
         let screen = Screen::new(&gpu.device, &gpu.queue, FORMAT);
         Ok(Self { gpu, screen, target: None })
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::error::{Error, Result};
+use crate::output::{write_file, write_png};
 use crate::render::{Camera, Renderer, RendererChoice, Style, draw_scene};
 use crate::sim::live::Curve;
 use crate::sim::{Observables, Snapshot};
@@ -122,7 +123,7 @@ fn write(
                 none => none.insert(Renderer::new(RendererChoice::Auto)?),
             };
             let image = draw_scene(renderer, snapshot, style, camera, *width, *height)?;
-            image.save(&path).map_err(|error| Error::file(&path, error))?;
+            write_png(&path, &image)?;
         }
         Export::Curves(curves) => write_curves(&path, curves)?,
         Export::Plots(picture) => {
@@ -131,7 +132,7 @@ fn write(
                 none => none.insert(PlotPrinter::new()?),
             };
             let image = printer.print(picture)?;
-            image.save(&path).map_err(|error| Error::file(&path, error))?;
+            write_png(&path, &image)?;
         }
     }
     Ok(path)
@@ -140,9 +141,7 @@ fn write(
 /// All rows of all curves, each with the number of its world in front.
 fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     let refuse = |error: csv::Error| Error::file(path, error);
-    let mut plain = csv::WriterBuilder::new();
-    plain.has_headers(false);
-    let mut writer = plain.from_path(path).map_err(refuse)?;
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     let any_bonds = curves.iter().flat_map(Curve::rows).any(|row| row.bond_energy.is_some());
     let cells = |row: Observables| if any_bonds { row.with_columns_of_bonds() } else { row };
     let names = column_names(cells(Observables::default())).map_err(refuse)?;
@@ -152,7 +151,8 @@ fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
             writer.serialize((world + 1, cells(*row))).map_err(refuse)?;
         }
     }
-    writer.flush().map_err(|error| Error::file(path, error))
+    let bytes = writer.into_inner().map_err(|error| Error::file(path, error.error()))?;
+    write_file(path, &bytes)
 }
 
 /// What a table of observables calls its columns.
@@ -192,6 +192,20 @@ mod tests {
         assert!(
             lines.next().unwrap().starts_with("1,0,") && lines.next().unwrap().starts_with("2,0,")
         );
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn an_export_has_its_name_only_when_it_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("curves.csv");
+        std::fs::write(&path, "before").unwrap();
+        let mut reader = std::fs::File::open(&path).unwrap();
+        write_curves(&path, &[Curve::default()]).unwrap();
+        let mut seen = String::new();
+        std::io::Read::read_to_string(&mut reader, &mut seen).unwrap();
+        assert_eq!(seen, "before", "whoever reads the old file goes on reading it");
+        assert!(std::fs::read_to_string(&path).unwrap().starts_with("world,step"));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{Config, Scene};
+use crate::scene::{Config, SavedState, Scene};
 use crate::sim::live::{Loader, Progress, Start};
 use crate::world::Boundary;
 
@@ -28,6 +28,21 @@ pub(crate) fn loader(config: Config) -> Loader {
             tell(Progress { part: part as f32, text })
         })?;
         start(&scene)
+    })
+}
+
+/// Makes a start of a saved run, which goes on in time.
+pub(crate) fn loader_of_run(state: SavedState) -> Loader {
+    Box::new(move |_| {
+        let SavedState { scene, simulation, .. } = state;
+        let view = scene.view();
+        Ok(Start {
+            name: scene.name,
+            simulation,
+            duration_secs: scene.duration_secs,
+            held_by: Vec::new(),
+            view: [view.min, view.max],
+        })
     })
 }
 

@@ -1,6 +1,6 @@
 //! The window: panels, the scene, plots, and the thread that computes them.
 //!
-//! [`ui`] is a function of [`AppState`] alone and knows neither window nor GPU; the private module
+//! `ui` is a function of [`AppState`] alone and knows neither window nor GPU; the private module
 //! `window` runs it on a screen. The simulation itself runs on the thread of
 //! [`crate::sim::live`].
 

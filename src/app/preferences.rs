@@ -58,7 +58,7 @@ impl Preferences {
     /// Takes over what the command line says of pictures.
     ///
     /// # Errors
-    /// Where the size of a picture is none.
+    /// Where the size of a picture is none, or a scale.
     pub(crate) fn follow(&mut self, pictures: &HeadlessOptions) -> Result<()> {
         if pictures.size.is_some() {
             let size = pictures.size()?;
@@ -68,7 +68,7 @@ impl Preferences {
             self.style.colour_by = colour;
         }
         if !pictures.show.is_empty() {
-            let asked = pictures.style();
+            let asked = pictures.style()?;
             self.style.show_forces = asked.show_forces;
             self.style.angles = asked.angles;
         }

@@ -7,10 +7,10 @@ use egui::Rect;
 
 use super::camera::SceneCamera;
 use super::export::Exporter;
-use super::loader::loader;
+use super::loader::{loader, loader_of_run};
 use super::preferences::Preferences;
 use super::scene_legend::LegendCache;
-use crate::scene::Config;
+use crate::scene::{Config, SavedState};
 use crate::sim::Settings;
 use crate::sim::live::{Command, Controls, Frame, Live, WorldFrame};
 
@@ -101,6 +101,12 @@ impl AppState {
     pub fn load(&mut self, config: Config) {
         self.config = config.clone();
         self.live.send(Command::Load(loader(config)));
+    }
+
+    /// Opens a saved run, to go on with it.
+    pub fn load_run(&mut self, state: SavedState) {
+        self.config = Config::of_scene(&state.scene.name);
+        self.live.send(Command::Load(loader_of_run(state)));
     }
 
     /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.

@@ -27,7 +27,7 @@ impl GenerateCommand {
     /// Does what is asked.
     pub(super) fn run(self) -> Result<()> {
         let Self { grains: count, box_width: width, seed, out } = self;
-        check_file(&out)?;
+        check_file("out", &out)?;
         let rain = Rain { grains: count, box_width_in_diameters: width, seed };
         let progress = Progress::new("settling", 100);
         let grains = settle(&rain, |Settling { time_secs, limit_secs, .. }| {

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::error::{Error, Result};
-use crate::output::{lost_stdout, note_line};
+use crate::output::{lost_stdout, note_line, note_printed};
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
@@ -57,18 +57,27 @@ const REFUSED: u8 = 2;
 /// Does what the command line of this process asks for. What goes wrong is one sentence on stderr,
 /// and exit code 2; a run that a signal ended has the code that shells know for it.
 pub fn main() -> ExitCode {
-    let (code, message) = match Cli::try_parse().map(run) {
-        Ok(Ok(())) => match lost_stdout() {
-            Some(loss) => (REFUSED, loss),
-            None => return ExitCode::SUCCESS,
-        },
-        Ok(Err(error @ Error::Interrupted { exit_code, .. })) => (exit_code, error.to_string()),
-        Ok(Err(error)) => (REFUSED, error.to_string()),
-        Err(error) if !error.use_stderr() => error.exit(),
-        Err(error) => (REFUSED, refusal::sentence(&error, Cli::command())),
+    let parsed = Cli::try_parse().map(Some).or_else(|error| match error.use_stderr() {
+        true => Err((REFUSED, refusal::sentence(&error, Cli::command()))),
+        // Help and version.
+        false => {
+            note_printed(error.print());
+            Ok(None)
+        }
+    });
+    let said = |error: Error| match error {
+        Error::Interrupted { exit_code, .. } => (exit_code, error.to_string()),
+        _ => (REFUSED, error.to_string()),
     };
-    note_line(format_args!("slump: {message}"));
-    ExitCode::from(code)
+    let done = parsed.and_then(|cli| cli.map_or(Ok(()), run).map_err(said));
+    let done = done.and_then(|()| lost_stdout().map_or(Ok(()), |loss| Err((REFUSED, loss))));
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err((code, message)) => {
+            note_line(format_args!("slump: {message}"));
+            ExitCode::from(code)
+        }
+    }
 }
 
 fn run(cli: Cli) -> Result<()> {

@@ -53,7 +53,7 @@ impl ProblemCommand {
     pub(super) fn run(self) -> Result<()> {
         match self {
             Self::Dump { config, at, out } => {
-                check_file(&out)?;
+                check_file("out", &out)?;
                 let scene = settled(&config)?;
                 scene.parameters.check_steps("at", at)?;
                 warn_of_steps(scene.parameters.steps_in(at));
@@ -68,7 +68,7 @@ impl ProblemCommand {
                 Ok(())
             }
             Self::Solve { file, method, tolerance, max_sweeps, repeat, without_bodies, out } => {
-                out.as_deref().map(check_file).transpose()?;
+                out.as_deref().map(|out| check_file("out", out)).transpose()?;
                 let mut problem = ProblemFile::read(&file)?;
                 if without_bodies {
                     problem.bodies = None;

@@ -35,9 +35,9 @@ impl StabilityCommand {
             named => named,
         };
         if let Some(folder) = &self.out {
-            check_writable(folder)?;
+            check_writable("out", folder)?;
         }
-        self.table.as_deref().map(check_file).transpose()?;
+        self.table.as_deref().map(|table| check_file("table", table)).transpose()?;
         let count = StabilityTable::count(&challenges, self.quick) as u64;
         let progress = Progress::new("stability", count);
         let table = StabilityTable::run(&challenges, self.quick, || {

@@ -1,11 +1,16 @@
 //! The pairs that may touch soon, kept until some grain has moved far enough to change them.
 //!
-//! A pair is a candidate while its gap is below the skin. No pair outside the list can touch
-//! before two grains have together moved by the skin, so the list is built anew only when the
-//! largest displacement since the last build passes half of it. Candidates are sorted by (i, other):
-//! the order of contacts depends on positions and numbering alone, not on when the list was built.
+//! Each body has a skin, and a pair is a candidate while its gap is below its two skins together. No
+//! pair outside the list can touch before one of its bodies has gone through its own skin, so the list
+//! is built anew only when one has. A skin is part of the mean diameter, but no larger than the disc:
+//! so each disc has few candidates among those of its size and larger, and the list grows with the
+//! number of discs, whatever their sizes. Candidates are sorted by (i, other): the order of contacts
+//! depends on positions and numbering alone, not on when the list was built.
+
+mod saved;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::features::Feature;
 use super::grid::Grid;
@@ -15,16 +20,17 @@ use crate::error::Result;
 use crate::world::World;
 
 /// How far the candidate search looks, m.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Reach {
-    /// Pairs with a gap below this are candidates.
+    /// Pairs with a gap below this are candidates; where one disc is smaller than that, fewer.
     pub skin: f64,
     /// Pairs with a gap below this touch: 0 but for a rounding tolerance.
     pub gap_tolerance: f64,
 }
 
-/// Where the largest disc is more than this many times as large as the smallest, the tree finds the
-/// pairs, else the grid. At 1:1.5 the two take about the same time, at 1:20 the grid takes 1.2 to 18
+/// Where the largest disc, with or without its skin, is more than this many times as large as the smallest,
+/// the tree finds the pairs, else the grid. At 1:1.5 the two take about the same time, at 1:20 the grid takes 1.2 to 18
 /// times as long (`cargo bench --bench broad_phase`).
 const SIZE_RATIO_OF_TREE: f64 = 4.0;
 
@@ -35,22 +41,41 @@ enum BroadPhase {
     Tree(Box<Tree>),
 }
 
+impl Default for BroadPhase {
+    fn default() -> Self {
+        Self::Grid(Grid::default())
+    }
+}
+
 /// Candidate pairs of a world.
-#[derive(Clone, Debug)]
+///
+/// In a file are those that were found, and from where: when they are found anew hangs on it. All else is
+/// the world's, as in a search that begins.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Candidates {
     reach: Reach,
+    #[serde(skip)]
     features: Vec<Feature>,
     /// Boundaries that can move, each with the number of its feature.
+    #[serde(skip)]
     pistons: Vec<(usize, usize)>,
     /// Longest way that a feature can have gone since the last build, m.
     way_of_features: f64,
-    cell_width: f64,
+    #[serde(skip)]
     broad_phase: BroadPhase,
     /// Radii of grains, then of fixed discs.
+    #[serde(skip)]
     radii: Vec<f64>,
+    #[serde(skip)]
+    sizes_differ: bool,
+    /// Their skins at the last build, m: how far each may go before the list is built anew.
+    skins: Vec<f64>,
+    skin_of_features: f64,
     /// Their centres at the last build.
     centres: Vec<DVec2>,
     /// Pairs of discs in the order that they are found in.
+    #[serde(skip)]
     pairs: Vec<(u32, u32)>,
     /// Grain i's candidates are `others[starts[i] .. starts[i + 1]]`, rising.
     starts: Vec<u32>,
@@ -79,13 +104,11 @@ impl Candidates {
             features,
             pistons,
             way_of_features: 0.0,
-            cell_width: 2.0 * largest + reach.skin,
-            broad_phase: if largest > SIZE_RATIO_OF_TREE * smallest {
-                BroadPhase::Tree(Box::default())
-            } else {
-                BroadPhase::Grid(Grid::default())
-            },
+            broad_phase: BroadPhase::Grid(Grid::default()),
             radii,
+            sizes_differ: largest > SIZE_RATIO_OF_TREE * smallest,
+            skins: Vec::new(),
+            skin_of_features: 0.0,
             centres: Vec::new(),
             pairs: Vec::new(),
             starts: Vec::new(),
@@ -125,66 +148,86 @@ impl Candidates {
 
     /// Builds the list anew if the grains have moved too far for the present one; tells whether.
     pub fn update<const AXES: usize>(&mut self, world: &World) -> bool {
-        self.update_ahead::<AXES>(world, self.reach.gap_tolerance)
+        self.update_ahead::<AXES>(world, |_| 0.0, 0.0)
     }
 
-    /// The same where all pairs with a gap below `look_ahead` (m) are asked for. The skin grows where
-    /// it is too thin for that.
+    /// The same where pairs are asked for that have a gap: one that the ways of their bodies close (m),
+    /// a grain's own and that of all that is no grain.
     pub(crate) fn update_ahead<const AXES: usize>(
         &mut self,
         world: &World,
-        look_ahead: f64,
+        way_of_grain: impl Fn(usize) -> f64,
+        way_of_others: f64,
     ) -> bool {
-        if self.reach.skin < 1.25 * look_ahead {
-            self.reach.skin = 2.0 * look_ahead;
-            let largest = self.radii.iter().copied().fold(0.0, f64::max);
-            self.cell_width = 2.0 * largest + self.reach.skin;
-            self.starts.clear();
-        }
-        let allowed = 0.5 * (self.reach.skin - look_ahead);
+        let touch = 0.5 * self.reach.gap_tolerance;
+        let way_of_grain = |grain: usize| way_of_grain(grain) + touch;
+        let way_of_others = way_of_others + touch;
         let positions = &world.grains.positions;
+        let grains = positions.iter().zip(&self.centres).zip(&self.skins).enumerate();
         let still_good = self.starts.len() == positions.len() + 1
-            && self.way_of_features <= allowed
-            && positions
-                .iter()
-                .zip(&self.centres)
-                .all(|(&now, &then)| distance::<AXES>(now, then) <= allowed);
+            && self.way_of_features + way_of_others <= self.skin_of_features
+            && self.skins[positions.len()..].iter().all(|&skin| way_of_others <= skin)
+            && grains.take(positions.len()).all(|(at, ((&now, &then), &skin))| {
+                distance::<AXES>(now, then) + way_of_grain(at) <= skin
+            });
         if !still_good {
+            self.set_skins(positions.len(), way_of_grain, way_of_others);
             self.rebuild::<AXES>(world);
         }
         !still_good
     }
 
+    /// Makes each skin at least twice the way ahead, so that the list is good for more than one step.
+    fn set_skins(&mut self, grains: usize, of_grain: impl Fn(usize) -> f64, of_others: f64) {
+        let usual = 0.5 * self.reach.skin;
+        self.skin_of_features = usual.max(2.0 * of_others);
+        self.skins.clear();
+        self.skins.extend(self.radii.iter().enumerate().map(|(at, radius)| {
+            let way = if at < grains { of_grain(at) } else { of_others };
+            usual.min(2.0 * radius).max(2.0 * way)
+        }));
+    }
+
     fn rebuild<const AXES: usize>(&mut self, world: &World) {
         let grain_count = world.grains.len();
         self.way_of_features = 0.0;
-        let skin = self.reach.skin;
         self.centres.clone_from(&world.grains.positions);
         self.centres.extend(world.fixed_discs.iter().map(|disc| disc.position));
         self.pairs.clear();
-        let (centres, radii, pairs) = (&self.centres, &self.radii, &mut self.pairs);
+        let (centres, pairs) = (&self.centres, &mut self.pairs);
+        let extent = |at: usize| self.radii[at] + self.skins[at];
         let keep = |i: u32, j: u32| {
             let (first, second) = (i.min(j) as usize, i.max(j) as usize);
             // Fixed discs come last: a pair whose first is one moves nothing.
             if first < grain_count
                 && distance::<AXES>(centres[first], centres[second])
-                    < radii[first] + radii[second] + skin
+                    < extent(first) + extent(second)
             {
                 pairs.push((first as u32, second as u32));
             }
         };
+        let extents = (0..self.radii.len()).map(extent);
+        let largest = extents.clone().fold(0.0, f64::max);
+        let smallest = extents.clone().fold(f64::INFINITY, f64::min);
+        let by_tree = self.sizes_differ || largest > SIZE_RATIO_OF_TREE * smallest;
+        if by_tree != matches!(self.broad_phase, BroadPhase::Tree(_)) {
+            self.broad_phase = if by_tree {
+                BroadPhase::Tree(Box::default())
+            } else {
+                BroadPhase::Grid(Grid::default())
+            };
+        }
         match &mut self.broad_phase {
             BroadPhase::Grid(grid) => {
-                grid.rebuild::<AXES>(centres, self.cell_width);
+                grid.rebuild::<AXES>(centres, 2.0 * largest);
                 grid.pairs::<AXES>(keep);
             }
             BroadPhase::Tree(tree) => {
-                let reach = radii.iter().map(|radius| radius + 0.5 * skin);
                 let on_axes = |&centre: &DVec2| match AXES {
                     1 => DVec2::new(centre.x, 0.0),
                     _ => centre,
                 };
-                tree.update(centres.iter().map(on_axes).zip(reach));
+                tree.update(centres.iter().map(on_axes).zip(extents));
                 tree.pairs(keep);
             }
         }
@@ -226,7 +269,7 @@ impl Candidates {
         let grains = &world.grains;
         let numbering = Numbering::of(world);
         let within_reach = |index: usize, feature: &Feature| {
-            let reach = grains.radii[index] + self.reach.skin;
+            let reach = grains.radii[index] + self.skins[index] + self.skin_of_features;
             feature.distance_to_any_point(grains.positions[index]) < reach
         };
         // The pairs are no longer needed: their memory takes the longer list.
@@ -250,3 +293,6 @@ impl Candidates {
 fn distance<const AXES: usize>(from: DVec2, to: DVec2) -> f64 {
     if AXES == 1 { (from.x - to.x).abs() } else { from.distance(to) }
 }
+
+#[cfg(test)]
+mod tests;

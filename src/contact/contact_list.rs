@@ -1,6 +1,7 @@
 //! The contacts of one step, with the impulses of the step before where a contact lives on.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::approach::approach;
 use super::candidates::Candidates;
@@ -9,7 +10,8 @@ use super::range::Bond;
 use crate::world::World;
 
 /// One touching pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Grain i.
     pub grain: u32,
@@ -29,7 +31,8 @@ impl Contact {
 }
 
 /// The impulses of one contact, N·s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Impulse {
     /// P_n.
     pub normal: f64,
@@ -39,7 +42,8 @@ pub struct Impulse {
 
 /// What a stepping scheme keeps of a contact from one substep to the next, whatever its length. A
 /// method that solves the step's problem neither reads nor writes it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ContactMemory {
     /// How far the tangential spring is stretched, m; positive as v_t is.
     pub tangential_displacement: f64,
@@ -62,8 +66,30 @@ pub(crate) struct LookAhead {
     pub bonds: bool,
 }
 
+impl LookAhead {
+    /// The gap that a grain of that velocity (m/s) may close, m: with its own speed, but for bonds, which
+    /// may be open however slow their grains are.
+    pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
+        /// What rounding makes of a speed.
+        const ROUNDING: f64 = 1.0 + 1e-9;
+        match self.bonds {
+            true => 0.5 * self.reach,
+            false => {
+                let own = self.time_step_secs * velocity.length() + self.distance;
+                ROUNDING * own.min(self.reach)
+            }
+        }
+    }
+
+    /// The gap that what is no grain is to be seen at besides, m.
+    pub(crate) fn way_of_others(&self) -> f64 {
+        if self.bonds { 0.5 * self.reach } else { 0.0 }
+    }
+}
+
 /// What is kept of a contact as long as it lives.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Kept {
     contacts: Vec<Contact>,
     impulses: Vec<Impulse>,
@@ -72,9 +98,12 @@ struct Kept {
 }
 
 /// The contacts of a step, sorted by (i, other), and their impulses. Memory is kept between steps.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ContactList {
     now: Kept,
+    /// Memory alone: the next step fills it.
+    #[serde(skip)]
     before: Kept,
     /// Whether pairs with a gap are among the contacts.
     looks_ahead: bool,
@@ -154,6 +183,17 @@ impl ContactList {
             contact.grain -= u32::from(contact.grain > body);
             contact.other -= u32::from(contact.other > body);
         }
+    }
+
+    /// Whether its lists are of one length and tell of bodies that exist, of which there are so many, the
+    /// first of them grains.
+    pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
+        let Kept { contacts, impulses, memories, bonds } = &self.now;
+        let lengths = [impulses.len(), memories.len(), bonds.len()];
+        let exists = |contact: &Contact| {
+            (contact.grain as usize) < grains && (contact.other as usize) < bodies
+        };
+        lengths == [contacts.len(); 3] && contacts.iter().all(exists)
     }
 
     /// Finds the contacts at the present positions: candidates with a gap below the tolerance. A

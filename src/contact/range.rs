@@ -31,6 +31,8 @@
 //! work C₀·s is then that of the impulses, and a pair that turns about itself, whose gap opens in every
 //! step by (Δt v_t)²/2d and closes in the next, does not tear its bond.
 
+use serde::{Deserialize, Serialize};
+
 use super::law;
 
 /// Gaps and overlaps below this many diameters are the rounding and the solver's tolerance. A contact
@@ -40,7 +42,8 @@ use super::law;
 pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 
 /// A contact's bond.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct Bond {
     /// Whether the pair has touched since it last parted.
     pub alive: bool,

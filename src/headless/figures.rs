@@ -10,9 +10,9 @@ use image::RgbaImage;
 use rayon::prelude::*;
 
 use super::folder::{Earlier, RunFolder};
-use super::frames::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
 use super::manifest::{Ended, Manifest, Moment, PictureEntry, RunEntry};
 use super::table::ObservablesTable;
+use super::telling::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
 use crate::error::Result;
 use crate::output::{Progress, caught_signal, note_line, print_line, write_png};
 use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
@@ -233,8 +233,8 @@ impl Press<'_> {
 
     fn write(&mut self, file: &str, image: &RgbaImage, shows: Vec<Moment>) -> Result<()> {
         write_png(&self.folder.join(file), image)?;
-        self.manifest.pictures.push(PictureEntry { file: file.to_owned(), shows });
-        Ok(())
+        let entry = PictureEntry { file: file.to_owned(), shows };
+        self.manifest.add(entry, &self.folder.join("manifest.json"))
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use super::checkpoint::{CHECKPOINT, WAITING};
+use super::manifest::PictureEntry;
 use crate::error::{Error, Result};
 use crate::output::{FolderLock, check_writable};
 
@@ -29,18 +31,65 @@ impl RunFolder {
     /// # Errors
     /// Where it cannot be written to, another run has it, or it holds what is refused.
     pub(super) fn claim(path: &Path, earlier: Earlier) -> Result<Self> {
-        check_writable(path)?;
+        let folder = Self::lock(path, earlier)?;
+        folder.check("")?;
+        Ok(folder)
+    }
+
+    /// The same whatever it holds: that is to be looked at.
+    ///
+    /// # Errors
+    /// Where it cannot be written to, or another run has it.
+    pub(super) fn lock(path: &Path, earlier: Earlier) -> Result<Self> {
+        check_writable("frames", path)?;
         let lock = FolderLock::of(path)?;
-        if earlier == Earlier::Refused
-            && let Some(name) = files_of_a_run(path)?.first()
-        {
-            let allowed = format!(
-                "a folder without an earlier run's files ({name} is there), unless --overwrite is \
-                 given to remove them"
-            );
-            return Err(Error::value("frames", path.display(), allowed));
-        }
         Ok(Self { path: path.to_owned(), earlier, _lock: lock })
+    }
+
+    /// Its path.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether a run may go on with what it holds.
+    pub(super) fn may_go_on(&self) -> bool {
+        self.earlier == Earlier::Refused
+    }
+
+    /// Refuses a folder that holds what is refused; `why` says why no run goes on there.
+    ///
+    /// # Errors
+    /// Names the first file.
+    pub(super) fn check(&self, why: &str) -> Result<()> {
+        if self.earlier != Earlier::Refused {
+            return Ok(());
+        }
+        let Some(name) = files_of_a_run(&self.path)?.into_iter().next() else { return Ok(()) };
+        let allowed = format!(
+            "a folder without an earlier run's files ({name} is there{why}), unless --overwrite is \
+             given to remove them"
+        );
+        Err(Error::value("frames", self.path.display(), allowed))
+    }
+
+    /// Removes the pictures in it but for these, which the run goes on with, and what a kill has left half
+    /// named.
+    ///
+    /// # Errors
+    /// Names a picture that is not there, or that cannot be removed.
+    pub(super) fn keep_pictures(&self, pictures: &[PictureEntry]) -> Result<()> {
+        let is_kept = |name: &str| pictures.iter().any(|picture| picture.file == name);
+        let names = files_of_a_run(&self.path)?;
+        if let Some(lost) = pictures.iter().find(|picture| !names.contains(&picture.file)) {
+            let reason = "is missing, but must be where the checkpoint tells of it";
+            return Err(Error::file(self.path.join(&lost.file), reason));
+        }
+        let goes = |name: &String| whole_name(name) != name || (is_frame(name) && !is_kept(name));
+        for name in names.iter().filter(|name| goes(name)) {
+            let path = self.path.join(name);
+            std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
+        }
+        Ok(())
     }
 
     /// Removes what is to be cleared. To be called when all that was asked is known to be sound.
@@ -67,16 +116,29 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<String>> {
     for entry in std::fs::read_dir(folder).map_err(refuse)? {
         let name = entry.map_err(refuse)?.file_name();
         let name = name.to_string_lossy();
-        let number = name.strip_prefix("frame_").and_then(|rest| rest.strip_suffix(".png"));
-        let is_frame =
-            number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()));
-        let is_ours = is_frame || ["manifest.json", "observables.csv"].contains(&&*name);
+        let whole = whole_name(&name);
+        let is_ours = is_frame(whole)
+            || ["manifest.json", "observables.csv", CHECKPOINT, WAITING].contains(&whole);
         if is_ours && is_plain(&folder.join(&*name)) {
             names.push(name.into_owned());
         }
     }
     names.sort();
     Ok(names)
+}
+
+/// The name of a file that a kill may have left as NAME.NUMBERS.part, between being whole and being named.
+fn whole_name(name: &str) -> &str {
+    let is_number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-');
+    match name.strip_suffix(".part").and_then(|rest| rest.rsplit_once('.')) {
+        Some((whole, numbers)) if is_number(numbers) => whole,
+        _ => name,
+    }
+}
+
+fn is_frame(name: &str) -> bool {
+    let number = name.strip_prefix("frame_").and_then(|rest| rest.strip_suffix(".png"));
+    number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
 /// The pictures and tables that an earlier run's manifest tells of.

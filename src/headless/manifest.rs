@@ -2,11 +2,12 @@
 
 use std::hash::Hasher;
 use std::path::Path;
+use std::time::{Duration, Instant as Clock};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::output::write_file;
+use crate::output::Draft;
 use crate::scene::Scene;
 use crate::sim::{Alarm, Observables, Tally};
 use crate::study::Recorded;
@@ -21,7 +22,21 @@ pub(super) struct Manifest {
     pub renderer: String,
     pub runs: Vec<RunEntry>,
     pub pictures: Vec<PictureEntry>,
+    #[serde(skip)]
+    kept: Kept,
 }
+
+/// When a manifest was last written on the way, and how long that took.
+#[derive(Debug)]
+struct Kept {
+    at: Clock,
+    took: Duration,
+}
+
+/// Pictures that are drawn within this time may miss in the manifest of a run that is killed.
+const WAIT: Duration = Duration::from_millis(500);
+/// A list that has become long is written less often: it takes no more than this part of the time.
+const PART: u32 = 20;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -67,6 +82,12 @@ pub(super) struct RunEntry {
     /// Tells initial states apart: FNV-1a over all numbers of the grains, bit by bit.
     pub initial_state: String,
     pub tally: Tally,
+    /// The moment of the saved run that this one goes on with (`--restart`).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restarted_from: Option<Instant>,
+    /// Where the same command went on with a checkpoint.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub went_on_at: Vec<Instant>,
     /// What went wrong, and what is most likely to help.
     pub alarms: Vec<AlarmEntry>,
     /// Dimensionless (paper §3.3).
@@ -80,6 +101,23 @@ pub(super) struct RunEntry {
     pub critical_time_step_secs: Option<f64>,
 }
 
+/// A moment of a run.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Instant {
+    pub step: u64,
+    /// s.
+    pub time_secs: f64,
+}
+
+impl Instant {
+    /// That of these observables.
+    pub(super) fn of(observables: &Observables) -> Self {
+        let Observables { step, time_secs, .. } = *observables;
+        Self { step, time_secs }
+    }
+}
+
 /// Something that went wrong.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct AlarmEntry {
@@ -89,7 +127,7 @@ pub(super) struct AlarmEntry {
 }
 
 /// One picture.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct PictureEntry {
     pub file: String,
     /// A moment a panel.
@@ -97,7 +135,7 @@ pub(super) struct PictureEntry {
 }
 
 /// One moment of a run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Moment {
     /// Name of the run.
     pub run: String,
@@ -114,14 +152,36 @@ impl Manifest {
             renderer: renderer.to_owned(),
             runs: Vec::new(),
             pictures: Vec::new(),
+            kept: Kept { at: Clock::now(), took: Duration::ZERO },
         }
     }
 
+    /// Writes it.
     pub(super) fn write(&self, path: &Path) -> Result<()> {
+        self.write_and(path, true)
+    }
+
+    /// Adds a picture, and every now and then writes what there is: a program that is killed has no
+    /// other time to do it.
+    pub(super) fn add(&mut self, picture: PictureEntry, path: &Path) -> Result<()> {
+        self.pictures.push(picture);
+        if self.kept.at.elapsed() < WAIT.max(PART * self.kept.took) {
+            return Ok(());
+        }
+        let begun = Clock::now();
+        // Not worth waiting for the disk.
+        self.write_and(path, false)?;
+        self.kept = Kept { at: Clock::now(), took: begun.elapsed() };
+        Ok(())
+    }
+
+    fn write_and(&self, path: &Path, safe: bool) -> Result<()> {
         let mut text =
             serde_json::to_string_pretty(self).map_err(|error| Error::file(path, error))?;
         text.push('\n');
-        write_file(path, text.as_bytes())
+        let mut draft = Draft::start(path)?;
+        draft.write(text.as_bytes())?;
+        draft.finish(safe)
     }
 }
 
@@ -146,6 +206,8 @@ impl RunEntry {
             fixed_discs: scene.fixed_discs.len(),
             initial_state: format!("{:016x}", fingerprint(scene)),
             tally: Tally::default(),
+            restarted_from: None,
+            went_on_at: Vec::new(),
             alarms: Vec::new(),
             cohesive_time: scene.parameters.cohesive_time(scene.mean_diameter, gravity),
             capture_speed: scene.parameters.capture_speed(gravity),

@@ -1,5 +1,7 @@
 //! Pictures without a window: the paper's figures, or frames of one scene.
 
+mod begin;
+mod checkpoint;
 mod figures;
 mod folder;
 mod frames;
@@ -7,9 +9,12 @@ mod gif;
 mod kept;
 mod manifest;
 mod options;
+mod saving;
+mod studio;
 mod table;
+mod telling;
 
-pub(crate) use frames::settled;
+pub(crate) use begin::settled;
 pub(crate) use options::HeadlessOptions;
 
 use std::path::Path;
@@ -34,11 +39,11 @@ pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
 /// In one sentence; nothing has been written where a value is refused. Where a signal or a full disk
 /// ends the run, what it came to until then has been written.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
-    if options.frames.is_none() && options.gif.is_none() {
+    if !options.draws() && options.saving.save.is_none() {
         return Err(Error::value(
             "frames",
             "missing",
-            "a folder (--frames out/), or give --gif FILE",
+            "a folder (--frames out/), or give --gif FILE or --save FILE",
         ));
     }
     heed_signals();

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::saving::SavingOptions;
 use crate::error::{Error, Result};
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
 
@@ -79,12 +80,28 @@ pub(crate) struct HeadlessOptions {
     /// What the colours of the grains stand for
     #[arg(long, value_name = "BY", help_heading = "Pictures", alias = "color")]
     pub colour: Option<ColourBy>,
+    /// Values at the two ends of the colours: m/s, diameters or N. Frames are then drawn as the run goes;
+    /// without it they wait for its end, to share the scale that shows all of them
+    #[arg(
+        long,
+        value_name = "LOW,HIGH",
+        help_heading = "Pictures",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        alias = "color-scale"
+    )]
+    pub colour_scale: Vec<f64>,
+    /// Force of the widest link, N: the same for --show forces
+    #[arg(long, value_name = "N", help_heading = "Pictures", allow_negative_numbers = true)]
+    pub force_scale: Option<f64>,
     /// Ground and ink
     #[arg(long, value_name = "THEME", help_heading = "Pictures")]
     pub theme: Option<Theme>,
     /// What draws: auto tries Vulkan, OpenGL and then the processor
     #[arg(long, value_name = "KIND", help_heading = "Pictures", default_value = "auto")]
     pub renderer: RendererChoice,
+    #[command(flatten)]
+    pub saving: SavingOptions,
 }
 
 /// Size of a picture that no size is given for.
@@ -103,7 +120,17 @@ impl HeadlessOptions {
             || self.gif.is_some()
             || !self.show.is_empty()
             || self.colour.is_some()
+            || !self.colour_scale.is_empty()
+            || self.force_scale.is_some()
             || self.theme.is_some()
+            || self.saving.restart.is_some()
+            || self.saving.save.is_some()
+            || self.saving.checkpoint_every.is_some()
+    }
+
+    /// Whether pictures are drawn at all.
+    pub(super) fn draws(&self) -> bool {
+        self.frames.is_some() || self.gif.is_some()
     }
 
     /// The size of a picture.
@@ -115,14 +142,41 @@ impl HeadlessOptions {
     }
 
     /// How the scene is drawn.
-    pub(crate) fn style(&self) -> Style {
-        Style {
+    ///
+    /// # Errors
+    /// Where a scale is none, or given for what has none.
+    pub(crate) fn style(&self) -> Result<Style> {
+        let style = Style {
             colour_by: self.colour.unwrap_or_default(),
             theme: self.theme.unwrap_or_default(),
             show_forces: self.show.contains(&Show::Forces),
             angles: self.show.contains(&Show::Angles),
+            force_reference: self.force_scale,
             ..Style::default()
+        };
+        if let Some(force) = self.force_scale {
+            if !style.show_forces {
+                let allowed = "left out where --show forces is not given";
+                return Err(Error::value("force-scale", force, allowed));
+            }
+            if !(force > 0.0 && force.is_finite()) {
+                return Err(Error::value("force-scale", force, "a finite force > 0 N"));
+            }
         }
+        let range = match self.colour_scale[..] {
+            [] => None,
+            [low, high] if low < high && (high - low).is_finite() => Some((low, high)),
+            _ => {
+                let found: Vec<_> = self.colour_scale.iter().map(f64::to_string).collect();
+                let allowed = "LOW,HIGH: two finite numbers, the first below the second";
+                return Err(Error::value("colour-scale", found.join(","), allowed));
+            }
+        };
+        if range.is_some() && !style.colour_by.has_scale() {
+            let allowed = "left out where --colour is not speed, overlap or force";
+            return Err(Error::value("colour-scale", "given", allowed));
+        }
+        Ok(Style { range, ..style })
     }
 
     /// The times of the pictures of a run that lasts `duration_secs`, s, rising.

@@ -12,7 +12,7 @@ use crate::world::FrictionCone;
 
 /// Two forms of one problem may differ by this part: rounding, with room for a file whose numbers
 /// were cut to ten digits.
-const DISAGREEMENT: f64 = 1e-9;
+pub(super) const DISAGREEMENT: f64 = 1e-9;
 
 impl BodyForm {
     /// Checks the bodies, and that the file's W, q and c₀ are theirs.
@@ -152,7 +152,7 @@ impl ModelVisitor for Check<'_> {
     fn visit<M: Model>(self) -> Result<()> {
         let Self { bodies, file } = self;
         let problem = bodies.step_problem::<M>(file);
-        let assembled = Assembled::of(&problem);
+        let assembled = Assembled::of(&problem)?;
         let place = |index: u32| 2 * problem.contact_of_row[index as usize / 2] + index % 2;
         let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
         let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();

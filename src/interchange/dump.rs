@@ -14,7 +14,8 @@ use crate::world::{FrictionCone, Grains};
 /// itself. `progress` is told the simulated time, s.
 ///
 /// # Errors
-/// Where the time is before the start, there is no contact at it, or the state is not finite.
+/// Where the time is before the start, there is no contact at it, so many that a file would not hold
+/// their matrix, or the state is not finite.
 pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> Result<ProblemFile> {
     if !(at_secs >= 0.0 && at_secs.is_finite()) {
         return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
@@ -29,7 +30,7 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
         return Err(failure);
     }
     let grains = &simulation.world().grains;
-    let file = simulation.next_problem(Dump { grains });
+    let file = simulation.next_problem(Dump { grains })?;
     if file.nc == 0 {
         return Err(Error::value("at", at_secs, "a time at which there are contacts"));
     }
@@ -44,14 +45,14 @@ struct Dump<'a> {
 }
 
 impl ProblemVisitor for Dump<'_> {
-    type Output = ProblemFile;
+    type Output = Result<ProblemFile>;
 
     fn visit<M: Model>(
         self,
         problem: &mut StepProblem<M::Kinematics>,
         _: &ContactList,
-    ) -> ProblemFile {
-        let Assembled { matrix, free_velocities } = Assembled::of(problem);
+    ) -> Result<ProblemFile> {
+        let Assembled { matrix, free_velocities } = Assembled::of(problem)?;
         let grains = self.grains;
         let rows = || problem.fixed_rows.iter().chain(&problem.pair_rows);
         let fixed = problem.fixed_rows.len();
@@ -83,7 +84,7 @@ impl ProblemVisitor for Dump<'_> {
         let starts = problem.rows().flat_map(|(at, row)| {
             problem.reduced_impulse(at, row).map(|impulse| row.effective_mass * impulse)
         });
-        ProblemFile {
+        Ok(ProblemFile {
             comment: None,
             nc: problem.contact_of_row.len(),
             mu: Friction::Same(if M::FRICTION { problem.friction } else { 0.0 }),
@@ -98,6 +99,6 @@ impl ProblemVisitor for Dump<'_> {
             // Bodies know of one capture speed alone.
             bodies: problem.captures.is_empty().then_some(bodies),
             matrix,
-        }
+        })
     }
 }

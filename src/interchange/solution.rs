@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use super::bodies::DISAGREEMENT;
 use super::{BodyForm, ProblemFile};
 use crate::error::Result;
 use crate::output::number;
@@ -27,9 +28,10 @@ pub struct Solution {
     pub factorisations: u32,
     /// Time of the solve alone, s; the least of the repeats.
     pub seconds: f64,
-    /// Whether the method says that it got to its tolerance.
+    /// Whether the method got to its tolerance, by what it says and by the residual of `r`.
     pub converged: bool,
-    /// Whether it did not because it had stalled, rather than being stopped too early.
+    /// Whether it did not because it had stalled, rather than being stopped too early: more sweeps are of
+    /// no use.
     pub stalled: bool,
     /// The common residual of `r`, from the file's W and q.
     #[serde(with = "number")]
@@ -76,6 +78,8 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
     let Solved { seconds, report, impulses, velocities } = solved;
     delassus.set_impulses(impulses.iter().copied());
     let residual = delassus.residual();
+    // Bodies carry on what the impulses before have left of their digits: a start of 1e80 N·s leaves none.
+    let is_solved = residual <= (2.0 * settings.tolerance).max(DISAGREEMENT);
     Ok(Solution {
         contacts: file.nc,
         method: settings.method.name().into(),
@@ -83,8 +87,8 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
         sweeps: report.sweeps,
         factorisations: report.factorisations,
         seconds,
-        converged: report.converged && residual.is_finite(),
-        stalled: report.stalled,
+        converged: report.converged && is_solved,
+        stalled: report.stalled || (report.converged && !is_solved),
         residual,
         u: delassus.velocities().flatten().collect(),
         r: impulses.into_iter().flatten().collect(),

@@ -110,14 +110,13 @@ impl Draft {
 /// Files that are in no folder yet.
 #[cfg(target_os = "linux")]
 mod unnamed {
-    use std::ffi::CString;
     use std::fs::File;
-    use std::io::{Error, ErrorKind, Result};
+    use std::io::{ErrorKind, Result};
     use std::os::fd::AsRawFd;
-    use std::os::unix::ffi::OsStrExt;
-    use std::os::unix::fs::OpenOptionsExt;
     use std::path::Path;
     use std::sync::atomic::{AtomicU64, Ordering};
+
+    use rustix::fs::{AtFlags, CWD, Mode, OFlags, linkat, open};
 
     /// By which such a file is named.
     const DESCRIPTORS: &str = "/proc/self/fd";
@@ -127,9 +126,8 @@ mod unnamed {
         if !Path::new(DESCRIPTORS).exists() {
             return None;
         }
-        let mut options = File::options();
-        options.write(true).mode(0o666).custom_flags(libc::O_TMPFILE);
-        options.open(folder).ok()
+        let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
+        open(folder, flags, Mode::from_raw_mode(0o666)).ok().map(File::from)
     }
 
     /// Puts the file in the place of whatever is at `target`.
@@ -151,18 +149,7 @@ mod unnamed {
     }
 
     fn link(file: &File, target: &Path) -> Result<()> {
-        let from = CString::new(format!("{DESCRIPTORS}/{}", file.as_raw_fd()))?;
-        let to = CString::new(target.as_os_str().as_bytes())?;
-        // SAFETY: both are strings that end in 0 and outlive the call.
-        let outcome = unsafe {
-            libc::linkat(
-                libc::AT_FDCWD,
-                from.as_ptr(),
-                libc::AT_FDCWD,
-                to.as_ptr(),
-                libc::AT_SYMLINK_FOLLOW,
-            )
-        };
-        if outcome == 0 { Ok(()) } else { Err(Error::last_os_error()) }
+        let from = format!("{DESCRIPTORS}/{}", file.as_raw_fd());
+        Ok(linkat(CWD, from, CWD, target, AtFlags::SYMLINK_FOLLOW)?)
     }
 }

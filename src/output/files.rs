@@ -9,33 +9,42 @@ use super::draft::Draft;
 use super::target::{Target, folder_of};
 use crate::error::{Error, Result};
 
-/// Makes `folder` if it is not there and checks that files can be written in it.
+/// Makes `folder` if it is not there and checks that files can be written in it. `field` is what asks for
+/// it, for messages.
 ///
 /// # Errors
-/// Names the folder and what the system says.
-pub(crate) fn check_writable(folder: &Path) -> Result<()> {
-    let refuse = |error| Error::file(folder, format!("cannot be written to ({error})"));
-    std::fs::create_dir_all(folder).map_err(refuse)?;
-    tempfile::tempfile_in(folder).map_err(refuse)?;
-    Ok(())
+/// Names the field and the folder, and says what the system says.
+pub(crate) fn check_writable(field: &str, folder: &Path) -> Result<()> {
+    try_to_write(folder).map_err(|error| {
+        let allowed = format!("a folder that can be written to ({error})");
+        Error::value(field, folder.display(), allowed)
+    })
 }
 
-/// Checks that a file can be written at `path`, and makes its folder if it is not there.
+/// Checks that a file can be written at `path`, and makes its folder if it is not there. `field` is what
+/// asks for it, for messages.
 ///
 /// # Errors
-/// Names the file or its folder and what is in the way.
-pub(crate) fn check_file(path: &Path) -> Result<()> {
+/// Names the field and the file, and says what is in the way.
+pub(crate) fn check_file(field: &str, path: &Path) -> Result<()> {
+    let refuse = |allowed: &str| Err(Error::value(field, path.display(), allowed));
     let target = Target::of(path)?;
     if target.is_written_straight() {
         return Ok(());
     }
     if target.path.is_dir() {
-        return Err(Error::file(path, "is a folder, but must be a file"));
+        return refuse("a file, and this is a folder");
     }
     if target.permissions.is_some_and(|permissions| permissions.readonly()) {
-        return Err(Error::file(path, "is there and read-only, but must be a file to write to"));
+        return refuse("a file that can be written to, and this one is read-only");
     }
-    check_writable(folder_of(&target.path))
+    try_to_write(folder_of(&target.path))
+        .or_else(|error| refuse(&format!("a file in a folder that can be written to ({error})")))
+}
+
+fn try_to_write(folder: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    tempfile::tempfile_in(folder).map(drop)
 }
 
 /// Writes a file in one go: a run that is stopped leaves no half file behind and destroys none.

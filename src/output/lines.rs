@@ -4,6 +4,8 @@ use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 
+use crate::error::escaped;
+
 /// Why stdout did not take what was written to it.
 static LOST: OnceLock<String> = OnceLock::new();
 
@@ -17,10 +19,15 @@ pub(crate) fn print_text(text: impl Display) {
     remember(write!(std::io::stdout(), "{text}"));
 }
 
-/// Writes a line to stderr, where somebody may read it.
+/// Takes note of what became of something that was written to stdout elsewhere.
+pub(crate) fn note_printed(outcome: std::io::Result<()>) {
+    remember(outcome);
+}
+
+/// Writes a line to stderr, where somebody may read it, whatever names files gave to things.
 pub(crate) fn note_line(line: impl Display) {
     // There is no other place to tell it.
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", escaped(&line.to_string()));
 }
 
 /// What stdout did not take, as a sentence. A reader that has seen enough and left is no loss.

@@ -12,7 +12,7 @@ mod target;
 
 pub(crate) use draft::Draft;
 pub(crate) use files::{check_file, check_writable, start_stream, write_file, write_png};
-pub(crate) use lines::{lost_stdout, note_line, print_line, print_text};
+pub(crate) use lines::{lost_stdout, note_line, note_printed, print_line, print_text};
 pub(crate) use lock::FolderLock;
 pub(crate) use progress::{Progress, warn_of_steps};
 pub(crate) use signals::{Signal, caught_signal, heed_signals};

@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::lines::note_line;
+use crate::error::escaped;
 
 /// Progress of one piece of work on stderr.
 #[derive(Clone, Debug)]
@@ -20,7 +21,7 @@ impl Progress {
             let template = "{prefix} {wide_bar} {percent:>3} %  {eta} left";
             let style = ProgressStyle::with_template(template)
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
-            let bar = ProgressBar::new(length).with_style(style).with_prefix(what.to_owned());
+            let bar = ProgressBar::new(length).with_style(style).with_prefix(escaped(what));
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         } else {

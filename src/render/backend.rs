@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::drivers::{Kind, RendererChoice};
+use super::drivers::Kind;
 use crate::error::{Error, Result};
 
 /// An opened GPU.
@@ -19,15 +19,10 @@ pub(crate) struct Gpu {
 }
 
 impl Gpu {
-    /// Opens the GPU that was asked for; the processor is none.
-    pub(crate) fn of(choice: RendererChoice) -> Result<Self> {
-        match choice {
-            RendererChoice::Vulkan => Self::open(Kind::Vulkan),
-            RendererChoice::Gl => Self::open(Kind::Gl),
-            RendererChoice::Auto | RendererChoice::Cpu => {
-                Self::open(Kind::Vulkan).or_else(|_| Self::open(Kind::Gl))
-            }
-        }
+    /// Opens a GPU of either kind.
+    #[cfg(feature = "window")]
+    pub(crate) fn any() -> Result<Self> {
+        Self::open(Kind::Vulkan).or_else(|_| Self::open(Kind::Gl))
     }
 
     /// Opens the strongest device of one kind.

@@ -30,6 +30,13 @@ pub enum ColourBy {
     Coordination,
 }
 
+impl ColourBy {
+    /// Whether its colours stand for numbers that a scale has to be found for.
+    pub(crate) fn has_scale(self) -> bool {
+        !matches!(self, Self::PaperGreys | Self::Coordination)
+    }
+}
+
 /// Ground and ink.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,

@@ -1,8 +1,12 @@
 //! What a user asks of a run: where the scene comes from, and changes to it. The same structure is the
 //! command line's options, a run of a study, and what is written beside results.
 
+use std::path::Path;
+
 use super::file::read_unsettled;
-use super::{Origin, Rain, Scene, Settling, built_in, cradle_from, pile_of, read_discs, settle};
+use super::{
+    Origin, Rain, SavedState, Scene, Settling, built_in, cradle_from, pile_of, read_discs, settle,
+};
 use crate::error::{Error, Result};
 use crate::setting::{Changes, Value};
 use crate::sim::{RemedyChanges, Settings, Stepper};
@@ -123,15 +127,19 @@ impl Config {
         self.check_origin()?;
         let Origin { initial, start, .. } = &self.origin;
         let name = self.named();
-        let (scene, rain) = if let Some(path) = initial {
-            (pile_of(read_discs(path)?, self.origin.rain().box_width_in_diameters)?, None)
-        } else if name.ends_with(".toml") {
-            read_unsettled(name.as_ref())?
-        } else if let (Self::CRADLE, Some(start)) = (name, *start) {
-            (cradle_from(start), None)
-        } else {
-            (built_in(name)?, None)
-        };
+        let (scene, rain) =
+            if let Some(path) = initial.as_deref().filter(|path| SavedState::is_in(path)) {
+                (self.scene_of_state(path)?, None)
+            } else if let Some(path) = initial {
+                self.check_pile_alone("initial grains")?;
+                (pile_of(read_discs(path)?, self.origin.rain().box_width_in_diameters)?, None)
+            } else if name.ends_with(".toml") {
+                read_unsettled(name.as_ref())?
+            } else if let (Self::CRADLE, Some(start)) = (name, *start) {
+                (cradle_from(start), None)
+            } else {
+                (built_in(name)?, None)
+            };
         Ok(Ground { scene, rain })
     }
 
@@ -160,15 +168,8 @@ impl Config {
     /// Whether what is said of the scene's origin goes together.
     fn check_origin(&self) -> Result<()> {
         let name = self.named();
-        let pile_alone = |fields: &str| match name {
-            Self::DEFAULT_SCENE => Ok(()),
-            _ => Err(Error::value("scene", name, format!("pile where {fields} are given"))),
-        };
-        if self.origin.initial.is_some() {
-            pile_alone("initial grains")?;
-        }
         if self.origin.makes_new_pile() {
-            pile_alone("grains, box-width or seed")?;
+            self.check_pile_alone("grains, box-width or seed")?;
             self.origin.rain().validate()?;
         }
         match self.origin.start {
@@ -180,6 +181,45 @@ impl Config {
             }
             _ => Ok(()),
         }
+    }
+
+    fn check_pile_alone(&self, fields: &str) -> Result<()> {
+        match self.named() {
+            Self::DEFAULT_SCENE => Ok(()),
+            name => Err(Error::value("scene", name, format!("pile where {fields} are given"))),
+        }
+    }
+
+    /// The scene of a saved state, which begins with the state's grains.
+    fn scene_of_state(&self, path: &Path) -> Result<Scene> {
+        let scene = SavedState::open(path)?.as_start();
+        match &self.origin.scene {
+            Some(name) if *name != scene.name => {
+                let allowed =
+                    format!("left out, or {}, the scene of the initial state", scene.name);
+                Err(Error::value("scene", name, allowed))
+            }
+            _ => Ok(scene),
+        }
+    }
+
+    /// Makes the changes asked for to a run that goes on: from here on, while all that has been stays.
+    ///
+    /// # Errors
+    /// Names the first setting that is outside its range or does not go with the others, or says that
+    /// another start is asked for.
+    pub fn change_state(&self, state: &mut SavedState) -> Result<()> {
+        let kept = Origin { duration: self.origin.duration, ..Origin::default() };
+        if self.origin != kept {
+            let allowed = "left out where scene, initial, grains, box-width, seed, start or preset is \
+                           given: a run that goes on has its own";
+            return Err(Error::value("restart", "given", allowed));
+        }
+        let mut scene = state.scene.clone();
+        self.change_scene(&mut scene)?;
+        state.simulation.change(scene.settings())?;
+        state.scene = scene;
+        Ok(())
     }
 
     fn rain_on(&self, ground: &Ground) -> Option<Rain> {
@@ -199,8 +239,10 @@ impl Config {
 
     /// The same asked for, with every number that `scene` fills in.
     pub fn resolved(&self, scene: &Scene) -> Self {
+        // An initial state may have a scene of its own.
+        let name = if self.origin.initial.is_some() { &scene.name } else { self.named() };
         let origin = Origin {
-            scene: Some(self.named().into()),
+            scene: Some(name.into()),
             duration: Some(scene.duration_secs),
             ..self.origin.clone()
         };

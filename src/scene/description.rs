@@ -1,5 +1,7 @@
 //! Everything that a scene says.
 
+use std::fmt::Arguments;
+
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -89,13 +91,22 @@ fn one() -> f64 {
 /// ten-thousandth of one, and soon to where others are as well.
 const FARTHEST_IN_RADII: f64 = 1e15;
 
-fn within_reach(field: &str, place: DVec2, radius: f64) -> Result<()> {
+/// Names are put together where there is something to tell: a study asks this of every disc of every run.
+fn positive(field: Arguments<'_>, value: f64, unit: &str) -> Result<()> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(Error::value(field.to_string(), value, format!("a finite number > 0{unit}")))
+    }
+}
+
+fn within_reach(field: Arguments<'_>, place: DVec2, radius: f64) -> Result<()> {
     let farthest = FARTHEST_IN_RADII * radius;
     if place.abs().max_element() <= farthest {
         return Ok(());
     }
     let allowed = format!("within {farthest} m of the origin, {FARTHEST_IN_RADII} radii");
-    Err(Error::value(field, place, allowed))
+    Err(Error::value(field.to_string(), place, allowed))
 }
 
 impl Scene {
@@ -117,24 +128,17 @@ impl Scene {
     /// # Errors
     /// Names the first field outside its range.
     pub fn validate(&self) -> Result<()> {
-        let positive = |field: &str, value: f64, unit: &str| {
-            if value > 0.0 && value.is_finite() {
-                Ok(())
-            } else {
-                Err(Error::value(field, value, format!("a finite number > 0{unit}")))
-            }
-        };
         self.physics.validate()?;
         self.settings().validate()?;
-        positive("areal_density", self.areal_density, " kg/m²")?;
-        positive("duration", self.duration_secs, " s")?;
-        positive("mean_diameter", self.mean_diameter, " m")?;
+        positive(format_args!("areal_density"), self.areal_density, " kg/m²")?;
+        positive(format_args!("duration"), self.duration_secs, " s")?;
+        positive(format_args!("mean_diameter"), self.mean_diameter, " m")?;
         self.parameters.check_steps("duration", self.duration_secs)?;
         if self.grains.is_empty() {
             return Err(Error::value("grains", 0, "at least one disc"));
         }
         for (index, grain) in self.grains.iter().enumerate() {
-            positive(&format!("grains[{index}].radius"), grain.radius, " m")?;
+            positive(format_args!("grains[{index}].radius"), grain.radius, " m")?;
             let finite = grain.position.is_finite()
                 && grain.velocity.is_finite()
                 && grain.angular_velocity.is_finite();
@@ -142,15 +146,19 @@ impl Scene {
                 let found = format!("{grain:?}");
                 return Err(Error::value(format!("grains[{index}]"), found, "finite throughout"));
             }
-            within_reach(&format!("grains[{index}].position"), grain.position, grain.radius)?;
+            within_reach(format_args!("grains[{index}].position"), grain.position, grain.radius)?;
         }
         for (index, disc) in self.fixed_discs.iter().enumerate() {
-            positive(&format!("fixed_discs[{index}].radius"), disc.radius, " m")?;
+            positive(format_args!("fixed_discs[{index}].radius"), disc.radius, " m")?;
             if !disc.position.is_finite() {
                 let field = format!("fixed_discs[{index}].position");
                 return Err(Error::value(field, disc.position, "finite"));
             }
-            within_reach(&format!("fixed_discs[{index}].position"), disc.position, disc.radius)?;
+            within_reach(
+                format_args!("fixed_discs[{index}].position"),
+                disc.position,
+                disc.radius,
+            )?;
         }
         let magnitude = self.gravity.magnitude();
         if !(magnitude >= 0.0 && magnitude.is_finite()) {

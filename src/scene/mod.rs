@@ -14,6 +14,7 @@ mod pile;
 mod preset;
 mod rain;
 mod registry;
+mod saved_state;
 mod settling;
 pub mod stability;
 
@@ -29,5 +30,6 @@ pub use pile::{paper_pile, pile_of, rough_base};
 pub use preset::Preset;
 pub use rain::Rain;
 pub use registry::{SCENES, SceneGroup, SceneInfo, built_in};
+pub use saved_state::SavedState;
 pub(crate) use settling::walls;
 pub use settling::{Settling, settle};

@@ -15,7 +15,7 @@ pub struct Origin {
     #[arg(long, value_name = "NAME|FILE", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
-    /// Start the pile from a CSV of discs (header x,y,radius, optionally vx,vy,omega; metres)
+    /// Start the pile from a CSV of discs (header x,y,radius, optionally vx,vy,omega; metres), or the scene of a saved run from its grains
     #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial: Option<PathBuf>,

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::losses::Losses;
 use super::{Observables, Settings};
 use crate::contact::Feature;
+use crate::error::legible;
 use crate::solver::Method;
 use crate::world::{Physics, World};
 
@@ -65,7 +66,8 @@ impl Alarm {
             AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
         };
         let Self { step, time_secs, .. } = self;
-        format!("{what} (step {step}, t = {time_secs:.4} s): {}", self.advice(settings))
+        let advice = self.advice(settings);
+        legible(&format!("{what} (step {step}, t = {time_secs:.4} s): {advice}"))
     }
 
     /// The change that is most likely to help.
@@ -96,7 +98,8 @@ impl Alarm {
 }
 
 /// What watches over a simulation. Part of it, so that a moment that is computed anew tells the same.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Watch {
     unfinished_in_a_row: u32,
     alarms: Vec<Alarm>,
@@ -144,6 +147,11 @@ impl Watch {
         if observables.max_overlap > LARGEST_OVERLAP {
             self.raise(AlarmKind::Overlap, observables);
         }
+    }
+
+    /// Whether it watches over so many grains.
+    pub(super) fn is_of(&self, grains: usize) -> bool {
+        self.losses.is_of(grains)
     }
 
     /// Forgets the last grain, which is taken out of the world.

@@ -28,8 +28,11 @@ pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
         return Err(Error::value("mean_diameter", diameter, allowed));
     }
     let skin = SKIN_IN_DIAMETERS * diameter;
-    if !(0.0..0.1 * skin).contains(&gap_tolerance) {
-        let allowed = format!("≥ 0 and below {} m", 0.1 * skin);
+    // Of much smaller discs, all within the tolerance would touch.
+    let least_radius = world.grains.radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = (0.1 * skin).min(least_radius);
+    if !(0.0..most).contains(&gap_tolerance) {
+        let allowed = format!("≥ 0 and below {most} m");
         return Err(Error::value("gap_tolerance", gap_tolerance, allowed));
     }
     check_distances(world)?;

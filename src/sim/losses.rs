@@ -8,6 +8,7 @@
 
 use glam::DVec2;
 use parry2d_f64::shape::Segment;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::Feature;
 use crate::world::{Gravity, Physics, World};
@@ -22,7 +23,8 @@ const LOST_DEPTH: f64 = 1.0;
 const WAY_IN_RADII: f64 = 0.25;
 
 /// What watches over a world's grains.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Losses {
     /// Where each grain's way begins that has not been looked at, m.
     from: Vec<DVec2>,
@@ -38,7 +40,8 @@ pub(super) struct Losses {
 }
 
 /// Where the world ends.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Edges {
     /// Corners, m; none where nothing is fixed, or on open ground: grains may go where they like.
     corners: Option<[DVec2; 2]>,
@@ -102,6 +105,12 @@ impl Losses {
         let initial: f64 = there().map(|index| self.initial_heights[index]).sum();
         let heights: f64 = there().map(|index| world.grains.positions[index].y).sum();
         if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
+    }
+
+    /// Whether it watches over so many grains.
+    pub(super) fn is_of(&self, grains: usize) -> bool {
+        [self.from.len(), self.lost.len(), self.initial_heights.len()] == [grains; 3]
+            && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
     /// Forgets the last grain, which is taken out of the world.

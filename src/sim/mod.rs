@@ -12,6 +12,7 @@ mod settings;
 mod simulation;
 mod snapshot;
 mod state;
+mod steady;
 mod steppers;
 mod stepping;
 mod tally;

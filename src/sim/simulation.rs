@@ -1,5 +1,7 @@
 //! A running simulation: a world and what is needed to step it.
 
+mod saved;
+
 use std::sync::Arc;
 
 use super::alarm::Watch;
@@ -7,6 +9,7 @@ use super::check::reach_in;
 use super::remedies::max_travel;
 use super::snapshot::Surroundings;
 use super::state::State;
+use super::steady::Steady;
 use super::steppers::{Memory, Stepper};
 use super::stepping::Advance;
 use super::visits::{ProblemVisitor, Show, Start, Step};
@@ -15,7 +18,7 @@ use super::{Alarm, Observables, Pull, Settings};
 use crate::contact::{Candidates, ContactList};
 use crate::error::{Error, Result};
 use crate::solver::{ModelParts, Slots, SolverSettings};
-use crate::world::{Gravity, Parameters, Physics, World};
+use crate::world::{Parameters, Physics, World};
 
 /// A world in motion.
 ///
@@ -24,6 +27,7 @@ use crate::world::{Gravity, Parameters, Physics, World};
 pub struct Simulation {
     pub(super) state: State,
     settings: Settings,
+    steady: Steady,
     slots: Slots,
     memory: Memory,
     observables: Observables,
@@ -51,16 +55,7 @@ impl Simulation {
         settings.validate()?;
         world.grains.validate()?;
         let candidates = Candidates::new(&world, reach_in(&world, gap_tolerance)?)?;
-        let surroundings = Arc::new(Surroundings {
-            fixed_discs: world.fixed_discs.clone(),
-            boundaries: world.boundaries.clone(),
-            centre_of_attraction: match world.gravity {
-                Gravity::Attraction { centre, .. } => Some(centre),
-                Gravity::Uniform { .. } => None,
-            },
-            mean_diameter: world.mean_diameter,
-            gravity_magnitude: world.gravity.magnitude(),
-        });
+        let surroundings = Arc::new(Surroundings::of(&world));
         let mut simulation = Self {
             initial_heights: world.grains.positions.iter().map(|position| position.y).sum(),
             watch: Watch::new(&world, candidates.features(), physics),
@@ -74,6 +69,7 @@ impl Simulation {
                 time_step_of_impulses_secs: settings.parameters.time_step_secs,
             },
             settings,
+            steady: Steady::default(),
             slots: Slots::default(),
             memory: Memory::default(),
             observables: Observables::default(),
@@ -214,6 +210,9 @@ impl Simulation {
     /// Names the first one outside its range, or that does not go with the others, and changes none.
     pub fn change(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
+        if settings.parameters.time_step_secs != self.settings.parameters.time_step_secs {
+            self.steady = Steady::since(&self.observables);
+        }
         self.settings = settings;
         Ok(())
     }
@@ -267,6 +266,11 @@ impl Simulation {
     /// What went wrong so far, one alarm of a kind.
     pub fn alarms(&self) -> &[Alarm] {
         self.watch.alarms()
+    }
+
+    /// The step whose end is nearest to a simulated time (s), as long as Δt stays as it is.
+    pub fn step_at(&self, secs: f64) -> u64 {
+        self.steady.step_at(secs, &self.settings.parameters)
     }
 
     /// Simulated time, s.

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::observables::Observables;
-use crate::world::{Boundary, Disc};
+use crate::world::{Boundary, Disc, Gravity, World};
 
 /// One moment of a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Snapshot {
     /// What the last step measured.
     pub observables: Observables,
@@ -21,7 +23,8 @@ pub struct Snapshot {
 }
 
 /// The part of a picture that grains do not change.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Surroundings {
     /// Fixed discs.
     pub fixed_discs: Vec<Disc>,
@@ -35,8 +38,25 @@ pub struct Surroundings {
     pub gravity_magnitude: f64,
 }
 
+impl Surroundings {
+    /// Those of a world as it is now.
+    pub(super) fn of(world: &World) -> Self {
+        Self {
+            fixed_discs: world.fixed_discs.clone(),
+            boundaries: world.boundaries.clone(),
+            centre_of_attraction: match world.gravity {
+                Gravity::Attraction { centre, .. } => Some(centre),
+                Gravity::Uniform { .. } => None,
+            },
+            mean_diameter: world.mean_diameter,
+            gravity_magnitude: world.gravity.magnitude(),
+        }
+    }
+}
+
 /// One grain at one moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct GrainView {
     /// Centre, m.
     pub position: DVec2,
@@ -59,7 +79,8 @@ pub struct GrainView {
 }
 
 /// One contact at one moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ContactView {
     /// Index of grain i.
     pub grain: u32,

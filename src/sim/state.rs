@@ -1,6 +1,7 @@
 //! What a step reads and moves, and what every way to step does with it: find contacts, move grains.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::pull::Pull;
 use super::walls::Walls;
@@ -14,13 +15,15 @@ use crate::world::{Physics, World};
 pub(super) const SKIN_IN_DIAMETERS: f64 = 0.2;
 
 /// A world with the contacts of its last step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct State {
     pub world: World,
     pub physics: Physics,
     pub candidates: Candidates,
     pub contacts: ContactList,
-    /// Walls that move.
+    /// Walls that move. Each step begins with finding them.
+    #[serde(skip)]
     pub walls: Walls,
     /// A spring on one grain, from the next step on.
     pub pull: Option<Pull>,
@@ -42,25 +45,21 @@ impl State {
     /// Finds the contacts: those at the present positions, or, looking ahead, those that the step may
     /// come to as well.
     pub(crate) fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
-        let Self { world, candidates, contacts, .. } = self;
-        match (ahead, M::Kinematics::AXES) {
-            (None, 1) => {
-                candidates.update::<1>(world);
-                contacts.detect::<1>(world, candidates);
-            }
-            (None, _) => {
-                candidates.update::<2>(world);
-                contacts.detect::<2>(world, candidates);
-            }
-            (Some(ahead), 1) => {
-                candidates.update_ahead::<1>(world, ahead.reach);
-                contacts.detect_ahead::<1>(world, candidates, ahead);
-            }
-            (Some(ahead), _) => {
-                candidates.update_ahead::<2>(world, ahead.reach);
-                contacts.detect_ahead::<2>(world, candidates, ahead);
-            }
+        match M::Kinematics::AXES {
+            1 => self.detect_on::<1>(ahead),
+            _ => self.detect_on::<2>(ahead),
         }
+    }
+
+    fn detect_on<const AXES: usize>(&mut self, ahead: Option<LookAhead>) {
+        let Self { world, candidates, contacts, .. } = self;
+        let Some(ahead) = ahead else {
+            candidates.update::<AXES>(world);
+            return contacts.detect::<AXES>(world, candidates);
+        };
+        let way_of_grain = |grain: usize| ahead.way_of_grain(world.grains.velocities[grain]);
+        candidates.update_ahead::<AXES>(world, way_of_grain, ahead.way_of_others());
+        contacts.detect_ahead::<AXES>(world, candidates, ahead);
     }
 
     /// The push of the spring on a grain in the next `time_step_secs` ([`Pull::push`]).

@@ -31,6 +31,9 @@ pub(super) struct Entry {
     /// Wall-clock time that it took, s.
     pub wall_secs: f64,
     pub outcome: Outcome,
+    /// Checksum of the file with its course, where one is kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub course: Option<String>,
 }
 
 /// A journal that this program writes.

@@ -5,6 +5,7 @@ mod alarms;
 mod axis;
 pub mod chart;
 mod collection;
+mod course;
 mod figures;
 mod journal;
 mod outcome;
@@ -21,14 +22,15 @@ mod statistics;
 mod sweep;
 mod table;
 
+pub(crate) use course::series_path;
 pub(crate) use figures::{figure_names, reproduce};
 pub(crate) use outcome::{Outcome, Status};
 pub(crate) use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
 };
 pub use plan::{PlannedRun, SeriesSettings, Study};
-pub use run::{Recorded, Recorder, record};
+pub use run::{OnItsWay, Recorded, Recorder, go_on, record};
 pub(crate) use shard::Shard;
 pub(crate) use speed::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
-pub(crate) use sweep::{SweepOptions, merge, series_path, sweep};
+pub(crate) use sweep::{SweepOptions, merge, sweep};
 pub(crate) use table::RunsTable;

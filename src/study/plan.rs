@@ -11,8 +11,9 @@ use super::axis;
 use crate::error::{Error, Result, in_words};
 use crate::scene::{Config, Ground};
 
-/// More runs than this are a mistake rather than a wish.
-const MOST_RUNS: usize = 10_000_000;
+/// More runs than this are a mistake rather than a wish: planned, run and told of they take some 2 kB
+/// each.
+const MOST_RUNS: usize = 1_000_000;
 
 /// What a study file must be, for messages.
 const FORM: &str = "a study file in TOML with name, base and vary";
@@ -161,14 +162,13 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
     for (key, said) in &file.vary {
         let axis = Axis::read(key, said)?;
         count = count.saturating_mul(axis.values.len());
+        // Before the next axis: its values, too, take room.
+        if count > MOST_RUNS {
+            let found = format!("{count} runs with vary.{key}");
+            let allowed = format!("no more than {MOST_RUNS}; take two studies for more");
+            return Err(Error::value("vary", found, allowed));
+        }
         axes.push(axis);
-    }
-    if count > MOST_RUNS {
-        return Err(Error::value(
-            "vary",
-            format!("{count} runs"),
-            format!("no more than {MOST_RUNS}"),
-        ));
     }
     let mut grounds = HashMap::new();
     let run = |mut number: usize| {
@@ -233,33 +233,58 @@ fn config_of<'a>(
     })
 }
 
+/// A ground that has been read.
+struct Known {
+    ground: Ground,
+    /// Hash of all its discs.
+    discs: String,
+}
+
+impl Known {
+    fn of(config: &Config) -> Result<Self> {
+        let ground = config.ground()?;
+        let scene = config.change(&ground)?;
+        let discs = short(&hash(&(&scene.grains, &scene.fixed_discs), &scene.name)?);
+        Ok(Self { ground, discs })
+    }
+}
+
 impl PlannedRun {
     /// `grounds` keeps what has been read, by name.
     fn new(
         config: &Config,
         series: Option<&SeriesSettings>,
-        grounds: &mut HashMap<String, Ground>,
+        grounds: &mut HashMap<String, Known>,
     ) -> Result<Self> {
-        let ground = match grounds.entry(config.name_of_ground()) {
+        let known = match grounds.entry(config.name_of_ground()) {
             Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(place) => place.insert(config.ground()?),
+            Entry::Vacant(place) => place.insert(Known::of(config)?),
         };
-        let scene = config.change(ground)?;
+        let mut scene = config.change(&known.ground)?;
         let config = config.resolved(&scene);
         let grains = config.origin.grains.unwrap_or(scene.grains.len());
         if let Some(grain) = series.and_then(|series| series.grains.iter().find(|&&g| g >= grains))
         {
             return Err(Error::value("series.grains", grain, format!("below {grains}")));
         }
-        // The scene stands in for the files that it may have been read from.
-        let said = serde_json::to_vec(&(env!("CARGO_PKG_VERSION"), &config, &scene, series))
-            .map_err(|error| Error::value("scene", &scene.name, error.to_string()))?;
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(&said);
+        // The scene stands in for the files that it may have been read from, the hash of its discs for them:
+        // they are nearly all that it says, and the same in each run.
+        scene.grains.clear();
+        scene.fixed_discs.clear();
+        let said = (env!("CARGO_PKG_VERSION"), &config, &scene, &known.discs, series);
+        let hasher = hash(&said, &scene.name)?;
         let steps = scene.duration_secs / scene.parameters.time_step_secs;
         let digits = 1.0 - scene.solver.tolerance.log10().min(0.0);
         Ok(Self { key: short(&hasher), cost: steps * grains as f64 * digits, config })
     }
+}
+
+fn hash(said: &impl Serialize, scene: &str) -> Result<blake3::Hasher> {
+    let said = serde_json::to_vec(said)
+        .map_err(|error| Error::value("scene", scene, error.to_string()))?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&said);
+    Ok(hasher)
 }
 
 /// Half of a hash: 128 bits never meet by chance.

@@ -7,7 +7,8 @@ const BETWEEN: &str = "\",\"record\":";
 /// What stands before the checksum at the end of a file whose comments begin with `#`.
 const COMMENT: &str = "# checksum ";
 
-fn checksum(text: &[u8]) -> String {
+/// The checksum of some bytes.
+pub(super) fn checksum(text: &[u8]) -> String {
     blake3::hash(text).to_hex()[..DIGITS].to_owned()
 }
 

@@ -14,11 +14,30 @@ pub trait Recorder {
     /// Where it cannot be taken down; the run ends.
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>>;
 
+    /// Called after every step, before its pictures, with the whole state and the sums so far.
+    ///
+    /// # Errors
+    /// Where it cannot be taken down; the run ends.
+    fn state(&mut self, _simulation: &Simulation, _tally: &Tally) -> Result<()> {
+        Ok(())
+    }
+
     /// Called at each time that was asked for, with its number and the state at the nearest step.
     ///
     /// # Errors
     /// Where it cannot be taken down; the run ends.
     fn picture(&mut self, number: usize, snapshot: Snapshot) -> Result<()>;
+}
+
+/// A run that goes on, from its start or from later.
+#[derive(Debug)]
+pub struct OnItsWay {
+    /// The simulation so far.
+    pub simulation: Simulation,
+    /// Sums over its steps so far.
+    pub tally: Tally,
+    /// The number of the first picture that is not taken yet.
+    pub next_picture: usize,
 }
 
 /// What a run leaves.
@@ -52,49 +71,64 @@ pub fn record(
         let allowed = format!("between 0 and the duration of {} s", scene.duration_secs);
         return Err(Error::value("times", time, allowed));
     }
-    let mut simulation = scene.simulation()?;
-    let mut tally = Tally::default();
-    let ended = run(&mut simulation, times_secs, until_secs, &mut tally, recorder);
+    let simulation = scene.simulation()?;
+    let start = OnItsWay { simulation, tally: Tally::default(), next_picture: 0 };
+    Ok(go_on(start, times_secs, until_secs, recorder))
+}
+
+/// Lets a run go on to `until_secs`, with those pictures at `times_secs` (rising, s) that are not taken yet.
+/// What ends it early is told of in what it leaves.
+pub fn go_on(
+    mut run: OnItsWay,
+    times_secs: &[f64],
+    until_secs: f64,
+    recorder: &mut impl Recorder,
+) -> Recorded {
+    let ended = run.take_down(times_secs, until_secs, recorder);
+    let OnItsWay { simulation, tally, .. } = run;
     let interrupted = matches!(ended, Ok(RunEnding::Stopped));
     let failure = match ended {
         Ok(RunEnding::NotFinite(failure)) | Err(failure) => Some(failure),
         Ok(RunEnding::Done | RunEnding::Stopped) => None,
     };
-    Ok(Recorded { simulation, tally, interrupted, failure })
+    Recorded { simulation, tally, interrupted, failure }
 }
 
-fn run(
-    simulation: &mut Simulation,
-    times_secs: &[f64],
-    until_secs: f64,
-    tally: &mut Tally,
-    recorder: &mut impl Recorder,
-) -> Result<RunEnding> {
-    let parameters = *simulation.parameters();
-    let pictures = times_secs.iter().enumerate().map(|(number, &time)| (Some(number), time));
-    for (number, time_secs) in pictures.chain([(None, until_secs)]) {
-        let last = parameters.steps_in(time_secs);
-        let steps = last.saturating_sub(simulation.observables().step);
-        let ended = simulation.run(steps, |simulation| {
-            tally.add(simulation.observables());
-            recorder.step(simulation.observables())
-        })?;
-        let is_there = match ended {
-            RunEnding::Done => true,
-            RunEnding::Stopped => simulation.observables().step == last,
-            RunEnding::NotFinite(_) => false,
-        };
-        if let Some(number) = number.filter(|_| is_there) {
-            recorder.picture(number, simulation.snapshot())?;
+impl OnItsWay {
+    fn take_down(
+        &mut self,
+        times_secs: &[f64],
+        until_secs: f64,
+        recorder: &mut impl Recorder,
+    ) -> Result<RunEnding> {
+        let Self { simulation, tally, next_picture } = self;
+        let pictures = times_secs.iter().enumerate().map(|(number, &time)| (Some(number), time));
+        for (number, time_secs) in pictures.skip(*next_picture).chain([(None, until_secs)]) {
+            let last = simulation.step_at(time_secs);
+            let steps = last.saturating_sub(simulation.observables().step);
+            let ended = simulation.run(steps, |simulation| {
+                tally.add(simulation.observables());
+                let goes_on = recorder.step(simulation.observables())?;
+                recorder.state(simulation, tally)?;
+                Ok(goes_on)
+            })?;
+            let is_there = match ended {
+                RunEnding::Done => true,
+                RunEnding::Stopped => simulation.observables().step == last,
+                RunEnding::NotFinite(_) => false,
+            };
+            if let Some(number) = number.filter(|_| is_there) {
+                recorder.picture(number, simulation.snapshot())?;
+            }
+            if let RunEnding::NotFinite(_) = ended {
+                // The row of the step that blew up is one of them, so that table and tally tell the same.
+                tally.add(simulation.observables());
+                let _ = recorder.step(simulation.observables())?;
+            }
+            if !matches!(ended, RunEnding::Done) {
+                return Ok(ended);
+            }
         }
-        if let RunEnding::NotFinite(_) = ended {
-            // The row of the step that blew up is one of them, so that table and tally tell the same.
-            tally.add(simulation.observables());
-            let _ = recorder.step(simulation.observables())?;
-        }
-        if !matches!(ended, RunEnding::Done) {
-            return Ok(ended);
-        }
+        Ok(RunEnding::Done)
     }
-    Ok(RunEnding::Done)
 }

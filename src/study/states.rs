@@ -36,7 +36,7 @@ impl States {
         if rains.is_empty() {
             return Ok(Self { settled: HashMap::new() });
         }
-        check_writable(&folder)?;
+        check_writable("out", &folder)?;
         let mut rains: Vec<_> = rains.into_iter().collect();
         rains.sort_by(|(one, a), (other, b)| b.grains.cmp(&a.grains).then(one.cmp(other)));
         let cost = |rain: &Rain| (rain.grains as u64).pow(2);

@@ -11,8 +11,9 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::course::{self, Course};
 use super::journal::{self, Entry, Journal};
-use super::outcome::{run_to_end, series_cells, series_names};
+use super::outcome::run_to_end;
 use super::states::States;
 use super::table::RunsTable;
 use super::{PlannedRun, Shard, Study};
@@ -21,8 +22,6 @@ use crate::output::{Progress, check_writable, note_line, write_file};
 
 /// File that says which study a folder holds.
 const STUDY_FILE: &str = "study.json";
-/// Folder of the runs' courses.
-const SERIES: &str = "series";
 /// The table of a finished study.
 const TABLE: &str = "runs.csv";
 /// Lines that tell of progress where there is no terminal to draw a bar on.
@@ -58,7 +57,7 @@ pub(crate) fn sweep(
     folder: &Path,
     options: &SweepOptions,
 ) -> Result<Option<RunsTable>> {
-    check_writable(folder)?;
+    check_writable("out", folder)?;
     claim(study, folder, options.redo)?;
     let journal_name = match options.shard {
         Some(Shard { index, count }) => format!("runs-{index}-of-{count}"),
@@ -69,7 +68,7 @@ pub(crate) fn sweep(
         let journal = Journal::open(folder, &journal_name)?;
         Ok((journal, journal::read_all(&folders)?))
     };
-    let (journal, mut done) = match open() {
+    let (journal, done) = match open() {
         Err(error) if options.redo => {
             note_line(format_args!("{error}; thrown away"));
             throw_away(folder)?;
@@ -77,9 +76,6 @@ pub(crate) fn sweep(
         }
         opened => opened?,
     };
-    if study.series.is_some() {
-        done.retain(|key, _| series_path(folder, key).exists());
-    }
 
     let mine = |index: usize| options.shard.is_none_or(|shard| shard.has(index));
     let mut part: Vec<&PlannedRun> = study
@@ -90,7 +86,8 @@ pub(crate) fn sweep(
         .map(|(_, run)| run)
         .collect();
     let of_part = part.len();
-    part.retain(|run| !done.contains_key(&run.key));
+    let is_whole = |entry| study.series.is_none() || course::is_whole(folder, entry);
+    part.retain(|run| !done.get(&run.key).is_some_and(is_whole));
     if part.len() < of_part {
         note_line(format_args!(
             "{}: {} of {of_part} runs were there",
@@ -126,7 +123,7 @@ pub(crate) fn merge(study: &Study, folders: &[PathBuf], out: &Path) -> Result<Ru
             }
         }
     }
-    check_writable(out)?;
+    check_writable("out", out)?;
     join(study, folders, out)
 }
 
@@ -150,12 +147,12 @@ fn run_all(
     let ended = part.into_iter().par_bridge().try_for_each(|run| {
         let started = Instant::now();
         let scene = states.scene(&run.config)?;
-        let mut course = Course::start(study);
+        let mut course = Course::start(study.series.as_ref());
         let outcome =
             run_to_end(&scene, study.series.as_ref(), |simulation| course.add(simulation))?;
-        course.finish(folder, run)?;
+        let course = course.finish(folder, &run.key)?;
         let wall_secs = started.elapsed().as_secs_f64();
-        journal.add(&Entry { key: run.key.clone(), wall_secs, outcome })?;
+        journal.add(&Entry { key: run.key.clone(), wall_secs, outcome, course })?;
         progress.advance(cost(run));
         let count = 1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         if !progress.is_drawn()
@@ -167,51 +164,6 @@ fn run_all(
     });
     progress.finish();
     ended
-}
-
-/// The course of one run as CSV; empty where none is kept.
-struct Course<'a> {
-    study: &'a Study,
-    writer: Option<csv::Writer<Vec<u8>>>,
-}
-
-impl<'a> Course<'a> {
-    fn start(study: &'a Study) -> Self {
-        Self { study, writer: None }
-    }
-
-    fn add(&mut self, simulation: &crate::sim::Simulation) -> Result<()> {
-        let Some(series) = &self.study.series else { return Ok(()) };
-        if self.writer.is_none() {
-            self.writer = Some(csv::Writer::from_writer(Vec::new()));
-            self.write(&series_names(simulation, &series.grains)?)?;
-        }
-        self.write(&series_cells(simulation, &series.grains)?)
-    }
-
-    fn write(&mut self, cells: &[String]) -> Result<()> {
-        match &mut self.writer {
-            Some(writer) => {
-                writer.write_record(cells).map_err(|error| Error::file("series", error))
-            }
-            None => Ok(()),
-        }
-    }
-
-    fn finish(self, folder: &Path, run: &PlannedRun) -> Result<()> {
-        let Some(writer) = self.writer else { return Ok(()) };
-        let bytes = writer.into_inner().map_err(|error| Error::file("series", error.error()))?;
-        let path = series_path(folder, &run.key);
-        if let Some(series) = path.parent() {
-            std::fs::create_dir_all(series).map_err(|error| Error::file(series, error))?;
-        }
-        write_file(&path, &bytes)
-    }
-}
-
-/// Where the course of the run with a key lies.
-pub(crate) fn series_path(folder: &Path, key: &str) -> PathBuf {
-    folder.join(SERIES).join(format!("{key}.csv"))
 }
 
 fn label_of(study: &Study) -> Label {
@@ -263,11 +215,7 @@ fn claim(study: &Study, folder: &Path, redo: bool) -> Result<()> {
 fn throw_away(folder: &Path) -> Result<()> {
     remove(&folder.join(TABLE))?;
     journal::remove_all(folder)?;
-    let series = folder.join(SERIES);
-    match std::fs::remove_dir_all(&series) {
-        Err(error) if error.kind() != NotFound => Err(Error::file(&series, error)),
-        _ => Ok(()),
-    }
+    course::remove_all(folder)
 }
 
 fn remove(path: &Path) -> Result<()> {

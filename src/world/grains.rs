@@ -59,7 +59,8 @@ impl Grain {
 /// places, works on a packed copy (`solver::problem`).
 ///
 /// Plain data, checked where a simulation takes it on; a running one shows its own and lends none.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Grains {
     /// Centres, m.
     pub positions: Vec<DVec2>,

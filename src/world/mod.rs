@@ -13,9 +13,12 @@ pub(crate) use parameters::MAX_SUBSTEPS;
 pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};
 pub use physics::Physics;
 
+use serde::{Deserialize, Serialize};
+
 /// Everything that a step reads and moves. Plain data, checked where a simulation takes it on; a running
 /// one shows its own and lends none.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct World {
     /// The moving discs.
     pub grains: Grains,

@@ -1,38 +1,49 @@
-//! Every parser of a file that a user hands over.
+//! Every parser of a file that a user hands over, and what its file is first used for.
 
 use std::path::Path;
 
-use slump::error::Error;
-use slump::interchange::ProblemFile;
-use slump::scene::{built_in, parse_discs, read_scene, scene_to_toml};
+use slump::error::{Error, Result};
+use slump::interchange::{ProblemFile, problem_file_at, solve_file};
+use slump::scene::{Config, GrainSource, Origin, Rain, built_in, scene_to_toml};
+use slump::solver::{METHODS, SolverSettings, StopTest};
 use slump::study::Study;
 
-use super::fuzz;
-use super::texts::{changed, with_corpus};
+use super::Target;
+use super::texts::changed;
 
 /// The longest refusal that still is a sentence, bytes.
 const LONGEST: usize = 3_200;
 
-/// A refusal is one sentence that can be shown on any terminal.
-fn check(refusal: &Error, text: &str) {
-    let said = refusal.to_string();
-    assert!(!said.contains(char::is_control), "control characters in {said:?} of {text:?}");
-    assert!(said.len() <= LONGEST, "{} bytes: {said:?} of {text:?}", said.len());
+/// The longest word that still is one, characters.
+const LONGEST_WORD: usize = 150;
+
+/// Whether a line can be shown on any terminal: nothing moves the cursor, turns the direction of writing or
+/// goes on and on. Words without a path, that is.
+pub fn is_legible(line: &str) -> bool {
+    let moves = |c: char| c.is_control() || ('\u{2028}'..='\u{202e}').contains(&c);
+    let goes_on = |word: &str| !word.contains('/') && word.chars().count() > LONGEST_WORD;
+    !line.contains(moves) && !line.split(' ').any(goes_on)
 }
 
-/// Tries the corpus, then texts that are nearly those given.
-fn fuzz_texts<T>(name: &str, texts: Vec<String>, parse: impl Fn(&str) -> slump::error::Result<T>) {
-    let texts = with_corpus(name, texts);
-    let one = |text: &str| {
-        if let Err(refusal) = parse(text) {
-            check(&refusal, text);
-        }
-    };
-    texts.iter().for_each(|text| one(text));
-    fuzz(name, |u| {
-        one(&changed(u, &texts)?);
-        Ok(())
-    });
+/// A refusal is one sentence that can be shown on any terminal and says what is allowed.
+pub fn check(refusal: &Error) {
+    let said = refusal.to_string();
+    assert!(is_legible(&said), "illegible: {said:?}");
+    assert!(said.len() <= LONGEST, "{} bytes: {said:?}", said.len());
+    assert!(said.contains("must "), "{said:?} does not say what is allowed");
+}
+
+/// Tries the texts given and those that ever failed, and others that are nearly those.
+fn fuzz_texts<T>(
+    name: &'static str,
+    ending: &'static str,
+    mut texts: Vec<String>,
+    parse: impl Fn(&str, &Path) -> Result<T>,
+) {
+    let target = Target { name, ending };
+    texts.extend(target.corpus());
+    let check = |text: &str, path: &Path| parse(text, path).inspect_err(check).is_ok();
+    target.fuzz(&texts, changed, check);
 }
 
 fn file(path: &str) -> String {
@@ -46,11 +57,14 @@ fn scene_files() {
     for name in ["cradle", "arch", "moving-walls", "squeeze", "thin-wall"] {
         texts.push(scene_to_toml(&built_in(name).expect("a scene")).expect("TOML"));
     }
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("scene.toml");
-    fuzz_texts("scene-files", texts, |text| {
-        std::fs::write(&path, text).expect("a file");
-        read_scene(&path).and_then(|scene| scene.simulation())
+    let mut rained = built_in("pile").expect("a scene");
+    rained.grains.clear();
+    rained.source = Some(GrainSource::Rain(Rain::default()));
+    texts.push(scene_to_toml(&rained).expect("TOML"));
+    fuzz_texts("scene-files", "toml", texts, |_, path| {
+        // Where grains are rained, many of them may well take their time.
+        let scene = Config::of_scene(path.to_str().expect("UTF-8")).without_settling()?;
+        scene.simulation()
     });
 }
 
@@ -58,29 +72,65 @@ fn scene_files() {
 fn tables_of_discs() {
     let shipped = file("assets/pile_138.csv");
     let short: Vec<&str> = shipped.lines().take(12).collect();
-    let texts = vec![short.join("\n"), "x,y,radius,vx,vy,omega\n0,0.01,2e-3,0,0,0\n".into()];
-    fuzz_texts("discs", texts, |text| parse_discs(text, "discs.csv".as_ref()));
+    let mut texts = vec![short.join("\n"), "x,y,radius,vx,vy,omega\n0,0.01,2e-3,0,0,0\n".into()];
+    for count in [2_000, 20_000] {
+        texts.push(format!("x,y,radius\n{}", "0,0.01,0.0025\n".repeat(count)));
+    }
+    fuzz_texts("discs", "csv", texts, |_, path| {
+        let origin = Origin { initial: Some(path.to_owned()), ..Origin::default() };
+        let scene = Config { origin, ..Config::default() }.scene(|_| true)?;
+        scene.simulation()
+    });
 }
 
 #[test]
 fn studies() {
     let names = ["pile", "cradle", "cradle-map", "pile-map", "range"];
     let texts = names.map(|name| file(&format!("assets/studies/{name}.toml"))).into();
-    fuzz_texts("studies", texts, |text| Study::parse(text, "study.toml".as_ref(), true));
+    fuzz_texts("studies", "toml", texts, |text, path| Study::parse(text, path, true));
+}
+
+/// Reads a problem and solves it for a while, by a method that hangs on the text alone.
+fn solve_briefly(text: &str, _: &Path) -> Result<()> {
+    let problem = ProblemFile::parse(text)?;
+    let settings = SolverSettings {
+        method: METHODS[text.len() % METHODS.len()].method,
+        stop: StopTest::Residual,
+        tolerance: 1e-6,
+        max_sweeps: 20,
+        ..SolverSettings::default()
+    };
+    let solution = solve_file(&problem, &settings, 1)?;
+    let enough = 2.001 * settings.tolerance;
+    let said = format!("{} by {}", solution.residual, solution.method);
+    assert!(!solution.converged || solution.residual <= enough, "solved to {said}");
+    assert!(!(solution.converged && solution.stalled), "solved and stalled: {said}");
+    Ok(())
 }
 
 #[test]
 fn problem_files() {
-    let texts = vec![file("tests/problems/bond_0.json"), file("tests/problems/bond_20.json")];
-    fuzz_texts("problem-files", texts, |text| {
-        ProblemFile::parse(text).and_then(|problem| problem.delassus())
-    });
+    // A line a number, so that there are lines to change.
+    let problem = |name: &str, at_secs: f64| {
+        let scene = built_in(name).expect("a scene");
+        let problem = problem_file_at(&scene, at_secs, |_| {}).expect("a problem");
+        serde_json::to_string_pretty(&problem).expect("JSON")
+    };
+    let texts = vec![problem("arch", 0.01), problem("squeeze", 0.01), problem("cradle", 0.0)];
+    fuzz_texts("problem-files", "json", texts, solve_briefly);
 }
 
 #[test]
 fn texts_of_siconos() {
-    let published = file("tests/problems/fc2d_granularflowonwall_00667_00000.dat");
-    let short: Vec<&str> = published.lines().take(40).collect();
-    let small = "2\n2\n2\n0 0 1\n1 1 1\n2\n-1\n0\n1\n0.5\n";
-    fuzz_texts("siconos", vec![short.join("\n"), small.into()], ProblemFile::parse);
+    let head = "CSparse Version 3.1.9";
+    let one = format!(
+        "2\n1\n2\n2\n2\n2\n{head}\n2-by-2\n    col 0 : locations 0 to 0\n      0 : 2.5\n    \
+         col 1 : locations 1 to 1\n      1 : 7\n-1 0.5\n0.3\n"
+    );
+    let two = format!(
+        "2\n2\n2\n4\n4\n2\n{head}\n4-by-4\n    col 0 : locations 0 to 1\n      0 : 2\n      2 : -1\n    \
+         col 1 : locations 2 to 2\n      1 : 6\n    col 2 : locations 3 to 4\n      0 : -1\n      \
+         2 : 2\n    col 3 : locations 5 to 5\n      3 : 6\n-1 0\n-0.1 0.5\n0.5 0\n"
+    );
+    fuzz_texts("siconos", "dat", vec![one, two], solve_briefly);
 }

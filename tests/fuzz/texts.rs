@@ -1,11 +1,9 @@
 //! Texts that are nearly right.
 
-use std::path::Path;
-
 use arbitrary::{Result, Unstructured};
 
 /// Numbers that break what was not made for them.
-const NUMBERS: [&str; 24] = [
+pub const NUMBERS: [&str; 24] = [
     "0",
     "-0",
     "1",
@@ -32,7 +30,7 @@ const NUMBERS: [&str; 24] = [
     "1e18",
 ];
 /// Words that files know, and some that they do not.
-const WORDS: [&str; 20] = [
+pub const WORDS: [&str; 20] = [
     "true",
     "false",
     "null",
@@ -55,10 +53,10 @@ const WORDS: [&str; 20] = [
     "=",
 ];
 
-/// One of the texts with a few changes.
+/// One of the texts with a few changes, most often one.
 pub fn changed(u: &mut Unstructured<'_>, texts: &[String]) -> Result<String> {
     let mut text = u.choose(texts)?.clone();
-    for _ in 0..u.int_in_range(1..=6)? {
+    for _ in 0..*u.choose(&[1, 1, 1, 1, 2, 3, 6])? {
         text = change(u, &text)?;
     }
     Ok(text)
@@ -71,7 +69,7 @@ fn change(u: &mut Unstructured<'_>, text: &str) -> Result<String> {
     }
     let at = u.choose_index(lines.len())?;
     let line = lines[at].to_owned();
-    let changed = match u.int_in_range(0..=7)? {
+    let changed = match u.int_in_range(0..=15)? {
         0 => {
             lines.remove(at);
             return Ok(lines.join("\n"));
@@ -88,27 +86,45 @@ fn change(u: &mut Unstructured<'_>, text: &str) -> Result<String> {
             }
             return Ok(text[..end].to_owned());
         }
-        3 | 4 => with_token(u, &line, &NUMBERS)?,
-        5 => with_token(u, &line, &WORDS)?,
+        3 => with_bit_flipped(u, line)?,
+        4 | 5 => {
+            let word = u.choose(&WORDS)?;
+            with_token(u, &line, word)?
+        }
         6 => {
             let digits = "7".repeat(u.int_in_range(1..=400)?);
-            with_token(u, &line, &[&digits])?
+            with_token(u, &line, &digits)?
         }
+        7..=10 => {
+            let number = u.choose(&NUMBERS)?;
+            with_token(u, &line, number)?
+        }
+        // What one place can say, another one may have to hear.
         _ => {
-            let mut bytes = line.into_bytes();
-            if !bytes.is_empty() {
-                let place = u.choose_index(bytes.len())?;
-                bytes[place] ^= 1 << u.int_in_range(0..=6)?;
+            let other = lines[u.choose_index(lines.len())?];
+            let tokens = tokens(other);
+            if tokens.is_empty() {
+                return Ok(text.to_owned());
             }
-            String::from_utf8_lossy(&bytes).into_owned()
+            let (from, to) = *u.choose(&tokens)?;
+            with_token(u, &line, &other[from..to])?
         }
     };
     lines[at] = &changed;
     Ok(lines.join("\n"))
 }
 
-/// The line with one of its words or numbers replaced.
-fn with_token(u: &mut Unstructured<'_>, line: &str, tokens: &[&str]) -> Result<String> {
+fn with_bit_flipped(u: &mut Unstructured<'_>, line: String) -> Result<String> {
+    let mut bytes = line.into_bytes();
+    if !bytes.is_empty() {
+        let place = u.choose_index(bytes.len())?;
+        bytes[place] ^= 1 << u.int_in_range(0..=6)?;
+    }
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Where the words and numbers of a line begin and end.
+fn tokens(line: &str) -> Vec<(usize, usize)> {
     let is_part = |c: char| c.is_alphanumeric() || "._-+\"".contains(c);
     let mut ends = Vec::new();
     let mut begin = None;
@@ -122,21 +138,15 @@ fn with_token(u: &mut Unstructured<'_>, line: &str, tokens: &[&str]) -> Result<S
             _ => {}
         }
     }
-    let token = u.choose(tokens)?;
-    if ends.is_empty() {
-        return Ok(format!("{line}{token}"));
-    }
-    let (from, to) = *u.choose(&ends)?;
-    Ok(format!("{}{token}{}", &line[..from], &line[to..]))
+    ends
 }
 
-/// The files of a folder of the corpus, beside those given.
-pub fn with_corpus(name: &str, mut texts: Vec<String>) -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus").join(name);
-    let mut paths: Vec<_> = std::fs::read_dir(folder)
-        .map(|entries| entries.flatten().map(|entry| entry.path()).collect())
-        .unwrap_or_default();
-    paths.sort();
-    texts.extend(paths.iter().map(|path| std::fs::read_to_string(path).expect("a text")));
-    texts
+/// The line with one of its words or numbers replaced.
+fn with_token(u: &mut Unstructured<'_>, line: &str, token: &str) -> Result<String> {
+    let tokens = tokens(line);
+    if tokens.is_empty() {
+        return Ok(format!("{line}{token}"));
+    }
+    let (from, to) = *u.choose(&tokens)?;
+    Ok(format!("{}{token}{}", &line[..from], &line[to..]))
 }

@@ -10,7 +10,9 @@ use std::process::Output;
 use std::time::Duration;
 
 use assert_cmd::Command;
+use glam::DVec2;
 use slump::scene::{Config, Origin, Scene, collision};
+use slump::world::Grain;
 use tempfile::TempDir;
 
 /// Far more than what is refused takes, far less than what was not.
@@ -105,6 +107,36 @@ fn a_scene_whose_diameter_makes_neighbours_of_all_discs_is_refused() {
     let spoilt = Scene { mean_diameter: 1e9, ..collision() };
     let said = spoilt.simulation().map(|_| ()).expect_err("no diameter of these").to_string();
     assert!(said.starts_with("mean_diameter is 1000000000, but must be at most 30 m"), "{said}");
+}
+
+#[test]
+fn a_problem_whose_matrix_would_not_fit_is_refused_with_the_disc_that_all_others_touch() {
+    let folder = folder();
+    let (count, radius) = (3_000u32, 1e-3);
+    let mut lines = "x,y,radius\n0,2,1\n".to_owned();
+    for k in 0..count {
+        let (sine, cosine) = (f64::from(k) * std::f64::consts::TAU / f64::from(count)).sin_cos();
+        let distance = 1.0 + 0.999_999 * radius;
+        let _ = writeln!(lines, "{},{},{radius}", distance * sine, 2.0 + distance * cosine);
+    }
+    let discs = write(&folder, "discs.csv", &lines);
+    let out = folder.path().join("problem.json");
+    let discs = discs.to_str().expect("UTF-8");
+    let dump = ["problem", "dump", "--initial", discs, "--at", "0", "--out"];
+    let said = refusal(&[&dump[..], &[out.to_str().expect("UTF-8")]].concat());
+    assert!(said.contains("the number of contacts of grains[0] is 3000, but must be so"), "{said}");
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_tolerance_in_which_small_discs_lose_themselves_is_refused() {
+    let mut grains = collision().grains;
+    let least = 1e-4 * grains[0].radius;
+    grains.push(Grain { position: grains[0].position + DVec2::X, radius: least, ..grains[0] });
+    let spoilt = Scene { grains, gap_tolerance: least, ..collision() };
+    let said = spoilt.simulation().map(|_| ()).expect_err("too wide").to_string();
+    assert!(said.starts_with("gap_tolerance is ") && said.contains(" below "), "{said}");
+    assert!(Scene { gap_tolerance: 0.5 * least, ..spoilt }.simulation().is_ok());
 }
 
 #[test]

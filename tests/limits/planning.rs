@@ -28,6 +28,18 @@ fn planning_takes_time_in_proportion_to_the_number_of_values() {
 }
 
 #[test]
+fn more_runs_than_anyone_can_wait_for_are_refused_before_they_take_room() {
+    let range = "{ from = 1, to = 2, count = 2000 }";
+    let text = format!(
+        "name = \"many\"\n[base]\nscene = \"cradle\"\n[vary]\nbond = {range}\nduration = {range}\n\
+         start = {range}\nmu = {range}\n"
+    );
+    // Of the axes after the second none is looked at.
+    let said = plan(&text, Path::new("many.toml")).map(|_| ()).expect_err("too many").to_string();
+    assert!(said.contains("vary is 4000000 runs with vary.duration, but must be"), "{said}");
+}
+
+#[test]
 fn a_rained_scene_file_is_settled_once_and_no_run_of_a_plan_settles_it() {
     let folder = folder();
     let rain = Rain { grains: 30, box_width_in_diameters: 8.0, seed: 3 };

@@ -96,6 +96,35 @@ fn deleted_courses_are_made_again() {
 }
 
 #[test]
+fn a_course_that_was_edited_is_named_and_computed_anew() {
+    let folder = folder();
+    let study = study(folder.path(), SHORT);
+    let whole = in_one_go(folder.path(), &study);
+    let out = folder.path().join("whole");
+    let courses = files(&out.join("series"));
+    let before = courses.iter().map(|path| std::fs::read(path).expect("a course"));
+    let before: Vec<_> = before.collect();
+    // One digit of the last row, and a last row that is gone.
+    let digit = before[0].iter().rposition(u8::is_ascii_digit).expect("a number");
+    let mut edited = before[0].clone();
+    edited[digit] ^= 1;
+    std::fs::write(&courses[0], edited).expect("a course");
+    let text = String::from_utf8(before[2].clone()).expect("UTF-8");
+    let (shorter, _) = text.trim_end().rsplit_once('\n').expect("rows");
+    std::fs::write(&courses[2], format!("{shorter}\n")).expect("a course");
+    let output = sweep(&study, &out, &[]);
+    assert!(said(&output).contains("1 of 3 runs were there"), "{}", said(&output));
+    for (number, course) in courses.iter().enumerate() {
+        let named = said(&output).contains(&format!("{}: is damaged", course.display()));
+        assert_eq!(named, number != 1, "{}", said(&output));
+        assert_eq!(std::fs::read(course).ok().as_ref(), before.get(number), "course {number}");
+    }
+    assert_eq!(runs(&out), whole);
+    let again = sweep(&study, &out, &[]);
+    assert!(said(&again).contains("3 of 3 runs were there"), "{}", said(&again));
+}
+
+#[test]
 fn redo_works_on_what_cannot_be_read() {
     let folder = folder();
     let study = study(folder.path(), SHORT);
@@ -160,6 +189,26 @@ fn a_redo_that_is_killed_leaves_one_study_and_never_a_mixture() {
         assert_eq!(&runs(&out), table, "round {round}");
     }
     assert!(found[0] > 0 && found[1] > 0, "killed before and after the change: {found:?}");
+}
+
+#[test]
+fn a_redo_takes_the_folder_over_only_once_the_old_table_is_gone() {
+    let folder = folder();
+    let old = study(folder.path(), SHORT);
+    in_one_go(folder.path(), &old);
+    let out = folder.path().join("whole");
+    let label = || std::fs::read_to_string(out.join("study.json")).expect("a label");
+    let before = label();
+    // What cannot be removed stops it where a kill would have to come at the right moment.
+    std::fs::remove_file(out.join("runs.csv")).expect("a table");
+    std::fs::create_dir(out.join("runs.csv")).expect("a folder in its place");
+    let new = study(folder.path(), &SHORT.replace("short", "other"));
+    let stopped = sweep(&new, &out, &["--redo"]);
+    assert_eq!(stopped.status.code(), Some(2), "{}", said(&stopped));
+    assert_eq!(label(), before, "the new study's label beside the old one's table");
+    std::fs::remove_dir(out.join("runs.csv")).expect("a folder");
+    assert!(sweep(&new, &out, &["--redo"]).status.success());
+    assert!(label().contains("\"other\""));
 }
 
 #[test]

@@ -15,4 +15,5 @@ mod mouse;
 mod pictures;
 mod recording;
 mod robot;
+mod saved;
 mod speed;

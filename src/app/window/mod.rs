@@ -60,7 +60,7 @@ pub(crate) fn run(
     }
     let mut stored = storage::load();
     stored.preferences.follow(pictures)?;
-    let config = start_config(config, &stored)?;
+    let (config, saved) = start_config(config, pictures.saving.restart.as_deref(), &stored)?;
     let events =
         EventLoop::<Message>::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();
@@ -70,7 +70,10 @@ pub(crate) fn run(
         wake: Box::new(move || drop(wake.send_event(Message::Repaint))),
         ..LiveOptions::default()
     })?;
-    let state = AppState::new(live, config, stored.preferences.clone());
+    let mut state = AppState::new(live, config, stored.preferences.clone());
+    if let Some(saved) = saved {
+        state.load_run(saved);
+    }
     let mut app = App {
         context: context(&proxy, stored.layout),
         proxy,

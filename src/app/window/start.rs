@@ -1,20 +1,32 @@
 //! What has to be settled before a window opens.
 
+use std::path::Path;
+
 use crate::app::storage::Stored;
 use crate::error::{Error, Result};
-use crate::scene::Config;
+use crate::scene::{Config, SavedState};
 
 /// What is opened first: what the command line asks for, or the last scene, or the default one where
-/// that is gone.
-pub(super) fn start_config(asked: &Config, stored: &Stored) -> Result<Config> {
+/// that is gone. A saved run that is to go on is opened in its place.
+pub(super) fn start_config(
+    asked: &Config,
+    restart: Option<&Path>,
+    stored: &Stored,
+) -> Result<(Config, Option<SavedState>)> {
+    if let Some(path) = restart {
+        let mut saved = SavedState::open(path)?;
+        asked.change_state(&mut saved)?;
+        return Ok((Config::default(), Some(saved)));
+    }
     // A pile is made on the solver's thread; everything else of a scene is checked before a window
     // opens.
     if !asked.is_empty() {
         asked.without_settling()?;
-        return Ok(asked.clone());
+        return Ok((asked.clone(), None));
     }
     let last = &stored.preferences.scene;
-    Ok(if last.without_settling().is_ok() { last.clone() } else { Config::default() })
+    let is_there = last.without_settling().is_ok();
+    Ok((if is_there { last.clone() } else { Config::default() }, None))
 }
 
 /// What is missing where no window can be opened, and what brings it.

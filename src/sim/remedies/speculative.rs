@@ -14,8 +14,8 @@
 //! **What it costs.** The pair is slowed down to gap/Δt before it meets, and bounces in the step after
 //! with ρ times that: with any share between 0 and 1 of the speed that it should have, half of it in
 //! the mean. The normal is that of the beginning, so what would pass by at a slant may be held up by
-//! nothing. And a fast grain makes the search of all pairs as wide as its own way. Cutting the step
-//! into pieces (`max_travel`) has none of these faults.
+//! nothing. And a fast grain looks for all that lies within its way. Cutting the step into pieces
+//! (`max_travel`) has none of these faults.
 
 use super::Remedy;
 use crate::contact::LookAhead;
@@ -30,7 +30,7 @@ pub(super) const REMEDY: Remedy = Remedy {
     robust: None,
 };
 
-/// Farther pairs are left alone, in d: the search would be of nearly all pairs.
+/// Farther pairs are left alone, in d: where all grains are fast, the search would be of nearly all pairs.
 const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 
 /// How far a step that has begun has to look: as far as two bodies of the fastest speed come.

@@ -11,6 +11,8 @@ mod range;
 pub(super) mod stepper;
 mod tgs_soft;
 
+use serde::{Deserialize, Serialize};
+
 pub use dem::SpringDashpot;
 pub use info::StepperInfo;
 pub use stepper::Stepper;
@@ -47,7 +49,8 @@ impl Stepper {
 }
 
 /// What ways to step remember from one step to the next.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Memory {
     range: range::Memory,
 }

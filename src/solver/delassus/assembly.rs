@@ -2,10 +2,14 @@
 //!
 //! With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates and M the inertias in
 //! them, W = G M⁻¹ Gᵀ and q = G v^free, plus restitution's term in the normal rows. A contact
-//! meets those that share one of its grains, and no others.
+//! meets those that share one of its grains, and no others: where n of them share one, W has n² blocks.
 
 use super::blocks::Triplets;
+use crate::error::{Error, Result};
 use crate::solver::problem::{Kinematics, Row, StepProblem};
+
+/// Entries of W: a problem file of this many has some 500 MB. Piles of 300,000 discs have fewer.
+const MOST_ENTRIES: u64 = 20_000_000;
 
 /// W and q of a step's problem, its contacts in the order of its rows.
 pub(crate) struct Assembled {
@@ -18,7 +22,10 @@ pub(crate) struct Assembled {
 impl Assembled {
     /// Works W and q out. On a line, where there is no tangent, a tangential row has W_tt = W_nn and
     /// meets nothing.
-    pub(crate) fn of<K: Kinematics>(problem: &StepProblem<K>) -> Self {
+    ///
+    /// # Errors
+    /// Names the body that most contacts share, where they make W too large.
+    pub(crate) fn of<K: Kinematics>(problem: &StepProblem<K>) -> Result<Self> {
         let rows = || problem.fixed_rows.iter().map(|row| (row, false));
         let rows = rows().chain(problem.pair_rows.iter().map(|row| (row, true)));
         let contacts: Vec<_> = rows.collect();
@@ -29,6 +36,7 @@ impl Assembled {
                 contacts_of_body[row.j as usize].push(number);
             }
         }
+        check_entries(&contacts_of_body)?;
         let mut matrix = Triplets::default();
         let mut free_velocities = Vec::with_capacity(2 * contacts.len());
         for (number, &(row, pair)) in contacts.iter().enumerate() {
@@ -59,7 +67,24 @@ impl Assembled {
             };
             free_velocities.extend([normal + row.restitution_velocity, tangential]);
         }
-        Self { matrix, free_velocities }
+        Ok(Self { matrix, free_velocities })
+    }
+}
+
+/// Checks that W has room, by the contacts of each body: each meets all others.
+fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
+    let of_body = |contacts: &Vec<usize>| 4 * (contacts.len() as u64).pow(2);
+    let entries: u64 = contacts_of_body.iter().map(of_body).sum();
+    let most = contacts_of_body.iter().enumerate().max_by_key(|(_, contacts)| contacts.len());
+    match most {
+        Some((body, contacts)) if entries > MOST_ENTRIES => {
+            let field = format!("the number of contacts of grains[{body}]");
+            let allowed = format!(
+                "so small that W has at most {MOST_ENTRIES} entries, where it has up to {entries}"
+            );
+            Err(Error::value(field, contacts.len(), allowed))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -184,6 +184,10 @@ impl ContactRow {
         let LocalBlock { normal, tangential, friction, cohesion_impulse, .. } = self.local;
         let rubs = if compressive { (p - cohesion_impulse).max(0.0) } else { p.max(0.0) };
         let bound = friction * rubs;
+        // Impulses that have outgrown all numbers have none where there is no friction.
+        if bound.is_nan() {
+            return f64::NAN;
+        }
         let normal_error = p - (p - u[0] / normal).max(0.0);
         let tangential_error = rubbing - (rubbing - u[1] / tangential).clamp(-bound, bound);
         normal_error * normal_error + tangential_error * tangential_error

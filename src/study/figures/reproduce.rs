@@ -45,7 +45,7 @@ pub(crate) fn reproduce(
         let asked_for = |asked: &String| asked == name || asked == ALL && !APART.contains(&name);
         names.iter().any(asked_for)
     };
-    check_writable(folder)?;
+    check_writable("out", folder)?;
     let mut workshop = Workshop::new(folder.join("studies"), quick);
     let mut report = Report::new(quick);
     for info in FIGURES.iter().filter(|figure| wanted(figure.name)) {

@@ -83,8 +83,12 @@ impl Workshop {
         study.runs.iter().map(read).collect()
     }
 
-    /// Says of each claim of a figure which alarms the runs of its studies raised: claims that rest on runs
-    /// without a finite end, or that lost grains, are not decided.
+    /// Says of each claim of a figure how many runs of its studies raised which alarms.
+    ///
+    /// A verdict is refused from the first run on that lost a grain or had no finite end, whatever the
+    /// number of the others: its slump is of another pile, or there is none, and which runs those are
+    /// hangs on Bond and Δt, so what is left is no fair sample. Other alarms (deep overlaps, steps that
+    /// were not solved as asked) are what a claim about Δt is about, and are counted alone.
     pub(super) fn qualify(&self, studies: &[&str], claims: &mut [Claim]) {
         let of_studies = studies.iter().filter_map(|name| self.finished.get(name));
         let outcomes = || {
@@ -151,5 +155,64 @@ impl<'a> Rows<'a> {
         seeds.sort_unstable();
         seeds.dedup();
         seeds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::AlarmKind;
+
+    fn outcome(status: Status, lost_grains: u32, alarm: Option<AlarmKind>) -> Outcome {
+        Outcome {
+            status,
+            steps: 1,
+            slump: 0.0,
+            mean_overlap: 0.0,
+            max_overlap: 0.0,
+            first_gap: 0.0,
+            unconverged_steps: 0,
+            stalled_steps: 0,
+            sweeps: 1,
+            largest_residual: 0.0,
+            lost_grains,
+            alarms: alarm.into_iter().collect(),
+        }
+    }
+
+    /// A claim that holds, on those runs.
+    fn qualified(outcomes: &[Outcome]) -> Claim {
+        let mut workshop = Workshop::new(PathBuf::new(), true);
+        let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";
+        let study = Study::parse(text, "pile.toml".as_ref(), true).expect("a study");
+        let rows = outcomes.iter().map(|&outcome| (String::new(), Config::default(), outcome));
+        let table = RunsTable { rows: rows.collect(), core_secs: 0.0 };
+        workshop.finished.insert("pile", (study, table));
+        let mut claims = [Claim::new("it falls", "p = 0.001", Verdict::Holds)];
+        workshop.qualify(&["pile"], &mut claims);
+        let [claim] = claims;
+        claim
+    }
+
+    #[test]
+    fn one_run_that_lost_a_grain_or_did_not_end_refuses_the_verdict_and_other_alarms_are_counted() {
+        let sound = outcome(Status::Done, 0, None);
+        let deep = outcome(Status::Done, 0, Some(AlarmKind::Overlap));
+        let lost = outcome(Status::Done, 2, Some(AlarmKind::GrainLost));
+        let infinite = outcome(Status::NotFinite, 0, Some(AlarmKind::NotFinite));
+
+        let claim = qualified(&[sound; 40]);
+        assert_eq!((claim.measured.as_str(), claim.verdict), ("p = 0.001", Verdict::Holds));
+        let claim = qualified(&[sound, deep, sound]);
+        assert_eq!(claim.measured, "p = 0.001; 1 of 3 runs raised alarms (overlap 1)");
+        assert_eq!(claim.verdict, Verdict::Holds);
+        for spoilt in [lost, infinite] {
+            let mut outcomes = vec![sound; 999];
+            outcomes.extend([deep, spoilt]);
+            let claim = qualified(&outcomes);
+            assert!(claim.measured.starts_with("p = 0.001; 2 of 1001 runs raised"));
+            assert!(claim.measured.ends_with(", and 1 lost grains or did not end"));
+            assert_eq!(claim.verdict, Verdict::Open);
+        }
     }
 }

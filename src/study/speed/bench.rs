@@ -43,7 +43,7 @@ impl Bench {
     ) -> Result<(Journal, Vec<T>)> {
         let pass = if self.quick { "quick" } else { "full" };
         let folder = self.folder.join("measured").join(&self.machine.fingerprint).join(pass);
-        check_writable(&folder)?;
+        check_writable("out", &folder)?;
         // Opening cuts off a half line, so it comes first.
         let journal = Journal::open(&folder, name)?;
         let done: Vec<T> = journal::read(&journal::path_of(&folder, name))?;

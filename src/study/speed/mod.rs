@@ -59,7 +59,7 @@ pub(crate) struct ChartOptions {
 /// # Errors
 /// Where the folder cannot be written, or a simulation fails.
 pub(crate) fn chart_speed(options: &ChartOptions) -> Result<()> {
-    check_writable(&options.out)?;
+    check_writable("out", &options.out)?;
     let bench = Bench {
         folder: options.out.clone(),
         quick: options.quick,

@@ -14,6 +14,8 @@
 //! long step tells of loads their mean alone. So a step says whether a bond is seen in it that would
 //! break if it were half as strong, and a long one is then given up (`range`).
 
+use serde::{Deserialize, Serialize};
+
 use super::numbers::StepNumbers;
 use super::shocks;
 use crate::contact::range::{Bond, Opening};
@@ -34,10 +36,14 @@ const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 const FALL: f64 = 1e-6;
 
 /// What the law remembers from one step to the next.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(in crate::sim) struct Memory {
+    #[serde(skip)]
     shocks: shocks::Workspace,
+    #[serde(skip)]
     speeds: Vec<f64>,
+    #[serde(skip)]
     lowered: Vec<(usize, f64)>,
     /// Whether bonds were about to break in the last step.
     pub restless: bool,

@@ -1,6 +1,9 @@
 //! Runs that are stopped, killed, or fill the disk: what they came to stays, and is told.
 #![cfg(unix)]
 
+mod folders;
+mod scales;
+
 use std::io::Read;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
@@ -150,9 +153,15 @@ fn a_run_that_is_killed_keeps_its_rows_and_pictures_and_locks_nothing() {
     let folder = folder();
     let mut child = start_and_wait(folder.path());
     assert_eq!(manifest(folder.path())["runs"][0]["ended"], "running");
+    let listed = || manifest(folder.path())["pictures"].as_array().cloned().expect("a list");
+    wait_for("a list of pictures", || listed().len() > 3);
     child.kill().expect("a child");
     child.wait().expect("an end");
     let pictures = pictures_in(folder.path()) as u64;
+    for (number, picture) in listed().iter().enumerate() {
+        assert_eq!(picture["file"], format!("frame_{number:05}.png"));
+        assert!(folder.path().join(format!("frame_{number:05}.png")).exists(), "{picture}");
+    }
     let table = folder.path().join("observables.csv");
     // Seldom, a kill cuts the last row.
     let text = std::fs::read_to_string(&table).expect("a table");
@@ -253,47 +262,4 @@ fn a_run_lasts_as_long_as_it_was_asked_to() {
         assert_eq!(run["ended"], "complete");
         assert_eq!(run["step"].as_u64(), Some(steps));
     }
-}
-
-#[test]
-fn a_folder_with_an_earlier_runs_files_is_refused_or_cleared() {
-    let folder = folder();
-    assert!(brief_run(folder.path(), &["--fps", "100"]).status.success());
-    assert_eq!(pictures_in(folder.path()), 6);
-    let note = folder.path().join("note.txt");
-    std::fs::write(&note, "mine").expect("a file");
-    let before = std::fs::read(folder.path().join("manifest.json")).expect("a manifest");
-
-    let output = brief_run(folder.path(), &[]);
-    assert_eq!(output.status.code(), Some(2));
-    let said = String::from_utf8(output.stderr).expect("UTF-8");
-    assert!(said.contains("a folder without an earlier run's files (frame_00000.png"), "{said}");
-    assert!(said.contains("--overwrite") && said.lines().count() == 1, "{said}");
-    assert_eq!(std::fs::read(folder.path().join("manifest.json")).expect("a manifest"), before);
-    assert_eq!(pictures_in(folder.path()), 6);
-
-    // What is refused for another reason clears nothing.
-    let output = brief_run(folder.path(), &["--overwrite", "--bond", "-1"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert_eq!(pictures_in(folder.path()), 6);
-
-    assert!(brief_run(folder.path(), &["--overwrite"]).status.success());
-    assert_eq!(pictures_in(folder.path()), 2);
-    assert_eq!(std::fs::read_to_string(&note).expect("a file"), "mine");
-}
-
-#[test]
-fn one_run_at_a_time_in_a_folder() {
-    let folder = folder();
-    let mut first = start_and_wait(folder.path());
-    for more in [&[][..], &["--overwrite"]] {
-        let second = brief_run(folder.path(), more);
-        assert_eq!(second.status.code(), Some(2));
-        let said = String::from_utf8(second.stderr).expect("UTF-8");
-        assert!(said.contains("is being written by another run"), "{said}");
-    }
-    send("TERM", &first);
-    assert_eq!(ended(&mut first).code(), Some(143), "the first was not disturbed");
-    let steps = rows_of(&folder.path().join("observables.csv"));
-    assert_eq!(manifest(folder.path())["runs"][0]["step"].as_u64(), Some(steps));
 }

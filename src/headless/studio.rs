@@ -1,0 +1,280 @@
+//! What takes a run down: its table, its frames, its books, and the checkpoints from which all of them go on.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use image::RgbaImage;
+
+use super::HeadlessOptions;
+use super::checkpoint::{Checkpoints, Marks, WAITING};
+use super::gif::Animation;
+use super::kept::KeptStates;
+use super::manifest::{Ended, Manifest, Moment, PictureEntry, RunEntry};
+use super::table::ObservablesTable;
+use super::telling::{
+    go_on, interrupted, tell_of_alarms, tell_of_picked_method, tell_of_unconverged_steps,
+};
+use crate::error::{Error, Result};
+use crate::output::{Progress, Signal, caught_signal, print_line, write_png};
+use crate::render::{Camera, Renderer, Style, draw_scene};
+use crate::scene::{SavedState, Scene, View};
+use crate::sim::{Observables, Simulation, Snapshot, Tally};
+use crate::study::{Recorded, Recorder};
+
+/// Name of the run in the manifest.
+const RUN: &str = "run";
+
+/// Draws snapshots and keeps the books.
+pub(super) struct Studio<'a> {
+    options: &'a HeadlessOptions,
+    scene: &'a Scene,
+    progress: Progress,
+    renderer: Renderer,
+    style: Style,
+    camera: Camera,
+    table: Option<ObservablesTable>,
+    animation: Option<Animation>,
+    /// Colours and widths that follow the state need one scale for all frames, so those frames wait
+    /// for the end of the run, unless it is given. All others are drawn as the run comes by.
+    kept: Option<KeptStates>,
+    manifest: Manifest,
+    checkpoints: Option<Checkpoints>,
+    /// Where the run begins, and where it has come to.
+    marks: Marks,
+}
+
+impl<'a> Studio<'a> {
+    /// Opens the books of a run that goes on from `marks` to step `end`.
+    pub(super) fn open(
+        options: &'a HeadlessOptions,
+        renderer: Renderer,
+        (scene, end): (&'a Scene, u64),
+        marks: Marks,
+        checkpoints: Option<Checkpoints>,
+    ) -> Result<Self> {
+        let size = options.size()?;
+        let View { min, max } = scene.view();
+        let style = options.style()?;
+        let mut manifest = Manifest::new(renderer.name());
+        manifest.pictures.clone_from(&marks.pictures);
+        manifest.runs.push(RunEntry {
+            restarted_from: marks.restarted_from,
+            went_on_at: marks.went_on_at.clone(),
+            ..RunEntry::start(RUN, scene)?
+        });
+        let folder = options.frames.as_deref();
+        let table = |folder: &Path| match marks.went_on_at.is_empty() {
+            true => ObservablesTable::start(folder),
+            false => ObservablesTable::go_on(folder, marks.table),
+        };
+        let studio = Self {
+            options,
+            scene,
+            progress: Progress::new(&scene.name, end),
+            camera: style.camera(min, max, size.width, size.height),
+            table: folder.map(table).transpose()?,
+            animation: options
+                .gif
+                .as_deref()
+                .map(|gif| animation(gif, folder, &marks))
+                .transpose()?,
+            kept: kept_states(options, &style, &marks, checkpoints.is_some())?,
+            style,
+            manifest,
+            renderer,
+            checkpoints,
+            marks,
+        };
+        studio.write_manifest()?;
+        Ok(studio)
+    }
+
+    /// How far everything has come, once all of that is on the disk.
+    fn marks(&mut self) -> Result<Marks> {
+        Ok(Marks {
+            table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
+            waiting: self.kept.as_ref().map_or(Ok(0), KeptStates::mark)?,
+            pictures: self.manifest.pictures.clone(),
+            ..self.marks.clone()
+        })
+    }
+
+    fn checkpoint(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
+        if self.checkpoints.is_none() {
+            return Ok(());
+        }
+        let marks = self.marks()?;
+        let checkpoints = self.checkpoints.as_mut();
+        checkpoints.map_or(Ok(()), |it| it.write(self.scene, (simulation, tally), marks))
+    }
+
+    /// Saves the run as it has ended, for the same command and for others.
+    fn save(&mut self, recorded: &Recorded) -> Result<()> {
+        let Recorded { simulation, tally, failure, .. } = recorded;
+        let checkpoint = match failure {
+            // There is a good one from before.
+            Some(_) => Ok(()),
+            None => self.checkpoint(simulation, tally),
+        };
+        let saved = match (&self.options.saving.save, failure) {
+            (None, _) | (_, Some(Error::NonFinite { .. })) => Ok(()),
+            (Some(path), _) => {
+                let state = SavedState::new(self.scene.clone(), simulation.clone(), *tally);
+                state.save(path).map(|()| print_line(path.display()))
+            }
+        };
+        checkpoint.and(saved)
+    }
+
+    /// Ends the books of a run that has ended. Each part is tried, whatever became of those before; the first
+    /// failure is told.
+    pub(super) fn end(mut self, mut recorded: Recorded) -> Result<()> {
+        self.progress.finish();
+        let scene = self.scene;
+        let signal = caught_signal().filter(|_| recorded.interrupted);
+        let saved = self.save(&recorded);
+        let table = self.table.take().map_or(Ok(()), ObservablesTable::finish);
+        recorded.failure = recorded.failure.or(saved.err()).or(table.err());
+        self.manifest.runs[0].end(Ended::of(&recorded), &recorded);
+        let (developed, signal) = match self.develop(signal) {
+            Ok(signal) => (Ok(()), signal),
+            Err(error) => (Err(error), signal),
+        };
+        let finished = self.finish();
+        recorded.failure = recorded.failure.or(developed.err()).or(finished.err());
+
+        tell_of_unconverged_steps(scene, &recorded.tally);
+        tell_of_picked_method(scene, &recorded.simulation);
+        tell_of_alarms(scene, recorded.simulation.alarms());
+        match (recorded.failure, signal) {
+            (Some(failure), _) => Err(failure),
+            (None, Some(signal)) => Err(interrupted(signal, recorded.simulation.observables())),
+            (None, None) => Ok(()),
+        }
+    }
+
+    /// Draws the states that wait, those of a run that a signal ended too. A signal that comes now
+    /// ends it; that or the run's is returned.
+    fn develop(&mut self, ended_by: Option<Signal>) -> Result<Option<Signal>> {
+        let Some(mut kept) = self.kept.take() else { return Ok(ended_by) };
+        // This may take longer than whoever asked for the end is ready to wait.
+        self.write_manifest()?;
+        kept.set_scale(&mut self.style);
+        let progress = Progress::new("drawing", kept.len() as u64);
+        for index in 0..kept.len() {
+            if let (None, Some(signal)) = (ended_by, caught_signal()) {
+                self.manifest.runs[0].ended = Ended::Interrupted;
+                return Ok(Some(signal));
+            }
+            let drawn = kept.get(index).and_then(|(number, state)| self.shoot(number, &state));
+            drawn.inspect_err(|_| self.manifest.runs[0].ended = Ended::Failed)?;
+            progress.advance(1);
+        }
+        progress.finish();
+        Ok(ended_by)
+    }
+
+    fn shoot(&mut self, number: usize, snapshot: &Snapshot) -> Result<()> {
+        let size = self.options.size()?;
+        let image: RgbaImage = draw_scene(
+            &mut self.renderer,
+            snapshot,
+            &self.style,
+            &self.camera,
+            size.width,
+            size.height,
+        )?;
+        if let Some(folder) = &self.options.frames {
+            let file = format!("frame_{number:05}.png");
+            write_png(&folder.join(&file), &image)?;
+            let moment = Moment { run: RUN.to_owned(), observables: snapshot.observables };
+            let entry = PictureEntry { file, shows: vec![moment] };
+            self.manifest.add(entry, &folder.join("manifest.json"))?;
+        }
+        match &mut self.animation {
+            Some(animation) => animation.add(image),
+            None => Ok(()),
+        }
+    }
+
+    fn write_manifest(&self) -> Result<()> {
+        let write = |folder: &Path| self.manifest.write(&folder.join("manifest.json"));
+        self.options.frames.as_deref().map_or(Ok(()), write)
+    }
+
+    fn finish(mut self) -> Result<()> {
+        let animation = self.animation.take().map_or(Ok(false), Animation::finish);
+        self.write_manifest()?;
+        // Where the run is complete, nothing is left to go on with.
+        if self.manifest.runs[0].ended == Ended::Complete
+            && let (Ok(_), Some(checkpoints)) = (&animation, self.checkpoints.take())
+        {
+            checkpoints.remove()?;
+        }
+        if let Some(folder) = &self.options.frames {
+            let count = self.manifest.pictures.len();
+            print_line(format_args!("{count} pictures in {}", folder.display()));
+        }
+        if let (true, Some(path)) = (animation?, &self.options.gif) {
+            print_line(path.display());
+        }
+        Ok(())
+    }
+}
+
+impl Recorder for Studio<'_> {
+    fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>> {
+        self.progress.set(observables.step);
+        self.table.as_mut().map_or(Ok(()), |table| table.add(observables))?;
+        Ok(go_on())
+    }
+
+    fn state(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
+        let is_due = self.checkpoints.as_ref().is_some_and(|it| it.is_due(simulation));
+        if is_due { self.checkpoint(simulation, tally) } else { Ok(()) }
+    }
+
+    fn picture(&mut self, number: usize, snapshot: Snapshot) -> Result<()> {
+        self.table.as_mut().map_or(Ok(()), ObservablesTable::flush)?;
+        match &mut self.kept {
+            Some(kept) => kept.add(&self.style, number, snapshot),
+            None => self.shoot(number, &snapshot),
+        }?;
+        self.marks.next_picture = number + 1;
+        Ok(())
+    }
+}
+
+/// An animation that begins with the pictures that are there.
+fn animation(path: &Path, folder: Option<&Path>, marks: &Marks) -> Result<Animation> {
+    let mut animation = Animation::start(path)?;
+    for PictureEntry { file, .. } in &marks.pictures {
+        let path = folder.unwrap_or(Path::new("")).join(file);
+        let image = image::open(&path).map_err(|error| Error::file(&path, error))?;
+        animation.add(image.into_rgba8())?;
+    }
+    Ok(animation)
+}
+
+/// Where states wait for being drawn, if the style asks for it.
+fn kept_states(
+    options: &HeadlessOptions,
+    style: &Style,
+    marks: &Marks,
+    outlive: bool,
+) -> Result<Option<KeptStates>> {
+    let waits = style.colour_by.has_scale() && style.range.is_none()
+        || style.show_forces && style.force_reference.is_none();
+    if !waits {
+        return Ok(None);
+    }
+    let beside_gif = options.gif.as_deref().and_then(Path::parent);
+    match (&options.frames, beside_gif) {
+        (Some(folder), _) if outlive => {
+            KeptStates::go_on(&folder.join(WAITING), marks.waiting, style).map(Some)
+        }
+        (Some(folder), _) => KeptStates::start(folder).map(Some),
+        (None, Some(folder)) => KeptStates::start(folder).map(Some),
+        (None, None) => Ok(None),
+    }
+}

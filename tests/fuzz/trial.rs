@@ -1,0 +1,74 @@
+//! One input after the other, each in a file while it is tried.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use super::Target;
+
+/// More than an input takes on a busy machine: it would be a hang to whoever waits for it. Fifty long steps of
+/// small grains with as many substeps as are stable take ten seconds of an idle one.
+const PATIENCE: Duration = Duration::from_secs(200);
+
+/// Tries inputs. The one that fails stays in its file, whether it panics, hangs or takes the process along.
+pub struct Trial {
+    path: PathBuf,
+    /// When the input that is being tried began.
+    begun: Arc<Mutex<Option<Instant>>>,
+    /// How many there were.
+    pub inputs: u64,
+    /// How many were no faults.
+    pub taken: u64,
+}
+
+impl Trial {
+    pub fn start(Target { name, ending }: Target) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz");
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let path = folder.join(format!("{name}-{}.{ending}", std::process::id()));
+        let begun = Arc::new(Mutex::new(None));
+        watch(path.clone(), Arc::clone(&begun));
+        Self { path, begun, inputs: 0, taken: 0 }
+    }
+
+    /// Tries one, and says how long that took.
+    pub fn of(&mut self, text: &str, check: &mut impl FnMut(&str, &Path) -> bool) -> Duration {
+        std::fs::write(&self.path, text).expect("a file");
+        let begun = Instant::now();
+        *self.begun.lock().expect("a time") = Some(begun);
+        let taken = check(text, &self.path);
+        *self.begun.lock().expect("a time") = None;
+        self.inputs += 1;
+        self.taken += u64::from(taken);
+        begun.elapsed()
+    }
+}
+
+impl Drop for Trial {
+    fn drop(&mut self) {
+        *self.begun.lock().expect("a time") = None;
+        if std::thread::panicking() {
+            eprintln!("the input that failed is {}", self.path.display());
+        } else {
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// Ends the process where an input hangs: no test can.
+fn watch(path: PathBuf, begun: Arc<Mutex<Option<Instant>>>) {
+    std::thread::spawn(move || {
+        // The trial has the other one.
+        while Arc::strong_count(&begun) > 1 {
+            std::thread::sleep(Duration::from_millis(200));
+            let hangs = |begun: Instant| begun.elapsed() > PATIENCE;
+            if begun.lock().expect("a time").is_some_and(hangs) {
+                // Printed lines are held back where tests run, and the process ends here.
+                let said = format!("no end after {PATIENCE:?}; the input is {}\n", path.display());
+                let _ = std::io::stderr().write_all(said.as_bytes());
+                std::process::exit(1);
+            }
+        }
+    });
+}

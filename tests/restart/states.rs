@@ -1,0 +1,215 @@
+//! States in memory: every scene, stepper, method and remedy.
+
+use glam::DVec2;
+use rayon::prelude::*;
+use slump::scene::{SCENES, Scene, built_in};
+use slump::setting::{Group, Kind, Value};
+use slump::sim::{AlarmKind, Pull, REMEDIES, Remedies, Remedy, Settings, Simulation, Stepper};
+use slump::solver::Method;
+
+use super::{bytes_of, read};
+use crate::common::{every_way, parameters, pressed_pile, start};
+
+/// Steps before a state is saved, and after it.
+const STEPS: usize = 4;
+
+/// Takes a step of both, which may end in no finite state, and holds them to being the same.
+#[track_caller]
+fn step_both(scene: &Scene, one: &mut Simulation, other: &mut Simulation, what: &str) {
+    let ends = [&mut *one, other].map(|simulation| format!("{:?}", simulation.step().err()));
+    assert_eq!(ends[0], ends[1], "{what}");
+    let shown = [&*one, other].map(|simulation| format!("{:?}", simulation.observables()));
+    assert_eq!(shown[0], shown[1], "{what}");
+    let step = one.observables().step;
+    assert!(
+        bytes_of(scene, one) == bytes_of(scene, other),
+        "{what}: another state after step {step}"
+    );
+}
+
+/// Saves a run, reads it, and lets both go on, with `change` made to both first.
+#[track_caller]
+fn goes_on_with(
+    scene: &Scene,
+    simulation: &Simulation,
+    steps: usize,
+    what: &str,
+    change: impl Fn(&mut Simulation),
+) -> Simulation {
+    let saved = bytes_of(scene, simulation);
+    let mut state = read(&saved);
+    assert!(state.to_bytes().expect("bytes") == saved, "{what}: saved again it is another file");
+    assert_eq!(
+        format!("{:?}", state.simulation.snapshot()),
+        format!("{:?}", simulation.snapshot())
+    );
+    let mut original = simulation.clone();
+    change(&mut original);
+    change(&mut state.simulation);
+    for _ in 0..steps {
+        step_both(scene, &mut original, &mut state.simulation, what);
+    }
+    original
+}
+
+#[track_caller]
+fn goes_on(scene: &Scene, simulation: &Simulation, steps: usize, what: &str) -> Simulation {
+    goes_on_with(scene, simulation, steps, what, |_| {})
+}
+
+/// A remedy at work.
+fn with(remedy: &Remedy) -> Remedies {
+    let mut remedies = Remedies::default();
+    let about = Remedies::ABOUT.iter().find(|about| about.name == remedy.name).expect("a setting");
+    let value = match about.kind {
+        Kind::Number => Value::Number(0.1),
+        _ => Value::Switch(true),
+    };
+    assert!(remedies.set(remedy.name, value), "{}", remedy.name);
+    remedies
+}
+
+/// Every stepper and method, and, with the method of the scene alone, every remedy.
+fn ways(scene: &Scene) -> Vec<Settings> {
+    let mut base = scene.settings();
+    base.solver.max_sweeps = base.solver.max_sweeps.min(40);
+    let mut ways: Vec<Settings> = every_way()
+        .into_iter()
+        .map(|(stepper, method)| {
+            let mut way = Settings { stepper, ..base };
+            way.solver.method = method;
+            way.with_remedies_taken()
+        })
+        .collect();
+    for remedy in &REMEDIES {
+        let of = |&stepper: &Stepper| Settings { stepper, remedies: with(remedy), ..base };
+        ways.extend(remedy.taken_by.iter().map(of));
+    }
+    ways
+}
+
+#[test]
+fn every_scene_goes_on_in_every_way_from_its_start_and_from_any_step() {
+    let runs: Vec<(Scene, Settings)> = SCENES
+        .iter()
+        .map(|info| built_in(info.name).expect("a scene"))
+        .flat_map(|scene| ways(&scene).into_iter().map(move |way| (scene.clone(), way)))
+        .collect();
+    assert!(runs.len() > 400, "{} runs", runs.len());
+    runs.into_par_iter().for_each(|(mut scene, way)| {
+        scene.set_settings(way);
+        let what = format!("{}: {way:?}", scene.name);
+        // A step may ask for what the scene does not have; it is refused before anything begins.
+        let Ok(simulation) = scene.simulation() else { return };
+        let later = goes_on(&scene, &simulation, STEPS, &what);
+        goes_on(&scene, &later, STEPS, &what);
+    });
+}
+
+#[test]
+fn what_a_way_to_step_remembers_is_lost_or_kept_as_without_the_file() {
+    let scene = pressed_pile(40, 0.3, 5, parameters(20.0, 1e-3, 0.3, 0.5));
+    for (from, _) in every_way() {
+        let mut simulation = start(&Scene { stepper: from, ..scene.clone() });
+        simulation.take_steps(6).expect("finite states");
+        for &to in Stepper::ALL {
+            for method in [Method::Newton, Method::NsgsParallel] {
+                goes_on_with(
+                    &scene,
+                    &simulation,
+                    STEPS,
+                    &format!("{from} to {to}"),
+                    |simulation| {
+                        let mut settings = Settings { stepper: to, ..*simulation.settings() };
+                        settings.parameters.bond = 50.0;
+                        settings.parameters.time_step_secs = 7e-4;
+                        settings.solver.method = method;
+                        simulation.change(settings).expect("sound settings");
+                    },
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pile_that_collapses_goes_on_for_long() {
+    let mut scene = built_in("pile").expect("a scene");
+    for (stepper, bond, dt) in
+        [(Stepper::Moreau, 20.0, 2e-3), (Stepper::Range, 20.0, 2e-3), (Stepper::Dem, 0.0, 1e-3)]
+    {
+        scene.stepper = stepper;
+        scene.parameters = parameters(bond, dt, 0.1, 0.5);
+        scene.solver.tolerance = 1e-3;
+        let mut simulation = start(&scene);
+        simulation.take_steps(57).expect("finite states");
+        let end = goes_on(&scene, &simulation, 60, stepper.name());
+        assert!(end.observables().slump > 0.01, "{stepper}: {:?}", end.observables());
+    }
+}
+
+#[test]
+fn a_spring_that_pulls_and_walls_that_move_go_on() {
+    let scene = built_in("moving-walls").expect("a scene");
+    let mut simulation = start(&scene);
+    let surroundings = simulation.snapshot().surroundings;
+    simulation.set_pull(Some(Pull { grain: 3, target: DVec2::new(0.1, 0.2) }));
+    simulation.take_steps(20).expect("finite states");
+    assert_ne!(*simulation.snapshot().surroundings, *surroundings, "the walls have moved");
+    let pulled = simulation.observables().gravity_work;
+    assert!(pulled != 0.0, "the spring works");
+    let end = goes_on(&scene, &simulation, 20, "pulled");
+    assert_eq!(end.pull(), simulation.pull());
+}
+
+#[test]
+fn lost_grains_alarms_and_steps_in_a_row_at_the_limit_are_remembered() {
+    let mut scene = built_in("thin-wall").expect("a scene");
+    scene.parameters.time_step_secs = 5e-2;
+    let mut simulation = start(&scene);
+    while simulation.observables().lost_grains == 0 && simulation.observables().step < 200 {
+        simulation.take_steps(1).expect("a finite state");
+    }
+    assert_eq!(simulation.alarms().first().map(|alarm| alarm.kind), Some(AlarmKind::GrainLost));
+    let end = goes_on(&scene, &simulation, STEPS, "lost");
+    assert_eq!(end.alarms(), simulation.alarms());
+
+    let mut scene = pressed_pile(30, 0.5, 3, parameters(50.0, 1e-3, 0.9, 0.5));
+    scene.solver.max_sweeps = 2;
+    let mut simulation = start(&scene);
+    simulation.take_steps(60).expect("finite states");
+    let unfinished = |simulation: &Simulation| {
+        simulation.alarms().iter().any(|alarm| alarm.kind == AlarmKind::SweepLimit)
+    };
+    assert!(!unfinished(&simulation), "a hundred steps in a row are not there yet");
+    let end = goes_on(&scene, &simulation, 60, "unfinished");
+    assert!(unfinished(&end), "{:?}", end.alarms());
+}
+
+#[test]
+fn a_state_that_is_no_longer_finite_is_what_it_was() {
+    let mut scene = pressed_pile(4, 0.5, 3, parameters(0.0, 1e-3, 0.3, 0.5));
+    scene.grains[1].velocity.x = f64::MAX;
+    let mut simulation = start(&scene);
+    while simulation.step().is_ok() {}
+    let kinds = simulation.alarms().iter().map(|alarm| alarm.kind);
+    assert!(kinds.clone().any(|kind| kind == AlarmKind::NotFinite), "{:?}", simulation.alarms());
+    let shown = format!("{:?}{:?}", simulation.world().grains, simulation.observables());
+    assert!(shown.contains("inf") || shown.contains("NaN"), "{shown}");
+    goes_on(&scene, &simulation, 1, "not finite");
+}
+
+#[test]
+fn pictures_come_at_the_steps_that_they_would_have_come_at() {
+    let scene = pressed_pile(4, 0.1, 3, parameters(0.0, 1e-3, 0.3, 0.5));
+    let mut simulation = start(&scene);
+    assert_eq!(simulation.step_at(0.0105), 11);
+    simulation.take_steps(10).expect("finite states");
+    let mut settings = *simulation.settings();
+    settings.parameters.time_step_secs = 4e-3;
+    simulation.change(settings).expect("sound settings");
+    assert_eq!([0.0, 0.010, 0.018, 0.022].map(|secs| simulation.step_at(secs)), [10, 10, 12, 13]);
+    simulation.take_steps(1).expect("a finite state");
+    let read = read(&bytes_of(&scene, &simulation)).simulation;
+    assert_eq!(read.step_at(0.0225), simulation.step_at(0.0225));
+}
