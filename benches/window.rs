@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 use slump::app::{AppState, Canvas, Preferences, SOFTWARE_FRAME_INTERVAL, theme, ui};
 use slump::scene::Config;
-use slump::sim::Simulation;
 use slump::sim::live::{Command, Live, LiveOptions, Pace, Start};
+use slump::sim::{Simulation, Tally};
 
 /// Pixels of the window.
 const SIZE: [u32; 2] = [1280, 800];
@@ -78,8 +78,8 @@ impl Window {
 fn load(simulation: Simulation) -> Command {
     Command::Load(Box::new(move |_| {
         let view = [glam::DVec2::new(-0.1, 0.0), glam::DVec2::new(0.1, 0.06)];
-        let (name, held_by) = ("bench".to_owned(), Vec::new());
-        Ok(Start { name, simulation, duration_secs: f64::INFINITY, held_by, view })
+        let (name, held_by, tally) = ("bench".to_owned(), Vec::new(), Tally::default());
+        Ok(Start { name, simulation, tally, duration_secs: f64::INFINITY, held_by, view })
     }))
 }
 

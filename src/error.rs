@@ -23,6 +23,9 @@ pub enum Error {
         /// What the system or the parser said, with the line where there is one.
         reason: String,
     },
+    /// Options that the command line does not take, and why.
+    #[error("{0}")]
+    Options(String),
     /// No renderer of the kind that was asked for.
     #[error("{0}")]
     Renderer(String),

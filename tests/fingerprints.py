@@ -13,7 +13,7 @@ BINARY = sys.argv[1]
 SCENES = ["pile", "cradle", "collision", "column", "mass-ratio", "chain", "cantilever", "bridge", "overlap",
     "squeeze", "moving-walls", "logs", "arch", "repose", "repose-angle", "far", "bounce", "newtons-cradle",
     "thin-wall", "lift-off", "assets/scenes/hourglass.toml"]
-METHODS = ["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "auto"]
+METHODS = ["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
 REMEDIES = [[], ["--push-out", "true"], ["--max-travel", "0.1"], ["--calm-unsolved", "true"],
     ["--sequential-impacts", "true"], ["--speculative", "true"], ["--preset", "robust"]]
 NUMBERS = [["--dt", "1e-3", "--duration", "0.03", "--times", "0.03"],

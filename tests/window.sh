@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Starts the real window under Xvfb, drags the slider of the time step with the mouse, and checks
 # through the state that the window exports that the drag reached the solver. Also: release, resize,
-# a lost graphics device, closing, and the sentence that a missing display is told with.
+# a state and data that are saved, a lost graphics device, closing, and the sentence that a missing display is told with.
 #
 #   tests/window.sh [FOLDER]        screenshots go to FOLDER (default target/window)
 #
@@ -65,7 +65,7 @@ wait_for() {
 # at CONTROL PART: the pixel at a part of the width of a control.
 at() { value "'%d %d' % (lambda c: (c[0] + $2 * (c[2] - c[0]), (c[1] + c[3]) / 2))(s['controls']['$1'])"; }
 
-"$program" --reset-ui --bond 20 --dt 1e-3 --export-state "$state" > "$work/log" 2>&1 &
+"$program" --reset-ui --bond 20 --dt 1e-3 --frames "$work/out" --export-state "$state" > "$work/log" 2>&1 &
 window=$!
 wait_for "the pile" "s['scene'] == 'pile'"
 sleep 1
@@ -90,6 +90,26 @@ wait_for "the pause" "not s['playing']"
 step=$(value "s['step']")
 xdotool key Right
 wait_for "one step" "s['step'] == $step + 1"
+
+# What was computed goes to files: the last moment, and all of them.
+for section in physics run data; do
+    xdotool mousemove $(at $section 0.3) click 1
+    sleep 1
+done
+saved=$work/out/slump-pile-$(value "'%.4f' % s['time_secs']")s.slump
+xdotool mousemove $(at "Save state" 0.5) click 1
+wait_for "the state" "__import__('os').path.exists('$saved')"
+xdotool mousemove $(at "Export data" 0.5) click 1
+wait_for "the data" "__import__('os').path.exists('$work/out/data/frames.csv')"
+sleep 1
+import -window root "$shots/window-data.png"
+"$program" --headless --restart "$saved" --duration 0.2 --save "$work/later.slump" > /dev/null 2> "$work/log" \
+    || fail "the state that was saved does not go on"
+for section in data run physics; do
+    xdotool mousemove $(at $section 0.3) click 1
+    sleep 1
+done
+
 xdotool key r
 wait_for "the reset" "s['step'] == 0"
 

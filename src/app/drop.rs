@@ -4,6 +4,7 @@ use std::path::Path;
 
 use egui::Context;
 
+use super::export::STATE_ENDING;
 use super::state::AppState;
 use crate::scene::{Config, Origin};
 
@@ -11,24 +12,38 @@ use crate::scene::{Config, Origin};
 pub(super) fn take_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
     let Some(file) = dropped else { return };
-    match config_of(file.path()) {
-        Some(config) => state.load(config),
+    let path = file.path();
+    match asked(path) {
+        Some(Asked::Scene(config)) => state.load(*config),
+        Some(Asked::SavedRun) => state.load_saved(path),
         None => {
-            let name = file.path().display();
-            state.warn(format!("{name} is neither a scene (.toml) nor a list of discs (.csv)"));
+            let name = path.display();
+            state.warn(format!(
+                "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING})"
+            ));
         }
     }
 }
 
+/// What a dropped file asks for.
+#[derive(Debug, PartialEq)]
+enum Asked {
+    /// A start.
+    Scene(Box<Config>),
+    /// To go on with what is in the file.
+    SavedRun,
+}
+
 /// What a dropped file asks for, by its ending.
-fn config_of(path: &Path) -> Option<Config> {
+fn asked(path: &Path) -> Option<Asked> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
     match ending.as_str() {
-        "toml" => path.to_str().map(Config::of_scene),
+        "toml" => path.to_str().map(|path| Asked::Scene(Box::new(Config::of_scene(path)))),
         "csv" => {
             let origin = Origin { initial: Some(path.to_owned()), ..Origin::default() };
-            Some(Config { origin, ..Config::default() })
+            Some(Asked::Scene(Box::new(Config { origin, ..Config::default() })))
         }
+        STATE_ENDING => Some(Asked::SavedRun),
         _ => None,
     }
 }
@@ -38,11 +53,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn endings_tell_scenes_from_discs() {
-        let scene = config_of("a/Box.TOML".as_ref()).unwrap();
-        assert_eq!(scene.origin.scene.as_deref(), Some("a/Box.TOML"));
-        let discs = config_of("a/pile.csv".as_ref()).unwrap();
-        assert_eq!(discs.origin.initial.as_deref(), Some("a/pile.csv".as_ref()));
-        assert_eq!(config_of("a/pile.png".as_ref()), None);
+    fn endings_tell_scenes_from_discs_and_saved_runs() {
+        let config = |path: &str| match asked(path.as_ref()) {
+            Some(Asked::Scene(config)) => config.origin,
+            other => panic!("{path} is {other:?}"),
+        };
+        assert_eq!(config("a/Box.TOML").scene.as_deref(), Some("a/Box.TOML"));
+        assert_eq!(config("a/pile.csv").initial.as_deref(), Some("a/pile.csv".as_ref()));
+        assert_eq!(asked("a/checkpoint.slump".as_ref()), Some(Asked::SavedRun));
+        assert_eq!(asked("a/pile.png".as_ref()), None);
     }
 }

@@ -5,12 +5,14 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::error::{Error, Result};
-use crate::output::{write_file, write_png};
+use crate::output::{check_writable, write_file, write_png};
 use crate::render::{Camera, Renderer, RendererChoice, Style, draw_scene};
+use crate::scene::SavedState;
 use crate::sim::live::Curve;
 use crate::sim::{Observables, Snapshot};
 
 use super::plot_picture::{PlotPicture, PlotPrinter};
+use super::taken::TakenRun;
 
 /// A file to be written.
 pub(crate) enum Export {
@@ -29,6 +31,17 @@ pub(crate) enum Export {
     Curves(Vec<Curve>),
     /// A picture of the plots.
     Plots(Box<PlotPicture>),
+    /// A run that is on its way, to be gone on with.
+    State(Receiver<TakenRun>),
+}
+
+/// Ending of files that runs are saved to.
+pub(crate) const STATE_ENDING: &str = "slump";
+
+/// How the names of files about a moment of a scene begin.
+pub(crate) fn stem(scene: &str, time_secs: f64) -> String {
+    let name: String = scene.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
+    format!("slump-{name}-{time_secs:.4}s")
 }
 
 impl Export {
@@ -36,6 +49,7 @@ impl Export {
         match self {
             Self::Curves(_) => "csv",
             Self::Scene { .. } | Self::Plots(_) => "png",
+            Self::State(_) => STATE_ENDING,
         }
     }
 }
@@ -85,15 +99,12 @@ impl Exporter {
         self.pending > 0
     }
 
-    /// What became of the last file, and whether it failed; once.
-    pub(crate) fn take_outcome(&mut self) -> Option<(String, bool)> {
+    /// What became of the last file, once.
+    pub(crate) fn take_outcome(&mut self) -> Option<Result<PathBuf>> {
         let (_, outcomes) = self.thread.as_ref()?;
         let outcome = outcomes.try_recv().ok()?;
         self.pending = self.pending.saturating_sub(1);
-        Some(match outcome {
-            Ok(path) => (format!("Saved {}", path.display()), false),
-            Err(error) => (error.to_string(), true),
-        })
+        Some(outcome)
     }
 }
 
@@ -114,7 +125,7 @@ fn write(
     renderer: &mut Option<Renderer>,
     printer: &mut Option<PlotPrinter>,
 ) -> Result<PathBuf> {
-    std::fs::create_dir_all(&job.folder).map_err(|error| Error::file(&job.folder, error))?;
+    check_writable("folder", &job.folder)?;
     let path = free_path(&job.folder, &job.stem, job.export.ending());
     match &job.export {
         Export::Scene { snapshot, style, camera, size: [width, height] } => {
@@ -134,7 +145,23 @@ fn write(
             let image = printer.print(picture)?;
             write_png(&path, &image)?;
         }
+        Export::State(run) => return write_state(&job.folder, run),
     }
+    Ok(path)
+}
+
+/// A run, by the moment that it has when it is handed out: it may go on meanwhile.
+fn write_state(folder: &Path, run: &Receiver<TakenRun>) -> Result<PathBuf> {
+    let run = run.recv();
+    let TakenRun { opened, taken } =
+        run.map_err(|_| Error::value("run", "closed", "open when its state is saved"))?;
+    if taken.failure.is_some() {
+        let allowed = "an earlier one: drag the timeline back";
+        return Err(Error::value("state", "no longer finite", allowed));
+    }
+    let stem = stem(&opened.scene.name, taken.simulation.time_secs());
+    let path = free_path(folder, &stem, STATE_ENDING);
+    SavedState::new(opened.scene.clone(), taken.simulation, taken.tally).save(&path)?;
     Ok(path)
 }
 
@@ -142,8 +169,8 @@ fn write(
 fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     let refuse = |error: csv::Error| Error::file(path, error);
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    let any_bonds = curves.iter().flat_map(Curve::rows).any(|row| row.bond_energy.is_some());
-    let cells = |row: Observables| if any_bonds { row.with_columns_of_bonds() } else { row };
+    let has_more = curves.iter().flat_map(Curve::rows).any(Observables::has_further_columns);
+    let cells = |row: Observables| if has_more { row.with_further_columns() } else { row };
     let names = column_names(cells(Observables::default())).map_err(refuse)?;
     writer.write_record(std::iter::once("world").chain(names.iter())).map_err(refuse)?;
     for (world, curve) in curves.iter().enumerate() {

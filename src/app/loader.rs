@@ -1,8 +1,12 @@
 //! From what a user asks for to a start that the solver's thread makes.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 
+use super::taken::{LastOpened, Opened};
 use crate::scene::{Config, SavedState, Scene};
+use crate::sim::Tally;
 use crate::sim::live::{Loader, Progress, Start};
 use crate::world::Boundary;
 
@@ -12,7 +16,7 @@ const ORDERS_OF_SETTLING: f64 = 3.5;
 const WALL_HEIGHTS: f64 = 1.1;
 
 /// Makes the start of `config` on the thread that calls it.
-pub(crate) fn loader(config: Config) -> Loader {
+pub(crate) fn loader(config: Config, last: LastOpened) -> Loader {
     Box::new(move |tell| {
         let mut part = 0f64;
         let scene = config.scene(|settling| {
@@ -27,23 +31,36 @@ pub(crate) fn loader(config: Config) -> Loader {
             );
             tell(Progress { part: part as f32, text })
         })?;
-        start(&scene)
+        let start = start(&scene)?;
+        last.note(Opened { scene, config });
+        Ok(start)
     })
 }
 
 /// Makes a start of a saved run, which goes on in time.
-pub(crate) fn loader_of_run(state: SavedState) -> Loader {
-    Box::new(move |_| {
-        let SavedState { scene, simulation, .. } = state;
-        let view = scene.view();
-        Ok(Start {
-            name: scene.name,
-            simulation,
-            duration_secs: scene.duration_secs,
-            held_by: Vec::new(),
-            view: [view.min, view.max],
-        })
-    })
+pub(crate) fn loader_of_run(state: SavedState, last: LastOpened) -> Loader {
+    Box::new(move |_| Ok(start_of_run(state, &last)))
+}
+
+/// Makes a start of a file that a run was saved to.
+pub(crate) fn loader_of_file(path: PathBuf, last: LastOpened) -> Loader {
+    Box::new(move |_| Ok(start_of_run(SavedState::open(&path)?, &last)))
+}
+
+fn start_of_run(state: SavedState, last: &LastOpened) -> Start {
+    let SavedState { scene, simulation, tally, .. } = state;
+    let view = scene.view();
+    let start = Start {
+        name: scene.name.clone(),
+        simulation,
+        tally,
+        duration_secs: scene.duration_secs,
+        held_by: Vec::new(),
+        view: [view.min, view.max],
+    };
+    let config = Config::of_scene(&scene.name);
+    last.note(Opened { scene, config });
+    start
 }
 
 fn start(scene: &Scene) -> crate::error::Result<Start> {
@@ -51,6 +68,7 @@ fn start(scene: &Scene) -> crate::error::Result<Start> {
     Ok(Start {
         name: scene.name.clone(),
         simulation: scene.simulation()?,
+        tally: Tally::default(),
         duration_secs: scene.duration_secs,
         held_by: walls(scene),
         view: [view.min, view.max],

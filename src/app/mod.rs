@@ -6,6 +6,8 @@
 
 mod camera;
 mod canvas;
+mod data_choices;
+mod data_export;
 mod drop;
 mod export;
 mod fill;
@@ -24,11 +26,13 @@ mod scene_legend;
 mod setting_control;
 mod state;
 mod storage;
+mod taken;
 pub mod theme;
 mod ui;
 mod window;
 
 pub use canvas::Canvas;
+pub use data_choices::DataChoices;
 pub(crate) use options::WindowOptions;
 pub use preferences::Preferences;
 pub use state::{AppState, GrainRef, Notice};

@@ -95,13 +95,11 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
                 let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
                     Line::new(name, points(curve, |row| value(row) / factor)).color(*colour)
                 };
-                let value = |row: &Observables| {
-                    let value = (quantity.value)(row);
-                    if log { value.log10() } else { value }
-                };
+                let scaled = |value: f64| if log { value.log10() } else { value };
+                let value = |row: &Observables| scaled((quantity.value)(row));
                 plot.line(line(name.clone(), &value).width(1.6));
                 for ((what, value), style) in beside(curve, quantity).zip(BESIDE) {
-                    let value = |row: &Observables| value(row).unwrap_or(f64::NAN);
+                    let value = |row: &Observables| scaled(value(row).unwrap_or(f64::NAN));
                     plot.line(line(format!("{name}: {what}"), &value).style(style).width(1.2));
                 }
             }
@@ -117,7 +115,7 @@ fn beside(
 ) -> impl Iterator<Item = Beside<Observables>> {
     let last = curve.last();
     let has = move |beside: &Beside<Observables>| last.is_some_and(|row| beside.1(row).is_some());
-    quantity.beside.into_iter().flatten().filter(has)
+    quantity.beside.iter().copied().filter(has)
 }
 
 /// The title of a plot, and what its values are divided by for the prefix of their unit.
@@ -125,7 +123,7 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
     let mut title = quantity.title.to_owned();
     let mut factor = 1.0;
     if !quantity.unit.is_empty() {
-        let others = quantity.beside.into_iter().flatten();
+        let others = quantity.beside.iter();
         let largest = |row: &Observables| {
             let others = others.clone().filter_map(|(_, value)| value(row));
             others.fold((quantity.value)(row), f64::max)
@@ -136,10 +134,10 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
         title = format!("{title} ({prefix}{})", quantity.unit);
     }
     let has_more = |curve: &Curve| beside(curve, quantity).next().is_some();
-    if let Some([(dashed, _), (dotted, _)]) = quantity.beside
-        && data.worlds.iter().any(|(.., curve)| has_more(curve))
-    {
-        title = format!("{title}; dashed: {dashed}, dotted: {dotted}");
+    if data.worlds.iter().any(|(.., curve)| has_more(curve)) {
+        let styles = ["dashed", "dotted"].iter().zip(quantity.beside);
+        let said: Vec<_> = styles.map(|(style, (name, _))| format!("{style}: {name}")).collect();
+        title = format!("{title}; {}", said.join(", "));
     }
     (title, factor)
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::data_choices::DataChoices;
 use crate::error::Result;
 use crate::headless::HeadlessOptions;
 use crate::render::{Style, Theme};
@@ -33,6 +34,8 @@ pub struct Preferences {
     pub picture_size: [u32; 2],
     /// Where exported files go.
     pub folder: PathBuf,
+    /// What recordings are like that are exported.
+    pub data: DataChoices,
     /// The scene that was open last.
     pub scene: Config,
 }
@@ -49,6 +52,7 @@ impl Default for Preferences {
             full_speed: false,
             picture_size: [1600, 1000],
             folder: PathBuf::from("."),
+            data: DataChoices::default(),
             scene: Config::default(),
         }
     }

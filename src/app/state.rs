@@ -1,15 +1,19 @@
 //! Everything that the user interface reads and changes. Knows neither window nor GPU.
 
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
 use egui::Rect;
 
 use super::camera::SceneCamera;
-use super::export::Exporter;
-use super::loader::{loader, loader_of_run};
+use super::data_export::DataExport;
+use super::export::{Export, Exporter, STATE_ENDING};
+use super::loader::{loader, loader_of_file, loader_of_run};
 use super::preferences::Preferences;
 use super::scene_legend::LegendCache;
+use super::taken::{LastOpened, TakenRun};
 use crate::scene::{Config, SavedState};
 use crate::sim::Settings;
 use crate::sim::live::{Command, Controls, Frame, Live, WorldFrame};
@@ -36,6 +40,21 @@ pub struct Notice {
     since: Instant,
 }
 
+/// What the panel about data is busy with.
+#[derive(Default)]
+pub(crate) struct DataDesk {
+    /// First and last simulated time of what is exported, s; all that is recorded where there are none.
+    pub stretch: Option<[f64; 2]>,
+    /// Whether an earlier recording in the folder is to be removed.
+    pub overwrite: bool,
+    /// The export that is going on.
+    pub export: Option<DataExport>,
+    /// What became of the last one, and whether it failed.
+    pub told: Option<(String, bool)>,
+    /// The file of a saved run, as it is typed.
+    pub saved_run: String,
+}
+
 /// The state of the user interface.
 pub struct AppState {
     /// The solver's thread.
@@ -60,11 +79,14 @@ pub struct AppState {
     pub(crate) help: bool,
     /// Writes files without keeping the window waiting.
     pub(crate) exporter: Exporter,
+    /// What is being done about data and saved runs.
+    pub(crate) data: DataDesk,
     /// Where controls lie, points: for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
     /// Set where the window is to open its graphics device anew.
     pub(crate) restart_graphics: bool,
     pub(super) legend: LegendCache,
+    last_opened: LastOpened,
     notice: Option<Notice>,
     seen_start: u64,
     seen_refusal: Option<std::sync::Arc<str>>,
@@ -85,9 +107,11 @@ impl AppState {
             grabbed: None,
             help: false,
             exporter: Exporter::default(),
+            data: DataDesk::default(),
             controls: BTreeMap::new(),
             restart_graphics: false,
             legend: LegendCache::default(),
+            last_opened: LastOpened::default(),
             notice: None,
             seen_start: 0,
             seen_refusal: None,
@@ -100,13 +124,36 @@ impl AppState {
     /// Opens a scene.
     pub fn load(&mut self, config: Config) {
         self.config = config.clone();
-        self.live.send(Command::Load(loader(config)));
+        self.live.send(Command::Load(loader(config, self.last_opened.clone())));
     }
 
     /// Opens a saved run, to go on with it.
     pub fn load_run(&mut self, state: SavedState) {
-        self.config = Config::of_scene(&state.scene.name);
-        self.live.send(Command::Load(loader_of_run(state)));
+        self.live.send(Command::Load(loader_of_run(state, self.last_opened.clone())));
+    }
+
+    /// Opens the file of a saved run, to go on with it.
+    pub fn load_saved(&mut self, path: &Path) {
+        self.data.saved_run = path.display().to_string();
+        let loader = loader_of_file(path.to_owned(), self.last_opened.clone());
+        self.live.send(Command::Load(loader));
+    }
+
+    /// Saves the moment that the selected world has come to.
+    pub(crate) fn save_state(&mut self, context: &egui::Context) {
+        let run = self.take_run();
+        let folder = self.preferences.folder.clone();
+        self.exporter.submit(context, Export::State(run), &folder, "");
+    }
+
+    /// Whether a file or a recording is being written.
+    pub fn is_writing(&self) -> bool {
+        self.exporter.is_busy() || self.data.export.is_some()
+    }
+
+    /// Asks for the run of the selected world.
+    pub(crate) fn take_run(&mut self) -> Receiver<TakenRun> {
+        TakenRun::ask(&mut self.live, self.selected, &self.last_opened)
     }
 
     /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
@@ -117,6 +164,10 @@ impl AppState {
             self.seen_start = start;
             self.camera.frame_scene();
             self.pinned = None;
+            self.data.stretch = None;
+            if let Some(opened) = self.last_opened.get() {
+                self.config.clone_from(&opened.config);
+            }
             self.preferences.scene = self.config.clone();
         }
         if self.frame.refusal != self.seen_refusal {
@@ -133,8 +184,30 @@ impl AppState {
         self.selected = self.selected.min(worlds.saturating_sub(1));
         self.pinned = self.pinned.filter(|pinned| self.exists(*pinned));
         self.grabbed = self.grabbed.filter(|grabbed| self.exists(*grabbed));
-        if let Some((text, failure)) = self.exporter.take_outcome() {
-            self.notice = Some(Notice { text, failure, since: Instant::now() });
+        self.note_exports();
+    }
+
+    fn note_exports(&mut self) {
+        match self.exporter.take_outcome() {
+            Some(Ok(path)) => {
+                self.say(format!("Saved {}", path.display()), false);
+                self.note_saved_run(&path);
+            }
+            Some(Err(error)) => self.say(error.to_string(), true),
+            None => {}
+        }
+        let outcome = self.data.export.as_ref().and_then(DataExport::take_outcome);
+        if let Some((text, failure)) = outcome {
+            self.data.export = None;
+            self.data.told = Some((text.clone(), failure));
+            self.say(text, failure);
+        }
+    }
+
+    /// A run that was just saved is the one that is likely to be opened.
+    fn note_saved_run(&mut self, path: &Path) {
+        if path.extension().is_some_and(|ending| ending == STATE_ENDING) {
+            self.data.saved_run = path.display().to_string();
         }
     }
 
@@ -186,7 +259,11 @@ impl AppState {
 
     /// Says something in the status bar for a while.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
-        self.notice = Some(Notice { text: text.into(), failure: true, since: Instant::now() });
+        self.say(text.into(), true);
+    }
+
+    fn say(&mut self, text: String, failure: bool) {
+        self.notice = Some(Notice { text, failure, since: Instant::now() });
     }
 
     /// What the status bar has to say, and for how long yet, s.

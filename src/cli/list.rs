@@ -3,9 +3,9 @@
 use crate::output::print_line;
 use crate::scene::{SCENES, SceneGroup};
 use crate::sim::Stepper;
-use crate::solver::METHODS;
+use crate::solver::{FrictionModel, METHODS};
 
-/// Prints the built-in scenes, the steppers and the methods.
+/// Prints the built-in scenes, the steppers, the methods and the models of friction.
 pub(super) fn run() {
     for group in SceneGroup::ALL {
         print_line(format_args!("{}:", group.title()));
@@ -27,5 +27,11 @@ pub(super) fn run() {
     for info in METHODS {
         print_line(format_args!("  {:14} {}", info.name, info.summary));
         print_line(format_args!("  {:14} solves {} ({})", "", info.solves, info.source));
+    }
+    let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
+    let takers: Vec<_> = takers.collect();
+    print_line(format_args!("Models of friction, those beside coulomb for {}:", takers.join(", ")));
+    for model in FrictionModel::ALL {
+        print_line(format_args!("  {:14} {}", model.name(), model.hint()));
     }
 }

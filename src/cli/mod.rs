@@ -4,7 +4,6 @@ mod chart;
 mod generate;
 mod list;
 mod problem;
-mod refusal;
 mod reproduce;
 mod run;
 mod scene;
@@ -17,6 +16,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::error::{Error, Result};
 use crate::output::{lost_stdout, note_line, note_printed};
+use crate::setting::refusal_of;
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
@@ -58,7 +58,7 @@ const REFUSED: u8 = 2;
 /// and exit code 2; a run that a signal ended has the code that shells know for it.
 pub fn main() -> ExitCode {
     let parsed = Cli::try_parse().map(Some).or_else(|error| match error.use_stderr() {
-        true => Err((REFUSED, refusal::sentence(&error, Cli::command()))),
+        true => Err((REFUSED, refusal_of(&error, Cli::command()))),
         // Help and version.
         false => {
             note_printed(error.print());

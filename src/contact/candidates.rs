@@ -12,10 +12,9 @@ mod saved;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::broad_phase::BroadPhase;
 use super::features::Feature;
-use super::grid::Grid;
 use super::numbering::{Numbering, Other};
-use super::tree::Tree;
 use crate::error::Result;
 use crate::world::World;
 
@@ -29,24 +28,6 @@ pub struct Reach {
     pub gap_tolerance: f64,
 }
 
-/// Where the largest disc, with or without its skin, is more than this many times as large as the smallest,
-/// the tree finds the pairs, else the grid. At 1:1.5 the two take about the same time, at 1:20 the grid takes 1.2 to 18
-/// times as long (`cargo bench --bench broad_phase`).
-const SIZE_RATIO_OF_TREE: f64 = 4.0;
-
-/// What finds the pairs.
-#[derive(Clone, Debug)]
-enum BroadPhase {
-    Grid(Grid),
-    Tree(Box<Tree>),
-}
-
-impl Default for BroadPhase {
-    fn default() -> Self {
-        Self::Grid(Grid::default())
-    }
-}
-
 /// Candidate pairs of a world.
 ///
 /// In a file are those that were found, and from where: when they are found anew hangs on it. All else is
@@ -57,6 +38,9 @@ pub struct Candidates {
     reach: Reach,
     #[serde(skip)]
     features: Vec<Feature>,
+    /// The boundary that each feature is a part of, by its number.
+    #[serde(skip)]
+    boundary_of: Vec<usize>,
     /// Boundaries that can move, each with the number of its feature.
     #[serde(skip)]
     pistons: Vec<(usize, usize)>,
@@ -67,8 +51,6 @@ pub struct Candidates {
     /// Radii of grains, then of fixed discs.
     #[serde(skip)]
     radii: Vec<f64>,
-    #[serde(skip)]
-    sizes_differ: bool,
     /// Their skins at the last build, m: how far each may go before the list is built anew.
     skins: Vec<f64>,
     skin_of_features: f64,
@@ -88,25 +70,24 @@ impl Candidates {
     /// # Errors
     /// Where a boundary makes no shape.
     pub fn new(world: &World, reach: Reach) -> Result<Self> {
-        let (mut features, mut pistons) = (Vec::new(), Vec::new());
+        let (mut features, mut boundary_of, mut pistons) = (Vec::new(), Vec::new(), Vec::new());
         for (index, boundary) in world.boundaries.iter().enumerate() {
             if boundary.can_move() {
                 pistons.push((index, features.len()));
             }
             Feature::collect(boundary, &format!("boundaries[{index}]"), &mut features)?;
+            boundary_of.resize(features.len(), index);
         }
         let fixed = world.fixed_discs.iter().map(|disc| disc.radius);
         let radii: Vec<f64> = world.grains.radii.iter().copied().chain(fixed).collect();
-        let largest = radii.iter().copied().fold(0.0, f64::max);
-        let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
         Ok(Self {
             reach,
             features,
+            boundary_of,
             pistons,
             way_of_features: 0.0,
-            broad_phase: BroadPhase::Grid(Grid::default()),
+            broad_phase: BroadPhase::of(&radii),
             radii,
-            sizes_differ: largest > SIZE_RATIO_OF_TREE * smallest,
             skins: Vec::new(),
             skin_of_features: 0.0,
             centres: Vec::new(),
@@ -119,6 +100,11 @@ impl Candidates {
     /// The boundaries' features.
     pub(crate) fn features(&self) -> &[Feature] {
         &self.features
+    }
+
+    /// The number of the boundary that a feature is a part of.
+    pub(crate) fn boundary_of(&self, feature: usize) -> usize {
+        self.boundary_of[feature]
     }
 
     /// The boundaries that can move, by their number, each with the number of its feature.
@@ -207,30 +193,7 @@ impl Candidates {
             }
         };
         let extents = (0..self.radii.len()).map(extent);
-        let largest = extents.clone().fold(0.0, f64::max);
-        let smallest = extents.clone().fold(f64::INFINITY, f64::min);
-        let by_tree = self.sizes_differ || largest > SIZE_RATIO_OF_TREE * smallest;
-        if by_tree != matches!(self.broad_phase, BroadPhase::Tree(_)) {
-            self.broad_phase = if by_tree {
-                BroadPhase::Tree(Box::default())
-            } else {
-                BroadPhase::Grid(Grid::default())
-            };
-        }
-        match &mut self.broad_phase {
-            BroadPhase::Grid(grid) => {
-                grid.rebuild::<AXES>(centres, 2.0 * largest);
-                grid.pairs::<AXES>(keep);
-            }
-            BroadPhase::Tree(tree) => {
-                let on_axes = |&centre: &DVec2| match AXES {
-                    1 => DVec2::new(centre.x, 0.0),
-                    _ => centre,
-                };
-                tree.update(centres.iter().map(on_axes).zip(extents));
-                tree.pairs(keep);
-            }
-        }
+        self.broad_phase.pairs::<AXES>(centres, extents, keep);
         self.sort_pairs(grain_count);
         self.add_features(world);
     }

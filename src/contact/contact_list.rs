@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::approach::approach;
 use super::candidates::Candidates;
+use super::look_ahead::LookAhead;
 use super::numbering::{Numbering, Other};
 use super::range::Bond;
 use crate::world::World;
@@ -53,40 +54,6 @@ pub struct ContactMemory {
     pub tangential_force: f64,
 }
 
-/// Which pairs with a gap are contacts too, because they may touch within the step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LookAhead {
-    /// Δt, s.
-    pub time_step_secs: f64,
-    /// Pairs that would come nearer than this by themselves are contacts, m.
-    pub distance: f64,
-    /// Farther pairs are none, m.
-    pub reach: f64,
-    /// Whether pairs that have touched are bonded from then on, and contacts until the bond breaks.
-    pub bonds: bool,
-}
-
-impl LookAhead {
-    /// The gap that a grain of that velocity (m/s) may close, m: with its own speed, but for bonds, which
-    /// may be open however slow their grains are.
-    pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
-        /// What rounding makes of a speed.
-        const ROUNDING: f64 = 1.0 + 1e-9;
-        match self.bonds {
-            true => 0.5 * self.reach,
-            false => {
-                let own = self.time_step_secs * velocity.length() + self.distance;
-                ROUNDING * own.min(self.reach)
-            }
-        }
-    }
-
-    /// The gap that what is no grain is to be seen at besides, m.
-    pub(crate) fn way_of_others(&self) -> f64 {
-        if self.bonds { 0.5 * self.reach } else { 0.0 }
-    }
-}
-
 /// What is kept of a contact as long as it lives.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -95,6 +62,8 @@ struct Kept {
     impulses: Vec<Impulse>,
     memories: Vec<ContactMemory>,
     bonds: Vec<Bond>,
+    /// The step that each was first found in.
+    found_in: Vec<u64>,
 }
 
 /// The contacts of a step, sorted by (i, other), and their impulses. Memory is kept between steps.
@@ -107,9 +76,29 @@ pub struct ContactList {
     before: Kept,
     /// Whether pairs with a gap are among the contacts.
     looks_ahead: bool,
+    /// The step that contacts are found in from now on.
+    step: u64,
 }
 
 impl ContactList {
+    /// Says which step contacts are found in from now on.
+    pub(crate) fn begin_step(&mut self, step: u64) {
+        self.step = step;
+    }
+
+    /// How many steps ago each pair was found to touch, or to be bonded, that has done so ever since, one
+    /// a contact; 0 where that was in the last step.
+    pub fn ages(&self) -> impl ExactSizeIterator<Item = u64> + '_ {
+        self.now.found_in.iter().map(|&found_in| self.step - found_in)
+    }
+
+    /// Whether no step has been solved with a contact yet. Those that a run begins with were found before its
+    /// first step, and a pair that touches is found once, however often its step is cut.
+    pub(crate) fn is_unsolved(&self, index: usize) -> bool {
+        let is_young = self.step <= 1 || self.now.found_in[index] == self.step;
+        is_young && self.now.impulses[index] == Impulse::default()
+    }
+
     /// The contacts, sorted by (i, other).
     pub fn contacts(&self) -> &[Contact] {
         &self.now.contacts
@@ -171,13 +160,15 @@ impl ContactList {
 
     /// Drops the contacts of a body, and numbers those after it one lower.
     pub(crate) fn remove_body(&mut self, body: u32) {
-        let Kept { contacts, impulses, memories, bonds } = &mut self.now;
+        let Kept { contacts, impulses, memories, bonds, found_in } = &mut self.now;
         let stays = |contact: &Contact| contact.grain != body && contact.other != body;
         let stay = contacts.iter().map(stays).collect::<Vec<_>>().into_iter();
-        let [mut of_impulses, mut of_memories, mut of_bonds] = [(); 3].map(|()| stay.clone());
+        let [mut of_impulses, mut of_memories, mut of_bonds, mut of_steps] =
+            [(); 4].map(|()| stay.clone());
         impulses.retain(|_| of_impulses.next() == Some(true));
         memories.retain(|_| of_memories.next() == Some(true));
         bonds.retain(|_| of_bonds.next() == Some(true));
+        found_in.retain(|_| of_steps.next() == Some(true));
         contacts.retain(stays);
         for contact in contacts {
             contact.grain -= u32::from(contact.grain > body);
@@ -188,12 +179,15 @@ impl ContactList {
     /// Whether its lists are of one length and tell of bodies that exist, of which there are so many, the
     /// first of them grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
-        let Kept { contacts, impulses, memories, bonds } = &self.now;
-        let lengths = [impulses.len(), memories.len(), bonds.len()];
+        let Kept { contacts, impulses, memories, bonds, found_in } = &self.now;
+        let lengths = [impulses.len(), memories.len(), bonds.len(), found_in.len()];
+        let is_past = |&step: &u64| step <= self.step;
         let exists = |contact: &Contact| {
             (contact.grain as usize) < grains && (contact.other as usize) < bodies
         };
-        lengths == [contacts.len(); 3] && contacts.iter().all(exists)
+        lengths == [contacts.len(); 4]
+            && contacts.iter().all(exists)
+            && found_in.iter().all(is_past)
     }
 
     /// Finds the contacts at the present positions: candidates with a gap below the tolerance. A
@@ -244,11 +238,12 @@ impl ContactList {
         keep: impl Fn(&Contact, &mut Bond) -> bool,
     ) {
         std::mem::swap(&mut self.now, &mut self.before);
-        let Self { now, before: old, .. } = self;
+        let Self { now, before: old, looks_ahead, step } = self;
         now.contacts.clear();
         now.impulses.clear();
         now.memories.clear();
         now.bonds.clear();
+        now.found_in.clear();
         let (grains, numbering) = (&world.grains, Numbering::of(world));
         let mut before = 0;
         for index in 0..grains.len() {
@@ -272,9 +267,12 @@ impl ContactList {
                 } else {
                     Default::default()
                 };
+                // What only came near so far is found where it touches.
+                let was_found = lives_on && (bond.alive || !*looks_ahead);
                 if !keep(&contact, &mut bond) {
                     continue;
                 }
+                now.found_in.push(if was_found { old.found_in[before] } else { *step });
                 now.impulses.push(impulse);
                 now.memories.push(memory);
                 now.bonds.push(bond);

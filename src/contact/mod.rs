@@ -1,6 +1,7 @@
 //! Which bodies touch, and what a contact may transmit.
 
 mod approach;
+mod broad_phase;
 mod candidates;
 mod contact_list;
 mod corners;
@@ -8,14 +9,15 @@ mod features;
 mod grid;
 mod lanes;
 pub(crate) mod law;
+mod look_ahead;
 mod numbering;
 pub(crate) mod range;
 mod separate;
 mod too_close;
 mod tree;
 
+pub(crate) use broad_phase::BroadPhase;
 pub use candidates::{Candidates, Reach};
-pub(crate) use contact_list::LookAhead;
 pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
 pub(crate) use features::Feature;
 #[doc(hidden)]
@@ -23,5 +25,6 @@ pub use grid::Grid;
 pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;
+pub(crate) use look_ahead::LookAhead;
 pub use numbering::{Numbering, Other};
 pub(crate) use too_close::check_distances;

@@ -43,7 +43,8 @@ impl Asked {
         Ok(Self::Run(Box::new(state)))
     }
 
-    fn scene(&self) -> &Scene {
+    /// The scene, with the settings asked for.
+    pub(super) fn scene(&self) -> &Scene {
         match self {
             Self::Scene(scene) => scene,
             Self::Run(state) => &state.scene,

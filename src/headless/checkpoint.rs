@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::manifest::{Instant, PictureEntry};
 use crate::error::{Error, Result};
+use crate::output::remove_if_there;
 use crate::scene::{SavedState, Scene};
 use crate::sim::{Simulation, Tally};
 
@@ -140,12 +141,5 @@ pub(super) fn look(folder: &Path, fingerprint: &str) -> Found {
             Found::Own(Box::new(Beginning { state, marks }))
         }
         _ => Found::Strange("it is of another command".to_owned()),
-    }
-}
-
-fn remove_if_there(path: &Path) -> Result<()> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::file(path, error)),
-        _ => Ok(()),
     }
 }

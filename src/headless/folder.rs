@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::checkpoint::{CHECKPOINT, WAITING};
 use super::manifest::PictureEntry;
 use crate::error::{Error, Result};
-use crate::output::{FolderLock, check_writable};
+use crate::output::{FolderLock, Locked, check_writable, name_of_whole};
 
 /// What becomes of the files of an earlier run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl RunFolder {
     /// Where it cannot be written to, or another run has it.
     pub(super) fn lock(path: &Path, earlier: Earlier) -> Result<Self> {
         check_writable("frames", path)?;
-        let lock = FolderLock::of(path)?;
+        let lock = FolderLock::of(path, Locked::Pictures)?;
         Ok(Self { path: path.to_owned(), earlier, _lock: lock })
     }
 
@@ -84,7 +84,8 @@ impl RunFolder {
             let reason = "is missing, but must be where the checkpoint tells of it";
             return Err(Error::file(self.path.join(&lost.file), reason));
         }
-        let goes = |name: &String| whole_name(name) != name || (is_frame(name) && !is_kept(name));
+        let goes =
+            |name: &String| name_of_whole(name) != name || (is_frame(name) && !is_kept(name));
         for name in names.iter().filter(|name| goes(name)) {
             let path = self.path.join(name);
             std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
@@ -116,7 +117,7 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<String>> {
     for entry in std::fs::read_dir(folder).map_err(refuse)? {
         let name = entry.map_err(refuse)?.file_name();
         let name = name.to_string_lossy();
-        let whole = whole_name(&name);
+        let whole = name_of_whole(&name);
         let is_ours = is_frame(whole)
             || ["manifest.json", "observables.csv", CHECKPOINT, WAITING].contains(&whole);
         if is_ours && is_plain(&folder.join(&*name)) {
@@ -125,15 +126,6 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<String>> {
     }
     names.sort();
     Ok(names)
-}
-
-/// The name of a file that a kill may have left as NAME.NUMBERS.part, between being whole and being named.
-fn whole_name(name: &str) -> &str {
-    let is_number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-');
-    match name.strip_suffix(".part").and_then(|rest| rest.rsplit_once('.')) {
-        Some((whole, numbers)) if is_number(numbers) => whole,
-        _ => name,
-    }
 }
 
 fn is_frame(name: &str) -> bool {

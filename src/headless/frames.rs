@@ -5,6 +5,7 @@ use std::path::Path;
 use super::HeadlessOptions;
 use super::begin::{Asked, Schedule};
 use super::checkpoint::{Beginning, Checkpoints, Found, look};
+use super::data::RecordingPlan;
 use super::folder::{Earlier, RunFolder};
 use super::studio::Studio;
 use super::telling::interrupted;
@@ -21,6 +22,7 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions, earlier: Earlier)
     options.style()?;
     let asked = Asked::of(config, options)?;
     let Schedule { times_secs, until_secs } = asked.schedule(config, options)?;
+    let data = options.data.settings(asked.scene())?;
     let choice = if options.draws() { options.renderer } else { RendererChoice::Cpu };
     let renderer = Renderer::new(choice)?;
     renderer.check_size(size.width, size.height)?;
@@ -32,6 +34,9 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions, earlier: Earlier)
     for (option, path) in [("gif", &options.gif), ("save", &options.saving.save)] {
         path.as_deref().map(|path| check_file(option, path)).transpose()?;
     }
+    let picture_times_secs = options.picture_times(asked.scene().duration_secs)?;
+    let claim = |data| RecordingPlan::claim(data, options.overwrite, found.is_some());
+    let recording = data.map(claim).transpose()?;
     let begun = match found {
         Some(found) => found,
         None => asked.begin(config, &times_secs).map_err(|error| match caught_signal() {
@@ -59,7 +64,10 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions, earlier: Earlier)
         // Before anything else is there that another run would be refused for.
         checkpoints.write(&scene, (&simulation, &tally), marks.clone())?;
     }
+    let start = |plan: RecordingPlan| plan.start(&scene, &simulation, &picture_times_secs);
+    let recording = recording.map(start).transpose()?;
     let mut studio = Studio::open(options, renderer, (&scene, steps), marks, checkpoints)?;
+    studio.record_in(recording);
     let run = OnItsWay { simulation, tally, next_picture };
     let recorded = go_on_with(run, &times_secs, until_secs, &mut studio);
     studio.end(recorded)

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::HeadlessOptions;
+use super::checkpoint::{Marks, WAITING};
 use crate::error::{Error, Result};
 use crate::render::{Style, automatic_range, force_reference};
 use crate::sim::Snapshot;
@@ -31,6 +33,33 @@ struct Kept {
 }
 
 impl KeptStates {
+    /// Where states wait if the style asks for it; in a file that can `outlive` the process if that is asked
+    /// for.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(super) fn asked_for(
+        options: &HeadlessOptions,
+        style: &Style,
+        marks: &Marks,
+        outlive: bool,
+    ) -> Result<Option<Self>> {
+        let waits = style.colour_by.has_scale() && style.range.is_none()
+            || style.show_forces && style.force_reference.is_none();
+        if !waits {
+            return Ok(None);
+        }
+        let beside_gif = options.gif.as_deref().and_then(Path::parent);
+        match (&options.frames, beside_gif) {
+            (Some(folder), _) if outlive => {
+                Self::go_on(&folder.join(WAITING), marks.waiting, style).map(Some)
+            }
+            (Some(folder), _) => Self::start(folder).map(Some),
+            (None, Some(folder)) => Self::start(folder).map(Some),
+            (None, None) => Ok(None),
+        }
+    }
+
     /// Starts with none. The file is in `folder`, or where the system has such files if none can be
     /// there.
     pub(super) fn start(folder: &Path) -> Result<Self> {

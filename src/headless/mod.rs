@@ -2,6 +2,7 @@
 
 mod begin;
 mod checkpoint;
+mod data;
 mod figures;
 mod folder;
 mod frames;
@@ -15,6 +16,8 @@ mod table;
 mod telling;
 
 pub(crate) use begin::settled;
+#[cfg(feature = "window")]
+pub(crate) use data::told as told_of_data;
 pub(crate) use options::HeadlessOptions;
 
 use std::path::Path;
@@ -39,12 +42,17 @@ pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
 /// In one sentence; nothing has been written where a value is refused. Where a signal or a full disk
 /// ends the run, what it came to until then has been written.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
-    if !options.draws() && options.saving.save.is_none() {
-        return Err(Error::value(
-            "frames",
-            "missing",
-            "a folder (--frames out/), or give --gif FILE or --save FILE",
-        ));
+    let asks_for_files = options.draws() || options.saving.save.is_some();
+    let asks_for_data = || -> Result<bool> {
+        let of_scene = || Ok(config.without_settling()?.data.is_some_and(|it| it.folder.is_some()));
+        if options.data.data.is_some() { Ok(true) } else { of_scene() }
+    };
+    if !asks_for_files && !asks_for_data()? {
+        let allowed = "a folder (--frames out/), or give --gif FILE, --data DIR or --save FILE";
+        return Err(Error::value("frames", "missing", allowed));
+    }
+    if options.overwrite && options.frames.is_none() && options.data.data.is_none() {
+        return Err(Error::value("overwrite", "given", "given with --frames DIR or --data DIR"));
     }
     heed_signals();
     let earlier = if options.overwrite { Earlier::Cleared } else { Earlier::Refused };

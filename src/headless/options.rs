@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::data::DataOptions;
 use super::saving::SavingOptions;
 use crate::error::{Error, Result};
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
@@ -47,8 +48,8 @@ pub(crate) struct HeadlessOptions {
     /// Folder for pictures, observables.csv and manifest.json
     #[arg(long, value_name = "DIR", help_heading = "Pictures")]
     pub frames: Option<PathBuf>,
-    /// Remove what an earlier run left in the folder; without it such a folder is refused
-    #[arg(long, help_heading = "Pictures", requires = "frames")]
+    /// Remove what earlier runs left in the folders; without it such a folder is refused
+    #[arg(long, help_heading = "Pictures")]
     pub overwrite: bool,
     /// Size of a picture, pixels [default: 960x540]
     #[arg(long, value_name = "WxH", help_heading = "Pictures")]
@@ -102,6 +103,8 @@ pub(crate) struct HeadlessOptions {
     pub renderer: RendererChoice,
     #[command(flatten)]
     pub saving: SavingOptions,
+    #[command(flatten)]
+    pub data: DataOptions,
 }
 
 /// Size of a picture that no size is given for.
@@ -123,6 +126,7 @@ impl HeadlessOptions {
             || !self.colour_scale.is_empty()
             || self.force_scale.is_some()
             || self.theme.is_some()
+            || self.data.data.is_some()
             || self.saving.restart.is_some()
             || self.saving.save.is_some()
             || self.saving.checkpoint_every.is_some()

@@ -6,7 +6,8 @@ use std::path::Path;
 use image::RgbaImage;
 
 use super::HeadlessOptions;
-use super::checkpoint::{Checkpoints, Marks, WAITING};
+use super::checkpoint::{Checkpoints, Marks};
+use super::data::told;
 use super::gif::Animation;
 use super::kept::KeptStates;
 use super::manifest::{Ended, Manifest, Moment, PictureEntry, RunEntry};
@@ -14,6 +15,7 @@ use super::table::ObservablesTable;
 use super::telling::{
     go_on, interrupted, tell_of_alarms, tell_of_picked_method, tell_of_unconverged_steps,
 };
+use crate::data::Recording;
 use crate::error::{Error, Result};
 use crate::output::{Progress, Signal, caught_signal, print_line, write_png};
 use crate::render::{Camera, Renderer, Style, draw_scene};
@@ -37,6 +39,7 @@ pub(super) struct Studio<'a> {
     /// Colours and widths that follow the state need one scale for all frames, so those frames wait
     /// for the end of the run, unless it is given. All others are drawn as the run comes by.
     kept: Option<KeptStates>,
+    recording: Option<Recording>,
     manifest: Manifest,
     checkpoints: Option<Checkpoints>,
     /// Where the run begins, and where it has come to.
@@ -78,8 +81,9 @@ impl<'a> Studio<'a> {
                 .as_deref()
                 .map(|gif| animation(gif, folder, &marks))
                 .transpose()?,
-            kept: kept_states(options, &style, &marks, checkpoints.is_some())?,
+            kept: KeptStates::asked_for(options, &style, &marks, checkpoints.is_some())?,
             style,
+            recording: None,
             manifest,
             renderer,
             checkpoints,
@@ -89,8 +93,23 @@ impl<'a> Studio<'a> {
         Ok(studio)
     }
 
+    /// Has the run recorded as well.
+    pub(super) fn record_in(&mut self, recording: Option<Recording>) {
+        self.recording = recording;
+    }
+
+    fn end_recording(&mut self) -> Result<()> {
+        let Some(recording) = self.recording.take() else { return Ok(()) };
+        let told = told(recording.folder(), recording.frames());
+        recording.finish()?;
+        print_line(told);
+        Ok(())
+    }
+
     /// How far everything has come, once all of that is on the disk.
     fn marks(&mut self) -> Result<Marks> {
+        // It knows itself what it has of which step.
+        self.recording.as_mut().map_or(Ok(()), Recording::flush)?;
         Ok(Marks {
             table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
             waiting: self.kept.as_ref().map_or(Ok(0), KeptStates::mark)?,
@@ -134,7 +153,8 @@ impl<'a> Studio<'a> {
         let signal = caught_signal().filter(|_| recorded.interrupted);
         let saved = self.save(&recorded);
         let table = self.table.take().map_or(Ok(()), ObservablesTable::finish);
-        recorded.failure = recorded.failure.or(saved.err()).or(table.err());
+        let recording = self.end_recording();
+        recorded.failure = recorded.failure.or(saved.err()).or(table.err()).or(recording.err());
         self.manifest.runs[0].end(Ended::of(&recorded), &recorded);
         let (developed, signal) = match self.develop(signal) {
             Ok(signal) => (Ok(()), signal),
@@ -226,10 +246,15 @@ impl Recorder for Studio<'_> {
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>> {
         self.progress.set(observables.step);
         self.table.as_mut().map_or(Ok(()), |table| table.add(observables))?;
+        let recording = self.recording.as_mut();
+        recording.map_or(Ok(()), |recording| recording.add_step(observables))?;
         Ok(go_on())
     }
 
     fn state(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
+        // Before the checkpoint, which is to have it.
+        let recording = self.recording.as_mut();
+        recording.map_or(Ok(()), |recording| recording.add_if_due(simulation))?;
         let is_due = self.checkpoints.as_ref().is_some_and(|it| it.is_due(simulation));
         if is_due { self.checkpoint(simulation, tally) } else { Ok(()) }
     }
@@ -254,27 +279,4 @@ fn animation(path: &Path, folder: Option<&Path>, marks: &Marks) -> Result<Animat
         animation.add(image.into_rgba8())?;
     }
     Ok(animation)
-}
-
-/// Where states wait for being drawn, if the style asks for it.
-fn kept_states(
-    options: &HeadlessOptions,
-    style: &Style,
-    marks: &Marks,
-    outlive: bool,
-) -> Result<Option<KeptStates>> {
-    let waits = style.colour_by.has_scale() && style.range.is_none()
-        || style.show_forces && style.force_reference.is_none();
-    if !waits {
-        return Ok(None);
-    }
-    let beside_gif = options.gif.as_deref().and_then(Path::parent);
-    match (&options.frames, beside_gif) {
-        (Some(folder), _) if outlive => {
-            KeptStates::go_on(&folder.join(WAITING), marks.waiting, style).map(Some)
-        }
-        (Some(folder), _) => KeptStates::start(folder).map(Some),
-        (None, Some(folder)) => KeptStates::start(folder).map(Some),
-        (None, None) => Ok(None),
-    }
 }

@@ -1,12 +1,11 @@
 //! `observables.csv`, there from the first row on.
 
-use std::fs::File;
-use std::io::{Error as IoError, Result as IoResult, Seek, SeekFrom, Write};
+use std::io::{Error as IoError, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
-use crate::output::start_stream;
+use crate::output::{GrowingFile, end_of_last};
 use crate::sim::Observables;
 
 /// Rows wait no longer than this for being written, as long as steps come. Shorter: small scenes spend
@@ -15,9 +14,6 @@ const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
 /// Bytes of rows that wait. Small scenes fill them sooner than [`LONGEST_WAIT`].
 const MOST_WAITING: usize = 1 << 16;
-
-/// Bytes of a page of memory on most machines, and a part of one on all others.
-const PAGE: u64 = 4096;
 
 /// A row a step. Whole rows alone are written, so that a run that is killed, or that fills the disk,
 /// leaves a table that can be read.
@@ -35,32 +31,20 @@ impl ObservablesTable {
 
     /// Goes on with the first `length` bytes of `observables.csv` in a folder.
     pub(super) fn go_on(folder: &Path, length: u64) -> Result<Self> {
-        let path = folder.join("observables.csv");
-        let refuse = |error| Error::file(&path, error);
-        let file = File::options().write(true).create(true).truncate(false).open(&path);
-        let mut file = file.map_err(refuse)?;
-        let found = file.metadata().map_err(refuse)?.len();
-        if found < length {
-            let reason = format!(
-                "has {found} bytes, but must have all {length} that the checkpoint tells of"
-            );
-            return Err(Error::file(&path, reason));
-        }
-        file.set_len(length).and_then(|()| file.seek(SeekFrom::End(0))).map_err(refuse)?;
-        Ok(Self::of(path, WholeRows { whole: length, ..WholeRows::new(file) }))
+        Ok(Self::of(GrowingFile::go_on(folder.join("observables.csv"), length)?))
     }
 
     /// Starts a table at a path.
     pub(super) fn start_as(path: PathBuf) -> Result<Self> {
-        let file = start_stream(&path)?;
-        Ok(Self::of(path, WholeRows::new(file)))
+        Ok(Self::of(GrowingFile::start(path)?))
     }
 
     /// The names of the columns are in a file that has rows.
-    fn of(path: PathBuf, whole_rows: WholeRows) -> Self {
+    fn of(file: GrowingFile) -> Self {
         let mut builder = csv::WriterBuilder::new();
-        builder.has_headers(whole_rows.whole == 0).buffer_capacity(MOST_WAITING);
-        let rows = builder.from_writer(whole_rows);
+        builder.has_headers(file.length() == 0).buffer_capacity(MOST_WAITING);
+        let path = file.path().to_owned();
+        let rows = builder.from_writer(WholeRows::new(file));
         Self { path, rows, written: Instant::now() }
     }
 
@@ -80,26 +64,20 @@ impl ObservablesTable {
     /// Has all rows on the disk, and tells their length, bytes.
     pub(super) fn mark(&mut self) -> Result<u64> {
         self.flush()?;
-        let WholeRows { file, whole, .. } = self.rows.get_ref();
-        // Pipes and devices know no such thing.
-        let _ = file.sync_data();
-        Ok(*whole)
+        let file = &self.rows.get_ref().file;
+        file.sync();
+        Ok(file.length())
     }
 
     /// Writes the rows that wait and has all of them on the disk.
     pub(super) fn finish(mut self) -> Result<()> {
-        self.flush()?;
-        // Pipes and devices know no such thing.
-        let _ = self.rows.get_ref().file.sync_all();
-        Ok(())
+        self.mark().map(drop)
     }
 }
 
-/// A file of rows that a kill or a full disk leaves with whole rows.
+/// Takes bytes and writes whole rows.
 struct WholeRows {
-    file: File,
-    /// Length of the rows that are in the file, bytes.
-    whole: u64,
+    file: GrowingFile,
     /// The beginning of a row whose end has not come yet.
     begun: Vec<u8>,
     /// Whether it took no more; rows that come later would leave a gap.
@@ -107,32 +85,8 @@ struct WholeRows {
 }
 
 impl WholeRows {
-    fn new(file: File) -> Self {
-        Self { file, whole: 0, begun: Vec::new(), is_full: false }
-    }
-
-    fn write_rows(&mut self, mut rows: &[u8]) -> IoResult<()> {
-        while !rows.is_empty() {
-            let (now, later) = rows.split_at(self.uncut(rows));
-            if let Err(error) = self.file.write_all(now) {
-                self.is_full = true;
-                // A part of a row may be there. A pipe has taken it; a file gives it back.
-                let _ = self.file.set_len(self.whole);
-                return Err(error);
-            }
-            self.whole += now.len() as u64;
-            rows = later;
-        }
-        Ok(())
-    }
-
-    /// How many bytes to write at once. A kill can cut a write where a page of the file ends, and only
-    /// there: so rows that lie in one page are written together, and one that lies in two alone, which
-    /// leaves some 0.1 µs in which it can be cut.
-    fn uncut(&self, rows: &[u8]) -> usize {
-        let room = (PAGE - self.whole % PAGE) as usize;
-        let first = || rows.iter().position(|&byte| byte == b'\n').map(|last| last + 1);
-        end_of_last(&rows[..room.min(rows.len())]).or_else(first).unwrap_or(rows.len())
+    fn new(file: GrowingFile) -> Self {
+        Self { file, begun: Vec::new(), is_full: false }
     }
 }
 
@@ -144,7 +98,7 @@ impl Write for WholeRows {
         self.begun.extend_from_slice(bytes);
         if let Some(end) = end_of_last(&self.begun) {
             let mut rows = std::mem::take(&mut self.begun);
-            self.write_rows(&rows[..end])?;
+            self.file.add_rows(&rows[..end]).inspect_err(|_| self.is_full = true)?;
             rows.drain(..end);
             self.begun = rows;
         }
@@ -156,11 +110,6 @@ impl Write for WholeRows {
     }
 }
 
-/// Where the last row ends that does.
-fn end_of_last(rows: &[u8]) -> Option<usize> {
-    rows.iter().rposition(|&byte| byte == b'\n').map(|last| last + 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,31 +118,12 @@ mod tests {
     fn a_row_that_comes_in_parts_is_written_whole() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("rows.csv");
-        let mut rows = WholeRows::new(start_stream(&path).expect("a file"));
+        let mut rows = WholeRows::new(GrowingFile::start(path.clone()).expect("a file"));
         let read = || std::fs::read_to_string(&path).expect("rows");
         rows.write_all(b"a,b\n1,").expect("a file");
         assert_eq!(read(), "a,b\n");
         rows.write_all(b"2\n3,4\n5").expect("a file");
         assert_eq!(read(), "a,b\n1,2\n3,4\n");
-    }
-
-    #[test]
-    fn no_two_rows_are_written_together_over_the_end_of_a_page() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let mut rows = WholeRows::new(start_stream(&folder.path().join("rows")).expect("a file"));
-        let text = "a row of 17 bytes\n".repeat(1000);
-        let mut rest = text.as_bytes();
-        let mut alone = 0;
-        while !rest.is_empty() {
-            let now = rows.uncut(rest);
-            let pages = [rows.whole, rows.whole + now as u64 - 1].map(|byte| byte / PAGE);
-            assert_eq!(rest[now - 1], b'\n');
-            assert!(pages[0] == pages[1] || now == 18, "{now} bytes over the end of a page");
-            alone += u64::from(pages[0] != pages[1]);
-            rows.whole += now as u64;
-            rest = &rest[now..];
-        }
-        assert!(alone >= 3, "{alone}");
     }
 
     #[test]

@@ -30,9 +30,15 @@ pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
 /// Says on stderr how many steps were not solved as asked.
 pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     if tally.unconverged_steps > 0 {
+        let instead = match tally.fallback_steps {
+            0 => String::new(),
+            steps => {
+                format!(", {steps} fell back on bounds of friction, solved with a certificate")
+            }
+        };
         note_line(legible(&format!(
             "{} (Bond {}, time step {} s): {} of {} steps did not reach tolerance {:e} within {} \
-             sweeps, {} of them stalled (more sweeps would be of no use); largest residual {:.1e}",
+             sweeps, {} of them stalled (more sweeps would be of no use){}; largest residual {:.1e}",
             scene.name,
             scene.parameters.bond,
             scene.parameters.time_step_secs,
@@ -41,6 +47,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
             scene.solver.tolerance,
             scene.solver.max_sweeps,
             tally.stalled_steps,
+            instead,
             tally.largest_residual
         )));
     }

@@ -6,7 +6,7 @@ use super::{BodyForm, Friction, ProblemFile};
 use crate::contact::ContactList;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::sim::{ProblemVisitor, RunEnding};
+use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{Assembled, Kinematics, Model, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
@@ -15,7 +15,7 @@ use crate::world::{FrictionCone, Grains};
 ///
 /// # Errors
 /// Where the time is before the start, there is no contact at it, so many that a file would not hold
-/// their matrix, or the state is not finite.
+/// their matrix, the state is not finite, or a number of the problem is not.
 pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> Result<ProblemFile> {
     if !(at_secs >= 0.0 && at_secs.is_finite()) {
         return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
@@ -29,15 +29,26 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
     if let RunEnding::NotFinite(failure) = ended {
         return Err(failure);
     }
-    let grains = &simulation.world().grains;
-    let file = simulation.next_problem(Dump { grains })?;
+    let file = problem_file_of(&simulation)?;
     if file.nc == 0 {
         return Err(Error::value("at", at_secs, "a time at which there are contacts"));
     }
+    // A finite scene can have contact laws whose numbers overflow, which no file can hold.
+    file.delassus()?;
+    file.bodies.as_ref().map_or(Ok(()), |bodies| bodies.check(&file))?;
     Ok(ProblemFile {
         comment: Some(format!("{}: the step that begins at t = {at_secs} s", scene.name)),
         ..file
     })
+}
+
+/// The problem of a simulation's next step. The simulation stays as it is.
+///
+/// # Errors
+/// Where it has so many contacts that a file would not hold their matrix.
+pub fn problem_file_of(simulation: &Simulation) -> Result<ProblemFile> {
+    let grains = &simulation.world().grains;
+    simulation.next_problem(Dump { grains })
 }
 
 struct Dump<'a> {

@@ -19,6 +19,6 @@ mod siconos;
 mod solution;
 
 pub use body_form::BodyForm;
-pub use dump::problem_file_at;
+pub use dump::{problem_file_at, problem_file_of};
 pub use problem_file::{Friction, ProblemFile};
 pub use solution::{Solution, solve_file};

@@ -9,6 +9,20 @@ use tempfile::NamedTempFile;
 use super::target::{Target, folder_of};
 use crate::error::{Error, Result};
 
+/// Ending of the name that a whole file has for the moment in which it takes the place of another.
+const LEFT: &str = ".part";
+
+/// The name that a file was about to have, where `name` is what a kill in that moment leaves of it,
+/// `.NAME.NUMBERS.part`: hidden, so that readers of whole folders pass it by. Any other name is its own.
+pub(crate) fn name_of_whole(name: &str) -> &str {
+    let is_number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-');
+    let inner = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(LEFT));
+    match inner.and_then(|rest| rest.rsplit_once('.')) {
+        Some((whole, numbers)) if is_number(numbers) => whole,
+        _ => name,
+    }
+}
+
 /// A file that has its name only once it is whole, so that a run that is stopped leaves no half file
 /// behind and destroys none. Devices and pipes are written to as they are.
 pub(crate) struct Draft {
@@ -110,6 +124,7 @@ impl Draft {
 /// Files that are in no folder yet.
 #[cfg(target_os = "linux")]
 mod unnamed {
+    use std::ffi::OsString;
     use std::fs::File;
     use std::io::{ErrorKind, Result};
     use std::os::fd::AsRawFd;
@@ -139,12 +154,14 @@ mod unnamed {
         // A link replaces nothing; a rename does, in one go.
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let mut beside = target.as_os_str().to_owned();
-        beside.push(format!(".{}-{number}.part", std::process::id()));
-        let beside = Path::new(&beside);
-        link(file, beside)?;
-        std::fs::rename(beside, target).inspect_err(|_| {
-            let _ = std::fs::remove_file(beside);
+        let Some(name) = target.file_name() else { return Err(ErrorKind::InvalidInput.into()) };
+        let mut hidden = OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{}-{number}{}", std::process::id(), super::LEFT));
+        let beside = target.with_file_name(hidden);
+        link(file, &beside)?;
+        std::fs::rename(&beside, target).inspect_err(|_| {
+            let _ = std::fs::remove_file(&beside);
         })
     }
 

@@ -1,6 +1,7 @@
 //! Files that are whole or not there, and where they go.
 
 use std::fs::File;
+use std::io::ErrorKind::NotFound;
 use std::path::Path;
 
 use image::{ImageFormat, RgbaImage};
@@ -72,4 +73,27 @@ pub(crate) fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
 /// An empty file that is there from the start, for what is to be kept as it comes.
 pub(crate) fn start_stream(path: &Path) -> Result<File> {
     File::create(path).map_err(|error| Error::file(path, format!("cannot be written ({error})")))
+}
+
+/// Removes a file, where it is there.
+///
+/// # Errors
+/// Names the file and what the system says.
+pub(crate) fn remove_if_there(path: &Path) -> Result<()> {
+    unless_absent(path, std::fs::remove_file(path))
+}
+
+/// Removes a folder with all that is in it, where it is there.
+///
+/// # Errors
+/// Names the folder and what the system says.
+pub(crate) fn remove_folder_if_there(path: &Path) -> Result<()> {
+    unless_absent(path, std::fs::remove_dir_all(path))
+}
+
+fn unless_absent(path: &Path, removed: std::io::Result<()>) -> Result<()> {
+    match removed {
+        Err(error) if error.kind() != NotFound => Err(Error::file(path, error)),
+        _ => Ok(()),
+    }
 }

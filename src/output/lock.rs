@@ -6,11 +6,26 @@ use std::path::{Path, PathBuf};
 use super::lines::note_line;
 use crate::error::{Error, Result};
 
-/// Name of the file that a run in the folder holds locked. The lock ends with the process, however
-/// that ends; a file that was left behind locks nothing.
-const NAME: &str = ".slump.lock";
+/// What is written in a folder by one run at a time: the name of the file that the run holds locked. The
+/// lock ends with the process, however that ends; a file that was left behind locks nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Locked {
+    /// Pictures, and what is beside them.
+    Pictures,
+    /// A recording. Pictures may be in the same folder.
+    Recording,
+}
 
-/// A folder that this process alone writes to until this is dropped.
+impl Locked {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Pictures => ".slump.lock",
+            Self::Recording => ".slump-data.lock",
+        }
+    }
+}
+
+/// A folder in which this process alone writes what is locked until this is dropped.
 pub(crate) struct FolderLock {
     path: PathBuf,
     _file: File,
@@ -21,8 +36,8 @@ impl FolderLock {
     ///
     /// # Errors
     /// Where another process has it, or no file can be written in it.
-    pub(crate) fn of(folder: &Path) -> Result<Self> {
-        let path = folder.join(NAME);
+    pub(crate) fn of(folder: &Path, what: Locked) -> Result<Self> {
+        let path = folder.join(what.name());
         loop {
             let file = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
             let file = file.map_err(|error| Error::file(&path, error))?;

@@ -3,6 +3,7 @@
 
 mod draft;
 mod files;
+mod growing;
 mod lines;
 mod lock;
 pub(crate) mod number;
@@ -10,9 +11,12 @@ mod progress;
 mod signals;
 mod target;
 
-pub(crate) use draft::Draft;
-pub(crate) use files::{check_file, check_writable, start_stream, write_file, write_png};
+pub(crate) use draft::{Draft, name_of_whole};
+pub(crate) use files::{
+    check_file, check_writable, remove_folder_if_there, remove_if_there, write_file, write_png,
+};
+pub(crate) use growing::{GrowingFile, end_of_last};
 pub(crate) use lines::{lost_stdout, note_line, note_printed, print_line, print_text};
-pub(crate) use lock::FolderLock;
+pub(crate) use lock::{FolderLock, Locked};
 pub(crate) use progress::{Progress, warn_of_steps};
 pub(crate) use signals::{Signal, caught_signal, heed_signals};

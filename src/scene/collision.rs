@@ -40,6 +40,7 @@ pub fn collision() -> Scene {
             max: DIAMETER * DVec2::new(2.7, 0.7),
         }),
         source: None,
+        data: None,
         boundaries: Vec::new(),
         fixed_discs: vec![Disc { position: DVec2::ZERO, radius }],
         grains: vec![Grain::at_rest(DVec2::new(2.0 * DIAMETER, 0.0), radius)],

@@ -3,10 +3,9 @@
 
 use std::path::Path;
 
-use super::file::read_unsettled;
-use super::{
-    Origin, Rain, SavedState, Scene, Settling, built_in, cradle_from, pile_of, read_discs, settle,
-};
+use super::file::{read_unsettled, unsettled};
+use super::{Origin, Rain, SavedState, Scene, Settling, built_in, cradle_from, pile_of, settle};
+use crate::data::{RecordedGrains, read_grains};
 use crate::error::{Error, Result};
 use crate::setting::{Changes, Value};
 use crate::sim::{RemedyChanges, Settings, Stepper};
@@ -35,6 +34,17 @@ pub struct Ground {
     scene: Scene,
     /// What its grains are the start of, where they have to settle.
     rain: Option<Rain>,
+}
+
+impl Ground {
+    /// A scene that is at hand, but for a file of discs that it names: that lies in `folder`.
+    ///
+    /// # Errors
+    /// Names the first field outside its range, or the file that cannot be read.
+    pub fn of(scene: Scene, folder: &Path) -> Result<Self> {
+        let (scene, rain) = unsettled(scene, folder)?;
+        Ok(Self { scene, rain })
+    }
 }
 
 impl Config {
@@ -92,7 +102,18 @@ impl Config {
     /// Names the first field that is unknown or outside its range, or the file that cannot be read; and
     /// where the grains do not come to rest.
     pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
-        let ground = self.ground()?;
+        self.scene_on(self.ground()?, progress)
+    }
+
+    /// The same of a scene that is at hand, whatever scene is named.
+    ///
+    /// # Errors
+    /// As [`Config::scene`].
+    pub fn scene_on(
+        &self,
+        ground: Ground,
+        progress: impl FnMut(Settling) -> bool,
+    ) -> Result<Scene> {
         let scene = self.change(&ground)?;
         match self.rain_on(&ground) {
             None => Ok(scene),
@@ -106,6 +127,15 @@ impl Config {
     /// As [`Config::without_settling`].
     pub fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
         self.settled_on(self.ground()?, settled)
+    }
+
+    /// The scene that starts from these discs, as if `initial` were a file of them.
+    ///
+    /// # Errors
+    /// As [`Config::without_settling`].
+    pub fn scene_of_discs(&self, discs: RecordedGrains) -> Result<Scene> {
+        self.check_origin()?;
+        self.change(&Ground { scene: self.pile_of_recorded(discs)?, rain: None })
     }
 
     /// What has to be rained for this scene, if anything.
@@ -125,14 +155,14 @@ impl Config {
     /// As [`Config::without_settling`].
     pub fn ground(&self) -> Result<Ground> {
         self.check_origin()?;
-        let Origin { initial, start, .. } = &self.origin;
+        let Origin { initial, initial_step, start, .. } = &self.origin;
         let name = self.named();
         let (scene, rain) =
             if let Some(path) = initial.as_deref().filter(|path| SavedState::is_in(path)) {
                 (self.scene_of_state(path)?, None)
             } else if let Some(path) = initial {
                 self.check_pile_alone("initial grains")?;
-                (pile_of(read_discs(path)?, self.origin.rain().box_width_in_diameters)?, None)
+                (self.pile_of_recorded(read_grains(path, *initial_step)?)?, None)
             } else if name.ends_with(".toml") {
                 read_unsettled(name.as_ref())?
             } else if let (Self::CRADLE, Some(start)) = (name, *start) {
@@ -145,9 +175,9 @@ impl Config {
 
     /// What of a config its [`Config::ground`] hangs on: equal for all that share one.
     pub fn name_of_ground(&self) -> String {
-        let Origin { initial, box_width, start, .. } = &self.origin;
+        let Origin { initial, initial_step, box_width, start, .. } = &self.origin;
         let box_width = box_width.filter(|_| initial.is_some());
-        format!("{:?}", (self.named(), initial, box_width, start))
+        format!("{:?}", (self.named(), initial, initial_step, box_width, start))
     }
 
     /// The scene of [`Config::without_settling`] where its ground is at hand.
@@ -168,6 +198,10 @@ impl Config {
     /// Whether what is said of the scene's origin goes together.
     fn check_origin(&self) -> Result<()> {
         let name = self.named();
+        if let (None, Some(step)) = (&self.origin.initial, self.origin.initial_step) {
+            let allowed = "left out where no initial grains are given";
+            return Err(Error::value("initial-step", step, allowed));
+        }
         if self.origin.makes_new_pile() {
             self.check_pile_alone("grains, box-width or seed")?;
             self.origin.rain().validate()?;
@@ -190,36 +224,14 @@ impl Config {
         }
     }
 
-    /// The scene of a saved state, which begins with the state's grains.
-    fn scene_of_state(&self, path: &Path) -> Result<Scene> {
-        let scene = SavedState::open(path)?.as_start();
-        match &self.origin.scene {
-            Some(name) if *name != scene.name => {
-                let allowed =
-                    format!("left out, or {}, the scene of the initial state", scene.name);
-                Err(Error::value("scene", name, allowed))
-            }
-            _ => Ok(scene),
+    fn pile_of_recorded(&self, discs: RecordedGrains) -> Result<Scene> {
+        let RecordedGrains { grains, fixed_discs } = discs;
+        let mut pile = pile_of(grains, self.origin.rain().box_width_in_diameters)?;
+        if !fixed_discs.is_empty() {
+            // The base that the grains lie on, as wide as it was.
+            pile.fixed_discs = fixed_discs;
         }
-    }
-
-    /// Makes the changes asked for to a run that goes on: from here on, while all that has been stays.
-    ///
-    /// # Errors
-    /// Names the first setting that is outside its range or does not go with the others, or says that
-    /// another start is asked for.
-    pub fn change_state(&self, state: &mut SavedState) -> Result<()> {
-        let kept = Origin { duration: self.origin.duration, ..Origin::default() };
-        if self.origin != kept {
-            let allowed = "left out where scene, initial, grains, box-width, seed, start or preset is \
-                           given: a run that goes on has its own";
-            return Err(Error::value("restart", "given", allowed));
-        }
-        let mut scene = state.scene.clone();
-        self.change_scene(&mut scene)?;
-        state.simulation.change(scene.settings())?;
-        state.scene = scene;
-        Ok(())
+        Ok(pile)
     }
 
     fn rain_on(&self, ground: &Ground) -> Option<Rain> {
@@ -249,15 +261,23 @@ impl Config {
         Self { origin, ..self.clone() }.with_settings(&scene.settings())
     }
 
-    fn change_scene(&self, scene: &mut Scene) -> Result<()> {
+    /// Changes what is given of settings. A preset, which is no setting, is left out.
+    pub fn change_settings(&self, settings: &mut Settings) {
+        settings.stepper = self.stepper.unwrap_or(settings.stepper);
+        self.parameters.apply(&mut settings.parameters);
+        self.solver.apply(&mut settings.solver);
+        self.remedies.apply(&mut settings.remedies);
+    }
+
+    pub(super) fn change_scene(&self, scene: &mut Scene) -> Result<()> {
         scene.stepper = self.stepper.unwrap_or(scene.stepper);
         // A preset leaves out what the stepper does not take.
         if let Some(preset) = self.origin.preset {
             preset.apply(scene);
         }
-        self.parameters.apply(&mut scene.parameters);
-        self.solver.apply(&mut scene.solver);
-        self.remedies.apply(&mut scene.remedies);
+        let mut settings = scene.settings();
+        self.change_settings(&mut settings);
+        scene.set_settings(settings);
         scene.duration_secs = self.origin.duration.unwrap_or(scene.duration_secs);
         scene.validate()
     }

@@ -5,14 +5,45 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
 use super::{Config, Origin};
-use crate::setting::{About, Kind, Settable, Value, Word};
+use crate::error::{Error, Result};
+use crate::setting::{About, Kind, Settable, Value, Word, refusal_of};
 use crate::sim::Settings;
 
 impl Config {
     /// The names of all fields, as command line and study files write them.
-    pub(crate) fn names() -> Vec<String> {
+    pub fn names() -> Vec<String> {
+        Self::options().into_iter().map(|(name, _)| name).collect()
+    }
+
+    /// The names of all fields, each with its line in the help of the command line.
+    pub fn options() -> Vec<(String, String)> {
         let command = Self::augment_args(Command::new("config"));
-        command.get_arguments().filter_map(Arg::get_long).map(str::to_owned).collect()
+        let help = |option: &Arg| option.get_help().map(ToString::to_string).unwrap_or_default();
+        let named = |option: &Arg| Some((option.get_long()?.to_owned(), help(option)));
+        command.get_arguments().filter_map(named).collect()
+    }
+
+    /// What the command line makes of these options, each a name and what is said of it.
+    ///
+    /// ```
+    /// use slump::scene::Config;
+    ///
+    /// let config = Config::of_options([("scene", "cradle"), ("max-sweeps", "20")])?;
+    /// assert_eq!(config.scene(|_| true)?.solver.max_sweeps, 20);
+    /// let refused = Config::of_options([("max-sweeps", "many")]);
+    /// assert!(refused.is_err_and(|error| error.to_string().starts_with("--max-sweeps is many")));
+    /// # Ok::<(), slump::error::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// In the command line's own sentence, where it does not take one of them, or not together.
+    pub fn of_options<'a>(options: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self> {
+        let command = Self::augment_args(Command::new("slump").no_binary_name(true));
+        let given = options.into_iter().map(|(name, value)| format!("--{name}={value}"));
+        let matches = command.clone().try_get_matches_from(given);
+        matches
+            .and_then(|matches| Self::from_arg_matches(&matches))
+            .map_err(|error| Error::Options(refusal_of(&error, command)))
     }
 }
 
@@ -74,13 +105,16 @@ fn given(about: &About, matches: &ArgMatches) -> Option<Value> {
 }
 
 impl FromArgMatches for Config {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+    fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
         let mut config = Self::default();
         config.update_from_arg_matches(matches)?;
         Ok(config)
     }
 
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+    fn update_from_arg_matches(
+        &mut self,
+        matches: &ArgMatches,
+    ) -> std::result::Result<(), clap::Error> {
         self.origin = Origin::from_arg_matches(matches)?;
         for about in Settings::about() {
             let accepted = given(about, matches).is_none_or(|value| self.set(about.name, value));

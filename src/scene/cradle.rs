@@ -54,6 +54,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             tolerance: 2.2e-3,
             max_sweeps: 20_000,
             warm_start: false,
+            ..SolverSettings::default()
         },
         remedies: Remedies::default(),
         view: Some(View {
@@ -61,6 +62,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             max: DIAMETER * DVec2::new(5.0, 1.2),
         }),
         source: None,
+        data: None,
         boundaries: Vec::new(),
         fixed_discs: Vec::new(),
         grains: vec![i, j, k],

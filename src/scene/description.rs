@@ -6,6 +6,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::Rain;
+use crate::data::DataSettings;
 use crate::error::{Error, Result};
 use crate::sim::{Remedies, Settings, Simulation, Stepper};
 use crate::solver::SolverSettings;
@@ -49,6 +50,9 @@ pub struct Scene {
     /// Where the grains come from, unless they are listed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<GrainSource>,
+    /// What is recorded of its runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub data: Option<DataSettings>,
     /// Fixed shapes.
     #[serde(default)]
     pub boundaries: Vec<Boundary>,
@@ -78,6 +82,14 @@ pub enum GrainSource {
     Csv {
         /// Its path; in a scene file, relative to that file.
         path: std::path::PathBuf,
+    },
+    /// A recording, or a table of discs in any of its formats.
+    Data {
+        /// Its path; in a scene file, relative to that file.
+        path: std::path::PathBuf,
+        /// The step whose grains are taken; the last where none is given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        step: Option<u64>,
     },
     /// Grains rained into a box over a rough base and left to come to rest.
     Rain(Rain),
@@ -174,6 +186,9 @@ impl Scene {
         {
             let allowed = "finite, with min below and left of max";
             return Err(Error::value("view", format!("{min} to {max}"), allowed));
+        }
+        if let Some(data) = &self.data {
+            data.validate("data.every_secs")?;
         }
         if self.physics.axes == 1 {
             self.validate_line()?;

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::settling::lattice;
-use super::{GrainSource, Rain, Scene, pile, read_discs, settle};
+use super::{GrainSource, Rain, Scene, pile, settle};
+use crate::data::read_grains;
 use crate::error::{Error, Result};
 use crate::world::Grain;
 
@@ -29,11 +30,19 @@ pub fn read_scene(path: &Path) -> Result<Scene> {
 /// As [`read_scene`].
 pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<Rain>)> {
     let text = std::fs::read_to_string(path).map_err(|error| Error::unread(path, error, FORM))?;
-    let mut scene: Scene = toml::from_str(&text).map_err(|error| {
+    let scene = toml::from_str(&text).map_err(|error| {
         let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
         let place = line.map_or(String::new(), |line| format!("line {line}: "));
         Error::unread(path, format!("{place}{}", error.message()), FORM)
     })?;
+    unsettled(scene, path.parent().unwrap_or(Path::new("")))
+}
+
+/// A scene with its grains, or with those that rain starts from; files that it names lie in `folder`.
+///
+/// # Errors
+/// As [`read_scene`].
+pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<Rain>)> {
     let mut rained = None;
     if let Some(source) = scene.source.take() {
         if !scene.grains.is_empty() {
@@ -41,9 +50,8 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<Rain>)> {
             return Err(Error::value("source", "given", allowed));
         }
         let grains = match source {
-            GrainSource::Csv { path: csv } => {
-                read_discs(&path.parent().unwrap_or(Path::new("")).join(csv))?
-            }
+            GrainSource::Csv { path } => read_grains(&folder.join(path), None)?.grains,
+            GrainSource::Data { path, step } => read_grains(&folder.join(path), step)?.grains,
             GrainSource::Rain(rain) => {
                 rain.validate()?;
                 let start = lattice(&rain);
@@ -52,6 +60,9 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<Rain>)> {
             }
         };
         scene = scene.with_settled(grains);
+    }
+    if let Some(data) = scene.data.as_mut().and_then(|data| data.folder.as_mut()) {
+        *data = folder.join(&*data);
     }
     scene.validate()?;
     Ok((scene, rained))

@@ -1,10 +1,12 @@
 //! Scenes: what is simulated, with which physics, numbers and solver. One file a built-in scene,
 //! listed in [`SCENES`]; the same data can be read from a TOML file.
 
+mod about;
 mod collision;
 mod config;
 mod config_file;
 mod config_options;
+mod config_saved;
 mod cradle;
 mod csv_states;
 mod description;
@@ -22,7 +24,7 @@ pub use collision::collision;
 pub use config::{Config, Ground};
 pub(crate) use config_options::parser_of;
 pub use cradle::{cradle, cradle_from};
-pub use csv_states::{parse_discs, read_discs, write_discs};
+pub use csv_states::{parse_discs, write_discs};
 pub use description::{GrainSource, Scene, View};
 pub use file::{read_scene, scene_to_toml};
 pub use origin::Origin;

@@ -15,10 +15,14 @@ pub struct Origin {
     #[arg(long, value_name = "NAME|FILE", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
-    /// Start the pile from a CSV of discs (header x,y,radius, optionally vx,vy,omega; metres), or the scene of a saved run from its grains
+    /// Start the pile from discs: a CSV (header x,y,radius, optionally vx,vy,omega; metres), or what --data wrote; or the scene of a saved run from its grains
     #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial: Option<PathBuf>,
+    /// The step of the recording that the pile starts from [default: its last]
+    #[arg(long, value_name = "N", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_step: Option<u64>,
     /// Rain a new pile of this many grains
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,6 +59,7 @@ impl Origin {
         match name {
             "scene" => self.scene = map.next_value()?,
             "initial" => self.initial = map.next_value()?,
+            "initial-step" => self.initial_step = map.next_value()?,
             "grains" => self.grains = map.next_value()?,
             "box-width" => self.box_width = map.next_value()?,
             "seed" => self.seed = map.next_value()?,

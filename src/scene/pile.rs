@@ -71,6 +71,7 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Sc
         remedies: Remedies::default(),
         view: None,
         source: None,
+        data: None,
         boundaries: Vec::new(),
         fixed_discs: rough_base(base_width, DIAMETER),
         grains,

@@ -51,6 +51,6 @@ impl Preset {
                 settings.remedies.set(remedy.name, value);
             }
         }
-        *settings = settings.with_remedies_taken();
+        *settings = settings.with_only_what_is_taken();
     }
 }

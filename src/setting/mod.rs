@@ -7,10 +7,12 @@
 
 mod about;
 mod declare;
+mod refusal;
 mod value;
 
 pub(crate) use about::Declared;
 pub use about::{About, Control, Needs};
 pub use declare::{Changes, Group};
 pub(crate) use declare::{settings, words};
+pub(crate) use refusal::sentence as refusal_of;
 pub use value::{Kind, Settable, Value, Word};

@@ -117,6 +117,11 @@ impl Watch {
         &self.alarms
     }
 
+    /// Whether that grain is lost.
+    pub(super) fn is_lost(&self, grain: usize) -> bool {
+        self.losses.is_lost(grain)
+    }
+
     /// Looks at the state after a step, and leaves grains that are lost out of its slump; `features`
     /// are those of the boundaries where they are now.
     pub(super) fn look(

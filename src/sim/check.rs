@@ -4,10 +4,12 @@
 use super::remedies::ROWS;
 use super::settings::Settings;
 use super::state::SKIN_IN_DIAMETERS;
+use super::steppers::stepper::Stepper;
 use crate::contact::{Reach, check_distances};
 use crate::error::{Error, Result};
 use crate::setting::Group;
-use crate::world::World;
+use crate::solver::FrictionModel;
+use crate::world::{FrictionCone, World};
 
 /// The diameter that lengths are measured in is at most this many radii of the largest grain: the
 /// skin goes with it, and all that lie within the skin are candidates.
@@ -48,6 +50,7 @@ impl Settings {
         self.parameters.validate()?;
         (self.stepper.info().check)(&self.parameters)?;
         self.solver.validate()?;
+        self.check_friction_model()?;
         self.remedies.validate_each()?;
         for remedy in &ROWS {
             if remedy.is_on(&self.remedies) && !remedy.taken_by.contains(&self.stepper) {
@@ -63,8 +66,39 @@ impl Settings {
         Ok(())
     }
 
-    /// The same without the remedies that its stepper does not take.
-    pub fn with_remedies_taken(mut self) -> Self {
+    /// Whether the model of friction goes with the stepper and its cone.
+    fn check_friction_model(&self) -> Result<()> {
+        let (model, cone) = (self.solver.friction_model, self.parameters.cone);
+        if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
+            let readers = Stepper::ALL.iter().filter(|stepper| stepper.reads("friction-model"));
+            let readers: Vec<_> = readers.map(|stepper| stepper.name()).collect();
+            let allowed = format!(
+                "coulomb where stepper is {}: other models go with {}",
+                self.stepper,
+                readers.join(" and ")
+            );
+            return Err(Error::value("friction-model", model, allowed));
+        }
+        if model.needs_shifted_cone() && cone != FrictionCone::Shifted {
+            let allowed = format!(
+                "shifted where friction-model is {model}: the compressive cone is not convex where contacts \
+                 cohere; tresca takes both"
+            );
+            return Err(Error::value("cone", cone, allowed));
+        }
+        Ok(())
+    }
+
+    /// The same without the remedies and the model of friction that its stepper or its method do not take, and
+    /// without further solves of a model that has nothing to take anew.
+    pub fn with_only_what_is_taken(mut self) -> Self {
+        self.solver = self.solver.by(self.solver.method);
+        if !self.stepper.reads("friction-model") {
+            self.solver = self.solver.with_coulombs_law();
+        }
+        if !self.solver.friction_model.is_taken_anew() {
+            self.solver.model_solves = 1;
+        }
         for remedy in ROWS.iter().filter(|remedy| !remedy.taken_by.contains(&self.stepper)) {
             remedy.leave_out(&mut self.remedies);
         }

@@ -69,6 +69,11 @@ impl Losses {
         self.count
     }
 
+    /// Whether that grain is lost.
+    pub(super) fn is_lost(&self, grain: usize) -> bool {
+        self.lost[grain]
+    }
+
     /// Looks where the grains have gone. Walls may have moved: `features` are where they are now.
     pub(super) fn look(&mut self, world: &World, features: &[Feature], walls_move: bool) {
         if features.is_empty() && self.world.corners.is_none() {

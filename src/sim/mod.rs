@@ -4,6 +4,7 @@ mod alarm;
 mod check;
 pub mod live;
 mod losses;
+mod moment;
 mod observables;
 mod pull;
 mod remedies;
@@ -21,6 +22,7 @@ mod visits;
 mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
+pub use moment::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 pub use observables::{Beside, Observables, QUANTITIES, Quantity};
 pub use pull::Pull;
 pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};

@@ -42,6 +42,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Whether steps may be solved under another model of friction than Coulomb's law.
+    pub(crate) fn may_solve_models(&self) -> bool {
+        self.stepper.uses_method() && self.solver.may_solve_models()
+    }
+
     /// The setting `stepper` itself.
     pub const STEPPER: About = About {
         name: "stepper",

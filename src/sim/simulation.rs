@@ -136,6 +136,7 @@ impl Simulation {
         let Self { state, settings, slots, observables, initial_heights, .. } = self;
         let parts = ModelParts::leanest(state.physics, &settings.parameters);
         let initial_heights = *initial_heights;
+        state.contacts.begin_step(observables.step + 1);
         let step = Step { state, settings, pieces, advance, observables, initial_heights };
         slots.visit(parts, step);
     }
@@ -168,10 +169,10 @@ impl Simulation {
     pub fn next_problem<V: ProblemVisitor>(&self, visitor: V) -> V::Output {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
         let parts = ModelParts::leanest(state.physics, &settings.parameters);
+        state.contacts.begin_step(self.observables.step + 1);
         let pieces = max_travel::pieces(&state, &settings);
-        let piece = settings.over(settings.parameters.time_step_secs / f64::from(pieces));
-        let (state, memory) = (&mut state, &mut memory);
-        slots.visit(parts, Show { state, memory, settings: &piece, visitor })
+        let settings = &settings.over(settings.parameters.time_step_secs / f64::from(pieces));
+        slots.visit(parts, Show { state: &mut state, memory: &mut memory, settings, visitor })
     }
 
     /// The world as it is now.
@@ -271,6 +272,11 @@ impl Simulation {
     /// The step whose end is nearest to a simulated time (s), as long as Δt stays as it is.
     pub fn step_at(&self, secs: f64) -> u64 {
         self.steady.step_at(secs, &self.settings.parameters)
+    }
+
+    /// Whether a grain went through a wall or left the world.
+    pub(super) fn is_lost(&self, grain: usize) -> bool {
+        self.watch.is_lost(grain)
     }
 
     /// Simulated time, s.

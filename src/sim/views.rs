@@ -58,7 +58,7 @@ impl Simulation {
     }
 
     /// What no grain moves, where it is now.
-    fn surroundings(&self) -> Arc<Surroundings> {
+    pub(super) fn surroundings(&self) -> Arc<Surroundings> {
         if self.state.candidates.pistons().is_empty() {
             return Arc::clone(&self.surroundings);
         }

@@ -38,13 +38,16 @@ impl<A: Advance> SlotVisitor for Step<'_, A> {
     fn visit<M: Model>(self, slot: &mut Slot<M::Kinematics>) {
         let Self { state, settings, pieces, advance, observables, initial_heights } = self;
         let stage = &mut Stage::<M>::new(state, slot);
-        let outcome = if pieces == 1 {
+        let mut outcome = if pieces == 1 {
             advance.advance(stage, settings)
         } else {
             stage.in_pieces(pieces, settings, Outcome::nothing_yet(), |stage, piece, outcome| {
                 outcome.add(advance.advance(stage, piece));
             })
         };
+        if settings.may_solve_models() {
+            outcome.measures.measure_as_a_model();
+        }
         let time_step_secs = settings.parameters.time_step_secs;
         *observables =
             observables::after_step(stage, outcome, time_step_secs, observables, initial_heights);
@@ -65,13 +68,7 @@ impl SlotVisitor for Start<'_> {
     fn visit<M: Model>(self, slot: &mut Slot<M::Kinematics>) -> Observables {
         let Self { state, settings, memory, initial_heights } = self;
         memory.prepare(&mut Stage::<M>::new(state, slot), settings);
-        let bonds = settings.stepper.has_bonds();
-        observables::at_start::<M>(
-            state,
-            bonds,
-            settings.parameters.time_step_secs,
-            initial_heights,
-        )
+        observables::at_start::<M>(state, settings, initial_heights)
     }
 }
 

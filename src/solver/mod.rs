@@ -6,6 +6,7 @@
 //! * `delassus/`: problems in the Delassus operator alone.
 
 mod delassus;
+mod friction_model;
 mod linear;
 mod methods;
 mod ordering;
@@ -15,6 +16,7 @@ mod slots;
 
 pub(crate) use delassus::Assembled;
 pub use delassus::{DelassusProblem, Triplets, solve_delassus};
+pub use friction_model::{Fallback, FrictionModel};
 pub(crate) use methods::picked;
 #[doc(hidden)]
 pub use methods::sweep;

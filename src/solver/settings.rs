@@ -1,8 +1,9 @@
 //! How well a step is to be solved.
 
-use super::methods::Method;
+use super::friction_model::{Fallback, FrictionModel};
+use super::methods::{METHODS, Method};
 use super::ordering::Ordering;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::setting::{Group, settings, words};
 
 words! {
@@ -104,6 +105,51 @@ settings! {
                 ..Control::PLAIN
             }),
         }
+        /// What is asked of friction.
+        #[serde(default, skip_serializing_if = "is_default")]
+        friction_model: FrictionModel = FrictionModel::Coulomb, {
+            name: "friction-model",
+            value_name: "MODEL",
+            help: "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
+                   `slump list` says what each gets wrong",
+            needs: Needs::Friction,
+            control: Some(Control {
+                label: "Friction",
+                hint: "What a step asks of friction: Coulomb's law, or a convex problem in its place.",
+                ..Control::PLAIN
+            }),
+        }
+        /// How often a step is solved under a model of friction, what the model holds taken anew each time.
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        model_solves: u32 = 1, {
+            name: "model-solves",
+            value_name: "N",
+            help: "How often each step is solved under tresca or desaxce, what they hold taken anew each \
+                   time: 1 is the cheapest, more come nearer to Coulomb's law",
+            allowed: "between 1 and 1000",
+            holds: |value| (1..=1000).contains(&value),
+            needs: Needs::Friction,
+            control: Some(Control {
+                label: "Solves a step",
+                hint: "How often a step is solved, friction's bounds taken anew each time: more come nearer \
+                       to Coulomb's law.",
+                range: [1.0, 16.0],
+                ..Control::PLAIN
+            }),
+        }
+        /// What becomes of a step that is not solved under Coulomb's law.
+        #[serde(default, skip_serializing_if = "is_default")]
+        fallback: Fallback = Fallback::OfMethod, {
+            name: "fallback",
+            value_name: "MODEL",
+            help: "What becomes of a step that is not solved under Coulomb's law",
+            needs: Needs::Friction,
+            control: Some(Control {
+                label: "Falls back on",
+                hint: "What becomes of a step that is not solved under Coulomb's law.",
+                ..Control::PLAIN
+            }),
+        }
     }
 }
 
@@ -112,12 +158,64 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
+fn one() -> u32 {
+    1
+}
+
+fn is_one(value: &u32) -> bool {
+    *value == 1
+}
+
 impl SolverSettings {
-    /// Checks the numbers against their ranges.
+    /// Checks the numbers against their ranges, and whether method, model of friction and number of solves go
+    /// together.
     ///
     /// # Errors
-    /// Names the field, its value and its range.
+    /// Names the field, its value and what it may be.
     pub(crate) fn validate(&self) -> Result<()> {
-        self.validate_each()
+        self.validate_each()?;
+        let Self { method, friction_model, model_solves, .. } = *self;
+        if friction_model != FrictionModel::Coulomb && !method.info().takes_models {
+            let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
+            let takers: Vec<_> = takers.collect();
+            let allowed = format!(
+                "coulomb where solver is {method}: other models go with {}",
+                takers.join(" and ")
+            );
+            return Err(Error::value("friction-model", friction_model, allowed));
+        }
+        if model_solves > 1 && !friction_model.is_taken_anew() {
+            let allowed = format!(
+                "1 where friction-model is {friction_model}: tresca and desaxce alone hold what can be taken anew"
+            );
+            return Err(Error::value("model-solves", model_solves, allowed));
+        }
+        Ok(())
+    }
+
+    /// Whether a step that is not solved under Coulomb's law is solved under bounds of friction.
+    pub(crate) fn falls_back(&self) -> bool {
+        self.friction_model == FrictionModel::Coulomb
+            && match self.fallback {
+                Fallback::OfMethod => self.method == Method::Auto,
+                Fallback::None => false,
+                Fallback::Tresca => true,
+            }
+    }
+
+    /// Whether steps may be solved under another model of friction than Coulomb's law.
+    pub(crate) fn may_solve_models(&self) -> bool {
+        self.friction_model != FrictionModel::Coulomb || self.falls_back()
+    }
+
+    /// The same under Coulomb's law.
+    pub(crate) fn with_coulombs_law(self) -> Self {
+        Self { friction_model: FrictionModel::Coulomb, model_solves: 1, ..self }
+    }
+
+    /// The same by another method, under Coulomb's law where that takes no other.
+    pub fn by(self, method: Method) -> Self {
+        let by_it = Self { method, ..self };
+        if method.info().takes_models { by_it } else { by_it.with_coulombs_law() }
     }
 }

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::output::Progress;
 use crate::scene::{Config, Origin, Rain};
 use crate::sim::Simulation;
-use crate::solver::{Method, Ordering, SolverSettings, StopTest};
+use crate::solver::{Fallback, FrictionModel, Method, Ordering, SolverSettings, StopTest};
 use crate::world::ParameterChanges;
 
 /// How the piles get to the steps that are collected: far better solved than any claim about a pile
@@ -22,6 +22,9 @@ const ADVANCE: SolverSettings = SolverSettings {
     tolerance: 1e-8,
     max_sweeps: 1000,
     warm_start: true,
+    friction_model: FrictionModel::Coulomb,
+    model_solves: 1,
+    fallback: Fallback::None,
 };
 
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.

@@ -1,14 +1,13 @@
 //! The courses of a study's runs: a CSV a run in `series/`. The journal has the checksum of each, so that
 //! the files stay plain tables.
 
-use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
 
 use super::journal::Entry;
 use super::outcome::{series_cells, series_names};
 use super::{SeriesSettings, record};
 use crate::error::{Error, Result};
-use crate::output::{note_line, write_file};
+use crate::output::{note_line, remove_folder_if_there, write_file};
 use crate::sim::Simulation;
 
 /// Folder of the runs' courses.
@@ -83,9 +82,5 @@ pub(super) fn is_whole(folder: &Path, entry: &Entry) -> bool {
 /// # Errors
 /// Names the folder and what the system says.
 pub(super) fn remove_all(folder: &Path) -> Result<()> {
-    let series = folder.join(SERIES);
-    match std::fs::remove_dir_all(&series) {
-        Err(error) if error.kind() != NotFound => Err(Error::file(&series, error)),
-        _ => Ok(()),
-    }
+    remove_folder_if_there(&folder.join(SERIES))
 }

@@ -12,6 +12,7 @@ mod outcome;
 mod paper;
 mod performance;
 mod plan;
+mod planned_run;
 mod record;
 mod run;
 mod shard;
@@ -28,7 +29,8 @@ pub(crate) use outcome::{Outcome, Status};
 pub(crate) use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
 };
-pub use plan::{PlannedRun, SeriesSettings, Study};
+pub use plan::{SeriesSettings, Study};
+pub use planned_run::PlannedRun;
 pub use run::{OnItsWay, Recorded, Recorder, go_on, record};
 pub(crate) use shard::Shard;
 pub(crate) use speed::{ChartOptions, ChartPart, chart_speed, default_peers_folder};

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SeriesSettings;
 use super::alarms::Alarms;
+use crate::data::Recording;
 use crate::error::{Error, Result};
 use crate::output::number;
 use crate::scene::Scene;
@@ -46,6 +47,9 @@ pub(crate) struct Outcome {
     /// Those of them that had stalled.
     #[serde(default)]
     pub stalled_steps: u64,
+    /// Those of them that were solved under bounds of friction instead.
+    #[serde(default)]
+    pub fallback_steps: u64,
     /// Sweeps of all steps.
     pub sweeps: u64,
     /// Largest common residual of any step.
@@ -57,14 +61,37 @@ pub(crate) struct Outcome {
     pub alarms: Alarms,
 }
 
+#[cfg(test)]
+impl Outcome {
+    /// Of a run of which all is well, for tests.
+    pub(crate) fn of_slump(slump: f64) -> Self {
+        Self {
+            status: Status::Done,
+            steps: 1,
+            slump,
+            mean_overlap: 0.0,
+            max_overlap: 0.0,
+            first_gap: 0.0,
+            unconverged_steps: 0,
+            stalled_steps: 0,
+            fallback_steps: 0,
+            sweeps: 1,
+            largest_residual: 0.0,
+            lost_grains: 0,
+            alarms: Default::default(),
+        }
+    }
+}
+
 /// Takes a scene to its end. With `series`, `row` is called at the start and then at every interval.
 ///
 /// # Errors
-/// Where the scene is not sound, or `row` says so. A state that is no longer finite is an outcome.
+/// Where the scene is not sound, the recording cannot be written, or `row` says so. A state that is no longer finite is an outcome.
 pub(crate) fn run_to_end(
     scene: &Scene,
     series: Option<&SeriesSettings>,
     mut row: impl FnMut(&Simulation) -> Result<()>,
+    mut recording: Option<&mut Recording>,
 ) -> Result<Outcome> {
     let mut simulation = scene.simulation()?;
     let time_step_secs = scene.parameters.time_step_secs;
@@ -82,14 +109,24 @@ pub(crate) fn run_to_end(
         row(simulation)
     };
     tell(&simulation)?;
+    if let Some(recording) = &mut recording {
+        recording.add_if_due(&simulation)?;
+    }
     let ended = simulation.run(steps, |simulation| {
         tally.add(simulation.observables());
         tell(simulation)?;
+        if let Some(recording) = &mut recording {
+            recording.add_step(simulation.observables())?;
+            recording.add_if_due(simulation)?;
+        }
         Ok(ControlFlow::Continue(()))
     })?;
     let status = match ended {
         RunEnding::NotFinite(_) => {
             tally.add(simulation.observables());
+            if let Some(recording) = recording {
+                recording.add_step(simulation.observables())?;
+            }
             Status::NotFinite
         }
         RunEnding::Done | RunEnding::Stopped => Status::Done,
@@ -103,6 +140,7 @@ pub(crate) fn run_to_end(
         first_gap: first_gap(&simulation),
         unconverged_steps: tally.unconverged_steps,
         stalled_steps: tally.stalled_steps,
+        fallback_steps: tally.fallback_steps,
         sweeps: tally.sweeps,
         largest_residual: tally.largest_residual,
         lost_grains: simulation.observables().lost_grains,

@@ -1,15 +1,16 @@
 //! A study as its file says it, laid out as runs.
 
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::axis;
+use super::planned_run::{PlannedRun, short};
+use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
-use crate::scene::{Config, Ground};
+use crate::scene::Config;
 
 /// More runs than this are a mistake rather than a wish: planned, run and told of they take some 2 kB
 /// each.
@@ -31,6 +32,7 @@ struct StudyFile {
     #[serde(default)]
     vary: Table,
     series: Option<SeriesSettings>,
+    data: Option<DataSettings>,
     #[serde(default)]
     quick: Quick,
 }
@@ -63,19 +65,10 @@ pub struct Study {
     pub fingerprint: String,
     /// What is kept of the course of each run, if anything.
     pub series: Option<SeriesSettings>,
+    /// What is recorded of each run, if anything: below the results, in a folder that has the run's key.
+    pub data: Option<DataSettings>,
     /// The runs.
     pub runs: Vec<PlannedRun>,
-}
-
-/// One run of a study.
-#[derive(Clone, Debug)]
-pub struct PlannedRun {
-    /// Names it: hash of all that its result hangs on.
-    pub key: String,
-    /// What it runs, every number filled in.
-    pub config: Config,
-    /// How long it may take, in any unit: for the order of work and for progress.
-    pub cost: f64,
 }
 
 impl Study {
@@ -122,12 +115,25 @@ impl Study {
                 "a finite number of seconds > 0",
             ));
         }
+        if let Some(data) = &file.data {
+            data.validate("data.every_secs")?;
+            if let Some(folder) = &data.folder {
+                let allowed = "left out in a study: each run has its own below the results";
+                return Err(Error::value("data.folder", folder.display(), allowed));
+            }
+        }
         let runs = lay_out(&file)?;
         let mut hasher = blake3::Hasher::new();
         for run in &runs {
             hasher.update(run.key.as_bytes());
         }
-        Ok(Self { name: file.name, fingerprint: short(&hasher), series: file.series, runs })
+        Ok(Self {
+            name: file.name,
+            fingerprint: short(&hasher),
+            series: file.series,
+            data: file.data,
+            runs,
+        })
     }
 }
 
@@ -171,6 +177,8 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
         axes.push(axis);
     }
     let mut grounds = HashMap::new();
+    let series = file.series.as_ref();
+    let grains: &[usize] = series.map_or(&[], |series| &series.grains);
     let run = |mut number: usize| {
         let mut chosen = Vec::new();
         for Axis { names, values } in axes.iter().rev() {
@@ -178,7 +186,7 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
             number /= values.len();
         }
         chosen.extend(&file.base);
-        PlannedRun::new(&config_of("base", chosen)?, file.series.as_ref(), &mut grounds)
+        PlannedRun::new(&config_of("base", chosen)?, grains, &(series, &file.data), &mut grounds)
     };
     (0..count).map(run).collect()
 }
@@ -231,65 +239,6 @@ fn config_of<'a>(
             }
         }
     })
-}
-
-/// A ground that has been read.
-struct Known {
-    ground: Ground,
-    /// Hash of all its discs.
-    discs: String,
-}
-
-impl Known {
-    fn of(config: &Config) -> Result<Self> {
-        let ground = config.ground()?;
-        let scene = config.change(&ground)?;
-        let discs = short(&hash(&(&scene.grains, &scene.fixed_discs), &scene.name)?);
-        Ok(Self { ground, discs })
-    }
-}
-
-impl PlannedRun {
-    /// `grounds` keeps what has been read, by name.
-    fn new(
-        config: &Config,
-        series: Option<&SeriesSettings>,
-        grounds: &mut HashMap<String, Known>,
-    ) -> Result<Self> {
-        let known = match grounds.entry(config.name_of_ground()) {
-            Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(place) => place.insert(Known::of(config)?),
-        };
-        let mut scene = config.change(&known.ground)?;
-        let config = config.resolved(&scene);
-        let grains = config.origin.grains.unwrap_or(scene.grains.len());
-        if let Some(grain) = series.and_then(|series| series.grains.iter().find(|&&g| g >= grains))
-        {
-            return Err(Error::value("series.grains", grain, format!("below {grains}")));
-        }
-        // The scene stands in for the files that it may have been read from, the hash of its discs for them:
-        // they are nearly all that it says, and the same in each run.
-        scene.grains.clear();
-        scene.fixed_discs.clear();
-        let said = (env!("CARGO_PKG_VERSION"), &config, &scene, &known.discs, series);
-        let hasher = hash(&said, &scene.name)?;
-        let steps = scene.duration_secs / scene.parameters.time_step_secs;
-        let digits = 1.0 - scene.solver.tolerance.log10().min(0.0);
-        Ok(Self { key: short(&hasher), cost: steps * grains as f64 * digits, config })
-    }
-}
-
-fn hash(said: &impl Serialize, scene: &str) -> Result<blake3::Hasher> {
-    let said = serde_json::to_vec(said)
-        .map_err(|error| Error::value("scene", scene, error.to_string()))?;
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(&said);
-    Ok(hasher)
-}
-
-/// Half of a hash: 128 bits never meet by chance.
-fn short(hasher: &blake3::Hasher) -> String {
-    hasher.finalize().to_hex()[..32].to_owned()
 }
 
 fn one_line(message: &str) -> String {

@@ -14,7 +14,8 @@ pub trait Recorder {
     /// Where it cannot be taken down; the run ends.
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>>;
 
-    /// Called after every step, before its pictures, with the whole state and the sums so far.
+    /// Called at the start, and after every step, before its pictures, with the whole state and the sums so
+    /// far.
     ///
     /// # Errors
     /// Where it cannot be taken down; the run ends.
@@ -102,6 +103,7 @@ impl OnItsWay {
         recorder: &mut impl Recorder,
     ) -> Result<RunEnding> {
         let Self { simulation, tally, next_picture } = self;
+        recorder.state(simulation, tally)?;
         let pictures = times_secs.iter().enumerate().map(|(number, &time)| (Some(number), time));
         for (number, time_secs) in pictures.skip(*next_picture).chain([(None, until_secs)]) {
             let last = simulation.step_at(time_secs);

@@ -2,7 +2,8 @@
 //! stopped, and joins parts that ran elsewhere.
 //!
 //! A folder of results holds `study.json` (which study it is), journals (results as they come),
-//! `states/` (initial states), `series/` (courses of runs) and, once all runs are there, `runs.csv`.
+//! `states/` (initial states), `series/` (courses of runs), `data/` (recordings of runs) and, once all runs
+//! are there, `runs.csv`.
 
 use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
@@ -17,11 +18,17 @@ use super::outcome::run_to_end;
 use super::states::States;
 use super::table::RunsTable;
 use super::{PlannedRun, Shard, Study};
+use crate::data::Recording;
 use crate::error::{Error, Result};
-use crate::output::{Progress, check_writable, note_line, write_file};
+use crate::output::{
+    Progress, check_writable, note_line, remove_folder_if_there, remove_if_there, write_file,
+};
+use crate::scene::Scene;
 
 /// File that says which study a folder holds.
 const STUDY_FILE: &str = "study.json";
+/// Folder of the runs' recordings.
+const DATA: &str = "data";
 /// The table of a finished study.
 const TABLE: &str = "runs.csv";
 /// Lines that tell of progress where there is no terminal to draw a bar on.
@@ -68,7 +75,7 @@ pub(crate) fn sweep(
         let journal = Journal::open(folder, &journal_name)?;
         Ok((journal, journal::read_all(&folders)?))
     };
-    let (journal, done) = match open() {
+    let (journal, mut done) = match open() {
         Err(error) if options.redo => {
             note_line(format_args!("{error}; thrown away"));
             throw_away(folder)?;
@@ -76,6 +83,9 @@ pub(crate) fn sweep(
         }
         opened => opened?,
     };
+    if study.data.is_some() {
+        done.retain(|key, _| data_path(folder, key).exists());
+    }
 
     let mine = |index: usize| options.shard.is_none_or(|shard| shard.has(index));
     let mut part: Vec<&PlannedRun> = study
@@ -148,9 +158,11 @@ fn run_all(
         let started = Instant::now();
         let scene = states.scene(&run.config)?;
         let mut course = Course::start(study.series.as_ref());
-        let outcome =
-            run_to_end(&scene, study.series.as_ref(), |simulation| course.add(simulation))?;
+        let mut recording = recording_of(study, folder, run, &scene)?;
+        let row = |simulation: &_| course.add(simulation);
+        let outcome = run_to_end(&scene, study.series.as_ref(), row, recording.as_mut())?;
         let course = course.finish(folder, &run.key)?;
+        recording.map_or(Ok(()), Recording::finish)?;
         let wall_secs = started.elapsed().as_secs_f64();
         journal.add(&Entry { key: run.key.clone(), wall_secs, outcome, course })?;
         progress.advance(cost(run));
@@ -164,6 +176,25 @@ fn run_all(
     });
     progress.finish();
     ended
+}
+
+/// The recording of one run, where the study asks for it. What a run that was stopped has left of one is
+/// removed.
+fn recording_of(
+    study: &Study,
+    folder: &Path,
+    run: &PlannedRun,
+    scene: &Scene,
+) -> Result<Option<Recording>> {
+    let Some(data) = &study.data else { return Ok(None) };
+    let path = data_path(folder, &run.key);
+    let recording = Recording::start(&path, &data.formats(), &scene.about()?, true)?;
+    Ok(Some(recording.at(data.times(), &scene.simulation()?)))
+}
+
+/// Where the recording of the run with a key lies.
+fn data_path(folder: &Path, key: &str) -> PathBuf {
+    folder.join(DATA).join(key)
 }
 
 fn label_of(study: &Study) -> Label {
@@ -201,7 +232,7 @@ fn claim(study: &Study, folder: &Path, redo: bool) -> Result<()> {
         Ok(None) => false,
     };
     if anew {
-        remove(&folder.join(TABLE))?;
+        remove_if_there(&folder.join(TABLE))?;
     }
     let path = folder.join(STUDY_FILE);
     let mut text =
@@ -213,16 +244,10 @@ fn claim(study: &Study, folder: &Path, redo: bool) -> Result<()> {
 
 /// Sweeps out a folder's results, but for those that other programs are writing.
 fn throw_away(folder: &Path) -> Result<()> {
-    remove(&folder.join(TABLE))?;
+    remove_if_there(&folder.join(TABLE))?;
     journal::remove_all(folder)?;
-    course::remove_all(folder)
-}
-
-fn remove(path: &Path) -> Result<()> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != NotFound => Err(Error::file(path, error)),
-        _ => Ok(()),
-    }
+    course::remove_all(folder)?;
+    remove_folder_if_there(&folder.join(DATA))
 }
 
 fn other_study(folder: &Path, study: &Study, found: &Label) -> Error {

@@ -90,6 +90,17 @@ impl Boundary {
         }
     }
 
+    /// What scene files call its shape.
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::HalfSpace { .. } => "half-space",
+            Self::Piston { .. } => "piston",
+            Self::Segment { .. } => "segment",
+            Self::Polyline { .. } => "polyline",
+            Self::ConvexPolygon { .. } => "convex-polygon",
+        }
+    }
+
     /// Whether it stands across the x axis, as in scenes with that axis alone.
     pub fn is_across_line(&self) -> bool {
         match self {

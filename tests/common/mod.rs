@@ -54,6 +54,7 @@ pub fn to_residual(tolerance: f64) -> SolverSettings {
         tolerance,
         max_sweeps: 20_000,
         warm_start: true,
+        ..SolverSettings::default()
     }
 }
 
@@ -78,6 +79,7 @@ pub fn scene(
         remedies: Remedies::default(),
         view: None,
         source: None,
+        data: None,
         boundaries: Vec::new(),
         fixed_discs: Vec::new(),
         grains,

@@ -23,7 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(180);
 const REFUSED: [&str; 8] = ["-1", "nan", "inf", "-inf", "1e300", "-1e-300", "much", "0x10"];
 
 /// Options with values that mean something.
-const OPTIONS: [(&str, &[&str]); 22] = [
+const OPTIONS: [(&str, &[&str]); 25] = [
     ("--stepper", &["moreau", "range", "tgs-soft", "dem"]),
     ("--bond", &["0", "1", "20", "1000"]),
     ("--rho", &["0", "0.1", "0.9", "1"]),
@@ -31,11 +31,27 @@ const OPTIONS: [(&str, &[&str]); 22] = [
     ("--cone", &["shifted", "compressive"]),
     ("--restitution-threshold", &["0", "2"]),
     ("--debonding-distance", &["1e-4", "0.01", "0.1"]),
-    ("--solver", &["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "auto"]),
+    (
+        "--solver",
+        &[
+            "nsgs",
+            "nsgs-parallel",
+            "newton",
+            "nncg",
+            "apgd",
+            "admm",
+            "jacobi",
+            "interior-point",
+            "auto",
+        ],
+    ),
     ("--ordering", &["interleaved", "detected", "bottom-up", "symmetric", "coloured"]),
     ("--stop", &["residual", "relative-change"]),
     ("--tolerance", &["1e-14", "1e-6", "1e-2"]),
     ("--warm-start", &["true", "false"]),
+    ("--friction-model", &["coulomb", "tresca", "associated", "desaxce"]),
+    ("--model-solves", &["1", "2", "5"]),
+    ("--fallback", &["of-method", "none", "tresca"]),
     ("--push-out", &["true", "false"]),
     ("--max-travel", &["0", "0.25", "1e-3"]),
     ("--calm-unsolved", &["true", "false"]),

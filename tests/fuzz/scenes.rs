@@ -4,7 +4,7 @@ use arbitrary::{Result, Unstructured};
 use glam::DVec2;
 use slump::scene::{Scene, built_in, read_scene, scene_to_toml};
 use slump::sim::{Remedies, Stepper};
-use slump::solver::{METHODS, Ordering, SolverSettings, StopTest};
+use slump::solver::{Fallback, FrictionModel, METHODS, Ordering, SolverSettings, StopTest};
 use slump::world::{Boundary, Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
 
 use super::Target;
@@ -72,6 +72,9 @@ fn solver(u: &mut Unstructured<'_>) -> Result<SolverSettings> {
         tolerance: ratio(u, [1e-14, 1e-1])?,
         max_sweeps: u.int_in_range(1..=300)?,
         warm_start: u.arbitrary()?,
+        friction_model: *u.choose(FrictionModel::ALL)?,
+        model_solves: *u.choose(&[1, 1, 1, 3])?,
+        fallback: *u.choose(Fallback::ALL)?,
     })
 }
 
@@ -105,7 +108,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
         speculative: u.ratio(1, 4)?,
     };
     if u.ratio(3, 4)? {
-        let settings = scene.settings().with_remedies_taken();
+        let settings = scene.settings().with_only_what_is_taken();
         scene.set_settings(settings);
     }
     scene.grains = (0..u.int_in_range(1..=12)?).map(|_| grain(u, size)).collect::<Result<_>>()?;

@@ -10,6 +10,8 @@ const FLOORS: &[&[&str]] = &[
     &["contact"],
     &["solver"],
     &["sim"],
+    &["granular"],
+    &["data"],
     &["scene"],
     &["render", "interchange", "record"],
     &["study"],

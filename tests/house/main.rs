@@ -48,7 +48,7 @@ fn every_file_is_compiled_and_every_scene_is_listed() {
 #[test]
 fn files_and_functions_are_small() {
     let mut complaints = Vec::new();
-    for folder in ["src", "tests", "benches"] {
+    for folder in ["src", "tests", "benches", "python/src"] {
         for (path, text) in sources::below(folder) {
             if !being_rebuilt(&path) {
                 complaints.extend(sizes::complaints(&format!("{folder}/{path}"), &text));

@@ -47,7 +47,7 @@ fn check(arguments: &[&str], name: &str, text: impl AsRef<[u8]>) {
     std::fs::write(&path, &text).expect("a file");
     let said = refusal(&[arguments, &[path.to_str().expect("UTF-8")]].concat());
     let text = String::from_utf8_lossy(text.as_ref());
-    assert!(said.contains(" must be "), "{text}: {said}");
+    assert!(said.contains(" must "), "{text}: {said}");
     assert!(said.len() < 3000, "{text}: {said}");
 }
 

@@ -120,7 +120,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     std::fs::write(&picture, &pixels).expect("a file");
     // What came after it, as where the run was killed later, goes.
     std::fs::write(&table, [&rows[..], b"9,9,9\n9,"].concat()).expect("a file");
-    for left in ["frame_00099.png", "checkpoint.slump.17-3.part"] {
+    for left in ["frame_00099.png", ".checkpoint.slump.17-3.part"] {
         std::fs::write(stopped.path().join(left), &pixels).expect("a file");
     }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use slump::scene::{SCENES, Scene, built_in};
 use slump::setting::{Group, Kind, Value};
 use slump::sim::{AlarmKind, Pull, REMEDIES, Remedies, Remedy, Settings, Simulation, Stepper};
-use slump::solver::Method;
+use slump::solver::{FrictionModel, Method, SolverSettings};
 
 use super::{bytes_of, read};
 use crate::common::{every_way, parameters, pressed_pile, start};
@@ -78,9 +78,16 @@ fn ways(scene: &Scene) -> Vec<Settings> {
         .map(|(stepper, method)| {
             let mut way = Settings { stepper, ..base };
             way.solver.method = method;
-            way.with_remedies_taken()
+            way.with_only_what_is_taken()
         })
         .collect();
+    for &friction_model in FrictionModel::ALL {
+        let mut way = Settings { stepper: Stepper::Moreau, ..base };
+        let model_solves = if friction_model == FrictionModel::Tresca { 2 } else { 1 };
+        way.solver =
+            SolverSettings { method: Method::Nsgs, friction_model, model_solves, ..way.solver };
+        ways.push(way.with_only_what_is_taken());
+    }
     for remedy in &REMEDIES {
         let of = |&stepper: &Stepper| Settings { stepper, remedies: with(remedy), ..base };
         ways.extend(remedy.taken_by.iter().map(of));

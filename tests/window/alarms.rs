@@ -49,7 +49,7 @@ fn the_law_range_takes_the_remedies_that_it_has_its_own_ways_for_away() {
     robot.settle();
     let settings = robot.world().controls.settings;
     let left = settings.remedies;
-    assert_eq!(settings, settings.with_remedies_taken());
+    assert_eq!(settings, settings.with_only_what_is_taken());
     assert!(!left.push_out && left.max_travel > 0.0);
 }
 

@@ -3,7 +3,7 @@
 use egui_kittest::kittest::Queryable;
 use slump::scene::Config;
 
-use crate::robot::{Robot, pile};
+use crate::robot::{File, Robot, pile};
 
 #[test]
 fn a_slider_changes_the_time_step_of_the_next_snapshot() {
@@ -102,20 +102,6 @@ fn a_scene_that_cannot_be_opened_says_why_and_leaves_the_old_one() {
     let (notice, _) = robot.state().notice().expect("a complaint");
     assert!(notice.text.starts_with("no-such.toml: "), "{}", notice.text);
     assert_eq!(robot.world().snapshot.grains.len(), 138);
-}
-
-/// A file in the hand of the mouse.
-#[derive(Debug)]
-struct File(std::path::PathBuf);
-
-impl egui::DroppedFile for File {
-    fn path(&self) -> &std::path::Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|error| error.to_string())
-    }
 }
 
 #[test]

@@ -11,9 +11,16 @@
 mod alarms;
 mod compare;
 mod controls;
+mod export_ends;
+mod exports;
 mod mouse;
 mod pictures;
 mod recording;
+mod recordings;
 mod robot;
 mod saved;
 mod speed;
+
+#[path = "../data/tables.rs"]
+#[allow(dead_code, reason = "tests of recordings use more of it")]
+mod tables;

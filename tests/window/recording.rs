@@ -1,8 +1,8 @@
 //! The recording gives back what was computed, bit for bit.
 
 use egui_kittest::kittest::Queryable;
-use slump::sim::Pull;
 use slump::sim::live::{Command, Live, LiveOptions, Start};
+use slump::sim::{Pull, Tally};
 use slump::sim::{Settings, Stepper};
 
 use crate::robot::{Robot, bits, pile};
@@ -88,6 +88,7 @@ fn little_memory_is_enough_to_get_anywhere() {
         Ok(Start {
             name: "pile".into(),
             simulation,
+            tally: Tally::default(),
             duration_secs: 1.0,
             held_by: Vec::new(),
             view: [glam::DVec2::ZERO, glam::DVec2::ONE],

@@ -134,6 +134,20 @@ impl Robot {
     }
 }
 
+/// A file in the hand of the mouse.
+#[derive(Debug)]
+pub struct File(pub std::path::PathBuf);
+
+impl egui::DroppedFile for File {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
 /// Positions and velocities of all grains, bit for bit.
 pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
     let bits = |grain: &slump::sim::GrainView| {

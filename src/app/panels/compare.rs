@@ -9,7 +9,7 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::sim::live::{Command, Controls};
 use crate::sim::{Settings, Stepper};
-use crate::solver::{METHODS, MethodInfo, SolverSettings};
+use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
 use crate::world::FrictionCone;
 
 /// Most worlds side by side.
@@ -71,7 +71,7 @@ struct LineUp {
     worlds: fn(Settings) -> Vec<Settings>,
 }
 
-const LINE_UPS: [LineUp; 6] = [
+const LINE_UPS: [LineUp; 7] = [
     LineUp {
         name: "Paper Fig. 4",
         hint: "Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s.",
@@ -106,11 +106,22 @@ const LINE_UPS: [LineUp; 6] = [
         name: "Methods",
         hint: "As many methods as there is room for, on the same problem.",
         worlds: |base| {
-            let by = |info: &MethodInfo| {
-                let solver = SolverSettings { method: info.method, ..base.solver };
+            let by = |info: &MethodInfo| Settings { solver: base.solver.by(info.method), ..base };
+            METHODS.iter().take(MOST_WORLDS).map(by).collect()
+        },
+    },
+    LineUp {
+        name: "Friction",
+        hint: "Every model of friction, and tresca solved four times a step, by nsgs.",
+        worlds: |base| {
+            let base = stepped(base, Stepper::Moreau);
+            let by = |friction_model, model_solves| {
+                let method = Method::Nsgs;
+                let solver = SolverSettings { method, friction_model, model_solves, ..base.solver };
                 Settings { solver, ..base }
             };
-            METHODS.iter().take(MOST_WORLDS).map(by).collect()
+            let once = FrictionModel::ALL.iter().map(|&model| by(model, 1));
+            once.chain([by(FrictionModel::Tresca, 4)]).collect()
         },
     },
     LineUp {
@@ -132,7 +143,7 @@ fn with(mut base: Settings, bond: f64, time_step_secs: f64) -> Settings {
 fn stepped(base: Settings, stepper: Stepper) -> Settings {
     let mut settings = Settings { stepper, ..base };
     settings.parameters.cone = FrictionCone::Shifted;
-    settings.with_remedies_taken()
+    settings.with_only_what_is_taken()
 }
 
 fn presets(ui: &mut Ui, state: &mut AppState) {
@@ -171,7 +182,7 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
                 let before = state.wanted[index].settings;
                 let mut settings = before;
                 if before.stepper.uses_method() {
-                    method_box(ui, ("method of world", index), &mut settings.solver.method);
+                    method_box(ui, ("method of world", index), &mut settings.solver);
                 }
                 if settings != before {
                     state.change(index, settings);
@@ -193,8 +204,17 @@ pub(crate) fn title(state: &AppState, index: usize) -> String {
     };
     let methods_differ = differ(&|other| other.solver.method != solver.method);
     let method = if methods_differ { format!(", {}", solver.method) } else { String::new() };
+    let models_differ = differ(&|other| {
+        let of = |solver: &SolverSettings| (solver.friction_model, solver.model_solves);
+        of(&other.solver) != of(&solver)
+    });
+    let model = match (models_differ, solver.model_solves) {
+        (false, _) => String::new(),
+        (true, 1) => format!(", {}", solver.friction_model),
+        (true, solves) => format!(", {} × {solves}", solver.friction_model),
+    };
     let steppers_differ = differ(&|other| other.stepper != stepper);
     let stepper = if steppers_differ { format!("{stepper}, ") } else { String::new() };
     let step = written(parameters.time_step_secs);
-    format!("{stepper}Bond {}, Δt {step} s{method}", written(parameters.bond))
+    format!("{stepper}Bond {}, Δt {step} s{method}{model}", written(parameters.bond))
 }

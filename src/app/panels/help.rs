@@ -55,7 +55,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
                 });
                 ui.add_space(6.0);
             }
-            ui.label("Double-click a slider to reset it. Type any value into its field. Drop a scene (TOML) or discs (CSV) on the window to open them.");
+            ui.label("Double-click a slider to reset it. Type any value into its field. Drop a scene (TOML), discs (CSV) or a saved run (.slump) on the window to open them.");
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let restart = ui.button("Restart graphics");

@@ -3,6 +3,7 @@
 #![deny(dead_code, reason = "a panel that nothing shows would not be missed")]
 
 pub(super) mod compare;
+mod data;
 mod grain;
 pub(super) mod help;
 mod physics;
@@ -37,6 +38,7 @@ pub(super) const SECTIONS: &[Section] = &[
     Section { id: "grain", title: grain::title, open: true, show: grain::show },
     Section { id: "run", title: |_| Some("Run".into()), open: true, show: run::show },
     Section { id: "see", title: |_| Some("See".into()), open: false, show: see::show },
+    Section { id: "data", title: title_of_data, open: false, show: data::show },
     Section { id: "compare", title: |_| Some("Compare".into()), open: false, show: compare::show },
     Section { id: "solver", title: |_| Some("Solver".into()), open: false, show: solver::show },
     Section {
@@ -48,6 +50,17 @@ pub(super) const SECTIONS: &[Section] = &[
 ];
 
 fn title_of_physics(state: &AppState) -> Option<String> {
-    let of_one = || format!("Physics of {}", compare::title(state, state.selected));
-    Some(if state.compares() { of_one() } else { "Physics".into() })
+    Some(of_one_world("Physics", state))
+}
+
+fn title_of_data(state: &AppState) -> Option<String> {
+    Some(of_one_world("Data", state))
+}
+
+/// The title of a panel that is about the selected world.
+fn of_one_world(title: &str, state: &AppState) -> String {
+    match state.compares() {
+        true => format!("{title} of {}", compare::title(state, state.selected)),
+        false => title.into(),
+    }
 }

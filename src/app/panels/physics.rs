@@ -71,7 +71,7 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
         }
     });
     if settings.stepper != before {
-        *settings = settings.with_remedies_taken();
+        *settings = settings.with_only_what_is_taken();
     }
 }
 

@@ -34,9 +34,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 fn scene_box(ui: &mut Ui, state: &mut AppState) {
     let current = state.frame.start.as_ref().map_or("", |start| start.name.as_str()).to_owned();
     ui.horizontal(|ui| {
-        let label = ui
-            .label("Scene")
-            .on_hover_text("Drop a TOML scene or a CSV of discs on the window to open it.");
+        let label = ui.label("Scene").on_hover_text(
+            "Drop a TOML scene, a CSV of discs or a saved run on the window to open it.",
+        );
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             let list = ComboBox::from_id_salt("scene").width(150.0).selected_text(&current);
             let shown = list.show_ui(ui, |ui| {

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui};
 use glam::DVec2;
 
-use crate::app::export::Export;
+use crate::app::export::{Export, stem};
 use crate::app::fill::fill;
 use crate::app::scene_callback::scene_callback;
 use crate::app::state::{AppState, GrainRef};
@@ -275,6 +275,5 @@ pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
 /// How the names of saved files begin.
 pub(crate) fn file_stem(state: &AppState) -> String {
     let name = state.frame.start.as_ref().map_or("scene", |start| start.name.as_str());
-    let name: String = name.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
-    format!("slump-{name}-{:.4}s", state.frame.time_secs())
+    stem(name, state.frame.time_secs())
 }

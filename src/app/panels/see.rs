@@ -74,6 +74,17 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
             super::scene::save_picture(ui.ctx(), state);
         }
     });
+    folder(ui, state);
+    if state.is_writing() {
+        ui.horizontal(|ui| {
+            ui.spinner();
+            ui.label(RichText::new("saving").color(theme::accent(ui.visuals().dark_mode)));
+        });
+    }
+}
+
+/// Where all files go that the window writes.
+pub(super) fn folder(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         let label = ui.label("Folder").on_hover_text("Where saved files go.");
         let mut folder = state.preferences.folder.display().to_string();
@@ -82,10 +93,4 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
             state.preferences.folder = folder.into();
         }
     });
-    if state.exporter.is_busy() {
-        ui.horizontal(|ui| {
-            ui.spinner();
-            ui.label(RichText::new("saving").color(theme::accent(ui.visuals().dark_mode)));
-        });
-    }
 }

@@ -8,7 +8,7 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
-use crate::sim::{REMEDIES, Remedies, Settings};
+use crate::sim::{Observables, REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest, picked};
 
 /// Shows the panel.
@@ -24,6 +24,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     }
     if before.stepper.reads("warm-start") {
         setting_control::show(ui, about("warm-start"), &mut settings, &start.settings);
+    }
+    if before.stepper.reads("friction-model") && start.physics.friction {
+        friction_controls(ui, &mut settings, &start.settings);
     }
     if before.stepper.uses_method() {
         remedy_boxes(ui, &mut settings, &start.settings);
@@ -51,7 +54,7 @@ fn about(name: &str) -> &'static About {
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
         ui.label("Method").on_hover_text("How the impulses of a step are found.");
-        method_box(ui, "method", &mut settings.solver.method);
+        method_box(ui, "method", &mut settings.solver);
         ui.end_row();
         if settings.solver.method.sweeps_in_order() {
             setting_control::show(ui, about("ordering"), settings, start);
@@ -68,6 +71,22 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     }
     tolerance_buttons(ui, &mut settings.solver);
     setting_control::show(ui, about("max-sweeps"), settings, start);
+}
+
+/// What is asked of friction. A method that solves Coulomb's law alone leaves no choice.
+fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
+    let method = settings.solver.method.info();
+    let model = about("friction-model");
+    ui.add_enabled_ui(method.takes_models, |ui| {
+        ui.horizontal(|ui| setting_control::show(ui, model, settings, start));
+    })
+    .response
+    .on_disabled_hover_text(format!("{} solves Coulomb's law alone.", method.name));
+    if settings.solver.friction_model.is_taken_anew() {
+        setting_control::show(ui, about("model-solves"), settings, start);
+    } else {
+        settings.solver.model_solves = 1;
+    }
 }
 
 /// Known remedies for known failures, those enabled that the stepper takes.
@@ -103,6 +122,19 @@ fn tolerance_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
     });
 }
 
+/// The common residual, and that of the model of friction where there is one.
+fn residuals(last: &Observables) -> (String, &'static str) {
+    let common = format!("{:.1e}", last.residual);
+    match last.model_residual {
+        None => (common, "Common residual of the last step."),
+        Some(of_model) => (
+            format!("{common} ({of_model:.1e})"),
+            "Common residual of the last step, by Coulomb's law; in brackets that of the model of friction that \
+             was solved.",
+        ),
+    }
+}
+
 /// What the last step needed.
 fn readings(ui: &mut Ui, state: &AppState) {
     let Some(world) = state.world() else { return };
@@ -114,12 +146,8 @@ fn readings(ui: &mut Ui, state: &AppState) {
             ui.label(RichText::new(value).monospace());
         };
         reading(ui, "sweeps", last.sweeps.to_string(), "Sweeps of the last step.");
-        reading(
-            ui,
-            "residual",
-            format!("{:.1e}", last.residual),
-            "Common residual of the last step.",
-        );
+        let (value, hint) = residuals(last);
+        reading(ui, "residual", value, hint);
         ui.end_row();
         if settings.solver.method == Method::Auto {
             let taken = picked(&settings.solver, last.contacts as usize).name();
@@ -149,6 +177,8 @@ fn readings(ui: &mut Ui, state: &AppState) {
     }
     let (mark, colour) = if last.converged {
         ("● converged".to_owned(), theme::good(dark))
+    } else if last.fell_back == Some(true) {
+        ("◆ not Coulomb's law: solved under bounds of friction".to_owned(), theme::warning(dark))
     } else if last.stalled {
         (
             format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual),

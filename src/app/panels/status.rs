@@ -62,14 +62,14 @@ fn messages(ui: &mut Ui, state: &mut AppState) {
     state.preferences.sidebar = sidebar;
 
     let dark = ui.visuals().dark_mode;
+    let showing = state.notice().is_some();
     let failure = state.frame.worlds.iter().find_map(|world| world.failure.clone());
-    if let Some(failure) = failure {
+    if let Some(failure) = failure.filter(|_| !showing) {
         let text = format!("{failure}. Drag the timeline back, or reset.");
         let label = Label::new(RichText::new(&text).color(theme::warning(dark))).truncate();
         ui.add(label).on_hover_text(text);
         return;
     }
-    let showing = state.notice().is_some();
     if let Some(alarm) = alarm(state).filter(|_| !showing) {
         let text = format!("▲ {alarm}");
         let label = Label::new(RichText::new(&text).color(theme::warning(dark))).truncate();

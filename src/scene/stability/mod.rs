@@ -74,6 +74,7 @@ fn dry(name: &str, grains: Vec<Grain>) -> Scene {
         remedies: Remedies::default(),
         view: None,
         source: None,
+        data: None,
         boundaries: Vec::new(),
         fixed_discs: Vec::new(),
         grains,

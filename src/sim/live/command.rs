@@ -1,9 +1,12 @@
 //! What can be asked of a live run.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
+use super::Replay;
 use crate::error::Result;
-use crate::sim::{Pull, Settings, Simulation};
+use crate::sim::{Pull, Settings, Simulation, Tally};
 use crate::world::Boundary;
 
 /// The state that a run starts from.
@@ -11,8 +14,10 @@ use crate::world::Boundary;
 pub struct Start {
     /// Name of the scene.
     pub name: String,
-    /// The world at t = 0.
+    /// The world at t = 0, or where a saved run goes on.
     pub simulation: Simulation,
+    /// Sums over the steps before that.
+    pub tally: Tally,
     /// The run pauses here once, s; played on, it goes further.
     pub duration_secs: f64,
     /// Shapes that are drawn before the first step: what holds a state that is at rest.
@@ -33,6 +38,23 @@ pub struct Progress {
 /// Makes a start. It runs on the solver's thread, tells of its progress, and gives up with an error
 /// where the callback returns false.
 pub type Loader = Box<dyn FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<Start> + Send>;
+
+/// All that a world has come to.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    /// The present moment, without the spring on a grain.
+    pub simulation: Simulation,
+    /// Sums over the steps up to it.
+    pub tally: Tally,
+    /// Why the run cannot go on from there.
+    pub failure: Option<Arc<str>>,
+    /// All that is recorded, before and after the present moment.
+    pub replay: Replay,
+}
+
+/// Takes down what a world has come to. It runs on the solver's thread, so it hands on what it gets and
+/// does not work with it.
+pub type Taker = Box<dyn FnOnce(Taken) + Send>;
 
 /// Simulated time per time on the wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +87,8 @@ pub enum Command {
     Reset,
     /// Go to the recorded moment nearest to this simulated time, s; pauses.
     Seek(f64),
+    /// Hand out what a world has come to.
+    Take(usize, Taker),
     /// Change the pace.
     SetPace(Pace),
     /// End the thread.

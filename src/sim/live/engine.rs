@@ -180,6 +180,11 @@ impl Engine {
                 self.seeking = true;
                 self.worlds.seek(time_secs);
             }
+            Command::Take(world, taker) => {
+                if let Some(track) = self.worlds.tracks.get(world) {
+                    taker(track.taken());
+                }
+            }
             Command::SetPace(pace) => {
                 self.clock.pace = pace;
                 self.restart_clock();
@@ -211,7 +216,8 @@ impl Engine {
         if variants.is_empty() {
             return;
         }
-        self.worlds = Worlds::new(&start.simulation, variants, self.options.recording_bytes);
+        let start = (&start.simulation, start.tally);
+        self.worlds = Worlds::new(start, variants, self.options.recording_bytes);
         self.playing = false;
         self.seeking = false;
     }
@@ -242,6 +248,14 @@ impl Engine {
 impl Command {
     /// Whether it changes a state that a seek is still computing.
     fn waits_for_seek(&self) -> bool {
-        matches!(self, Self::Change(..) | Self::SetPull(..) | Self::Play | Self::Step | Self::Reset)
+        matches!(
+            self,
+            Self::Change(..)
+                | Self::SetPull(..)
+                | Self::Play
+                | Self::Step
+                | Self::Reset
+                | Self::Take(..)
+        )
     }
 }

@@ -62,6 +62,8 @@ pub struct WorldFrame {
     pub controls: Controls,
     /// The observables of the whole recording.
     pub curve: Curve,
+    /// Simulated time that the recording starts at, s.
+    pub recorded_from_secs: f64,
     /// Simulated time of the last recorded step, s.
     pub recorded_secs: f64,
     /// Steps up to this moment that were not solved to the tolerance.

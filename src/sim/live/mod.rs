@@ -15,13 +15,15 @@ mod loading;
 mod options;
 mod publish;
 mod recording;
+mod replay;
 mod track;
 mod worlds;
 
-pub use command::{Command, Loader, Pace, Progress, Start};
+pub use command::{Command, Loader, Pace, Progress, Start, Taken, Taker};
 pub use curve::Curve;
 pub use frame::{Frame, StartInfo, WorldFrame};
 pub use handle::Live;
 pub use options::LiveOptions;
-pub use recording::Controls;
 pub(crate) use recording::Recording;
+pub use recording::{Change, Controls};
+pub use replay::Replay;

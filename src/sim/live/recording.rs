@@ -5,7 +5,9 @@
 //! is the keyframe before it and the steps from there. Where memory runs out, every second keyframe
 //! goes: the whole run stays within reach, at the price of more steps to get anywhere.
 
-use crate::sim::{Pull, Settings, Simulation};
+use std::sync::Arc;
+
+use crate::sim::{Pull, Settings, Simulation, Tally};
 
 /// Steps between keyframes at first.
 const FIRST_SPACING: u64 = 32;
@@ -26,12 +28,22 @@ impl Controls {
     }
 }
 
-/// The recorded part of a run.
+/// A moment from which on other controls are in force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// The step before the first that they are in force for.
+    pub after_step: u64,
+    /// Simulated time of that step, s.
+    pub time_secs: f64,
+    /// What is in force up to the next change.
+    pub controls: Controls,
+}
+
+/// The recorded part of a run. A clone shares its keyframes.
 #[derive(Clone, Debug)]
 pub(crate) struct Recording {
     keyframes: Vec<Keyframe>,
-    /// Controls of all steps after the numbered one, up to the next change.
-    changes: Vec<(u64, Controls)>,
+    changes: Vec<Change>,
     spacing: u64,
     budget_bytes: usize,
     end_step: u64,
@@ -40,8 +52,8 @@ pub(crate) struct Recording {
 
 #[derive(Clone, Debug)]
 struct Keyframe {
-    simulation: Box<Simulation>,
-    unconverged: u64,
+    simulation: Arc<Simulation>,
+    tally: Tally,
 }
 
 impl Keyframe {
@@ -51,10 +63,11 @@ impl Keyframe {
 }
 
 impl Recording {
-    /// A recording that starts with this state and keeps about `budget_bytes` of keyframes.
-    pub(crate) fn new(start: &Simulation, budget_bytes: usize) -> Self {
+    /// A recording that starts with this state, with the sums of steps before it, and keeps about
+    /// `budget_bytes` of keyframes.
+    pub(crate) fn new(start: &Simulation, tally: Tally, budget_bytes: usize) -> Self {
         Self {
-            keyframes: vec![Keyframe { simulation: Box::new(start.clone()), unconverged: 0 }],
+            keyframes: vec![Keyframe { simulation: Arc::new(start.clone()), tally }],
             changes: Vec::new(),
             spacing: FIRST_SPACING,
             budget_bytes,
@@ -63,31 +76,34 @@ impl Recording {
         }
     }
 
-    /// The last recorded step.
-    pub(crate) fn end_step(&self) -> u64 {
-        self.end_step
-    }
-
     /// Simulated time of the last recorded step, s.
     pub(crate) fn end_secs(&self) -> f64 {
         self.end_secs
     }
 
+    /// The state that it starts with.
+    pub(crate) fn start(&self) -> &Simulation {
+        // A recording is made with its first keyframe, and thinning keeps that.
+        &self.keyframes[0].simulation
+    }
+
     /// Notes a state that is about to take a step. What was recorded after it is forgotten.
-    pub(crate) fn before_step(&mut self, simulation: &Simulation, unconverged: u64) {
+    pub(crate) fn before_step(&mut self, simulation: &Simulation, tally: &Tally) {
         let step = simulation.observables().step;
         if self.end_step > step {
             self.keyframes.retain(|keyframe| keyframe.step() <= step);
-            self.changes.retain(|(after, _)| *after < step);
+            self.changes.retain(|change| change.after_step < step);
             self.end_step = step;
         }
         let controls = Controls::of(simulation);
-        if self.changes.last().is_none_or(|(_, last)| *last != controls) {
-            self.changes.push((step, controls));
+        if self.changes.last().is_none_or(|last| last.controls != controls) {
+            let time_secs = simulation.time_secs();
+            self.changes.push(Change { after_step: step, time_secs, controls });
         }
         let last = self.keyframes.last().map_or(0, Keyframe::step);
         if step >= last + self.spacing {
-            self.keyframes.push(Keyframe { simulation: Box::new(simulation.clone()), unconverged });
+            let simulation = Arc::new(simulation.clone());
+            self.keyframes.push(Keyframe { simulation, tally: *tally });
             self.thin();
         }
     }
@@ -113,18 +129,57 @@ impl Recording {
         });
     }
 
-    /// The keyframe at or before a simulated time, and the number of unconverged steps up to it.
-    pub(crate) fn keyframe_before(&self, time_secs: f64) -> (&Simulation, u64) {
+    /// The keyframe at or before a simulated time, and the sums over the steps up to it.
+    pub(crate) fn keyframe_before(&self, time_secs: f64) -> (&Simulation, Tally) {
         let after = |keyframe: &Keyframe| keyframe.simulation.time_secs() <= time_secs;
         let index = self.keyframes.partition_point(after).saturating_sub(1);
         let keyframe = &self.keyframes[index];
-        (&keyframe.simulation, keyframe.unconverged)
+        (&keyframe.simulation, keyframe.tally)
+    }
+
+    /// The last keyframe that has not come to a simulated time, or the start.
+    pub(crate) fn keyframe_on_the_way_to(&self, goal_secs: f64) -> &Simulation {
+        let on_the_way = |keyframe: &Keyframe| !self.has_come_to(&keyframe.simulation, goal_secs);
+        let index = self.keyframes.partition_point(on_the_way).saturating_sub(1);
+        &self.keyframes[index].simulation
+    }
+
+    /// Whether a recorded state is the one nearest to a simulated time, or after it, or the last.
+    pub(crate) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
+        let step = simulation.observables().step;
+        let controls = self.controls_after(step).copied();
+        let settings = controls.unwrap_or_else(|| Controls::of(simulation)).settings;
+        self.is_at(step, simulation.time_secs(), settings.parameters.time_step_secs, goal_secs)
+    }
+
+    fn is_at(&self, step: u64, time_secs: f64, time_step_secs: f64, goal_secs: f64) -> bool {
+        time_secs + 0.5 * time_step_secs >= goal_secs || step >= self.end_step
+    }
+
+    /// Gives a recorded state the controls with which its next step was recorded.
+    pub(crate) fn restore_controls(&self, simulation: &mut Simulation) {
+        let step = simulation.observables().step;
+        if let Some(Controls { settings, pull }) = self.controls_after(step).copied() {
+            // They were accepted when they were recorded.
+            let _ = simulation.change(settings);
+            simulation.set_pull(pull);
+        }
     }
 
     /// The controls of the step that follows `step`; none before anything was recorded.
-    pub(crate) fn controls_after(&self, step: u64) -> Option<&Controls> {
-        let count = self.changes.partition_point(|(after, _)| *after <= step);
-        count.checked_sub(1).map(|index| &self.changes[index].1)
+    fn controls_after(&self, step: u64) -> Option<&Controls> {
+        let count = self.changes.partition_point(|change| change.after_step <= step);
+        count.checked_sub(1).map(|index| &self.changes[index].controls)
+    }
+
+    /// The changes from a step on that steps up to a simulated time were taken with.
+    pub(crate) fn changes(&self, from_step: u64, until_secs: f64) -> impl Iterator<Item = &Change> {
+        self.changes.iter().filter(move |change| {
+            let Change { after_step, time_secs, controls } = **change;
+            let time_step_secs = controls.settings.parameters.time_step_secs;
+            after_step >= from_step
+                && !self.is_at(after_step, time_secs, time_step_secs, until_secs)
+        })
     }
 }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::{Controls, Curve, Recording};
-use crate::sim::{Settings, Simulation};
+use super::{Curve, Recording, Replay, Taken};
+use crate::sim::{Settings, Simulation, Tally};
 
 /// Weight of the newest step in the mean time a step takes.
 const NEWEST: f64 = 0.05;
@@ -14,8 +14,8 @@ pub(super) struct Track {
     pub simulation: Simulation,
     pub recording: Recording,
     pub curve: Curve,
-    /// Unconverged steps up to the present moment.
-    pub unconverged: u64,
+    /// Sums over the steps up to the present moment.
+    pub tally: Tally,
     /// Mean time that a step takes, s.
     pub step_secs: f64,
     /// Why the last step was no success.
@@ -25,17 +25,22 @@ pub(super) struct Track {
 }
 
 impl Track {
-    pub(super) fn new(start: &Simulation, variant: &Settings, budget_bytes: usize) -> Self {
+    /// A world at a start, with the sums of steps before it.
+    pub(super) fn new(
+        (start, tally): (&Simulation, Tally),
+        variant: &Settings,
+        budget_bytes: usize,
+    ) -> Self {
         let mut simulation = start.clone();
         // A variant is checked where it is made; what is refused here stays as the start has it.
         let _ = simulation.change(*variant);
         let mut curve = Curve::default();
         curve.push(*simulation.observables());
         Self {
-            recording: Recording::new(&simulation, budget_bytes),
+            recording: Recording::new(&simulation, tally, budget_bytes),
             simulation,
             curve,
-            unconverged: 0,
+            tally,
             step_secs: 0.0,
             failure: None,
             goal_secs: None,
@@ -60,7 +65,7 @@ impl Track {
             return false;
         }
         let step = self.simulation.observables().step;
-        self.recording.before_step(&self.simulation, self.unconverged);
+        self.recording.before_step(&self.simulation, &self.tally);
         self.curve.truncate(step);
         let before = Instant::now();
         let outcome = self.simulation.step().copied();
@@ -68,7 +73,7 @@ impl Track {
         self.recording.after_step(&self.simulation);
         match outcome {
             Ok(observables) => {
-                self.unconverged += u64::from(!observables.converged);
+                self.tally.add(&observables);
                 self.curve.push(observables);
                 true
             }
@@ -96,20 +101,18 @@ impl Track {
 
     /// Starts on the way to a recorded moment.
     pub(super) fn seek(&mut self, time_secs: f64) {
-        let (keyframe, unconverged) = self.recording.keyframe_before(time_secs);
+        let (keyframe, tally) = self.recording.keyframe_before(time_secs);
         self.simulation.clone_from(keyframe);
-        self.unconverged = unconverged;
+        self.tally = tally;
         self.failure = None;
         self.goal_secs = Some(time_secs);
-        self.adopt_recorded_controls();
+        self.recording.restore_controls(&mut self.simulation);
     }
 
     /// Takes one step of a seek. Whether it has arrived.
     pub(super) fn advance_seek(&mut self) -> bool {
         let Some(goal) = self.goal_secs else { return true };
-        let there = self.time_secs() + 0.5 * self.time_step_secs() >= goal
-            || self.simulation.observables().step >= self.recording.end_step();
-        if there || !self.replay_step() {
+        if self.recording.has_come_to(&self.simulation, goal) || !self.replay_step() {
             self.goal_secs = None;
             // The hand that pulled a grain back then is not there when the run goes on from here.
             self.simulation.set_pull(None);
@@ -121,8 +124,8 @@ impl Track {
     fn replay_step(&mut self) -> bool {
         match self.simulation.step() {
             Ok(observables) => {
-                self.unconverged += u64::from(!observables.converged);
-                self.adopt_recorded_controls();
+                self.tally.add(observables);
+                self.recording.restore_controls(&mut self.simulation);
                 true
             }
             Err(error) => {
@@ -132,13 +135,16 @@ impl Track {
         }
     }
 
-    /// The controls with which the next step was recorded.
-    fn adopt_recorded_controls(&mut self) {
-        let step = self.simulation.observables().step;
-        if let Some(Controls { settings, pull }) = self.recording.controls_after(step).copied() {
-            // They were accepted when they were recorded.
-            let _ = self.simulation.change(settings);
-            self.simulation.set_pull(pull);
+    /// All that the world has come to, for whoever takes it down.
+    pub(super) fn taken(&self) -> Taken {
+        let mut simulation = self.simulation.clone();
+        // The hand is not there when the run goes on from here.
+        simulation.set_pull(None);
+        Taken {
+            simulation,
+            tally: self.tally,
+            failure: self.failure.clone(),
+            replay: Replay::of(self.recording.clone()),
         }
     }
 }

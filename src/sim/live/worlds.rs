@@ -3,7 +3,7 @@
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
 use super::track::Track;
-use crate::sim::{Settings, Simulation};
+use crate::sim::{Settings, Simulation, Tally};
 
 /// One track a world. The world with the largest time step leads; the others follow to within half
 /// a step of their own.
@@ -13,8 +13,13 @@ pub(super) struct Worlds {
 }
 
 impl Worlds {
-    /// Worlds at one start, with `recording_bytes` for the keyframes of all of them.
-    pub(super) fn new(start: &Simulation, variants: &[Settings], recording_bytes: usize) -> Self {
+    /// Worlds at one start, with the sums of steps before it and `recording_bytes` for the keyframes of
+    /// all of them.
+    pub(super) fn new(
+        start: (&Simulation, Tally),
+        variants: &[Settings],
+        recording_bytes: usize,
+    ) -> Self {
         let budget_bytes = recording_bytes / variants.len().max(1);
         let track = |variant: &Settings| Track::new(start, variant, budget_bytes);
         Self { tracks: variants.iter().map(track).collect() }

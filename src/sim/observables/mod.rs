@@ -10,6 +10,7 @@ use heights::heights;
 use overlaps::overlaps;
 pub use quantity::{Beside, Quantity};
 
+use super::settings::Settings;
 use super::state::State;
 use super::stepping::{BondEnergies, Outcome, Stage};
 use crate::solver::{Kinematics, Measures, Model, SolveReport};
@@ -37,6 +38,18 @@ pub struct Observables {
     /// The common residual (`solver::residual`), dimensionless. For a scheme: that of the step's
     /// problem with the impulses that the scheme summed up and the velocities it ended with.
     pub residual: f64,
+    /// The same measure of the model of friction that was solved in the place of Coulomb's law,
+    /// dimensionless; none under that law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model_residual: Option<f64>,
+    /// The duality gap of that model, over Σ m_ij (v^free)², dimensionless: its square root bounds the error of
+    /// the velocities.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duality_gap: Option<f64>,
+    /// Whether a step that was not solved under Coulomb's law was solved under bounds of friction instead; none
+    /// where that cannot be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fell_back: Option<bool>,
     /// All contacts, with grains and with fixed shapes.
     pub contacts: u32,
     /// Contacts with N > 0.
@@ -76,11 +89,19 @@ pub struct Observables {
 }
 
 impl Observables {
-    /// With numbers that are none where there are no bonds, so that rows with and without bonds fit
-    /// in one table.
-    pub fn with_columns_of_bonds(self) -> Self {
+    /// Whether it tells of what only some runs have: bonds, or a model of friction.
+    pub fn has_further_columns(&self) -> bool {
+        self.bond_work.is_some() || self.model_residual.is_some()
+    }
+
+    /// With numbers that are none where there are no bonds or no model of friction, so that rows with and
+    /// without them fit in one table.
+    pub fn with_further_columns(self) -> Self {
         let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));
         Self {
+            model_residual: number(self.model_residual),
+            duality_gap: number(self.duality_gap),
+            fell_back: Some(self.fell_back.unwrap_or(false)),
             bond_work: number(self.bond_work),
             bond_energy: number(self.bond_energy),
             broken_bond_energy: number(self.broken_bond_energy),
@@ -103,6 +124,10 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
         title: "residual",
         logarithmic: true,
         value: |row| row.residual,
+        beside: &[
+            ("of the model of friction", |row| row.model_residual),
+            ("its duality gap", |row| row.duality_gap),
+        ],
         ..Quantity::PLAIN
     },
     Quantity {
@@ -110,10 +135,10 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
         title: "kinetic energy",
         unit: "J",
         value: |row| row.kinetic_energy,
-        beside: Some([
+        beside: &[
             ("stored in bonds", |row| row.bond_energy),
             ("taken by broken ones", |row| row.broken_bond_energy),
-        ]),
+        ],
         ..Quantity::PLAIN
     },
 ];
@@ -140,19 +165,22 @@ pub(super) fn after_step<M: Model>(
 }
 
 /// The observables of an initial state whose contacts have been found: energies, and the contacts that
-/// are there before any impulse. `bonds` tells whether there are any to be observed.
+/// are there before any impulse. The settings say which observables a step has.
 pub(super) fn at_start<M: Model>(
     state: &State,
-    bonds: bool,
-    time_step_secs: f64,
+    settings: &Settings,
     initial_heights: f64,
 ) -> Observables {
     let energy = |index: usize| {
         let body = M::Kinematics::body(&state.world, index);
         M::Kinematics::kinetic_energy(&body, state.world.grains.masses[index])
     };
-    let bonds = bonds.then(BondEnergies::default);
-    let outcome = Outcome { bonds, ..Outcome::nothing_yet() };
+    let bonds = settings.stepper.has_bonds().then(BondEnergies::default);
+    let none_yet = settings.may_solve_models().then_some(0.0);
+    let measures =
+        Measures { model_residual: none_yet, duality_gap: none_yet, ..Measures::default() };
+    let outcome = Outcome { bonds, measures, ..Outcome::nothing_yet() };
+    let time_step_secs = settings.parameters.time_step_secs;
     let kinetic_energy = (0..state.world.grains.len()).map(energy).sum();
     of_state::<M>(state, outcome, kinetic_energy, time_step_secs, initial_heights)
 }
@@ -167,9 +195,10 @@ fn of_state<M: Model>(
     initial_heights: f64,
 ) -> Observables {
     let Outcome { report, measures, gravity_work, bonds } = outcome;
-    let SolveReport { sweeps, factorisations, converged, stalled } = report;
-    let Measures { residual, compressive_contacts, tensile_contacts, normal_work, tangential_work } =
-        measures;
+    let SolveReport { sweeps, factorisations, converged, stalled, fell_back } = report;
+    let Measures { residual, model_residual, duality_gap, .. } = measures;
+    let Measures { compressive_contacts, tensile_contacts, .. } = measures;
+    let Measures { normal_work, tangential_work, .. } = measures;
     let [mean_overlap, max_overlap] = overlaps(state, bonds.is_some());
     let [heights, potential_energy] = heights(state);
     let dropped = initial_heights - heights;
@@ -184,6 +213,9 @@ fn of_state<M: Model>(
         converged: converged && residual.is_finite(),
         stalled,
         residual,
+        model_residual,
+        duality_gap,
+        fell_back: duality_gap.map(|_| fell_back),
         contacts: (0..state.contacts.contacts().len()).filter(in_touch).count() as u32,
         compressive_contacts,
         tensile_contacts,
@@ -213,14 +245,14 @@ mod tests {
     use super::*;
 
     /// Columns that the window does not plot.
-    const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled \
+    const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled fell_back \
         contacts compressive_contacts tensile_contacts max_overlap potential_energy normal_work \
         tangential_work gravity_work bond_work lost_grains";
 
     #[test]
     fn every_column_is_plotted_or_said_not_to_be() {
         let plain = Observables::default();
-        let columns = serde_json::to_value(plain.with_columns_of_bonds()).unwrap();
+        let columns = serde_json::to_value(plain.with_further_columns()).unwrap();
         let columns = columns.as_object().unwrap();
         let fields = format!("{plain:?}").matches(": ").count();
         assert_eq!(columns.len(), fields, "columns where there are bonds");
@@ -229,8 +261,9 @@ mod tests {
             row[column] = if value.is_boolean() { true.into() } else { 1.into() };
             let row: Observables = serde_json::from_value(row).unwrap();
             let tells = |quantity: &Quantity<Observables>| {
-                let beside = |row| quantity.beside.map(|all| all.map(|(_, value)| value(row)));
-                (quantity.value)(&row) != (quantity.value)(&plain) || beside(&row) != beside(&plain)
+                let beside = |(_, value): &Beside<Observables>| value(&row) != value(&plain);
+                (quantity.value)(&row) != (quantity.value)(&plain)
+                    || quantity.beside.iter().any(beside)
             };
             let plotted = QUANTITIES.iter().any(tells);
             assert_ne!(plotted, NOT_PLOTTED.split(' ').any(|name| name == column), "{column}");

@@ -13,8 +13,8 @@ pub struct Quantity<Row: 'static> {
     pub logarithmic: bool,
     /// Its value.
     pub value: fn(&Row) -> f64,
-    /// What is shown beside it where there is any, dashed and dotted: names and values.
-    pub beside: Option<[Beside<Row>; 2]>,
+    /// What is shown beside it where there is any, the first dashed and the second dotted: names and values.
+    pub beside: &'static [Beside<Row>],
 }
 
 /// Name and value.
@@ -28,6 +28,6 @@ impl<Row> Quantity<Row> {
         unit: "",
         logarithmic: false,
         value: |_| f64::NAN,
-        beside: None,
+        beside: &[],
     };
 }

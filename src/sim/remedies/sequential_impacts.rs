@@ -47,8 +47,9 @@ use crate::sim::settings::Settings;
 use crate::sim::steppers::stepper::Stepper;
 use crate::sim::stepping::Stage;
 use crate::solver::{
-    Kinematics, Memory, Method, Model, Ordering, Row, SolveReport, SolverSettings, StepProblem,
-    StopTest, for_each_row, relative_velocities, solve as solve_problem,
+    Fallback, FrictionModel, Kinematics, Memory, Method, Model, Ordering, Row, SolveReport,
+    SolverSettings, StepProblem, StopTest, for_each_row, relative_velocities,
+    solve as solve_problem,
 };
 
 /// The row of the registry.
@@ -81,6 +82,9 @@ const PASS: SolverSettings = SolverSettings {
     tolerance: 1e-12,
     max_sweeps: 1000,
     warm_start: true,
+    friction_model: FrictionModel::Coulomb,
+    model_solves: 1,
+    fallback: Fallback::None,
 };
 
 /// Solves a prepared step whose contacts open as its shocks say.
@@ -243,6 +247,7 @@ impl<K: Kinematics> Shocks<K> {
     ) -> SolveReport {
         let free = std::mem::replace(&mut problem.free, self.bodies.clone());
         let friction = std::mem::take(&mut problem.friction);
+        let model = std::mem::take(&mut problem.friction_model);
         let (fixed, pairs) = (problem.fixed_rows.clone(), problem.pair_rows.clone());
         for ((row, wall_speed), &touches) in problem.rows_with_walls().zip(&self.touching) {
             if touches {
@@ -260,6 +265,7 @@ impl<K: Kinematics> Shocks<K> {
         relative_velocities(problem, &self.bodies, &mut self.speeds);
         problem.free = free;
         problem.friction = friction;
+        problem.friction_model = model;
         problem.fixed_rows = fixed;
         problem.pair_rows = pairs;
         report

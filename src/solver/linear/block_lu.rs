@@ -8,7 +8,7 @@
 use super::elimination::Elimination;
 
 /// A block of D × D numbers.
-pub(super) type Block<const D: usize> = [[f64; D]; D];
+pub(crate) type Block<const D: usize> = [[f64; D]; D];
 
 /// A matrix, then its factors. Memory is kept between matrices.
 #[derive(Clone, Debug, Default)]

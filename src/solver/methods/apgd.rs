@@ -38,6 +38,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     solves: BOUND_BY_BOUND,
     source: "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
     order: MethodOrder::AllAtOnce,
+    takes_models: false,
 };
 
 /// L after a step that was too long, over the curvature that it met: a little more than needed, or

@@ -22,6 +22,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     solves: COULOMB,
     source: "the charts of speed against accuracy",
     order: MethodOrder::OfSettings,
+    takes_models: false,
 };
 
 /// Up to so many contacts Newton's method is taken. At 270 contacts it wins by far, at 1,000 by a

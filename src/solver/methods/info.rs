@@ -18,6 +18,8 @@ pub struct MethodInfo {
     pub source: &'static str,
     /// In which order it takes the contacts.
     pub order: MethodOrder,
+    /// Whether it solves the models of friction beside Coulomb's law.
+    pub takes_models: bool,
 }
 
 /// In which order a method takes the contacts.

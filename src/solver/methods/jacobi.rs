@@ -30,6 +30,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     solves: COULOMB,
     source: "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
     order: MethodOrder::AllAtOnce,
+    takes_models: false,
 };
 
 /// Solves a prepared problem.

@@ -20,6 +20,8 @@ pub enum Method {
     Admm,
     /// Jacobi with mass splitting.
     Jacobi,
+    /// Interior point with a sparse factorisation, for the convex models of friction.
+    InteriorPoint,
     /// One of the above, by the size of the problem.
     Auto,
 }

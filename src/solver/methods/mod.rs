@@ -6,6 +6,7 @@ mod admm;
 mod apgd;
 mod auto;
 mod info;
+mod interior_point;
 mod jacobi;
 mod method;
 mod newton;
@@ -29,6 +30,7 @@ use self::shared::body_system::SystemMemory;
 pub(crate) use self::shared::contact_system::Vectors;
 pub use self::shared::contact_system::{ContactSystem, Pairs};
 pub(super) use self::shared::iterate::sweep_until_settled;
+use super::friction_model::FrictionModel;
 use super::problem::{Kinematics, Model, StepProblem};
 use super::settings::SolverSettings;
 use crate::setting::{Kind, Settable, Value, Word};
@@ -39,7 +41,7 @@ use crate::setting::{Kind, Settable, Value, Word};
 macro_rules! methods {
     ($(($variant:ident, $module:ident, $memory:ty)),* $(,)?) => {
         /// All methods, in the order in which they are shown.
-        pub const METHODS: [MethodInfo; 8] = [$($module::INFO),*];
+        pub const METHODS: [MethodInfo; 9] = [$($module::INFO),*];
 
         const WORDS: [Word; METHODS.len()] =
             [$(Word { name: $module::INFO.name, hint: $module::INFO.summary }),*];
@@ -81,6 +83,7 @@ methods![
     (Apgd, apgd, SystemMemory),
     (Admm, admm, admm::AdmmMemory),
     (Jacobi, jacobi, SystemMemory),
+    (InteriorPoint, interior_point, interior_point::InteriorMemory),
     (Auto, auto, auto::AutoMemory),
 ];
 
@@ -148,7 +151,15 @@ pub fn solve<M: Model>(
     if problem.contact_of_row.is_empty() {
         return SolveReport::nothing_yet();
     }
-    solve_by_method::<M>(problem, memory, settings)
+    if settings.falls_back() && problem.friction_model != FrictionModel::Coulomb {
+        // An earlier solve of the same problem fell back.
+        problem.forget_bounds();
+    }
+    let report = solve_by_method::<M>(problem, memory, settings);
+    if report.converged || !M::FRICTION || !settings.falls_back() {
+        return report;
+    }
+    interior_point::fall_back::<M>(problem, &mut memory.interior_point, report)
 }
 
 /// Solves any contact system, from its present impulses, with the method of the settings. Gives
@@ -166,7 +177,11 @@ pub(crate) fn solve_system<S: ContactSystem>(
         Method::Nncg | Method::Auto => Some(nncg::solve_system(system, settings, vectors)),
         Method::Apgd => Some(apgd::solve_system(system, settings, vectors)),
         Method::Jacobi => Some(jacobi::solve_system(system, settings, vectors)),
-        Method::Nsgs | Method::NsgsParallel | Method::Newton | Method::Admm => None,
+        Method::Nsgs
+        | Method::NsgsParallel
+        | Method::Newton
+        | Method::InteriorPoint
+        | Method::Admm => None,
     }
 }
 

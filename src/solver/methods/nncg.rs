@@ -28,6 +28,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     solves: COULOMB,
     source: "M. Silcowitz, S. Niebe, K. Erleben, non-smooth non-linear conjugate gradients (2010)",
     order: MethodOrder::OfSettings,
+    takes_models: false,
 };
 
 /// Solves a prepared problem.

@@ -11,6 +11,8 @@ pub struct SolveReport {
     pub converged: bool,
     /// Whether a solve that did not converge had stalled, rather than being stopped too early.
     pub stalled: bool,
+    /// Whether a solve that did not converge was ended under bounds of friction instead.
+    pub fell_back: bool,
 }
 
 impl SolveReport {
@@ -21,11 +23,12 @@ impl SolveReport {
 
     /// Counts another solve of the same step. The step has stalled where one of them has.
     pub fn add(&mut self, other: Self) {
-        let Self { sweeps, factorisations, converged, stalled } = other;
+        let Self { sweeps, factorisations, converged, stalled, fell_back } = other;
         self.sweeps += sweeps;
         self.factorisations += factorisations;
         self.converged &= converged;
         self.stalled |= stalled;
+        self.fell_back |= fell_back;
     }
 
     /// The same with the work of solves that came before, and of whose outcome nothing is left.

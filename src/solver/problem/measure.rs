@@ -1,20 +1,24 @@
 //! The residual that is common to all methods, and the work of the contact forces.
 
+use super::duality::duality_gap;
+use super::held::{Bound, Held, LawNumbers, Opening};
 use super::kinematics::Kinematics;
 use super::model::Model;
+use super::motion::{Motion, ROUNDING, for_each_row};
 use super::step_problem::{Row, StepProblem};
 use crate::contact::law;
-
-/// Where nothing would move without contacts, errors of up to this share of the impulses are what
-/// rounding left, and no residual. Smaller: methods that scale impulses would not have solved a step in
-/// which nothing happens; larger: errors would go unseen.
-const ROUNDING: f64 = 1e-14;
+use crate::solver::friction_model::FrictionModel;
 
 /// What one pass over the rows tells of a solved step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
     /// The common residual, dimensionless.
     pub residual: f64,
+    /// The natural map of the model of friction that was solved, likewise; none under Coulomb's law, whose
+    /// it is already.
+    pub model_residual: Option<f64>,
+    /// The duality gap of that model, dimensionless: its square root bounds the error of the velocities.
+    pub duality_gap: Option<f64>,
     /// Contacts with P_n > 0.
     pub compressive_contacts: u32,
     /// Contacts with P_n < 0.
@@ -26,11 +30,21 @@ pub struct Measures {
 }
 
 impl Measures {
+    /// Tells of a step that was solved under Coulomb's law what is told of others of its run, which were solved
+    /// under a model of friction: its common residual, and no bound of the error.
+    pub(crate) fn measure_as_a_model(&mut self) {
+        self.model_residual = self.model_residual.or(Some(self.residual));
+        self.duality_gap = self.duality_gap.or(Some(f64::INFINITY));
+    }
+
     /// Counts another piece of the same step; the contacts are those at its end.
     pub fn add(&mut self, piece: Self) {
-        let Self { residual, compressive_contacts, tensile_contacts, normal_work, tangential_work } =
+        let Self { residual, model_residual, duality_gap, .. } = piece;
+        let Self { compressive_contacts, tensile_contacts, normal_work, tangential_work, .. } =
             piece;
         self.residual = worst(self.residual, residual);
+        self.model_residual = worst_of(self.model_residual, model_residual);
+        self.duality_gap = worst_of(self.duality_gap, duality_gap);
         self.compressive_contacts = compressive_contacts;
         self.tensile_contacts = tensile_contacts;
         self.normal_work += normal_work;
@@ -58,6 +72,53 @@ pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
     sums.residual::<M>(problem)
 }
 
+/// The same of the model of friction that a problem is solved by: the natural map of its projection
+/// (`problem::held`), over the same scale, so that both can be set side by side.
+pub(crate) fn held_residual<M: Model, H: Held>(problem: &StepProblem<M::Kinematics>) -> f64 {
+    let mut sums = Sums::default();
+    let law = LawNumbers::of(problem);
+    let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+    for_each_row::<M::Kinematics>(problem, |number, row, motion| {
+        let opening = motion.now[0] + row.restitution_velocity;
+        let [normal, tangential] = [row.shifted_impulse, row.tangential_impulse];
+        let trial = [normal - opening, tangential - compliance * motion.now[1]];
+        let allowed = H::project::<M>(law, problem.held[number], trial);
+        sums.add::<M>(row, [normal - allowed[0], tangential - allowed[1]], &motion);
+    });
+    sums.residual::<M>(problem)
+}
+
+/// The natural map's residual of what a problem is solved for: of its model of friction, or the common one.
+pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
+    match problem.friction_model {
+        FrictionModel::Tresca if M::FRICTION => held_residual::<M, Bound>(problem),
+        FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
+            held_residual::<M, Opening>(problem)
+        }
+        _ => residual::<M>(problem),
+    }
+}
+
+/// The residual of the model of friction of a problem; none under Coulomb's law.
+fn model_residual<M: Model>(
+    problem: &StepProblem<M::Kinematics>,
+    common_residual: f64,
+) -> Option<f64> {
+    match problem.friction_model {
+        FrictionModel::Coulomb => None,
+        // Without friction all models are one.
+        _ if !M::FRICTION => Some(common_residual),
+        _ => Some(natural_map::<M>(problem)),
+    }
+}
+
+fn worst_of(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(worst(one, other)),
+        (one, other) => one.or(other),
+    }
+}
+
 /// The larger of two residuals or other measures of what went wrong: not a number where one is none.
 pub(crate) fn worst(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
@@ -83,53 +144,9 @@ pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measure
             measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
         }
     });
-    Measures { residual: sums.residual::<M>(problem), ..measures }
-}
-
-/// Relative (normal, tangential) velocities of one contact, m/s.
-pub struct Motion {
-    /// At the end of the step.
-    pub now: [f64; 2],
-    /// At its beginning.
-    pub before: [f64; 2],
-    /// At the end if no contact acted.
-    pub free: [f64; 2],
-}
-
-/// Visits the rows with their numbers and motions.
-pub(crate) fn for_each_row<K: Kinematics>(
-    problem: &StepProblem<K>,
-    mut visit: impl FnMut(usize, &Row<K>, Motion),
-) {
-    for (number, row) in problem.fixed_rows.iter().enumerate() {
-        let of = |bodies: &[K::Body<f64>]| K::velocity(row.normal, &bodies[row.i as usize]);
-        let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
-        visit(number, row, Motion { now, before, free });
-    }
-    for (number, row) in (problem.fixed_rows.len()..).zip(&problem.pair_rows) {
-        let of = |bodies: &[K::Body<f64>]| {
-            K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])
-        };
-        let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
-        visit(number, row, Motion { now, before, free });
-    }
-}
-
-/// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
-pub(crate) fn relative_velocities<K: Kinematics>(
-    problem: &StepProblem<K>,
-    bodies: &[K::Body<f64>],
-    speeds: &mut Vec<f64>,
-) {
-    let StepProblem { fixed_rows, pair_rows, .. } = problem;
-    speeds.clear();
-    speeds.extend(fixed_rows.iter().map(|row| K::velocity(row.normal, &bodies[row.i as usize])[0]));
-    speeds.extend(pair_rows.iter().map(|row| {
-        K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])[0]
-    }));
-    for (speed, wall_speed) in speeds.iter_mut().zip(&problem.wall_speeds) {
-        *speed -= wall_speed;
-    }
+    let residual = sums.residual::<M>(problem);
+    let model_residual = model_residual::<M>(problem, residual);
+    Measures { residual, model_residual, duality_gap: duality_gap::<M>(problem), ..measures }
 }
 
 #[derive(Default)]
@@ -146,18 +163,34 @@ impl Sums {
         row: &Row<M::Kinematics>,
         motion: &Motion,
     ) {
-        let squared_mass = row.effective_mass * row.effective_mass;
         let shifted = row.shifted_impulse;
         let error = shifted - law::signorini(shifted - motion.now[0] - row.restitution_velocity);
+        let tangential_error = if M::FRICTION {
+            let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            let tangential = row.tangential_impulse;
+            let bound = problem.friction_bound::<M>(shifted);
+            tangential - law::coulomb(tangential - compliance * motion.now[1], bound)
+        } else {
+            0.0
+        };
+        self.add::<M>(row, [error, tangential_error], motion);
+    }
+
+    /// Adds the errors (e_n, e_t) of a row, m/s.
+    #[inline(always)]
+    fn add<M: Model>(
+        &mut self,
+        row: &Row<M::Kinematics>,
+        [error, tangential_error]: [f64; 2],
+        motion: &Motion,
+    ) {
+        let squared_mass = row.effective_mass * row.effective_mass;
         self.error += squared_mass * error * error;
         let free = motion.free[0] + row.restitution_velocity;
         self.scale += squared_mass * free * free;
         if M::FRICTION {
+            self.error += squared_mass * tangential_error * tangential_error;
             let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
-            let tangential = row.tangential_impulse;
-            let bound = problem.friction_bound::<M>(shifted);
-            let error = tangential - law::coulomb(tangential - compliance * motion.now[1], bound);
-            self.error += squared_mass * error * error;
             let free = compliance * motion.free[1];
             self.scale += squared_mass * free * free;
         }

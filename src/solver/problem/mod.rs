@@ -1,17 +1,23 @@
 //! The problem of one step: its data, how it is set up, and what judges its solution.
 
+mod duality;
+mod held;
 pub(super) mod kinematics;
 mod measure;
 mod model;
+mod motion;
 mod order;
 pub(super) mod prepare;
 mod step_problem;
 
+pub(crate) use self::held::{Bound, Held, LawNumbers, Opening};
 pub use self::kinematics::Kinematics;
 pub use self::kinematics::line::{Line, LineBody};
 pub use self::kinematics::plane::{Plane, PlaneBody, SpinningPlane};
-pub use self::measure::{Measures, Motion, residual};
-pub(crate) use self::measure::{for_each_row, measure, relative_velocities, worst};
+pub use self::measure::{Measures, residual};
+pub(crate) use self::measure::{held_residual, measure, natural_map, worst};
 pub use self::model::{Model, StepModel};
 pub(crate) use self::model::{ModelParts, ModelVisitor};
+pub use self::motion::Motion;
+pub(crate) use self::motion::{for_each_row, relative_velocities};
 pub use self::step_problem::{Row, StepProblem};

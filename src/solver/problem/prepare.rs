@@ -84,6 +84,7 @@ impl<K: Kinematics> StepProblem<K> {
             }
         }
         self.form_velocities();
+        self.hold::<M>(contacts, settings.friction_model);
     }
 
     /// Packs the bodies as they are, and as gravity alone would leave them.

@@ -6,6 +6,7 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::order::Sorter;
 use crate::contact::{Contact, ContactList, Impulse, Numbering, Other};
+use crate::solver::friction_model::FrictionModel;
 
 /// One contact as the sweep sees it: exactly one cache line in the plane. Impulses are reduced ones,
 /// λ = P/m_ij (see `problem::kinematics` and `contact::law`).
@@ -63,6 +64,12 @@ pub struct StepProblem<K: Kinematics> {
     pub(crate) captures: Vec<f64>,
     /// How fast the wall of each fixed row comes along the normal, m/s; empty where no wall moves.
     pub(crate) wall_speeds: Vec<f64>,
+    /// What is asked of friction.
+    pub(crate) friction_model: FrictionModel,
+    /// What the model holds row by row as the step begins, m/s (`problem::held`); empty under Coulomb's law.
+    pub(crate) held_at_start: Vec<f64>,
+    /// The same in the last solve.
+    pub(crate) held: Vec<f64>,
     /// Masses of the bodies, kg.
     pub(crate) masses: Vec<f64>,
     /// Mean mass of the grains, kg.
@@ -86,6 +93,9 @@ impl<K: Kinematics> Default for StepProblem<K> {
             capture_speed: 0.0,
             captures: Vec::new(),
             wall_speeds: Vec::new(),
+            friction_model: FrictionModel::Coulomb,
+            held_at_start: Vec::new(),
+            held: Vec::new(),
             masses: Vec::new(),
             mean_mass: 0.0,
             colour_ends: Default::default(),
@@ -190,6 +200,22 @@ impl<K: Kinematics> StepProblem<K> {
     /// The rows with their numbers: fixed rows, then pair rows.
     pub fn rows(&self) -> impl Iterator<Item = (usize, &Row<K>)> {
         self.fixed_rows.iter().chain(&self.pair_rows).enumerate()
+    }
+
+    /// Visits the rows, fixed rows first, with (v_n, v_t) among these bodies, m/s.
+    #[inline(always)]
+    pub(crate) fn for_each_velocity(
+        &self,
+        bodies: &[K::Body<f64>],
+        mut visit: impl FnMut(&Row<K>, [f64; 2]),
+    ) {
+        for row in &self.fixed_rows {
+            visit(row, K::velocity(row.normal, &bodies[row.i as usize]));
+        }
+        for row in &self.pair_rows {
+            let (i, j) = (&bodies[row.i as usize], &bodies[row.j as usize]);
+            visit(row, K::relative_velocity(row.normal, i, j));
+        }
     }
 
     /// Every row, to be changed, with how fast its wall comes, m/s: 0 where that does not move.

@@ -124,24 +124,7 @@ pub(super) fn table(laws: &[(&str, &Rows<'_>)], steps: &[f64]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::{Outcome, Status};
-
-    fn outcome(slump: f64) -> Outcome {
-        Outcome {
-            status: Status::Done,
-            steps: 1,
-            slump,
-            mean_overlap: 0.0,
-            max_overlap: 0.0,
-            first_gap: 0.0,
-            unconverged_steps: 0,
-            stalled_steps: 0,
-            sweeps: 1,
-            largest_residual: 0.0,
-            lost_grains: 0,
-            alarms: Default::default(),
-        }
-    }
+    use crate::study::Outcome;
 
     #[test]
     fn a_shift_beyond_the_interval_is_told_and_one_within_is_not() {
@@ -158,7 +141,7 @@ mod tests {
                 config.origin.seed = Some(seed);
                 config.parameters.bond = Some(10.0);
                 config.parameters.time_step_secs = Some(step);
-                runs.push((config, outcome(slump)));
+                runs.push((config, Outcome::of_slump(slump)));
             }
         }
         let rows = Rows(runs.iter().map(|(config, outcome)| (config, outcome)).collect());

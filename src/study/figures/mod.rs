@@ -8,6 +8,7 @@ mod fig5;
 mod fig6;
 mod fig8;
 mod figure;
+mod friction;
 mod pile_map;
 mod pile_series;
 mod range;

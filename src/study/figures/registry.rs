@@ -2,7 +2,7 @@
 
 use super::figure::Figure;
 use super::workshop::Workshop;
-use super::{cradle_map, fig2, fig5, fig6, fig8, pile_map, pile_series, range, two_body};
+use super::{cradle_map, fig2, fig5, fig6, fig8, friction, pile_map, pile_series, range, two_body};
 use crate::error::Result;
 
 /// A figure that can be asked for.
@@ -16,7 +16,7 @@ pub(super) struct FigureInfo {
 }
 
 /// All figures that are charts, in the order of the report.
-pub(super) const FIGURES: [FigureInfo; 13] = [
+pub(super) const FIGURES: [FigureInfo; 14] = [
     FigureInfo { name: "fig2", studies: &[], make: fig2::make },
     FigureInfo { name: "two-body", studies: &[], make: two_body::make },
     FigureInfo { name: "fig5a", studies: &["pile"], make: fig5::slump },
@@ -34,4 +34,5 @@ pub(super) const FIGURES: [FigureInfo; 13] = [
         make: pile_series::tolerance,
     },
     FigureInfo { name: "range", studies: &["range"], make: range::make },
+    FigureInfo { name: "friction", studies: &["friction"], make: friction::make },
 ];

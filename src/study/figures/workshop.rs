@@ -11,7 +11,7 @@ use crate::study::table::alarms_of;
 use crate::study::{Outcome, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
 /// The studies that are shipped.
-const STUDIES: [(&str, &str); 8] = [
+const STUDIES: [(&str, &str); 9] = [
     ("pile", include_str!("../../../assets/studies/pile.toml")),
     ("cradle", include_str!("../../../assets/studies/cradle.toml")),
     ("cradle-share", include_str!("../../../assets/studies/cradle-share.toml")),
@@ -20,6 +20,7 @@ const STUDIES: [(&str, &str); 8] = [
     ("pile-size", include_str!("../../../assets/studies/pile-size.toml")),
     ("pile-tolerance", include_str!("../../../assets/studies/pile-tolerance.toml")),
     ("range", include_str!("../../../assets/studies/range.toml")),
+    ("friction", include_str!("../../../assets/studies/friction.toml")),
 ];
 
 /// Finished studies by name.
@@ -164,20 +165,8 @@ mod tests {
     use crate::sim::AlarmKind;
 
     fn outcome(status: Status, lost_grains: u32, alarm: Option<AlarmKind>) -> Outcome {
-        Outcome {
-            status,
-            steps: 1,
-            slump: 0.0,
-            mean_overlap: 0.0,
-            max_overlap: 0.0,
-            first_gap: 0.0,
-            unconverged_steps: 0,
-            stalled_steps: 0,
-            sweeps: 1,
-            largest_residual: 0.0,
-            lost_grains,
-            alarms: alarm.into_iter().collect(),
-        }
+        let alarms = alarm.into_iter().collect();
+        Outcome { status, lost_grains, alarms, ..Outcome::of_slump(0.0) }
     }
 
     /// A claim that holds, on those runs.

@@ -2,7 +2,11 @@
 
 use crate::scene::Scene;
 use crate::sim::{Settings, Stepper};
-use crate::solver::{METHODS, Method, Ordering, SolverSettings, StopTest};
+use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
+
+/// Looks of models of friction, from the number of looks on: `newton` has the second one there, under the law
+/// `range`.
+const OTHER_LOOKS: [usize; 3] = [0, 1, 3];
 
 /// A method, or a way to step that has none, as it is charted.
 #[derive(Clone, Debug)]
@@ -62,6 +66,19 @@ pub(super) fn of_problems(orders: bool) -> Vec<Entrant> {
         }
     }
     entrants
+}
+
+/// Models of friction in the place of Coulomb's law, by the method that takes them: they solve another problem,
+/// so that whole simulations alone can tell what they are worth.
+pub(super) fn models() -> Vec<Entrant> {
+    let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
+    let entrant = |(look, &friction_model): (usize, &FrictionModel)| {
+        let solver =
+            SolverSettings { method: Method::Nsgs, friction_model, ..SolverSettings::default() };
+        let name = format!("nsgs {friction_model}");
+        Entrant { name, look: looks() + look, stepper: Stepper::Moreau, solver }
+    };
+    OTHER_LOOKS.into_iter().zip(models).map(entrant).collect()
 }
 
 impl Entrant {

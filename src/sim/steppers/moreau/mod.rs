@@ -28,6 +28,9 @@ pub(super) const INFO: StepperInfo = StepperInfo {
         "tolerance",
         "max-sweeps",
         "warm-start",
+        "friction-model",
+        "model-solves",
+        "fallback",
     ],
     ..StepperInfo::WHOLE
 };

@@ -45,6 +45,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
         "tolerance",
         "max-sweeps",
         "warm-start",
+        "fallback",
     ],
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.

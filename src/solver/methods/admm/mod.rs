@@ -37,6 +37,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     solves: BOUND_BY_BOUND,
     source: "S. Boyd and others (2011); for contact V. Acary, M. Bremond, O. Huber (2018)",
     order: MethodOrder::AllAtOnce,
+    takes_models: false,
 };
 
 /// ε at first.

@@ -9,7 +9,8 @@ pub(super) fn assemble<M: Model, const D: usize>(
     workspace: &mut Workspace<D>,
     compliance: f64,
 ) {
-    let Workspace { elimination, matrix, vector, guesses, pair_blocks, .. } = workspace;
+    let Workspace { graph, matrix, vector, guesses, .. } = workspace;
+    let (elimination, pair_blocks) = (&graph.elimination, &graph.pair_blocks);
     matrix.clear(elimination);
     vector.clear();
     vector.resize(problem.bodies.len(), [0.0; D]);
@@ -31,7 +32,7 @@ pub(super) fn assemble<M: Model, const D: usize>(
         terms.add(matrix.diagonal_mut(place), &terms);
         terms.add_load(&mut vector[place as usize]);
     }
-    for (row, &block) in problem.pair_rows.iter().zip(&*pair_blocks) {
+    for (row, &block) in problem.pair_rows.iter().zip(pair_blocks) {
         let (body_i, body_j) = (&problem.bodies[row.i as usize], &problem.bodies[row.j as usize]);
         let velocity = M::Kinematics::relative_velocity(row.normal, body_i, body_j);
         let guess = guess::<M>(problem, row, velocity);

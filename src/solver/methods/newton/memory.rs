@@ -1,7 +1,8 @@
 //! What Newton's method keeps from one factorisation, and from one step, to the next.
 
-use crate::solver::linear::{BlockMatrix, Elimination};
+use crate::solver::linear::BlockMatrix;
 use crate::solver::methods::shared::body_system::SystemMemory;
+use crate::solver::methods::shared::contact_graph::ContactGraph;
 
 /// A workspace for each number of degrees of freedom; those that are not used hold no memory.
 #[derive(Clone, Debug, Default)]
@@ -16,7 +17,7 @@ pub(crate) struct NewtonMemory {
 /// What is kept where a body has `D` degrees of freedom.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workspace<const D: usize> {
-    pub elimination: Elimination,
+    pub graph: ContactGraph,
     pub matrix: BlockMatrix<D>,
     pub vector: Vec<[f64; D]>,
     pub guesses: Vec<Guess>,
@@ -24,11 +25,6 @@ pub(super) struct Workspace<const D: usize> {
     pub saved: Vec<[f64; 2]>,
     /// (σ, λ_t) of the smallest residual so far.
     pub best: Vec<[f64; 2]>,
-    /// What `elimination` was made for.
-    pub bodies: usize,
-    pub pairs: Vec<(u32, u32)>,
-    /// The block of each pair, as `BlockMatrix::off_diagonal_mut` numbers them.
-    pub pair_blocks: Vec<u32>,
 }
 
 /// What the present state lets one guess of a contact.

@@ -50,6 +50,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     solves: COULOMB,
     source: "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)",
     order: MethodOrder::OfSettings,
+    takes_models: false,
 };
 
 /// Compliance of the first step.
@@ -102,7 +103,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         if self.settles_in(SWEEPS_FIRST.min(most_sweeps), &mut report) {
             return report;
         }
-        self.analyse();
+        self.workspace.graph.analyse(self.problem);
         let mut descent = Descent::new(residual::<M>(self.problem));
         save(self.problem, &mut self.workspace.saved);
         self.workspace.best.clone_from(&self.workspace.saved);
@@ -174,46 +175,24 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         }
     }
 
-    /// Orders the elimination, unless the contacts between grains are those of the last time.
-    fn analyse(&mut self) {
-        let pairs = || self.problem.pair_rows.iter().map(|row| (row.i, row.j));
-        let bodies = self.problem.bodies.len();
-        let workspace = &mut *self.workspace;
-        if workspace.bodies == bodies && pairs().eq(workspace.pairs.iter().copied()) {
-            return;
-        }
-        workspace.bodies = bodies;
-        workspace.pairs.clear();
-        workspace.pairs.extend(pairs());
-        workspace.elimination.analyse(bodies, workspace.pairs.iter().copied());
-        let elimination = &workspace.elimination;
-        let places = workspace
-            .pairs
-            .iter()
-            .map(|&(i, j)| (elimination.place_of[i as usize], elimination.place_of[j as usize]));
-        workspace.pair_blocks.clear();
-        workspace
-            .pair_blocks
-            .extend(places.map(|(i, j)| elimination.block(i.min(j), i.max(j)) as u32));
-    }
-
     /// Guesses, solves for velocities, and takes the impulses that go with them.
     fn newton_step(&mut self, compliance: f64) {
         assemble::<M, D>(self.problem, self.workspace, compliance);
-        let Workspace { elimination, matrix, vector, .. } = &mut *self.workspace;
-        matrix.factorise(elimination);
-        matrix.solve(elimination, vector);
+        let Workspace { graph, matrix, vector, .. } = &mut *self.workspace;
+        matrix.factorise(&graph.elimination);
+        matrix.solve(&graph.elimination, vector);
         self.take_impulses(compliance);
         self.problem.form_velocities();
     }
 
     /// The regularised law at the new velocities, projected on what the law allows.
     fn take_impulses(&mut self, compliance: f64) {
-        let Workspace { elimination, vector, guesses, .. } = &*self.workspace;
+        let Workspace { graph, vector, guesses, .. } = &*self.workspace;
+        let places = &graph.elimination.place_of;
         let StepProblem { bodies, fixed_rows, pair_rows, friction, capture_speed, .. } =
             &mut *self.problem;
         let along = |gradient: &[f64; 3], body: u32| -> f64 {
-            let velocity = &vector[elimination.place_of[body as usize] as usize];
+            let velocity = &vector[places[body as usize] as usize];
             (0..D).map(|axis| gradient[axis] * velocity[axis]).sum()
         };
         let fixed_count = fixed_rows.len();

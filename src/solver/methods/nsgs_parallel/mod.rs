@@ -33,6 +33,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     solves: COULOMB,
     source: "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
     order: MethodOrder::Always(Ordering::Coloured),
+    takes_models: false,
 };
 
 /// Blocks that a thread takes at a time.

@@ -143,8 +143,13 @@ impl Change {
 }
 
 impl<T: Lanes> Change<T> {
+    /// Counts a change of (λ_n, λ_t) of an effective mass, where it is asked to measure.
     #[inline(always)]
-    fn add<M: Model, const MEASURE: bool>(&mut self, mass: T, [normal, tangential]: [T; 2]) {
+    pub(crate) fn add<M: Model, const MEASURE: bool>(
+        &mut self,
+        mass: T,
+        [normal, tangential]: [T; 2],
+    ) {
         if MEASURE {
             let normal = mass * normal;
             self.squared += normal * normal;

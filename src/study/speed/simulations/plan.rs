@@ -54,7 +54,8 @@ impl Plan {
         let mut entrants: Vec<Entrant> = Vec::new();
         let mut efforts = Vec::new();
         let of_law = |law| entrants::all().into_iter().map(move |entrant| (law, entrant));
-        for (law, mut entrant) in laws.iter().copied().flat_map(of_law) {
+        let models = entrants::models().into_iter().map(|model| (Stepper::Moreau, model));
+        for (law, mut entrant) in laws.iter().copied().flat_map(of_law).chain(models) {
             if law == Stepper::Range {
                 if entrant.method() != Some(Method::Newton) {
                     continue;

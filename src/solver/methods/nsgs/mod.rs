@@ -4,13 +4,21 @@
 //! For solid discs the local Delassus block is diagonal (W_nt = 0), so a contact's solution is two
 //! scalar projections (`shared::update`).
 
+mod held;
+mod settled;
+
+pub(super) use self::held::solve_models;
+pub(super) use self::settled::is_settled;
+
+use self::settled::squared_impulses;
 use super::info::{COULOMB, MethodInfo, MethodOrder};
 use super::method::Method;
 use super::report::SolveReport;
 use super::shared::iterate::{is_tested, sweep_until_settled};
-use super::shared::update::{Body, Change, Law, squared_impulse};
+use super::shared::update::{Body, Change, Law};
+use crate::solver::friction_model::FrictionModel;
 use crate::solver::ordering::Ordering;
-use crate::solver::problem::{Kinematics, Model, Row, StepProblem, residual};
+use crate::solver::problem::{Bound, Model, Opening, Row, StepProblem, residual};
 use crate::solver::settings::{SolverSettings, StopTest};
 
 /// What there is to know of it.
@@ -21,12 +29,41 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     solves: COULOMB,
     source: "M. Jean, The non-smooth contact dynamics method (1999)",
     order: MethodOrder::OfSettings,
+    takes_models: true,
 };
 
-/// Solves a prepared problem by sweeps.
+/// Solves a prepared problem by sweeps, under the model of friction that it was prepared for.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     _memory: &mut (),
+    settings: &SolverSettings,
+) -> SolveReport {
+    solve_models::<M>(problem, settings, |problem| match problem.friction_model {
+        FrictionModel::Tresca if M::FRICTION => held::solve::<M, Bound>(problem, settings),
+        FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
+            held::solve::<M, Opening>(problem, settings)
+        }
+        _ => solve_coulomb::<M>(problem, settings),
+    })
+}
+
+/// One sweep of the model of friction that a problem was prepared for, and whether the stopping test is met
+/// after it.
+pub(super) fn sweep_of_model<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+) -> bool {
+    match problem.friction_model {
+        FrictionModel::Tresca if M::FRICTION => held::tested::<M, Bound>(problem, settings, false),
+        FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
+            held::tested::<M, Opening>(problem, settings, false)
+        }
+        _ => tested_sweep::<M>(problem, settings),
+    }
+}
+
+fn solve_coulomb<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
     settings: &SolverSettings,
 ) -> SolveReport {
     let sweep = |problem: &mut StepProblem<M::Kinematics>, sweeps| {
@@ -63,27 +100,6 @@ fn tested<M: Model, const BACKWARD: bool>(
     is_settled(problem, (change, mean_mass), settings, squared_impulses, |problem| {
         residual::<M>(problem)
     })
-}
-
-/// Whether the stopping test is met after a sweep that made this change, by a mean mass (kg) of the
-/// grains, by Σ P² ((N·s)²), or by the residual.
-pub(super) fn is_settled<P>(
-    problem: &mut P,
-    (change, mean_mass): (Change, f64),
-    settings: &SolverSettings,
-    squared_impulses: impl FnOnce(&mut P) -> f64,
-    residual: impl FnOnce(&mut P) -> f64,
-) -> bool {
-    let tolerance = settings.tolerance;
-    match settings.stop {
-        // An infinite change is no larger than infinite impulses, and settles nothing.
-        StopTest::RelativeChange => {
-            change.squared.is_finite()
-                && change.squared <= tolerance * tolerance * squared_impulses(problem)
-        }
-        StopTest::ImpulsePerMass => change.absolute <= tolerance * mean_mass,
-        StopTest::Residual => residual(problem) <= tolerance,
-    }
 }
 
 /// One pass over all contacts.
@@ -149,14 +165,4 @@ fn solve_pair<M: Model, const MEASURE: bool>(
     law.solve_pair_row::<M, MEASURE>(row, &mut i, &mut j, change);
     bodies[row.i as usize] = i;
     bodies[row.j as usize] = j;
-}
-
-/// Σ P², (N·s)².
-fn squared_impulses<K: Kinematics>(problem: &mut StepProblem<K>) -> f64 {
-    let squared = |(number, row): (usize, &Row<K>)| {
-        squared_impulse(row.effective_mass, problem.reduced_impulse(number, row))
-    };
-    let fixed_count = problem.fixed_rows.len();
-    problem.rows().take(fixed_count).map(squared).sum::<f64>()
-        + problem.rows().skip(fixed_count).map(squared).sum::<f64>()
 }

@@ -10,7 +10,7 @@ use clap::{Arg, Command, Error};
 use crate::error::legible;
 
 /// The sentence for what the parser of `command` refuses.
-pub(super) fn sentence(error: &Error, mut command: Command) -> String {
+pub(crate) fn sentence(error: &Error, mut command: Command) -> String {
     // Before that no argument knows how it is shown.
     command.build();
     let said = |kind: ContextKind| match error.get(kind) {

@@ -1,0 +1,81 @@
+//! What a recording costs: 10,000 discs, 40 sweeps a step and a frame each ten steps, with and without one in
+//! each format, from its start to its end.
+//!
+//! ```text
+//! cargo bench --bench data
+//! taskset --cpu-list 0 cargo bench --bench data    # where the writer has no processor of its own
+//! ```
+
+mod common;
+
+use common::timing::{criterion, least_secs};
+use slump::data::{About, FormatName, Recording};
+use slump::sim::Simulation;
+use slump::solver::StopTest;
+
+const GRAINS: usize = 10_000;
+/// Many frames, since the run ends when the last one is written.
+const STEPS: u64 = 400;
+const STEPS_A_FRAME: u64 = 10;
+
+/// The discs at rest, to be stepped with a fixed number of sweeps.
+fn start() -> Simulation {
+    let mut simulation = common::settled(GRAINS);
+    let mut settings = *simulation.solver();
+    (settings.stop, settings.tolerance, settings.max_sweeps) =
+        (StopTest::RelativeChange, 1e-15, 40);
+    simulation.set_solver(settings).expect("proper settings");
+    simulation
+}
+
+/// Takes the steps, and records them in some formats.
+fn run(start: &Simulation, formats: &[FormatName]) -> u64 {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut simulation = start.clone();
+    let mut recording = (!formats.is_empty()).then(|| {
+        Recording::start(folder.path(), formats, &About::default(), false).expect("a recording")
+    });
+    for step in 1..=STEPS {
+        let observables = *simulation.step().expect("a finite state");
+        let Some(recording) = &mut recording else { continue };
+        recording.add_step(&observables).expect("a row");
+        if step % STEPS_A_FRAME == 0 {
+            recording.add(simulation.moment()).expect("a frame");
+        }
+    }
+    recording.map_or(Ok(()), Recording::finish).expect("a recording");
+    bytes_in(folder.path())
+}
+
+fn bytes_in(folder: &std::path::Path) -> u64 {
+    let entries = std::fs::read_dir(folder).expect("a folder").flatten();
+    let size = |path: std::path::PathBuf| match path.is_dir() {
+        true => bytes_in(&path),
+        false => path.metadata().map_or(0, |about| about.len()),
+    };
+    entries.map(|entry| size(entry.path())).sum()
+}
+
+fn main() {
+    let mut criterion = criterion().sample_size(10);
+    let start = start();
+    println!("{} contacts", start.contacts().contacts().len());
+    let plain = least_secs(&mut criterion, "without a recording", || {
+        run(&start, &[]);
+    });
+    let frames = (STEPS / STEPS_A_FRAME) as f64;
+    let mut lines = vec![format!("without: {:.2} ms a step", 1e3 * plain / STEPS as f64)];
+    for format in FormatName::ALL {
+        let mut bytes = 0;
+        let secs = least_secs(&mut criterion, format.name(), || bytes = run(&start, &[*format]));
+        lines.push(format!(
+            "{}: {:+.1} % of the run, {:.2} MB a frame",
+            format.name(),
+            100.0 * (secs / plain - 1.0),
+            bytes as f64 / frames / 1e6
+        ));
+    }
+    println!("\nleast over all repeats, {GRAINS} discs, 40 sweeps a step, a frame each ten steps:");
+    println!("{}", lines.join("\n"));
+    criterion.final_summary();
+}

@@ -1,0 +1,37 @@
+"""Contact Dynamics of cohesive grains, from Python.
+
+    import slump
+
+    sim = slump.Simulation("pile", bond=20, dt=1e-3)
+    sim.run()
+    print(sim.observables["slump"])
+
+Options are those of the command line, with underscores: ``slump.options()`` lists them. All quantities are in SI
+units.
+"""
+
+from __future__ import annotations
+
+from . import _settings
+from ._errors import Error, FileError, InputError, NotFiniteError, SlumpWarning
+from ._slump import Simulation, __version__, methods, options, scene, scenes, solve, steppers
+from ._solution import Solution
+
+__all__ = [
+    "Error",
+    "FileError",
+    "InputError",
+    "NotFiniteError",
+    "Simulation",
+    "SlumpWarning",
+    "Solution",
+    "__version__",
+    "methods",
+    "options",
+    "scene",
+    "scenes",
+    "solve",
+    "steppers",
+]
+
+_settings.add()

@@ -1,0 +1,24 @@
+"""Every setting of a running simulation as an attribute of it, whatever settings there are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ._slump import Simulation, _kinds, options
+
+
+def _setting(name: str, about: str) -> property:
+    def read(simulation: Any) -> Any:
+        return simulation.settings[name]
+
+    def write(simulation: Any, value: Any) -> None:
+        simulation.change(**{name: value})
+
+    return property(read, write, doc=about)
+
+
+def add() -> None:
+    """Adds them to the class."""
+    about = options()
+    for name in _kinds():
+        setattr(Simulation, name, _setting(name, about[name]))

@@ -1,0 +1,211 @@
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+from typing_extensions import Self, Unpack, disjoint_base
+
+from ._solution import Solution
+
+__all__ = [
+    "scene",
+    "_kinds",
+    "methods",
+    "options",
+    "scenes",
+    "steppers",
+    "solve",
+    "Simulation",
+    "__version__",
+]
+
+__version__: str
+
+_Numbers = npt.NDArray[np.float64]
+_Table = dict[str, npt.NDArray[Any]]
+_Path = str | PathLike[str]
+_Scene = _Path | Mapping[str, Any]
+_Initial = _Path | Mapping[str, npt.ArrayLike] | Any
+
+# Settings: written by the test that compares them with the program's (SLUMP_BLESS=1 pytest python/tests/test_types.py).
+class _Settings(TypedDict):
+    stepper: Literal["moreau", "range", "tgs-soft", "dem"]
+    bond: float
+    dt: float
+    rho: float
+    mu: float
+    cone: Literal["shifted", "compressive"]
+    restitution_threshold: float
+    debonding_distance: float
+    substeps: int
+    solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
+    ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"]
+    stop: Literal["relative-change", "impulse-per-mass", "residual"]
+    tolerance: float
+    max_sweeps: int
+    warm_start: bool
+    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"]
+    model_solves: int
+    fallback: Literal["of-method", "none", "tresca"]
+    push_out: bool
+    max_travel: float
+    calm_unsolved: bool
+    sequential_impacts: bool
+    speculative: bool
+
+class _Changes(TypedDict, total=False):
+    stepper: Literal["moreau", "range", "tgs-soft", "dem"] | None
+    bond: float | None
+    dt: float | None
+    rho: float | None
+    mu: float | None
+    cone: Literal["shifted", "compressive"] | None
+    restitution_threshold: float | None
+    debonding_distance: float | None
+    substeps: int | None
+    solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"] | None
+    ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"] | None
+    stop: Literal["relative-change", "impulse-per-mass", "residual"] | None
+    tolerance: float | None
+    max_sweeps: int | None
+    warm_start: bool | None
+    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"] | None
+    model_solves: int | None
+    fallback: Literal["of-method", "none", "tresca"] | None
+    push_out: bool | None
+    max_travel: float | None
+    calm_unsolved: bool | None
+    sequential_impacts: bool | None
+    speculative: bool | None
+
+class _Attributes:
+    stepper: Literal["moreau", "range", "tgs-soft", "dem"]
+    bond: float
+    dt: float
+    rho: float
+    mu: float
+    cone: Literal["shifted", "compressive"]
+    restitution_threshold: float
+    debonding_distance: float
+    substeps: int
+    solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
+    ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"]
+    stop: Literal["relative-change", "impulse-per-mass", "residual"]
+    tolerance: float
+    max_sweeps: int
+    warm_start: bool
+    friction_model: Literal["coulomb", "tresca", "associated", "desaxce"]
+    model_solves: int
+    fallback: Literal["of-method", "none", "tresca"]
+    push_out: bool
+    max_travel: float
+    calm_unsolved: bool
+    sequential_impacts: bool
+    speculative: bool
+# Settings end.
+
+class _Options(_Changes, total=False):
+    initial_step: int | None
+    grains: int | None
+    box_width: float | None
+    seed: int | None
+    start: float | None
+    preset: Literal["robust"] | None
+    duration: float | None
+
+@disjoint_base
+class Simulation(_Attributes):
+    def __new__(
+        cls,
+        scene: _Scene | None = None,
+        *,
+        initial: _Initial | None = None,
+        restart: _Path | None = None,
+        **options: Unpack[_Options],
+    ) -> Self: ...
+    def step(
+        self, steps: int = 1, callback: Callable[[Simulation], object] | None = None, every: int = 1
+    ) -> None: ...
+    def run(
+        self, until: float | None = None, callback: Callable[[Simulation], object] | None = None, every: int = 1
+    ) -> None: ...
+    def change(self, **settings: Unpack[_Changes]) -> None: ...
+    def copy(self) -> Simulation: ...
+    def __copy__(self) -> Simulation: ...
+    def __deepcopy__(self, _memo: Any) -> Simulation: ...
+    def save(self, path: _Path) -> None: ...
+    def record(
+        self,
+        folder: _Path,
+        every: float = 0.04,
+        formats: Sequence[Literal["parquet", "csv", "vtk", "ovito"]] | None = None,
+        overwrite: bool = False,
+    ) -> None: ...
+    def end_recording(self) -> None: ...
+    def next_problem(self) -> dict[str, Any]: ...
+    def forget_history(self) -> None: ...
+    @property
+    def settings(self) -> _Settings: ...
+    @property
+    def observables(self) -> dict[str, int | float | bool]: ...
+    @property
+    def history(self) -> _Table: ...
+    @property
+    def grains(self) -> _Table: ...
+    @property
+    def contacts(self) -> _Table: ...
+    @property
+    def measures(self) -> dict[str, int | float | bool]: ...
+    @property
+    def histograms(self) -> _Table: ...
+    @property
+    def forces(self) -> _Numbers: ...
+    @property
+    def positions(self) -> _Numbers: ...
+    @property
+    def velocities(self) -> _Numbers: ...
+    @property
+    def angles(self) -> _Numbers: ...
+    @property
+    def angular_velocities(self) -> _Numbers: ...
+    @property
+    def radii(self) -> _Numbers: ...
+    @property
+    def masses(self) -> _Numbers: ...
+    @property
+    def boundaries(self) -> list[dict[str, Any]]: ...
+    @property
+    def alarms(self) -> list[str]: ...
+    @property
+    def recording(self) -> Path | None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def mean_diameter(self) -> float: ...
+    @property
+    def gravity(self) -> float: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def steps(self) -> int: ...
+
+def scene(
+    scene: _Scene | None = None, *, initial: _Initial | None = None, **options: Unpack[_Options]
+) -> dict[str, Any]: ...
+def scenes() -> dict[str, str]: ...
+def steppers() -> dict[str, str]: ...
+def methods() -> dict[str, str]: ...
+def options() -> dict[str, str]: ...
+def _kinds() -> dict[str, str | list[str]]: ...
+def solve(
+    problem: _Path | Mapping[str, Any],
+    method: str = "nsgs",
+    tolerance: float = 1e-8,
+    max_sweeps: int = 1_000_000,
+    repeat: int = 1,
+    without_bodies: bool = False,
+) -> Solution: ...

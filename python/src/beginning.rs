@@ -1,0 +1,126 @@
+//! What a simulation begins with: a scene by its name, from a file or as a dictionary, or a saved run, and changes
+//! to it.
+
+use std::path::Path;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::errors::{InputError, exception, refused};
+use crate::initial::discs;
+use crate::json::{data_of, text_of};
+use crate::options::{Given, all_names};
+use crate::run::Run;
+use slump::error::with_allowed;
+use slump::scene::{Config, Ground, SavedState, Scene, Settling};
+
+/// What a scene must be that is given as a dictionary, for messages.
+const FORM: &str = "a scene as slump.scene(name) gives it";
+/// Stands for what is given in Python where the command line has a name or a file.
+const A_DICTIONARY: &str = "a dictionary";
+const A_TABLE: &str = "a table";
+
+/// A scene as a dictionary, with changes: what `slump scene` prints.
+#[pyfunction(name = "scene")]
+#[pyo3(signature = (scene=None, *, initial=None, **options))]
+pub(crate) fn scene_as_data<'py>(
+    py: Python<'py>,
+    scene: Option<&Bound<'py, PyAny>>,
+    initial: Option<&Bound<'py, PyAny>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    data_of(py, &self::scene(py, scene, initial, options)?)
+}
+
+/// The scene that is asked for. Where grains have to settle, that is done here; Ctrl-C ends it.
+///
+/// # Errors
+/// Names what is unknown or outside its range, or the file that cannot be read.
+pub(crate) fn scene(
+    py: Python<'_>,
+    scene: Option<&Bound<'_, PyAny>>,
+    initial: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Scene> {
+    let config = asked(scene, initial, options)?;
+    if let Some(table) = initial.filter(|initial| is_data(initial)) {
+        if let Some(step) = config.origin.initial_step {
+            let allowed = "left out where initial is a table, which is of one moment";
+            return Err(refused("initial-step", step, allowed));
+        }
+        return config.scene_of_discs(discs(table)?).map_err(exception);
+    }
+    let ground = match scene.filter(|scene| is_data(scene)) {
+        Some(data) => Ground::of(described(data)?, Path::new("")),
+        None => config.ground(),
+    };
+    settled(py, &config, ground.map_err(exception)?)
+}
+
+/// The run that goes on from the state in a file, with the changes that are asked for.
+///
+/// # Errors
+/// Names what is wrong with the file, or what is outside its range or asks for another start.
+pub(crate) fn restarted(
+    py: Python<'_>,
+    file: &Path,
+    scene: Option<&Bound<'_, PyAny>>,
+    initial: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Run> {
+    let config = asked(scene, initial, options)?;
+    let restarted = py.detach(|| {
+        let mut state = SavedState::open(file)?;
+        config.change_state(&mut state)?;
+        Ok(Run::of(state))
+    });
+    restarted.map_err(exception)
+}
+
+/// What is asked for, as the command line has it.
+fn asked(
+    scene: Option<&Bound<'_, PyAny>>,
+    initial: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Config> {
+    let mut given = Given::default();
+    for (name, value, data) in [("scene", scene, A_DICTIONARY), ("initial", initial, A_TABLE)] {
+        match value {
+            Some(value) if is_data(value) => given.add_text(name, data),
+            Some(value) => given.add(name, value)?,
+            None => {}
+        }
+    }
+    given.add_all(options, &all_names())?;
+    given.config()
+}
+
+/// Whether it is neither a name nor a path.
+fn is_data(given: &Bound<'_, PyAny>) -> bool {
+    !given.is_none()
+        && !given.is_instance_of::<PyString>()
+        && !given.hasattr("__fspath__").unwrap_or(false)
+}
+
+fn described(data: &Bound<'_, PyAny>) -> PyResult<Scene> {
+    serde_json::from_str(&text_of("scene", data)?).map_err(|error| {
+        // A dictionary has no lines.
+        let place = format!(" at line {} column {}", error.line(), error.column());
+        let said = error.to_string();
+        let said = with_allowed(said.strip_suffix(&place).unwrap_or(&said), FORM);
+        InputError::new_err(format!("scene: {said}"))
+    })
+}
+
+fn settled(py: Python<'_>, config: &Config, ground: Ground) -> PyResult<Scene> {
+    let mut interrupted = None;
+    let look = |_: Settling| {
+        interrupted = Python::attach(|py| py.check_signals()).err();
+        interrupted.is_none()
+    };
+    let scene = py.detach(|| config.scene_on(ground, look));
+    match interrupted {
+        Some(interrupted) => Err(interrupted),
+        None => scene.map_err(exception),
+    }
+}

@@ -1,0 +1,117 @@
+//! Keyword arguments as the options of the command line that they are: the same names with underscores, the same
+//! parser, the same sentences.
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyInt, PyString};
+
+use crate::errors::exception;
+use slump::scene::Config;
+use slump::setting::Value;
+use slump::sim::Settings;
+
+/// What is given of options, by their names on the command line.
+#[derive(Default)]
+pub(crate) struct Given(Vec<(String, String)>);
+
+impl Given {
+    /// Adds keyword arguments, of which only those in `allowed` may be given.
+    ///
+    /// # Errors
+    /// Where there is another, or a value that is none of an option's.
+    pub(crate) fn add_all(
+        &mut self,
+        keywords: Option<&Bound<'_, PyDict>>,
+        allowed: &[String],
+    ) -> PyResult<()> {
+        for (name, value) in keywords.into_iter().flatten() {
+            let name: String = name.extract()?;
+            if !allowed.contains(&name) {
+                let allowed = allowed.join(", ");
+                let sentence = format!("{name} is given, but must be one of {allowed}");
+                return Err(PyTypeError::new_err(sentence));
+            }
+            self.add(&name, &value)?;
+        }
+        Ok(())
+    }
+
+    /// Adds one more, unless its value is none.
+    ///
+    /// # Errors
+    /// Where its value is none of an option's.
+    pub(crate) fn add(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        if !value.is_none() {
+            self.0.push((name.replace('_', "-"), text_of(name, value)?));
+        }
+        Ok(())
+    }
+
+    /// Adds one more as the command line has it.
+    pub(crate) fn add_text(&mut self, name: &str, text: &str) {
+        self.0.push((name.into(), text.into()));
+    }
+
+    /// What the command line makes of them.
+    ///
+    /// # Errors
+    /// In its own sentence.
+    pub(crate) fn config(&self) -> PyResult<Config> {
+        let pairs = self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+        Config::of_options(pairs).map_err(exception)
+    }
+}
+
+/// A value as it would stand on the command line.
+fn text_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if value.hasattr("dtype")? && value.getattr("size")?.extract::<usize>().ok() == Some(1) {
+        // Numbers of numpy's are arrays of one.
+        return text_of(name, &value.call_method0("item")?);
+    }
+    if let Ok(switch) = value.cast::<PyBool>() {
+        return Ok(switch.is_true().to_string());
+    }
+    if value.is_instance_of::<PyString>() || value.is_instance_of::<PyInt>() {
+        return Ok(value.str()?.to_string());
+    }
+    if value.hasattr("__fspath__")? {
+        return Ok(value.call_method0("__fspath__")?.str()?.to_string());
+    }
+    let number: PyResult<f64> = value.extract();
+    number.map(|number| number.to_string()).map_err(|_| {
+        let found = value.repr().map_or_else(|_| "something else".into(), |text| text.to_string());
+        let sentence = format!("{name} is {found}, but must be a number, a word, True or False");
+        PyTypeError::new_err(sentence)
+    })
+}
+
+/// The name of an option as a keyword.
+pub(crate) fn keyword(name: &str) -> String {
+    name.replace('-', "_")
+}
+
+/// The names of all options.
+pub(crate) fn all_names() -> Vec<String> {
+    Config::names().iter().map(|name| keyword(name)).collect()
+}
+
+/// The names of those that can be changed while a simulation runs.
+pub(crate) fn setting_names() -> Vec<String> {
+    Settings::about().map(|about| keyword(about.name)).collect()
+}
+
+/// All settings by their names.
+pub(crate) fn settings<'py>(py: Python<'py>, settings: &Settings) -> PyResult<Bound<'py, PyDict>> {
+    let found = PyDict::new(py);
+    for about in Settings::about() {
+        let name = keyword(about.name);
+        match settings.get(about.name) {
+            Some(Value::Number(number)) => found.set_item(name, number)?,
+            Some(Value::Count(count)) => found.set_item(name, count)?,
+            Some(Value::Switch(on)) => found.set_item(name, on)?,
+            Some(Value::Word(word)) => found.set_item(name, word)?,
+            None => {}
+        }
+    }
+    Ok(found)
+}

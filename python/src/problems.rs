@@ -1,0 +1,116 @@
+//! The contact problem of one step, solved alone.
+
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::{PyOSError, PyRuntimeError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::arrays::rows;
+use crate::errors::{exception, refused};
+use crate::forks::shared_out;
+use crate::json::text_of;
+use slump::interchange::{ProblemFile, Solution, solve_file};
+use slump::solver::{METHODS, Method, SolverSettings, StopTest};
+
+/// Between two looks for Ctrl-C.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Solves a contact problem: a dictionary, as of `Simulation.next_problem`, its JSON, or a file of it or of
+/// Siconos'. What Ctrl-C leaves undone goes on in the background.
+#[pyfunction]
+#[pyo3(signature = (problem, method="nsgs", tolerance=1e-8, max_sweeps=1_000_000, repeat=1, without_bodies=false))]
+pub(crate) fn solve<'py>(
+    py: Python<'py>,
+    problem: &Bound<'py, PyAny>,
+    method: &str,
+    tolerance: f64,
+    max_sweeps: u32,
+    repeat: u32,
+    without_bodies: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let method = method_of(method)?;
+    let stop = StopTest::Residual;
+    let settings =
+        SolverSettings { method, stop, tolerance, max_sweeps, ..SolverSettings::default() };
+    let mut problem = problem_of(problem)?;
+    if without_bodies {
+        problem.bodies = None;
+    }
+    let work = move || shared_out(|| solve_file(&problem, &settings, repeat));
+    let solution = interruptible(py, work)?;
+    let solution = solution.map_err(|error| PyOSError::new_err(error.to_string()))?;
+    as_python(py, solution.map_err(exception)?)
+}
+
+fn method_of(name: &str) -> PyResult<Method> {
+    let found = METHODS.iter().find(|info| info.name == name);
+    found.map(|info| info.method).ok_or_else(|| {
+        let names: Vec<_> = METHODS.iter().map(|info| info.name).collect();
+        refused("method", name, format!("one of {}", names.join(", ")))
+    })
+}
+
+fn problem_of(problem: &Bound<'_, PyAny>) -> PyResult<ProblemFile> {
+    let parsed = if let Ok(text) = problem.cast::<PyString>() {
+        let text = text.to_string();
+        // A path is one line and no object.
+        if text.trim_start().starts_with('{') || text.contains('\n') {
+            ProblemFile::parse(&text)
+        } else {
+            ProblemFile::read(text.as_ref())
+        }
+    } else if problem.hasattr("__fspath__")? {
+        let path: std::path::PathBuf = problem.extract()?;
+        ProblemFile::read(&path)
+    } else {
+        ProblemFile::parse(&text_of("the problem", problem)?)
+    };
+    parsed.map_err(exception)
+}
+
+/// Work on a thread of its own, while this one looks for Ctrl-C.
+fn interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (sender, mut receiver) = channel();
+    // Nobody listens any more after Ctrl-C.
+    let worker = thread::Builder::new().spawn(move || drop(sender.send(work())));
+    worker.map_err(|error| PyOSError::new_err(error.to_string()))?;
+    loop {
+        let received;
+        (receiver, received) = py.detach(move || {
+            let received = receiver.recv_timeout(LOOK);
+            (receiver, received)
+        });
+        match received {
+            Ok(done) => return Ok(done),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(PyRuntimeError::new_err("the method has failed"));
+            }
+        }
+    }
+}
+
+fn as_python<'py>(py: Python<'py>, solution: Solution) -> PyResult<Bound<'py, PyAny>> {
+    let pairs = |list: &[f64]| rows(py, list.chunks_exact(2).map(|pair| [pair[0], pair[1]]));
+    let fields = PyDict::new(py);
+    fields.set_item("contacts", solution.contacts)?;
+    fields.set_item("method", solution.method)?;
+    fields.set_item("on_bodies", solution.on_bodies)?;
+    fields.set_item("sweeps", solution.sweeps)?;
+    fields.set_item("factorisations", solution.factorisations)?;
+    fields.set_item("seconds", solution.seconds)?;
+    fields.set_item("converged", solution.converged)?;
+    fields.set_item("stalled", solution.stalled)?;
+    fields.set_item("residual", solution.residual)?;
+    fields.set_item("impulses", pairs(&solution.r)?)?;
+    fields.set_item("velocities", pairs(&solution.u)?)?;
+    let bodies = solution.velocities.map(|bodies| rows(py, bodies.into_iter())).transpose()?;
+    fields.set_item("body_velocities", bodies)?;
+    py.import("slump._solution")?.getattr("Solution")?.call((), Some(&fields))
+}

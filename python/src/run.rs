@@ -1,0 +1,154 @@
+//! A simulation with what is kept of its steps.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use slump::data::{DataSettings, Recording};
+use slump::error::{Error, Result};
+use slump::scene::{SavedState, Scene};
+use slump::sim::{AlarmKind, Observables, Simulation, Tally};
+
+/// How long steps are taken before someone looks for Ctrl-C. Longer is felt when it is pressed; shorter costs
+/// more looks, each of which waits for Python's lock.
+const SLICE: Duration = Duration::from_millis(20);
+
+/// A run of a scene.
+pub(crate) struct Run {
+    /// The scene as it began.
+    pub scene: Scene,
+    /// The run itself.
+    pub simulation: Simulation,
+    /// A row a step, since the start or since they were last forgotten.
+    pub rows: Vec<Observables>,
+    /// Sums over all of its steps.
+    tally: Tally,
+    /// Where it is recorded, if it is.
+    pub recording: Option<Recording>,
+    /// How many alarms have been told of.
+    alarms_told: usize,
+}
+
+impl Run {
+    /// A run at its start.
+    ///
+    /// # Errors
+    /// Names the first field outside its range.
+    pub(crate) fn start(scene: Scene) -> Result<Self> {
+        let simulation = scene.simulation()?;
+        Ok(Self::of(SavedState::new(scene, simulation, Tally::default())))
+    }
+
+    /// A run that goes on from a saved state.
+    pub(crate) fn of(state: SavedState) -> Self {
+        let SavedState { scene, simulation, tally, .. } = state;
+        // Who saved it has been told of these.
+        let alarms_told = simulation.alarms().len();
+        Self { scene, simulation, rows: Vec::new(), tally, recording: None, alarms_told }
+    }
+
+    /// Saves it as it is now.
+    ///
+    /// # Errors
+    /// Where it is no longer finite, so that it could not go on, or the file cannot be written.
+    pub(crate) fn save(&self, path: &Path) -> Result<()> {
+        let gone = |kind| self.simulation.alarms().iter().any(|alarm| alarm.kind == kind);
+        if gone(AlarmKind::NotFinite) {
+            return Err(Error::value("state", "no longer finite", "finite where it is saved"));
+        }
+        SavedState::new(self.scene.clone(), self.simulation.clone(), self.tally).save(path)
+    }
+
+    /// A second one, which goes on as this one would, but is not recorded.
+    pub(crate) fn copy(&self) -> Self {
+        Self {
+            scene: self.scene.clone(),
+            simulation: self.simulation.clone(),
+            rows: self.rows.clone(),
+            tally: self.tally,
+            recording: None,
+            alarms_told: self.alarms_told,
+        }
+    }
+
+    /// Records it from its present state on.
+    ///
+    /// # Errors
+    /// Names what is outside its range, or what is wrong with the folder.
+    pub(crate) fn record(
+        &mut self,
+        folder: &Path,
+        settings: &DataSettings,
+        overwrite: bool,
+    ) -> Result<()> {
+        settings.validate("every")?;
+        let mut now = self.scene.clone();
+        now.set_settings(*self.simulation.settings());
+        let recording = Recording::start(folder, &settings.formats(), &now.about()?, overwrite)?;
+        let mut recording = recording.at(settings.times(), &self.simulation);
+        recording.add_if_due(&self.simulation)?;
+        self.recording = Some(recording);
+        Ok(())
+    }
+
+    /// Ends its recording, if there is one.
+    ///
+    /// # Errors
+    /// Where something could not be written.
+    pub(crate) fn end_recording(&mut self) -> Result<()> {
+        self.recording.take().map_or(Ok(()), Recording::finish)
+    }
+
+    /// Takes steps for a while, at most so many. How many that were, and what ended them early.
+    pub(crate) fn take(&mut self, most: u64) -> (u64, Result<()>) {
+        let start = Instant::now();
+        for taken in 1..=most {
+            let stepped = self.simulation.step().map(|_| ());
+            let taken_down = self.take_down(stepped.is_ok());
+            let ended = stepped.and(taken_down);
+            if ended.is_err() || start.elapsed() >= SLICE {
+                return (taken, ended);
+            }
+        }
+        (most, Ok(()))
+    }
+
+    /// Keeps what a step measured, and records its state unless it blew up; the row of one that did is one
+    /// of them, as in `observables.csv`.
+    fn take_down(&mut self, is_finite: bool) -> Result<()> {
+        let row = *self.simulation.observables();
+        self.rows.push(row);
+        self.tally.add(&row);
+        let Some(recording) = &mut self.recording else { return Ok(()) };
+        let mut taken = recording.add_step(&row);
+        if is_finite {
+            taken = taken.and_then(|()| recording.add_if_due(&self.simulation));
+        }
+        if taken.is_err() {
+            self.recording = None;
+        }
+        taken
+    }
+
+    /// What went wrong so far, one sentence of a kind.
+    pub(crate) fn alarms(&self) -> Vec<String> {
+        let settings = self.simulation.settings();
+        self.simulation.alarms().iter().map(|alarm| alarm.message(settings)).collect()
+    }
+
+    /// What went wrong since the last call: its kind, and a sentence.
+    pub(crate) fn new_alarms(&mut self) -> Vec<(AlarmKind, String)> {
+        let settings = self.simulation.settings();
+        let new = self.simulation.alarms().iter().skip(self.alarms_told);
+        let new: Vec<_> = new.map(|alarm| (alarm.kind, alarm.message(settings))).collect();
+        self.alarms_told += new.len();
+        new
+    }
+}
+
+impl Drop for Run {
+    fn drop(&mut self) {
+        // The rows that wait are written where nobody ended the recording; whoever wants to know what went
+        // wrong ends it.
+        let _ = self.end_recording();
+    }
+}

@@ -1,0 +1,232 @@
+//! The class of a simulation: how it is made, stepped, changed and looked at.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use pyo3::types::PyDict;
+
+use crate::errors::{exception, refused};
+use crate::json::parsed;
+use crate::run::Run;
+use crate::{beginning, options, stepping};
+use slump::data::{DataSettings, FormatName};
+use slump::interchange::problem_file_of;
+use slump::sim::AlarmKind;
+
+/// A scene in motion.
+///
+/// Parameters
+/// ----------
+/// scene
+///     Name of a built-in scene (`slump.scenes()`; the pile where none is given), path of a scene file (TOML), or
+///     a dictionary as of `slump.scene()`.
+/// initial
+///     What a pile starts from instead: path of a file of discs, or a dictionary or data frame with columns `x`,
+///     `y`, `radius` (m) and, where the grains move, `vx`, `vy` (m/s), `omega` (rad/s), such as `grains` of another
+///     simulation; or a recording, of whose moments `initial_step` chooses one (else the last); or a saved run,
+///     which begins anew with its grains and its scene.
+/// restart
+///     Path of a saved run to go on with, bit for bit, where no other scene or start is given. Options change it
+///     from there on.
+/// **options
+///     Those of the command line, with underscores: `bond`, `dt`, `stepper`, `solver`, `grains`, `seed`, …
+///     `slump.options()` lists them.
+///
+/// Every setting (`bond`, `dt`, …) is an attribute, to be read and, from the next step on, changed. The same
+/// options give bit for bit the trajectory of the command line. Arrays are copies: they stay as they are while
+/// the simulation goes on. Several threads may use one simulation, and many simulations run in parallel on
+/// threads: steps are taken without Python's lock.
+///
+/// Raises
+/// ------
+/// slump.InputError
+///     Names the first value that is not allowed, and what is.
+/// slump.FileError
+///     Names the file that cannot be read.
+#[pyclass(module = "slump", subclass, frozen)]
+pub(crate) struct Simulation {
+    run: Mutex<Run>,
+}
+
+impl Simulation {
+    fn of(run: Run) -> Self {
+        Self { run: Mutex::new(run) }
+    }
+
+    /// The run, for a thread that has no lock of Python's.
+    pub(crate) fn locked(&self) -> MutexGuard<'_, Run> {
+        // A step that panicked has been told of; what it left can still be looked at.
+        self.run.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn run(&self, py: Python<'_>) -> MutexGuard<'_, Run> {
+        self.run.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What went wrong since the last call: its kind, and a sentence.
+    pub(crate) fn new_alarms(&self, py: Python<'_>) -> Vec<(AlarmKind, String)> {
+        self.run(py).new_alarms()
+    }
+}
+
+fn format_of(name: &str) -> PyResult<FormatName> {
+    FormatName::ALL.iter().copied().find(|format| format.name() == name).ok_or_else(|| {
+        let names: Vec<_> = FormatName::ALL.iter().map(|format| format.name()).collect();
+        refused("formats", name, format!("some of {}", names.join(", ")))
+    })
+}
+
+#[pymethods]
+impl Simulation {
+    #[new]
+    #[pyo3(signature = (scene=None, *, initial=None, restart=None, **options))]
+    fn new(
+        py: Python<'_>,
+        scene: Option<&Bound<'_, PyAny>>,
+        initial: Option<&Bound<'_, PyAny>>,
+        restart: Option<PathBuf>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        if let Some(file) = restart {
+            return beginning::restarted(py, &file, scene, initial, options).map(Self::of);
+        }
+        let scene = beginning::scene(py, scene, initial, options)?;
+        Run::start(scene).map(Self::of).map_err(exception)
+    }
+
+    /// Takes steps. After each `every` of them `callback` is called with the simulation.
+    ///
+    /// Other threads run meanwhile. Ctrl-C ends it after the step that it is in, as an exception of the
+    /// callback does; all steps until then are taken, and the simulation can go on. What goes wrong without
+    /// ending it is told of in a `SlumpWarning`.
+    ///
+    /// Raises
+    /// ------
+    /// slump.NotFiniteError
+    ///     Where a position or velocity is no longer a number.
+    #[pyo3(signature = (steps=1, callback=None, every=1))]
+    fn step(
+        this: &Bound<'_, Self>,
+        steps: i64,
+        callback: Option<&Bound<'_, PyAny>>,
+        every: i64,
+    ) -> PyResult<()> {
+        let count = u64::try_from(steps);
+        let count = count.map_err(|_| refused("steps", steps, "a whole number ≥ 0"))?;
+        stepping::take_steps(this, count, callback, every)
+    }
+
+    /// Takes the steps that are left until a simulated time (s), or until the scene's duration; else as `step`.
+    #[pyo3(name = "run", signature = (until=None, callback=None, every=1))]
+    fn run_until(
+        this: &Bound<'_, Self>,
+        until: Option<f64>,
+        callback: Option<&Bound<'_, PyAny>>,
+        every: i64,
+    ) -> PyResult<()> {
+        let steps = {
+            let run = this.get().run(this.py());
+            let until = until.unwrap_or(run.scene.duration_secs);
+            let parameters = run.simulation.parameters();
+            if !(until >= 0.0 && until.is_finite()) {
+                return Err(refused("until", until, "a finite number of seconds ≥ 0"));
+            }
+            parameters.check_steps("until", until).map_err(exception)?;
+            parameters.steps_in(until - run.simulation.time_secs())
+        };
+        stepping::take_steps(this, steps, callback, every)
+    }
+
+    /// Changes settings from the next step on: all that are given, or none.
+    #[pyo3(signature = (**settings))]
+    fn change(&self, py: Python<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+        let mut given = options::Given::default();
+        given.add_all(settings, &options::setting_names())?;
+        let config = given.config()?;
+        let mut run = self.run(py);
+        let mut settings = *run.simulation.settings();
+        config.change_settings(&mut settings);
+        run.simulation.change(settings).map_err(exception)
+    }
+
+    /// All settings, as the next step will be taken.
+    #[getter]
+    fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let settings = *self.run(py).simulation.settings();
+        options::settings(py, &settings)
+    }
+
+    /// A second simulation, which goes on as this one would.
+    fn copy(&self, py: Python<'_>) -> Self {
+        Self::of(self.run(py).copy())
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        self.copy(py)
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        self.copy(py)
+    }
+
+    /// Saves the run to a file, which is there as a whole or not at all: `Simulation(restart=path)` goes on with
+    /// it bit for bit, as `--restart` of the command line does, and `Simulation(initial=path)` begins with its
+    /// grains. Files are read by the version that wrote them, and by no other.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| self.locked().save(&path)).map_err(exception)
+    }
+
+    /// Records from now on into a folder, as `--data` of the command line does: what each step measures, and all
+    /// grains and contacts each `every` seconds of simulated time. A recording that it had before ends.
+    ///
+    /// `formats` are some of parquet (where nothing is said), csv, vtk and ovito. An earlier recording in the
+    /// folder is refused unless `overwrite` removes it. Files are written on a thread of their own; where that
+    /// fails, the recording ends, and a later step, or `end_recording`, says why.
+    #[pyo3(signature = (folder, every=0.04, formats=None, overwrite=false))]
+    fn record(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        every: f64,
+        formats: Option<Vec<String>>,
+        overwrite: bool,
+    ) -> PyResult<()> {
+        let formats = formats.unwrap_or_default();
+        let formats = formats.iter().map(|name| format_of(name)).collect::<PyResult<_>>()?;
+        let settings = DataSettings { folder: None, every_secs: Some(every), formats };
+        let recorded = py.detach(|| {
+            let mut run = self.locked();
+            run.end_recording()?;
+            run.record(&folder, &settings, overwrite)
+        });
+        recorded.map_err(exception)
+    }
+
+    /// Ends the recording, if there is one, and waits until all of it is written. So does whatever ends the
+    /// simulation, but does not say what went wrong.
+    fn end_recording(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| self.locked().end_recording()).map_err(exception)
+    }
+
+    /// The contact problem of the next step, as data that `solve` takes.
+    fn next_problem<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let problem = problem_file_of(&self.run(py).simulation).map_err(exception)?;
+        parsed(py, &problem.text())
+    }
+
+    /// Forgets the rows of the steps so far.
+    fn forget_history(&self, py: Python<'_>) {
+        self.run(py).rows = Vec::new();
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let run = self.run(py);
+        let grains = run.simulation.world().grains.len();
+        let of = &run.scene.name;
+        let row = run.simulation.observables();
+        let (step, time_secs) = (row.step, row.time_secs);
+        format!("<slump.Simulation {of}: {grains} grains, step {step}, t = {time_secs:.6} s>")
+    }
+}

@@ -1,0 +1,157 @@
+//! What a simulation shows of itself. Arrays are copies.
+
+use std::path::PathBuf;
+
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{columns, first_row, list, rows};
+use crate::json::data_of;
+use crate::simulation::Simulation;
+use slump::data::Table;
+
+#[pymethods]
+impl Simulation {
+    /// What the last step measured, or the initial state.
+    #[getter]
+    fn observables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let row = *self.run(py).simulation.observables();
+        first_row(py, Table::of_steps(&[row]))
+    }
+
+    /// What all steps measured, a row each.
+    #[getter]
+    fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let rows = self.run(py).rows.clone();
+        columns(py, Table::of_steps(&rows))
+    }
+
+    /// The grains, then the fixed discs, as a table.
+    #[getter]
+    fn grains<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let moment = self.run(py).simulation.moment();
+        columns(py, py.detach(|| Table::of_grains(&moment)))
+    }
+
+    /// The contacts of the last step as a table.
+    #[getter]
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let moment = self.run(py).simulation.moment();
+        columns(py, Table::of_contacts(&moment))
+    }
+
+    /// What is measured of the whole pile: stress, fabric, coordination, solid fraction, forces, clusters.
+    #[getter]
+    fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let moment = self.run(py).simulation.moment();
+        first_row(py, py.detach(|| Table::of_measures(&moment)))
+    }
+
+    /// Histograms of forces, directions, contacts and overlaps, a row a bin, as a table.
+    #[getter]
+    fn histograms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let moment = self.run(py).simulation.moment();
+        columns(py, py.detach(|| Table::of_histograms(&moment)))
+    }
+
+    /// The force of each contact on its grain i, N.
+    #[getter]
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let moment = self.run(py).simulation.moment();
+        rows(py, moment.contacts.iter().map(|contact| contact.force().into()))
+    }
+
+    /// Centres of the grains, m.
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let run = self.run(py);
+        rows(py, run.simulation.world().grains.positions.iter().map(|&place| place.into()))
+    }
+
+    /// Velocities of the grains, m/s.
+    #[getter]
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let run = self.run(py);
+        rows(py, run.simulation.world().grains.velocities.iter().map(|&speed| speed.into()))
+    }
+
+    /// Angles that the grains have turned since the start, rad.
+    #[getter]
+    fn angles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        list(py, self.run(py).simulation.world().grains.angles.iter().copied())
+    }
+
+    /// Angular velocities of the grains, rad/s.
+    #[getter]
+    fn angular_velocities<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        list(py, self.run(py).simulation.world().grains.angular_velocities.iter().copied())
+    }
+
+    /// Radii of the grains, m.
+    #[getter]
+    fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        list(py, self.run(py).simulation.world().grains.radii.iter().copied())
+    }
+
+    /// Masses of the grains, kg.
+    #[getter]
+    fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        list(py, self.run(py).simulation.world().grains.masses.iter().copied())
+    }
+
+    /// The boundaries where they are now, as scene files say them.
+    #[getter]
+    fn boundaries<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let boundaries = self.run(py).simulation.world().boundaries.clone();
+        data_of(py, &boundaries)
+    }
+
+    /// What went wrong so far, one sentence of a kind.
+    #[getter]
+    fn alarms(&self, py: Python<'_>) -> Vec<String> {
+        self.run(py).alarms()
+    }
+
+    /// The folder that it is recorded in, if it is.
+    #[getter]
+    fn recording(&self, py: Python<'_>) -> Option<PathBuf> {
+        self.run(py).recording.as_ref().map(|recording| recording.folder().to_owned())
+    }
+
+    /// The scene's name.
+    #[getter]
+    fn name(&self, py: Python<'_>) -> String {
+        self.run(py).scene.name.clone()
+    }
+
+    /// The scene's duration, s.
+    #[getter]
+    fn duration(&self, py: Python<'_>) -> f64 {
+        self.run(py).scene.duration_secs
+    }
+
+    /// The diameter d that lengths are measured in, m.
+    #[getter]
+    fn mean_diameter(&self, py: Python<'_>) -> f64 {
+        self.run(py).scene.mean_diameter
+    }
+
+    /// The scene's g, m/s².
+    #[getter]
+    fn gravity(&self, py: Python<'_>) -> f64 {
+        self.run(py).simulation.world().gravity.magnitude()
+    }
+
+    /// Simulated time, s.
+    #[getter]
+    fn time(&self, py: Python<'_>) -> f64 {
+        self.run(py).simulation.time_secs()
+    }
+
+    /// Number of steps taken.
+    #[getter]
+    fn steps(&self, py: Python<'_>) -> u64 {
+        self.run(py).simulation.observables().step
+    }
+}

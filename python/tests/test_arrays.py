@@ -1,0 +1,150 @@
+"""Arrays: their shapes and types, and whether they say the same as each other and as mechanics."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import slump
+
+TABLES = {
+    "grains": {
+        **dict.fromkeys(["step", "id"], np.int64),
+        **dict.fromkeys(["time", "x", "y", "angle", "vx", "vy", "omega", "radius", "mass"], np.float64),
+        **dict.fromkeys(["coordination", "pressure", "solid_fraction"], np.float64),
+        "kind": np.str_,
+    },
+    "contacts": {
+        **dict.fromkeys(["step", "id_i", "id_j", "age"], np.int64),
+        **dict.fromkeys(["time", "x", "y", "nx", "ny", "gap", "normal_force", "tangential_force", "stretch"], np.float64),
+        **dict.fromkeys(["kind_j", "name_j", "status"], np.str_),
+        "bond": np.bool_,
+    },
+}
+
+
+@pytest.fixture(scope="module", params=["moreau", "range"])
+def sim(request: pytest.FixtureRequest) -> slump.Simulation:
+    sim = slump.Simulation("pile", bond=30, dt=5e-4, stepper=request.param)
+    sim.step(150)
+    return sim
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_tables_have_their_columns(sim: slump.Simulation, name: str) -> None:
+    table = getattr(sim, name)
+    rows = {"grains": 257, "contacts": sim.observables["contacts"]}[name]
+    for column, kind in TABLES[name].items():
+        assert table[column].shape == (rows,), column
+        assert np.issubdtype(table[column].dtype, kind), column
+    frame = pd.DataFrame(table)
+    assert len(frame) == rows and set(frame["step"]) == {150}
+
+
+def test_arrays_are_the_columns_of_grains(sim: slump.Simulation) -> None:
+    grains = pd.DataFrame(sim.grains).query("kind == 'grain'")
+    count = len(grains)
+    assert sim.positions.shape == sim.velocities.shape == (count, 2) == (138, 2)
+    np.testing.assert_array_equal(sim.positions, grains[["x", "y"]])
+    np.testing.assert_array_equal(sim.velocities, grains[["vx", "vy"]])
+    for name, column in [("angles", "angle"), ("angular_velocities", "omega"), ("radii", "radius"), ("masses", "mass")]:
+        assert getattr(sim, name).dtype == np.float64
+        np.testing.assert_array_equal(getattr(sim, name), grains[column])
+    np.testing.assert_allclose(sim.masses, np.pi * sim.radii**2)
+    fixed = pd.DataFrame(sim.grains).query("kind == 'fixed'")
+    assert fixed["mass"].isna().all() and (fixed[["vx", "vy", "omega"]] == 0).all(axis=None)
+
+
+def test_forces_are_those_of_the_table_and_move_the_grains(sim: slump.Simulation) -> None:
+    other = sim.copy()
+    before = other.velocities
+    other.step(1)
+    contacts, forces = other.contacts, other.forces
+    normal = np.stack([contacts["nx"], contacts["ny"]], axis=1)
+    tangent = np.stack([-contacts["ny"], contacts["nx"]], axis=1)
+    of_table = contacts["normal_force"][:, None] * normal + contacts["tangential_force"][:, None] * tangent
+    np.testing.assert_allclose(forces, of_table, atol=1e-15)
+    if sim.stepper == "range":
+        return  # Its shocks pass before the forces are found.
+    # m Δv/Δt = m g + Σ f, the contact forces being opposite on the grain j.
+    total = other.masses[:, None] * [0.0, -other.gravity]
+    np.add.at(total, contacts["id_i"], forces)
+    between = contacts["kind_j"] == "grain"
+    assert 0 < between.sum() < len(between)
+    np.add.at(total, contacts["id_j"][between], -forces[between])
+    change = other.masses[:, None] * (other.velocities - before) / other.dt
+    np.testing.assert_allclose(change, total, atol=1e-9 * np.abs(forces).max())
+
+
+def test_contacts_name_what_they_are_with() -> None:
+    sim = slump.Simulation("moving-walls")
+    sim.step(300)
+    contacts = pd.DataFrame(sim.contacts)
+    walls = contacts[contacts["kind_j"] == "boundary"]
+    assert set(walls["name_j"]) == {"half-space 0", "piston 1", "piston 2"}
+    assert set(walls["id_j"]) == {18, 19, 20} and len(sim.grains["x"]) == 18
+    assert set(contacts[contacts["kind_j"] == "grain"]["name_j"]) == {""}
+    places = [boundary["point"][0] for boundary in sim.boundaries]
+    assert [boundary["shape"] for boundary in sim.boundaries] == ["half-space", "piston", "piston"]
+    assert places[1] > slump.Simulation("moving-walls").boundaries[1]["point"][0], "it moves in"
+
+
+def test_bonds_are_told_where_the_law_has_them(sim: slump.Simulation) -> None:
+    contacts = sim.contacts
+    if sim.stepper == "range":
+        assert contacts["bond"].any() and not np.isnan(contacts["stretch"][contacts["bond"]]).any()
+    else:
+        assert not contacts["bond"].any() and np.isnan(contacts["stretch"]).all()
+
+
+def test_observables_are_the_last_row_of_history(sim: slump.Simulation) -> None:
+    history, observables = sim.history, sim.observables
+    assert list(history) == list(observables)
+    for name, column in history.items():
+        assert column.shape == (150,) and (column[-1] == observables[name] or np.isnan(observables[name]))
+    assert history["converged"].dtype == np.bool_ and history["sweeps"].dtype == np.int64
+    other = sim.copy()
+    other.forget_history()
+    assert other.history["slump"].shape == (0,) and list(other.history) == list(history)
+    other.step(2)
+    assert list(other.history["step"]) == [151, 152]
+
+
+def test_measures_are_those_of_the_contacts_and_grains(sim: slump.Simulation) -> None:
+    measures, grains, contacts = sim.measures, pd.DataFrame(sim.grains), pd.DataFrame(sim.contacts)
+    of_grains = grains.query("kind == 'grain'")
+    assert measures["step"] == 150 and measures["grains"] == len(of_grains) == 138
+    ends = contacts["id_i"].tolist() + contacts["id_j"][contacts["kind_j"] == "grain"].tolist()
+    touching = np.bincount(ends, minlength=138)
+    np.testing.assert_array_equal(of_grains["coordination"], touching)
+    assert measures["coordination"] == pytest.approx(touching.mean())
+    assert grains.query("kind == 'fixed'")["pressure"].isna().all()
+    histograms = pd.DataFrame(sim.histograms)
+    assert set(histograms) >= {"step", "time", "quantity", "from", "to", "count"}
+    assert (histograms["count"] > 0).any() and (histograms["to"] > histograms["from"]).all()
+
+
+def test_arrays_are_copies(sim: slump.Simulation) -> None:
+    other = sim.copy()
+    kept = other.positions
+    was = kept.copy()
+    other.step(10)
+    np.testing.assert_array_equal(kept, was)
+    kept[:] = 0.0
+    assert (other.positions != 0.0).any()
+
+
+def test_a_table_of_grains_is_a_start(sim: slump.Simulation) -> None:
+    for table in (sim.grains, pd.DataFrame(sim.grains)):
+        other = slump.Simulation(initial=table)
+        np.testing.assert_array_equal(other.positions, sim.positions)
+        np.testing.assert_array_equal(other.angular_velocities, sim.angular_velocities)
+
+
+def test_a_table_without_rows_has_all_columns() -> None:
+    sim = slump.Simulation("bounce")
+    sim.step(1)
+    assert sim.observables["contacts"] == 0 and sim.forces.shape == (0, 2)
+    for column, kind in TABLES["contacts"].items():
+        assert sim.contacts[column].shape == (0,) and np.issubdtype(sim.contacts[column].dtype, kind), column

@@ -1,0 +1,41 @@
+"""The examples, and what the pages say, run."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from command_line import ROOT
+
+import slump
+
+EXAMPLES = sorted(path for path in (ROOT / "python" / "examples").glob("*.py") if "def main" in path.read_text())
+PAGES = [ROOT / "README.md", ROOT / "python" / "README.md"]
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_leaves_a_picture(tmp_path: Path, example: Path) -> None:
+    picture = tmp_path / "picture.png"
+    command = [sys.executable, str(example), "--quick", "--out", str(picture)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == "" and done.stdout.strip() == str(picture)
+    assert picture.read_bytes().startswith(b"\x89PNG") and picture.stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_what_a_page_says_runs(tmp_path: Path, page: Path) -> None:
+    programs = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+    assert programs, "a page with a program"
+    # The recording that the pages read.
+    sim = slump.Simulation("pile", bond=50, dt=5e-4)
+    sim.record(tmp_path / "run", every=0.01)
+    sim.step(200)
+    sim.end_recording()
+    for program in programs:
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout or "print" not in program, "it says something"

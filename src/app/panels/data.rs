@@ -1,0 +1,185 @@
+//! Panel: runs that are saved and opened, and the recording as files for other programs.
+
+use egui::{Button, DragValue, RichText, TextEdit, Ui};
+
+use crate::app::data_export::{DataExport, DataOrder};
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::data::FormatName;
+
+/// Shortest and longest simulated time between two frames, s.
+const EVERY: [f64; 2] = [1e-9, 1e9];
+
+/// Shows the panel.
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+    super::see::folder(ui, state);
+    let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
+    ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, state));
+    ui.separator();
+    ui.add_enabled_ui(is_ready && state.data.export.is_none(), |ui| order(ui, state));
+    export(ui, state, is_ready);
+    if let Some((told, is_failure)) = &state.data.told {
+        let dark = ui.visuals().dark_mode;
+        let colour = if *is_failure { theme::warning(dark) } else { theme::good(dark) };
+        ui.label(RichText::new(told).small().color(colour));
+    }
+}
+
+fn saved_runs(ui: &mut Ui, state: &mut AppState) {
+    let save = ui.button("Save state").on_hover_text(
+        "The moment that is shown as a .slump file in the folder: the run goes on from it bit for bit, here or with --restart.",
+    );
+    state.note_control("Save state", save.rect);
+    if save.clicked() {
+        state.save_state(ui.ctx());
+    }
+    ui.horizontal(|ui| {
+        let hint = "A file that Save state, --save or --checkpoint-every wrote. It can be dropped on the window, too.";
+        let label = ui.label("Saved run").on_hover_text(hint);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let is_named = !state.data.saved_run.trim().is_empty();
+            let open = ui.add_enabled(is_named, Button::new("Open state"));
+            let open = open.on_hover_text("Go on with that run, in place of the present one.");
+            let edit = TextEdit::singleline(&mut state.data.saved_run)
+                .desired_width(f32::INFINITY)
+                .hint_text("file.slump");
+            let typed = ui.add(edit).labelled_by(label.id);
+            let is_entered =
+                typed.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            if is_named && (open.clicked() || is_entered) {
+                let path = state.data.saved_run.trim().to_owned();
+                state.load_saved(path.as_ref());
+            }
+        });
+    });
+}
+
+/// What is to be exported.
+fn order(ui: &mut Ui, state: &mut AppState) {
+    stretch(ui, state);
+    let choices = &mut state.preferences.data;
+    ui.horizontal(|ui| {
+        let hint = "Simulated time from one frame of grains and contacts to the next. What is measured of whole piles has a row each step in any case.";
+        let label = ui.label("A frame each").on_hover_text(hint);
+        let every = DragValue::new(&mut choices.every_secs).range(EVERY[0]..=EVERY[1]);
+        let every = every.speed(1e-3).max_decimals(9).suffix(" s");
+        ui.add_enabled(!choices.each_step, every).labelled_by(label.id);
+        ui.toggle_value(&mut choices.each_step, "step").on_hover_text("A frame after each step.");
+    });
+    egui::Grid::new("formats").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
+        for (index, &format) in FormatName::ALL.iter().enumerate() {
+            let (name, hint) = words(format);
+            let mut is_wanted = choices.has(format);
+            let is_built = format.check();
+            let check = egui::Checkbox::new(&mut is_wanted, name);
+            // What this build has not may still be taken away.
+            let is_enabled = is_built.is_ok() || choices.has(format);
+            let mut shown = ui.add_enabled(is_enabled, check).on_hover_text(hint);
+            if let Err(refusal) = is_built {
+                shown = shown.on_disabled_hover_text(refusal.to_string());
+            }
+            if shown.changed() {
+                choices.set(format, is_wanted);
+            }
+            if index % 2 == 1 {
+                ui.end_row();
+            }
+        }
+    });
+    ui.horizontal(|ui| {
+        let hint = "The recording's own folder, below Folder unless it begins with /.";
+        let label = ui.label("Into").on_hover_text(hint);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.checkbox(&mut state.data.overwrite, "Overwrite")
+                .on_hover_text("Remove an earlier recording that is there, as --overwrite does.");
+            let mut folder = choices.folder.display().to_string();
+            let edit = TextEdit::singleline(&mut folder).desired_width(f32::INFINITY);
+            if ui.add(edit).labelled_by(label.id).changed() {
+                choices.folder = folder.into();
+            }
+        });
+    });
+}
+
+/// What a format is for.
+fn words(format: FormatName) -> (&'static str, &'static str) {
+    match format {
+        FormatName::Parquet => ("Parquet", "For pandas, polars and their like."),
+        FormatName::Csv => ("Text (CSV)", "The same tables as text."),
+        FormatName::Vtk => ("ParaView", "Files of VTK: open vtk/grains.pvd."),
+        FormatName::Ovito => ("OVITO", "Dumps as LAMMPS writes them: open ovito/grains.dump."),
+    }
+}
+
+/// Which part of the recording.
+fn stretch(ui: &mut Ui, state: &mut AppState) {
+    let Some(world) = state.world() else { return };
+    let (first, last) = (world.recorded_from_secs, world.recorded_secs);
+    let now = world.snapshot.observables.time_secs;
+    let mut is_all = state.data.stretch.is_none();
+    ui.horizontal(|ui| {
+        let hint = "From the start of the run to the last step that was taken.";
+        if ui.checkbox(&mut is_all, "The whole recording").on_hover_text(hint).changed() {
+            state.data.stretch = (!is_all).then_some([first, last]);
+        }
+        ui.label(RichText::new(format!("{first:.4} … {last:.4} s")).small().weak());
+    });
+    let Some(stretch) = &mut state.data.stretch else { return };
+    egui::Grid::new("stretch").num_columns(3).spacing([8.0, 3.0]).show(ui, |ui| {
+        for (secs, name) in stretch.iter_mut().zip(["From", "To"]) {
+            let label = ui.label(name);
+            let value = DragValue::new(secs).range(first..=last).max_decimals(6).suffix(" s");
+            let speed = 1e-3 * (last - first).max(1e-6);
+            ui.add(value.speed(speed)).labelled_by(label.id);
+            let here = ui.button("here");
+            let said = format!("{name} here");
+            here.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &said));
+            if here.on_hover_text("The moment that is shown.").clicked() {
+                *secs = now;
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// The button that starts an export, or how far it is.
+fn export(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
+    let Some(export) = &state.data.export else {
+        start(ui, state, is_ready);
+        return;
+    };
+    ui.horizontal(|ui| {
+        // Not where the button was that started it: a second click there is none on this one.
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let hint = "Frames that are written stay.";
+            if ui.button("Stop export").on_hover_text(hint).clicked() {
+                export.cancel();
+            }
+            let bar = ui.add(egui::ProgressBar::new(export.part()).desired_height(14.0));
+            bar.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, "Exporting data")
+            });
+        });
+    });
+}
+
+fn start(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
+    let has_format = !state.preferences.data.formats.is_empty();
+    let button = ui.add_enabled(is_ready && has_format, Button::new("Export data"));
+    state.note_control("Export data", button.rect);
+    let button = button
+        .on_hover_text("Computes what was recorded once more, bit for bit, and writes it down; the run may go on meanwhile.")
+        .on_disabled_hover_text("Choose a format first.");
+    if !button.clicked() {
+        return;
+    }
+    let order = DataOrder {
+        folder: state.preferences.folder.join(&state.preferences.data.folder),
+        overwrite: std::mem::take(&mut state.data.overwrite),
+        settings: state.preferences.data.settings(),
+        stretch: state.data.stretch,
+    };
+    let run = state.take_run();
+    state.data.told = None;
+    state.data.export = Some(DataExport::start(ui.ctx(), order, run));
+}

@@ -1,0 +1,152 @@
+//! One frame as the text of a LAMMPS dump, with the columns that OVITO knows under the names that it knows
+//! them by. There is no z: without it OVITO takes the world for the plane that it is.
+//!
+//! Numbers are written in the shortest form that reads back as the same number.
+
+use std::fmt::Write as _;
+
+use glam::DVec2;
+
+use crate::data::format::{About, Frame};
+use crate::data::table::{Column, Table, Values};
+use crate::sim::{Moment, OtherBody};
+
+/// Columns of grains as dumps call them, in this order, and ours; all others follow as they are.
+const GRAIN_COLUMNS: [(&str, &str); 10] = [
+    ("id", "id"),
+    ("type", "kind"),
+    ("element", "kind"),
+    ("x", "x"),
+    ("y", "y"),
+    ("radius", "radius"),
+    ("vx", "vx"),
+    ("vy", "vy"),
+    ("omegaz", "omega"),
+    // What OVITO knows as `coordination` are whole numbers, and fixed discs have none.
+    ("coordination_number", "coordination"),
+];
+/// The same of contacts.
+const CONTACT_COLUMNS: [(&str, &str); 2] = [("batom1", "id_i"), ("batom2", "id_j")];
+/// What stands at the head of a frame, or says nothing of contacts between discs.
+const LEFT_OUT: [&str; 3] = ["step", "time", "name_j"];
+/// The column that has words; all others have numbers for them.
+const IN_WORDS: &str = "element";
+/// LAMMPS counts types from here.
+const FIRST_TYPE: u32 = 1;
+
+/// A frame.
+pub(super) struct Text {
+    /// Ahead of the first frame: units, and what is to be known of the run. Readers skip items that
+    /// they do not know there, and nowhere else.
+    pub front: String,
+    /// All up to the names of the columns.
+    pub head: String,
+    pub rows: String,
+}
+
+/// A row a grain, then a row a fixed disc.
+pub(super) fn grains(frame: &Frame, about: &About) -> Text {
+    let rows = 0..frame.grains.len();
+    dump("ATOMS", frame, about, (&frame.grains, &GRAIN_COLUMNS), rows)
+}
+
+/// A row a contact between two discs.
+pub(super) fn contacts(frame: &Frame, about: &About) -> Text {
+    let contacts = frame.moment.contacts.iter().enumerate();
+    let between_discs =
+        contacts.filter(|(_, contact)| !matches!(contact.other, OtherBody::Boundary(_)));
+    let rows: Vec<usize> = between_discs.map(|(row, _)| row).collect();
+    dump("BONDS", frame, about, (&frame.contacts, &CONTACT_COLUMNS), rows.into_iter())
+}
+
+fn dump(
+    label: &str,
+    frame: &Frame,
+    about: &About,
+    (table, first): (&Table, &[(&'static str, &str)]),
+    rows: impl ExactSizeIterator<Item = usize>,
+) -> Text {
+    let columns = columns(table, first);
+    let mut head = head(&frame.moment, label, rows.len());
+    columns.iter().for_each(|(name, _)| head.extend([" ", name]));
+    head.push('\n');
+    let mut text = String::new();
+    for row in rows {
+        for (place, (name, column)) in columns.iter().enumerate() {
+            if place > 0 {
+                text.push(' ');
+            }
+            push(&mut text, name, &column.values, row);
+        }
+        text.push('\n');
+    }
+    Text { front: front(about, &columns), head, rows: text }
+}
+
+fn columns<'a>(
+    table: &'a Table,
+    first: &[(&'static str, &str)],
+) -> Vec<(&'static str, &'a Column)> {
+    let named = first.iter().filter_map(|&(name, ours)| Some((name, table.column(ours)?)));
+    let is_first = |column: &&Column| first.iter().any(|(_, ours)| *ours == column.name);
+    let others = table.columns.iter().filter(|column| !is_first(column));
+    let others = others.filter(|column| !LEFT_OUT.contains(&column.name));
+    named.chain(others.map(|column| (column.name, column))).collect()
+}
+
+fn push(text: &mut String, name: &str, values: &Values, row: usize) {
+    let mut buffer = ryu::Buffer::new();
+    let _ = match values {
+        Values::Numbers(numbers) => text.write_str(buffer.format(numbers[row])),
+        Values::SomeNumbers(numbers) => {
+            text.write_str(buffer.format(numbers[row].unwrap_or(f64::NAN)))
+        }
+        Values::Counts(counts) => write!(text, "{}", counts[row]),
+        Values::Flags(flags) => write!(text, "{}", flags[row].map_or(-1, i8::from)),
+        Values::Words { words, codes } if name == IN_WORDS => {
+            text.write_str(&words[codes[row] as usize])
+        }
+        Values::Words { codes, .. } => write!(text, "{}", codes[row] + first_code(name)),
+    };
+}
+
+/// The number of the first word of a list.
+fn first_code(name: &str) -> u32 {
+    if name == "type" { FIRST_TYPE } else { 0 }
+}
+
+/// A line of what is known of the run and one of what the columns are: OVITO looks for the first frame in the
+/// first 20 lines alone, and takes a file for none of its formats if it is not there.
+fn front(about: &About, columns: &[(&'static str, &Column)]) -> String {
+    let facts = about.facts.iter().map(|(name, said)| format!("{name}: {said}"));
+    let columns = columns.iter().filter(|(name, _)| *name != IN_WORDS);
+    let columns = columns.map(|(name, column)| column.described_with_codes(name, first_code(name)));
+    let [facts, columns] = [facts.collect::<Vec<_>>(), columns.collect()].map(|all| all.join("; "));
+    format!("ITEM: UNITS\nsi\nITEM: PARAMETERS\n{facts}\n{columns}\n")
+}
+
+fn head(moment: &Moment, label: &str, count: usize) -> String {
+    let observables = &moment.observables;
+    let ([min, max], radius) = bounds(moment);
+    format!(
+        "ITEM: TIME\n{:?}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF {label}\n{count}\n\
+         ITEM: BOX BOUNDS ss ss ss\n{:?} {:?}\n{:?} {:?}\n{:?} {:?}\nITEM: {label}",
+        observables.time_secs, observables.step, min.x, max.x, min.y, max.y, -radius, radius
+    )
+}
+
+/// What holds all discs that are not lost, and the largest radius, m.
+fn bounds(moment: &Moment) -> ([DVec2; 2], f64) {
+    let grains = moment.grains.iter().filter(|grain| !grain.lost);
+    let grains = grains.map(|grain| (grain.position, grain.radius));
+    let fixed = moment.surroundings.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
+    let mut largest = 0f64;
+    let mut corners: Option<[DVec2; 2]> = None;
+    for (centre, radius) in grains.chain(fixed) {
+        let [low, high] = [centre - radius, centre + radius];
+        let [min, max] = corners.unwrap_or([low, high]);
+        corners = Some([min.min(low), max.max(high)]);
+        largest = largest.max(radius);
+    }
+    (corners.unwrap_or_default(), largest)
+}

@@ -1,0 +1,184 @@
+//! A table as a file of text with commas, which grows.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind::NotFound, Write};
+use std::path::{Path, PathBuf};
+
+use super::files;
+use super::format::About;
+use super::table::{Table, Values};
+use crate::error::{Error, Result};
+use crate::output::GrowingFile;
+
+/// What begins a line that is a comment.
+pub(super) const COMMENT: u8 = b'#';
+
+/// A table that is written row by row, below comments that say what the columns are.
+pub(super) struct TextTable {
+    path: PathBuf,
+    /// Comments, and the line of names.
+    head: String,
+    names: String,
+    file: Option<GrowingFile>,
+    rows: Vec<u8>,
+}
+
+/// What of a table stays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Kept {
+    pub rows: u64,
+    /// Of the last row.
+    pub step: Option<u64>,
+}
+
+impl TextTable {
+    /// A table with the columns of `table`. The file begins with the first rows, even if these are none, or is gone on with
+    /// ([`TextTable::roll_back`]).
+    pub(super) fn new(path: PathBuf, about: &About, table: &Table) -> Self {
+        let names: Vec<_> = table.columns.iter().map(|column| column.name).collect();
+        let names = names.join(",");
+        let facts = about.facts.iter().map(|(name, said)| format!("# {name}: {said}\n"));
+        let columns = table.columns.iter();
+        let columns = columns.map(|column| format!("# column {}\n", column.described(column.name)));
+        let comments: String = facts.chain(columns).collect();
+        let head = format!("{comments}{names}\n");
+        Self { path, head, names, file: None, rows: Vec::new() }
+    }
+
+    /// Adds rows.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(super) fn add(&mut self, table: &Table) -> Result<()> {
+        let mut rows = std::mem::take(&mut self.rows);
+        rows.clear();
+        write_rows(&mut rows, table);
+        self.begun()?.add(&rows)?;
+        self.rows = rows;
+        Ok(())
+    }
+
+    /// The file, with its head at least.
+    fn begun(&mut self) -> Result<&mut GrowingFile> {
+        match &mut self.file {
+            Some(file) => Ok(file),
+            none => {
+                let mut file = GrowingFile::start(self.path.clone())?;
+                file.add(self.head.as_bytes())?;
+                Ok(none.insert(file))
+            }
+        }
+    }
+
+    /// Has all rows on the disk, and the head at least.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(super) fn finish(&mut self) -> Result<()> {
+        self.begun()?.sync();
+        Ok(())
+    }
+
+    /// Drops the rows after a step, or all, and a half row at the end.
+    ///
+    /// # Errors
+    /// Where the file is not such a table.
+    pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<Kept> {
+        self.file = None;
+        let file = match File::open(&self.path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == NotFound => return Ok(Kept::default()),
+            Err(error) => return Err(Error::file(&self.path, error)),
+        };
+        let (kept, whole) = self.rows_until(step, BufReader::new(file))?;
+        if kept.rows == 0 {
+            files::remove(&self.path)?;
+        } else {
+            self.file = Some(GrowingFile::go_on(self.path.clone(), whole)?);
+        }
+        Ok(kept)
+    }
+
+    /// The rows up to a step, and how many bytes reach to their end.
+    fn rows_until(&self, step: Option<u64>, mut file: impl BufRead) -> Result<(Kept, u64)> {
+        let (mut kept, mut whole, mut number) = (Kept::default(), 0, 0);
+        let mut names_seen = false;
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            let read = file.read_until(b'\n', &mut line);
+            let length = read.map_err(|error| Error::file(&self.path, error))?;
+            number += 1;
+            let Some(text) = line.strip_suffix(b"\n") else { return Ok((kept, whole)) };
+            if names_seen {
+                let there = step_of(text).ok_or_else(|| self.refuse(number, text))?;
+                if Some(there) > step {
+                    return Ok((kept, whole));
+                }
+                kept = Kept { rows: kept.rows + 1, step: Some(there) };
+            } else if text.first() != Some(&COMMENT) {
+                if text != self.names.as_bytes() {
+                    return Err(self.refuse(number, text));
+                }
+                names_seen = true;
+            }
+            whole += length as u64;
+        }
+    }
+
+    fn refuse(&self, line: u64, found: &[u8]) -> Error {
+        let found = String::from_utf8_lossy(found);
+        let reason = format!(
+            "line {line} is '{found}', but must be of a table with the columns {}",
+            self.names
+        );
+        Error::file(&self.path, reason)
+    }
+}
+
+fn step_of(row: &[u8]) -> Option<u64> {
+    let step = row.split(|&byte| byte == b',').next()?;
+    str::from_utf8(step).ok()?.parse().ok()
+}
+
+fn write_rows(text: &mut Vec<u8>, table: &Table) {
+    let mut numbers = ryu::Buffer::new();
+    for row in 0..table.len() {
+        for (place, column) in table.columns.iter().enumerate() {
+            if place > 0 {
+                text.push(b',');
+            }
+            match &column.values {
+                Values::Numbers(values) => {
+                    text.extend_from_slice(numbers.format(values[row]).as_bytes());
+                }
+                Values::SomeNumbers(values) => {
+                    let said = values[row].map_or("", |value| numbers.format(value));
+                    text.extend_from_slice(said.as_bytes());
+                }
+                Values::Counts(values) => {
+                    // Memory takes whatever is written to it.
+                    let _ = write!(text, "{}", values[row]);
+                }
+                Values::Flags(values) => {
+                    let said = values[row].map_or("", |so| if so { "true" } else { "false" });
+                    text.extend_from_slice(said.as_bytes());
+                }
+                Values::Words { words, codes } => {
+                    text.extend_from_slice(words[codes[row] as usize].as_bytes());
+                }
+            }
+        }
+        text.push(b'\n');
+    }
+}
+
+/// The tables of text in a folder.
+///
+/// # Errors
+/// Where the folder cannot be read.
+pub(super) fn named(folder: &Path, tables: &[&str]) -> Result<Vec<PathBuf>> {
+    files::named(folder, |name| {
+        name.strip_suffix(".csv").is_some_and(|name| tables.contains(&name))
+    })
+}

@@ -1,0 +1,200 @@
+//! One `.vtp` file: points, cells on them, and named arrays, in VTK's XML format for polygonal data with
+//! raw appended arrays (K. Martin, W. Schroeder, B. Lorensen, *VTK File Formats*).
+//!
+//! The XML says of each array where it begins behind the `_` of `AppendedData`; there its length in bytes
+//! stands as a UInt64, then its values, all in little-endian order. Nothing is rounded.
+
+use std::fmt::Write as _;
+
+/// A number as such files have it.
+pub(super) trait Scalar: Copy {
+    /// VTK's name of its type.
+    const TYPE: &'static str;
+    /// Appends its bytes.
+    fn put(self, bytes: &mut Vec<u8>);
+}
+
+macro_rules! scalars {
+    ($($kind:ty, $name:literal;)*) => {
+        $(impl Scalar for $kind {
+            const TYPE: &'static str = $name;
+            fn put(self, bytes: &mut Vec<u8>) {
+                bytes.extend_from_slice(&self.to_le_bytes());
+            }
+        })*
+    };
+}
+
+scalars! { f64, "Float64"; i64, "Int64"; i32, "Int32"; i8, "Int8"; }
+
+/// Which cells lie on the points, all of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cells {
+    /// Each point by itself.
+    Points,
+    /// A line from each point of even number to the next.
+    Lines,
+}
+
+/// A file in the making.
+pub(super) struct PolyData {
+    cells: Cells,
+    points: usize,
+    /// The XML of the arrays that go with the file as a whole, …
+    of_file: String,
+    /// … with each point or line, …
+    of_rows: String,
+    /// … and of the points themselves.
+    of_points: String,
+    appended: Vec<u8>,
+}
+
+impl PolyData {
+    /// A file with those points, m, in the plane z = 0.
+    pub(super) fn new(cells: Cells, points: impl ExactSizeIterator<Item = [f64; 2]>) -> Self {
+        let mut file = Self {
+            cells,
+            points: points.len(),
+            of_file: String::new(),
+            of_rows: String::new(),
+            of_points: String::new(),
+            appended: Vec::new(),
+        };
+        let said = file.append("Points", ["x", "y", "z"], points.map(in_space));
+        file.of_points = said;
+        file
+    }
+
+    /// Adds a number that goes with the file as a whole. It stands in the XML, where a person finds it.
+    pub(super) fn add_number<N: Scalar + std::fmt::Debug>(&mut self, name: &str, number: N) {
+        let _ = writeln!(
+            self.of_file,
+            "      <DataArray type=\"{}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">\
+             {number:?}</DataArray>",
+            N::TYPE
+        );
+    }
+
+    /// Adds a number that goes with the file as a whole and may be none, which no text is for.
+    pub(super) fn add_number_or_none<N: Scalar>(&mut self, name: &str, number: N) {
+        let offset = self.append_bytes(|bytes| number.put(bytes));
+        let _ = writeln!(
+            self.of_file,
+            "      <DataArray type=\"{}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"appended\" \
+             offset=\"{offset}\"/>",
+            N::TYPE
+        );
+    }
+
+    /// Adds words that go with the file as a whole.
+    pub(super) fn add_words<Word: AsRef<str>>(
+        &mut self,
+        name: &str,
+        words: impl ExactSizeIterator<Item = Word>,
+    ) {
+        let count = words.len();
+        let offset = self.append_bytes(|bytes| {
+            for word in words {
+                // A 0 ends a word, so none can be in it.
+                bytes.extend(word.as_ref().bytes().filter(|&byte| byte != 0).chain([0]));
+            }
+        });
+        let _ = writeln!(
+            self.of_file,
+            "      <Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{count}\" \
+             format=\"appended\" offset=\"{offset}\"/>"
+        );
+    }
+
+    /// Adds numbers, one a point or line.
+    pub(super) fn add_column<N: Scalar>(&mut self, name: &str, column: impl Iterator<Item = N>) {
+        let said = self.append(name, [], column.map(|number| [number]));
+        self.of_rows += &said;
+    }
+
+    /// Adds vectors, one a point or line; `parts` are the names of their first two components.
+    pub(super) fn add_vectors(
+        &mut self,
+        name: &str,
+        [x, y]: [&str; 2],
+        vectors: impl Iterator<Item = [f64; 2]>,
+    ) {
+        let said = self.append(name, [x, y, "z"], vectors.map(in_space));
+        self.of_rows += &said;
+    }
+
+    /// The whole file. ParaView colours by `scalars` at first.
+    pub(super) fn finish(mut self, scalars: &str) -> Vec<u8> {
+        let (cells, each) = match self.cells {
+            Cells::Points => ("Verts", 1),
+            Cells::Lines => ("Lines", 2),
+        };
+        let count = self.points / each;
+        let connectivity = self.append("connectivity", [], (0..self.points as i64).map(|n| [n]));
+        let ends = (1..=count as i64).map(|number| [number * each as i64]);
+        let offsets = self.append("offsets", [], ends);
+        let Self { points, of_file, of_rows, of_points, appended, .. } = &self;
+        let of_rows = format!(" Scalars=\"{scalars}\">\n{of_rows}      ");
+        let [of_each_point, of_each_cell] = match self.cells {
+            Cells::Points => [of_rows.as_str(), ">"],
+            Cells::Lines => [">", of_rows.as_str()],
+        };
+        let counts = ["Verts", "Lines", "Strips", "Polys"]
+            .map(|kind| format!(" NumberOf{kind}=\"{}\"", if kind == cells { count } else { 0 }));
+        let head = format!(
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+             header_type=\"UInt64\">\n  \
+             <PolyData>\n    \
+             <FieldData>\n{of_file}    </FieldData>\n    \
+             <Piece NumberOfPoints=\"{points}\"{}>\n      \
+             <PointData{of_each_point}</PointData>\n      \
+             <CellData{of_each_cell}</CellData>\n      \
+             <Points>\n{of_points}      </Points>\n      \
+             <{cells}>\n{connectivity}{offsets}      </{cells}>\n    \
+             </Piece>\n  \
+             </PolyData>\n  \
+             <AppendedData encoding=\"raw\">\n   _",
+            counts.concat()
+        );
+        let tail = b"\n  </AppendedData>\n</VTKFile>\n";
+        [head.as_bytes(), appended, tail].concat()
+    }
+
+    /// Appends an array; what the XML says of it. `parts` names the components where there are several.
+    fn append<N: Scalar, const EACH: usize, const NAMED: usize>(
+        &mut self,
+        name: &str,
+        parts: [&str; NAMED],
+        rows: impl Iterator<Item = [N; EACH]>,
+    ) -> String {
+        let offset = self.append_bytes(|bytes| {
+            rows.flatten().for_each(|number| number.put(bytes));
+        });
+        let mut components = format!(" NumberOfComponents=\"{EACH}\"");
+        for (number, part) in parts.iter().enumerate() {
+            let _ = write!(components, " ComponentName{number}=\"{part}\"");
+        }
+        format!(
+            "        <DataArray type=\"{}\" Name=\"{name}\"{components} format=\"appended\" \
+             offset=\"{offset}\"/>\n",
+            N::TYPE
+        )
+    }
+
+    /// Appends what `put` puts there, behind its length; where that begins.
+    fn append_bytes(&mut self, put: impl FnOnce(&mut Vec<u8>)) -> usize {
+        let offset = self.appended.len();
+        let behind_length = offset + size_of::<u64>();
+        self.appended.resize(behind_length, 0);
+        put(&mut self.appended);
+        let length = (self.appended.len() - behind_length) as u64;
+        self.appended[offset..behind_length].copy_from_slice(&length.to_le_bytes());
+        offset
+    }
+}
+
+/// A vector of the plane as VTK has it.
+fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
+    [x, y, 0.0]
+}

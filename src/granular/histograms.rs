@@ -1,0 +1,102 @@
+//! How forces, directions, contacts and overlaps are distributed.
+//!
+//! The bins are the same for all piles and moments, so that counts add up over frames and runs.
+
+use super::parts::Parts;
+use super::tensor::axis_degrees;
+use crate::sim::Moment;
+
+/// Bins of directions: as wide as this, degrees, and the first about 0, so that the directions of square and
+/// triangular packings lie in the middle of theirs.
+const DEGREES: f64 = 5.0;
+/// Bins of f in the mean force.
+const FORCE_BINS_IN_ONE: i32 = 5;
+/// The bins of f reach from so many mean forces that pull …
+const FORCES_PULLING: i32 = 4;
+/// … to so many that push.
+const FORCES_PUSHING: i32 = 8;
+/// The last bin of contacts a grain has so many and more. Equal discs have 6 at most.
+const CONTACTS: u32 = 12;
+/// Edges of overlaps in mean diameters: 0, and three a decade.
+const OVERLAPS: [f64; 20] = [
+    0.0, 1e-7, 2e-7, 5e-7, 1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3,
+    1e-2, 2e-2, 5e-2, 1e-1,
+];
+
+/// How often each range of a quantity occurs.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Histogram {
+    /// What is counted, a word.
+    pub quantity: &'static str,
+    /// Unit of the edges; 1 where they have none.
+    pub unit: &'static str,
+    /// Bin k reaches from `edges[k]`, which belongs to it, to `edges[k + 1]`. The outermost may be infinite.
+    pub edges: Vec<f64>,
+    /// What lies in each bin.
+    pub counts: Vec<u64>,
+}
+
+/// The histograms of a pile, each once:
+///
+/// * `normal_force`: f = N/⟨|N|⟩ of the contacts that bear a force, in bins of 0.2 from −4 to 8, and what lies beyond.
+/// * `contact_orientation`: directions of normals, degrees from the x axis anticlockwise, of all contacts, in bins of 5
+///   from −2.5 to 177.5: an axis has no ends, and what lies above 177.5 counts as below 2.5.
+/// * `coordination`: contacts of a grain, in bins of one, the last without end.
+/// * `overlap`: overlaps of contacts in mean diameters, those with a gap below 0; then from 0 to 1e-7, and three bins a
+///   decade (1, 2, 5) to 0.1 and beyond.
+pub fn histograms(moment: &Moment) -> Vec<Histogram> {
+    of_parts(&Parts::of(moment), moment)
+}
+
+pub(super) fn of_parts(parts: &Parts, moment: &Moment) -> Vec<Histogram> {
+    let Parts { network, coordination, forces, .. } = parts;
+    let links = &network.links;
+    let lower_half = 0.5 * DEGREES;
+    let angles = links.iter().map(|link| {
+        let angle = axis_degrees(link.normal.to_angle());
+        if angle >= 180.0 - lower_half { angle - 180.0 } else { angle }
+    });
+    let contacts = network.grains().map(|(index, _)| f64::from(coordination.of_grains[index]));
+    let diameter = moment.surroundings.mean_diameter;
+    let overlaps = links.iter().map(|link| -link.gap / diameter);
+    let directions =
+        (0..=(180.0 / DEGREES) as i32).map(|bin| f64::from(bin) * DEGREES - lower_half);
+    vec![
+        Histogram::of("normal_force", "1", edges_of_forces(), forces.over_mean.iter().copied()),
+        Histogram::of("contact_orientation", "degree", directions.collect(), angles),
+        Histogram::of("coordination", "1", edges_of_contacts(), contacts),
+        Histogram::of("overlap", "1", without_ends(OVERLAPS.into_iter()), overlaps),
+    ]
+}
+
+impl Histogram {
+    fn of(
+        quantity: &'static str,
+        unit: &'static str,
+        edges: Vec<f64>,
+        values: impl Iterator<Item = f64>,
+    ) -> Self {
+        let mut counts = vec![0; edges.len() - 1];
+        for value in values {
+            // The number of edges that are not above it; a value that is none is in no bin.
+            let edges_below = edges.partition_point(|&edge| edge <= value);
+            if let Some(count) = edges_below.checked_sub(1).and_then(|bin| counts.get_mut(bin)) {
+                *count += 1;
+            }
+        }
+        Self { quantity, unit, edges, counts }
+    }
+}
+
+fn edges_of_forces() -> Vec<f64> {
+    let bins = -FORCES_PULLING * FORCE_BINS_IN_ONE..=FORCES_PUSHING * FORCE_BINS_IN_ONE;
+    without_ends(bins.map(|bin| f64::from(bin) / f64::from(FORCE_BINS_IN_ONE)))
+}
+
+fn edges_of_contacts() -> Vec<f64> {
+    (0..=CONTACTS).map(f64::from).chain([f64::INFINITY]).collect()
+}
+
+fn without_ends(edges: impl Iterator<Item = f64>) -> Vec<f64> {
+    [f64::NEG_INFINITY].into_iter().chain(edges).chain([f64::INFINITY]).collect()
+}

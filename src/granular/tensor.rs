@@ -1,0 +1,61 @@
+//! Tensors of the plane: sums of dyads, and what their symmetric part says.
+
+use glam::DVec2;
+
+/// A tensor of the second rank.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Tensor {
+    pub xx: f64,
+    pub xy: f64,
+    pub yx: f64,
+    pub yy: f64,
+}
+
+impl Tensor {
+    /// Adds a ⊗ b.
+    pub(super) fn add(&mut self, a: DVec2, b: DVec2) {
+        self.xx += a.x * b.x;
+        self.xy += a.x * b.y;
+        self.yx += a.y * b.x;
+        self.yy += a.y * b.y;
+    }
+
+    /// In so many parts.
+    pub(super) fn over(self, divisor: f64) -> Self {
+        let Self { xx, xy, yx, yy } = self;
+        Self { xx: xx / divisor, xy: xy / divisor, yx: yx / divisor, yy: yy / divisor }
+    }
+
+    /// Mean of the two principal values.
+    pub(super) fn mean(self) -> f64 {
+        0.5 * (self.xx + self.yy)
+    }
+
+    /// Half the difference of the principal values of the symmetric part.
+    pub(super) fn deviator(self) -> f64 {
+        self.half_differences().length()
+    }
+
+    /// Direction of the larger principal value of the symmetric part, degrees from the x axis, in [0, 180); NaN where
+    /// there is none.
+    pub(super) fn direction(self) -> f64 {
+        let differences = self.half_differences();
+        if differences.length() > 0.0 {
+            axis_degrees(0.5 * differences.to_angle())
+        } else {
+            f64::NAN
+        }
+    }
+
+    /// (a, b) of the symmetric part less its mean, (a b; b −a).
+    fn half_differences(self) -> DVec2 {
+        0.5 * DVec2::new(self.xx - self.yy, self.xy + self.yx)
+    }
+}
+
+/// The direction of an axis without ends in [0, 180) degrees, of an angle in rad.
+pub(super) fn axis_degrees(angle: f64) -> f64 {
+    let degrees = angle.to_degrees().rem_euclid(180.0);
+    // A tiny negative angle is 180 after rounding.
+    if degrees < 180.0 { degrees } else { 0.0 }
+}

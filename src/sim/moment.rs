@@ -1,0 +1,263 @@
+//! One moment of a run in full, as tables and measures need it: every grain, and every contact with its forces.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::observables::Observables;
+use super::settings::Settings;
+use super::simulation::Simulation;
+use super::snapshot::Surroundings;
+use super::state::State;
+use super::steppers::Stepper;
+use crate::contact::law::cohesion_force;
+use crate::contact::{Contact, Impulse, Numbering, Other};
+use crate::world::{FrictionCone, Parameters, World};
+
+/// How close to its bound a friction force slips, as a part of the bound. Smaller: contacts that slip stick
+/// where a method ends near the bound and not on it; larger: contacts that nearly slip do.
+const SLIPS_WITHIN: f64 = 1e-6;
+/// How close to its cohesion a contact's pull is all that it can bear, as a part of the cohesion: rounding.
+const OPENS_WITHIN: f64 = 1e-9;
+
+/// One moment of a run. Plain data: it outlives the simulation.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    /// What the last step measured.
+    pub observables: Observables,
+    /// How the next step is taken, and as a rule how the last one was.
+    pub settings: Settings,
+    /// The moving discs; grain k is `grains[k]`.
+    pub grains: Vec<GrainState>,
+    /// The contacts of the last step, sorted by (grain, other).
+    pub contacts: Vec<ContactState>,
+    /// What no grain moves, where it is now.
+    pub surroundings: Arc<Surroundings>,
+}
+
+/// One grain at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrainState {
+    /// Centre, m.
+    pub position: DVec2,
+    /// Angle turned since the start, rad.
+    pub angle: f64,
+    /// Velocity of the centre, m/s.
+    pub velocity: DVec2,
+    /// Angular velocity, rad/s, positive anticlockwise.
+    pub angular_velocity: f64,
+    /// m.
+    pub radius: f64,
+    /// kg.
+    pub mass: f64,
+    /// Whether the gravity field acts on it.
+    pub feels_gravity: bool,
+    /// Grey that the scene gives it: 0 black … 255 white.
+    pub tone: u8,
+    /// Whether it went through a wall or left the world.
+    pub lost: bool,
+}
+
+/// One contact of the last step. Forces are the means over that step, normal and gap those that the step began
+/// with, and both go with the positions before it: grains have moved by Δt·v since.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactState {
+    /// Grain i.
+    pub grain: u32,
+    /// Body j.
+    pub other: OtherBody,
+    /// n, from j to i.
+    pub normal: DVec2,
+    /// m; negative is overlap.
+    pub gap: f64,
+    /// Half-way between the two surfaces, m, as grain i is now.
+    pub point: DVec2,
+    /// From the centre of j, or from the touched point of a boundary, to the centre of i, m.
+    pub branch: DVec2,
+    /// N, newton, along n on grain i; negative pulls.
+    pub normal_force: f64,
+    /// T, newton, along (−n_y, n_x) on grain i.
+    pub tangential_force: f64,
+    /// What the friction law makes of it.
+    pub status: ContactStatus,
+    /// s: how far its bond is stretched, m; none where no bond lives, and but under the law `range`.
+    pub bond_stretch: Option<f64>,
+    /// Steps since the pair was first found to touch without a break.
+    pub age_steps: u64,
+}
+
+/// The other body of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OtherBody {
+    /// A grain, by its number.
+    Grain(u32),
+    /// A fixed disc, by its number among those.
+    FixedDisc(u32),
+    /// A boundary, by its number among those.
+    Boundary(u32),
+}
+
+/// What a contact does under Signorini's and Coulomb's laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ContactStatus {
+    /// It pulls as hard as its cohesion lets it, without cohesion not at all, and opens.
+    Open,
+    /// Friction is below its bound.
+    Stick,
+    /// Friction is at its bound, which is 0 where there is none.
+    Slip,
+}
+
+impl ContactStatus {
+    /// The word that files have for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Open => "open",
+            Self::Stick => "stick",
+            Self::Slip => "slip",
+        }
+    }
+}
+
+impl ContactState {
+    /// The force on grain i, newton.
+    pub fn force(&self) -> DVec2 {
+        self.normal_force * self.normal + self.tangential_force * self.normal.perp()
+    }
+}
+
+impl Simulation {
+    /// This moment in full.
+    pub fn moment(&self) -> Moment {
+        let State { world, candidates, contacts, .. } = &self.state;
+        let laws = Laws::of(self);
+        let numbering = Numbering::of(world);
+        let ages = contacts.ages();
+        let rows = contacts.contacts().iter().zip(contacts.impulses()).zip(contacts.bonds());
+        let in_touch = |&(index, _): &(usize, _)| contacts.is_in_touch(index);
+        let states = rows.zip(ages).enumerate().filter(in_touch);
+        let states = states.map(|(_, (((contact, impulse), bond), age_steps))| {
+            let other = numbering.other(contact.other);
+            let (normal_force, tangential_force) = laws.forces(impulse);
+            let alive = laws.has_bonds && bond.alive;
+            let status = laws.status(contact, other, alive, [normal_force, tangential_force]);
+            let grain = contact.grain as usize;
+            let (centre, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
+            ContactState {
+                grain: contact.grain,
+                other: match other {
+                    Other::Grain(index) => OtherBody::Grain(index as u32),
+                    Other::FixedDisc(index) => OtherBody::FixedDisc(index as u32),
+                    Other::Feature(feature) => {
+                        OtherBody::Boundary(candidates.boundary_of(feature) as u32)
+                    }
+                },
+                normal: contact.normal,
+                gap: contact.gap,
+                point: centre - (radius + 0.5 * contact.gap) * contact.normal,
+                branch: (radius + contact.gap + radius_of(world, other)) * contact.normal,
+                normal_force,
+                tangential_force,
+                status,
+                bond_stretch: alive.then_some(bond.stretch),
+                age_steps,
+            }
+        });
+        Moment {
+            observables: *self.observables(),
+            settings: *self.settings(),
+            contacts: states.collect(),
+            grains: (0..world.grains.len()).map(|index| self.grain_state(index)).collect(),
+            surroundings: self.surroundings(),
+        }
+    }
+
+    fn grain_state(&self, index: usize) -> GrainState {
+        let grains = &self.state.world.grains;
+        GrainState {
+            position: grains.positions[index],
+            angle: grains.angles[index],
+            velocity: grains.velocities[index],
+            angular_velocity: grains.angular_velocities[index],
+            radius: grains.radii[index],
+            mass: grains.masses[index],
+            feels_gravity: grains.feels_gravity[index],
+            tone: grains.tones[index],
+            lost: self.is_lost(index),
+        }
+    }
+}
+
+/// Radius of the other disc, m; 0 for a boundary, which is touched in a point.
+fn radius_of(world: &World, other: Other) -> f64 {
+    match other {
+        Other::Grain(index) => world.grains.radii[index],
+        Other::FixedDisc(index) => world.fixed_discs[index].radius,
+        Other::Feature(_) => 0.0,
+    }
+}
+
+/// What tells a contact's status from its impulses.
+struct Laws<'a> {
+    world: &'a World,
+    parameters: &'a Parameters,
+    has_cohesion: bool,
+    has_bonds: bool,
+    friction: f64,
+    per_time_step: f64,
+}
+
+impl<'a> Laws<'a> {
+    fn of(simulation: &'a Simulation) -> Self {
+        let State { world, physics, time_step_of_impulses_secs, .. } = &simulation.state;
+        let settings = simulation.settings();
+        let parameters = &settings.parameters;
+        Self {
+            world,
+            parameters,
+            has_cohesion: physics.cohesion,
+            has_bonds: settings.stepper == Stepper::Range,
+            friction: if physics.friction { parameters.friction } else { 0.0 },
+            per_time_step: 1.0 / time_step_of_impulses_secs,
+        }
+    }
+
+    fn forces(&self, impulse: &Impulse) -> (f64, f64) {
+        (impulse.normal * self.per_time_step, impulse.tangential * self.per_time_step)
+    }
+
+    /// Of a contact with the forces N and T.
+    fn status(
+        &self,
+        contact: &Contact,
+        other: Other,
+        bonded: bool,
+        [normal, tangential]: [f64; 2],
+    ) -> ContactStatus {
+        let cohesion = self.cohesion(contact, other, bonded);
+        let pushed_together = normal + cohesion;
+        if pushed_together <= OPENS_WITHIN * cohesion {
+            return ContactStatus::Open;
+        }
+        let rubbing = match self.parameters.cone {
+            FrictionCone::Shifted => pushed_together,
+            FrictionCone::Compressive => normal.max(0.0),
+        };
+        if tangential.abs() >= (1.0 - SLIPS_WITHIN) * self.friction * rubbing {
+            ContactStatus::Slip
+        } else {
+            ContactStatus::Stick
+        }
+    }
+
+    /// C₀, newton; none for a pair that has no bond under a law that asks for one.
+    fn cohesion(&self, contact: &Contact, other: Other, bonded: bool) -> f64 {
+        if !self.has_cohesion || (self.has_bonds && !bonded) {
+            return 0.0;
+        }
+        let masses = &self.world.grains.masses;
+        let mass = masses[contact.grain as usize];
+        let per_mass = 1.0 / mass + other.grain().map_or(0.0, |index| 1.0 / masses[index]);
+        cohesion_force(self.parameters.bond, 1.0 / per_mass, self.world.gravity.magnitude())
+    }
+}

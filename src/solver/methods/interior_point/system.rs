@@ -1,0 +1,128 @@
+//! The linear system of a Newton step: M + Hᵀ m S⁻¹ H, symmetric but for Coulomb's law.
+
+use super::local::{Contact, Shared};
+use super::shape::Shape;
+use crate::solver::linear::{Block, BlockMatrix, Elimination, SymmetricBlockMatrix};
+use crate::solver::methods::shared::contact_graph::ContactGraph;
+use crate::solver::problem::{Kinematics, Model, Row, StepProblem};
+
+/// The matrix, then its factors.
+#[derive(Clone, Debug, Default)]
+pub(super) struct System<const D: usize> {
+    symmetric: SymmetricBlockMatrix<D>,
+    /// In use where the shape leans.
+    unsymmetric: BlockMatrix<D>,
+}
+
+impl<const D: usize> System<D> {
+    /// Sets the matrix up for contacts that have been made ready, and factorises it.
+    pub(super) fn assemble<M: Model, S: Shape>(
+        &mut self,
+        problem: &StepProblem<M::Kinematics>,
+        graph: &ContactGraph,
+        contacts: &[Contact],
+        shared: Shared,
+    ) {
+        let elimination = &graph.elimination;
+        if S::LEANS {
+            self.unsymmetric.clear(elimination);
+        } else {
+            self.symmetric.clear(elimination);
+        }
+        for (body, &mass) in problem.masses.iter().enumerate() {
+            let mut block = [[0.0; D]; D];
+            for (axis, row) in block.iter_mut().enumerate() {
+                row[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+            }
+            self.add_to_diagonal::<S>(elimination.place_of[body], &block);
+        }
+        let (of_fixed, of_pairs) = contacts.split_at(problem.fixed_rows.len());
+        for (row, contact) in problem.fixed_rows.iter().zip(of_fixed) {
+            let [on_i, _] = gradients::<M, D>(row);
+            let answer = answer::<S>(shared, row.effective_mass, contact);
+            let block = stiffness(&answer, &on_i, &on_i);
+            self.add_to_diagonal::<S>(elimination.place_of[row.i as usize], &block);
+        }
+        for ((row, &number), contact) in
+            problem.pair_rows.iter().zip(&graph.pair_blocks).zip(of_pairs)
+        {
+            let [on_i, on_j] = gradients::<M, D>(row);
+            let (i, j) =
+                (elimination.place_of[row.i as usize], elimination.place_of[row.j as usize]);
+            let answer = answer::<S>(shared, row.effective_mass, contact);
+            self.add_to_diagonal::<S>(i, &stiffness(&answer, &on_i, &on_i));
+            self.add_to_diagonal::<S>(j, &stiffness(&answer, &on_j, &on_j));
+            if S::LEANS {
+                let (i_to_j, j_to_i) = self.unsymmetric.off_diagonal_mut(number, i < j);
+                add(i_to_j, &stiffness(&answer, &on_i, &on_j));
+                add(j_to_i, &stiffness(&answer, &on_j, &on_i));
+            } else {
+                let [first, second] = if i < j { [&on_i, &on_j] } else { [&on_j, &on_i] };
+                self.symmetric.add_to_upper(number, &stiffness(&answer, first, second));
+            }
+        }
+        if S::LEANS {
+            self.unsymmetric.factorise(elimination);
+        } else {
+            self.symmetric.factorise(elimination);
+        }
+    }
+
+    /// Solves with the factors: `vector` (by place) is the right-hand side and becomes the solution.
+    pub(super) fn solve<S: Shape>(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
+        if S::LEANS {
+            self.unsymmetric.solve(elimination, vector);
+        } else {
+            self.symmetric.solve(elimination, vector);
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_diagonal<S: Shape>(&mut self, place: u32, block: &Block<D>) {
+        if S::LEANS {
+            add(self.unsymmetric.diagonal_mut(place), block);
+        } else {
+            self.symmetric.add_to_diagonal(place, block);
+        }
+    }
+}
+
+/// How the velocities of i, then of j, enter v_n and v_t of a row.
+#[inline(always)]
+pub(super) fn gradients<M: Model, const D: usize>(row: &Row<M::Kinematics>) -> [[[f64; D]; 2]; 2] {
+    let part = |vector: [f64; 3]| std::array::from_fn(|axis| vector[axis]);
+    M::Kinematics::gradients(row.normal).map(|of_body| of_body.map(part))
+}
+
+/// m S⁻¹, kg.
+#[inline(always)]
+fn answer<S: Shape>(shared: Shared, mass: f64, contact: &Contact) -> Block<2> {
+    contact.stiffness::<S>(shared).map(|row| row.map(|entry| mass * entry))
+}
+
+/// m Hᵀ S⁻¹ H of two bodies, kg.
+#[inline(always)]
+fn stiffness<const D: usize>(
+    [[nn, nt], [tn, tt]]: &Block<2>,
+    one: &[[f64; D]; 2],
+    other: &[[f64; D]; 2],
+) -> Block<D> {
+    let mut block = [[0.0; D]; D];
+    for column in 0..D {
+        let along_normal = nn * other[0][column] + nt * other[1][column];
+        let along_tangent = tn * other[0][column] + tt * other[1][column];
+        for row in 0..D {
+            block[row][column] = one[0][row] * along_normal + one[1][row] * along_tangent;
+        }
+    }
+    block
+}
+
+#[inline(always)]
+fn add<const D: usize>(to: &mut Block<D>, block: &Block<D>) {
+    for (entries, numbers) in to.iter_mut().zip(block) {
+        for (entry, number) in entries.iter_mut().zip(numbers) {
+            *entry += number;
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! How the bodies of a problem move relative to each other.
+
+use super::kinematics::Kinematics;
+use super::step_problem::{Row, StepProblem};
+
+/// Where nothing would move without contacts, errors of up to this share of the impulses are what
+/// rounding left, and no residual. Smaller: methods that scale impulses would not have solved a step in
+/// which nothing happens; larger: errors would go unseen.
+pub(super) const ROUNDING: f64 = 1e-14;
+
+/// Relative (normal, tangential) velocities of one contact, m/s.
+pub struct Motion {
+    /// At the end of the step.
+    pub now: [f64; 2],
+    /// At its beginning.
+    pub before: [f64; 2],
+    /// At the end if no contact acted.
+    pub free: [f64; 2],
+}
+
+/// Visits the rows with their numbers and motions.
+pub(crate) fn for_each_row<K: Kinematics>(
+    problem: &StepProblem<K>,
+    mut visit: impl FnMut(usize, &Row<K>, Motion),
+) {
+    for (number, row) in problem.fixed_rows.iter().enumerate() {
+        let of = |bodies: &[K::Body<f64>]| K::velocity(row.normal, &bodies[row.i as usize]);
+        let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
+        visit(number, row, Motion { now, before, free });
+    }
+    for (number, row) in (problem.fixed_rows.len()..).zip(&problem.pair_rows) {
+        let of = |bodies: &[K::Body<f64>]| {
+            K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])
+        };
+        let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
+        visit(number, row, Motion { now, before, free });
+    }
+}
+
+/// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
+pub(crate) fn relative_velocities<K: Kinematics>(
+    problem: &StepProblem<K>,
+    bodies: &[K::Body<f64>],
+    speeds: &mut Vec<f64>,
+) {
+    speeds.clear();
+    speeds.reserve(problem.contact_of_row.len());
+    problem.for_each_velocity(bodies, |_, [normal, _]| speeds.push(normal));
+    for (speed, wall_speed) in speeds.iter_mut().zip(&problem.wall_speeds) {
+        *speed -= wall_speed;
+    }
+}

@@ -1,0 +1,82 @@
+"""OVITO: particles, types, radii, frames and bonds of the dumps, against the CSV."""
+
+import sys
+
+import numpy
+import ovito
+from ovito.io import import_file
+from ovito.modifiers import LoadTrajectoryModifier
+
+from recording import OF_FRAME, codes, flags, frames, kinds, table
+
+KINDS = ["grain", "fixed", "lost"]
+# Of the columns of grains, what OVITO calls them; all others but these have our names.
+PROPERTIES = {"id": "Particle Identifier", "mass": "Mass", "coordination": "coordination_number"}
+MAPPED = {"kind", "x", "y", "vx", "vy", "omega", "radius"}
+KINDS_OF_J = ["grain", "fixed", "boundary"]
+STATUSES = ["open", "stick", "slip"]
+
+
+def main(recording):
+    every_grain, every_contact, wanted = table(recording, "grains"), table(recording, "contacts"), frames(recording)
+    pipeline = import_file(f"{recording}/ovito/grains.dump")
+    assert pipeline.source.num_frames == len(wanted)
+    bonds = LoadTrajectoryModifier()
+    # As the head of the file has them: the first two say which particles a bond is between.
+    columns = ["Particle Identifiers.1", "Particle Identifiers.2", *of_bonds(every_contact)]
+    bonds.source.load(f"{recording}/ovito/contacts.dump", columns=columns)
+    assert bonds.source.num_frames == len(wanted)
+    pipeline.modifiers.append(bonds)
+    for number, (step, time, _) in enumerate(wanted.itertuples(index=False)):
+        data = pipeline.compute(number)
+        assert data.attributes["Timestep"] == step and data.attributes["Time"] == time
+        assert data.cell.is2D and not any(data.cell.pbc)
+        grains = every_grain[every_grain["step"] == step]
+        check_particles(data.particles, grains, flags_of(recording, "grains"))
+        contacts = every_contact[every_contact["step"] == step]
+        check_bonds(data.particles, contacts[contacts["kind_j"] != "boundary"], flags_of(recording, "contacts"))
+    print(f"OVITO {ovito.version_string} reads {recording}")
+
+
+def flags_of(recording, name):
+    return {column for column, kind in kinds(recording, name).items() if kind == "flag"}
+
+
+def of_bonds(contacts):
+    return [column for column in contacts.columns if column not in {*OF_FRAME, "id_i", "id_j", "name_j"}]
+
+
+def check_particles(particles, grains, all_flags):
+    assert particles.count == len(grains)
+    types = particles.particle_types
+    assert {kind.name: kind.id for kind in types.types}.items() <= {"grain": 1, "fixed": 2, "lost": 3}.items()
+    assert (types[...] - 1 == codes(KINDS, grains["kind"])).all()
+    assert equal(particles.positions[:, :2], grains[["x", "y"]])
+    assert equal(particles["Velocity"][:, :2], grains[["vx", "vy"]])
+    assert equal(particles["Angular Velocity"][:, 2], grains["omega"])
+    # OVITO itself has radii in single precision.
+    assert equal(particles["Radius"][...], grains["radius"], relative=1.2e-7)
+    for column in grains.columns.difference([*OF_FRAME, *MAPPED]):
+        wanted = flags(grains[column]) if column in all_flags else grains[column]
+        assert equal(particles[PROPERTIES.get(column, column)][...], wanted), column
+
+
+def check_bonds(particles, contacts, all_flags):
+    bonds = particles.bonds
+    assert bonds.count == len(contacts) > 0
+    ids = particles["Particle Identifier"][...][bonds.topology[...]]
+    assert (ids == contacts[["id_i", "id_j"]].to_numpy()).all()
+    words = {"kind_j": KINDS_OF_J, "status": STATUSES}
+    for column in of_bonds(contacts):
+        wanted = flags(contacts[column]) if column in all_flags else contacts[column]
+        wanted = codes(words[column], wanted) if column in words else wanted
+        assert equal(bonds[column][...], wanted), column
+
+
+def equal(found, wanted, relative=5e-16):
+    """To the last bit but one, as far as OVITO reads decimal numbers."""
+    found, wanted = numpy.asarray(found), numpy.asarray(wanted)
+    return found.shape == wanted.shape and numpy.allclose(found, wanted, rtol=relative, atol=0, equal_nan=True)
+
+
+main(sys.argv[1])

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# What users' programs see of a recording: pandas, polars, PyVista and OVITO from PyPI, and ParaView where it
+# is installed. Records a few small runs, reads them with each, and fails where one sees something else.
+#
+#   tests/clients/try.sh [--fast] [FOLDER]
+#
+# --fast leaves OVITO and ParaView out, which are large. FOLDER keeps the recordings and the picture that
+# ParaView draws. The programs of Python go to target/clients, once. SLUMP names a program that is there, so
+# that none is built.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+cd "$here/../.."
+
+fast=
+if [ "${1:-}" = --fast ]; then
+    fast=yes
+    shift
+fi
+if [ $# -gt 0 ]; then
+    out=$1
+    mkdir -p "$out"
+else
+    out=$(mktemp -d)
+    trap 'rm -rf "$out"' EXIT
+fi
+
+if [ -z "${SLUMP:-}" ]; then
+    cargo build --release --quiet
+    SLUMP=$PWD/target/release/slump
+fi
+python=target/clients/bin/python
+[ -x "$python" ] || python3 -m venv target/clients
+packages=(numpy pandas polars pyarrow pyvista)
+[ -n "$fast" ] || packages+=(ovito)
+"$python" -m pip install --quiet --disable-pip-version-check "${packages[@]}"
+
+record() {
+    local name=$1
+    shift
+    "$SLUMP" --headless --data "$out/$name" --overwrite --data-format parquet,csv,vtk,ovito "$@" 2>"$out/$name.log" ||
+        { cat "$out/$name.log" >&2; exit 1; }
+}
+# The paper's law on a base of fixed discs, bonds that tell their stretch, and walls of every shape.
+record pile --bond 20 --dt 1e-3 --duration 0.3 --data-every 0.05
+record bonds --stepper range --bond 20 --dt 1e-3 --duration 0.02 --data-every 0.01
+record walls --scene assets/scenes/hourglass.toml --duration 0.1 --data-every 0.02
+
+for run in pile bonds walls; do
+    "$python" "$here/tables.py" "$out/$run"
+    "$python" "$here/vtk_files.py" "$out/$run"
+    [ -n "$fast" ] || "$python" "$here/ovito_files.py" "$out/$run"
+done
+# What PyVista has changed and saved is a pile to start from.
+"$python" "$here/shifted.py" "$out/pile" "$out/shifted.vtp"
+record from-shifted --initial "$out/shifted.vtp" --dt 1e-3 --duration 0.001 --data-every 0.001
+"$python" "$here/shifted.py" "$out/pile" "$out/shifted.vtp" "$out/from-shifted"
+
+if [ -z "$fast" ] && command -v pvpython >/dev/null; then
+    # Debian's ParaView draws on a display alone.
+    xvfb-run -a pvpython "$here/draw_in_paraview.py" "$out/pile" 0.2 "$out/paraview.png"
+    test -s "$out/paraview.png"
+    echo "ParaView draws the pile"
+fi

@@ -1,0 +1,198 @@
+//! Files that are no initial states: one sentence with file, place, value and what is allowed.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use parquet::data_type::{ByteArrayType, DoubleType, Int64Type};
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::parser::parse_message_type;
+use rand::RngExt;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::SeedableRng;
+use slump::data::{FormatName, read_grains};
+
+use super::tables::parts;
+use super::{folder, record, refusal, scene, start, text};
+
+/// A column of a file.
+enum Column<'a> {
+    Numbers(&'a str, &'a [f64]),
+    Whole(&'a str, &'a [i64]),
+    Words(&'a str, &'a [&'a str]),
+}
+
+fn write(path: &Path, columns: &[Column<'_>]) {
+    let field = |column: &Column<'_>| match column {
+        Column::Numbers(name, _) => format!("REQUIRED DOUBLE {name};"),
+        Column::Whole(name, _) => format!("REQUIRED INT64 {name};"),
+        Column::Words(name, _) => format!("REQUIRED BYTE_ARRAY {name} (UTF8);"),
+    };
+    let fields: String = columns.iter().map(field).collect();
+    let schema = parse_message_type(&format!("message discs {{ {fields} }}")).expect("a schema");
+    let file = std::fs::File::create(path).expect("a file");
+    let properties = Arc::new(WriterProperties::builder().build());
+    let mut file = SerializedFileWriter::new(file, Arc::new(schema), properties).expect("a writer");
+    let mut group = file.next_row_group().expect("a group");
+    for column in columns {
+        let mut writer = group.next_column().expect("a column").expect("one more");
+        match column {
+            Column::Numbers(_, values) => {
+                writer.typed::<DoubleType>().write_batch(values, None, None)
+            }
+            Column::Whole(_, values) => writer.typed::<Int64Type>().write_batch(values, None, None),
+            Column::Words(_, words) => {
+                let words: Vec<_> = words.iter().map(|word| (*word).into()).collect();
+                writer.typed::<ByteArrayType>().write_batch(&words, None, None)
+            }
+        }
+        .expect("values");
+        writer.close().expect("a column");
+    }
+    group.close().expect("a group");
+    file.close().expect("a file");
+}
+
+const XS: Column<'static> = Column::Numbers("x", &[0.0, 0.01, 0.02]);
+const YS: Column<'static> = Column::Numbers("y", &[0.004, 0.005, 0.006]);
+const RADII: Column<'static> = Column::Numbers("radius", &[0.002, 0.002, 0.0025]);
+
+#[test]
+fn parquet_of_others_is_read() {
+    let folder = folder();
+    let path = folder.path().join("discs.parquet");
+    write(&path, &[RADII, Column::Words("colour", &["a", "b", "c"]), YS, XS]);
+    let found = read_grains(&path, None).expect("discs");
+    assert_eq!(found.grains.len(), 3);
+    assert_eq!(found.grains[2].radius, 0.0025);
+    assert_eq!(found.grains[2].position, glam::DVec2::new(0.02, 0.006));
+    assert_eq!(found.grains[2].velocity, glam::DVec2::ZERO);
+    // Whole numbers are numbers, and ids put discs in order.
+    let ids = Column::Whole("id", &[7, 3, 5]);
+    write(&path, &[Column::Whole("x", &[1, 2, 3]), YS, RADII, ids]);
+    let found = read_grains(&path, None).expect("discs");
+    let places: Vec<f64> = found.grains.iter().map(|grain| grain.position.x).collect();
+    assert_eq!(places, [2.0, 3.0, 1.0]);
+}
+
+#[test]
+fn parquet_that_is_no_state_is_told_of_by_row_and_column() {
+    let folder = folder();
+    let path = folder.path().join("discs.parquet");
+    let check = |columns: &[Column<'_>], expected: &str| {
+        write(&path, columns);
+        let said = refusal(&["--initial", text(&path), "--data", "no"]);
+        assert_eq!(said, format!("{}: {expected}", path.display()));
+    };
+    check(&[XS, YS], "the columns are x, y, but must be such that x, y and radius are there");
+    check(
+        &[Column::Numbers("x", &[0.0, f64::NAN, 1.0]), YS, RADII],
+        "row 2: x is NaN, but must be finite",
+    );
+    check(
+        &[XS, YS, Column::Numbers("radius", &[0.1, 0.1, -0.1])],
+        "row 3: radius is -0.1, but must be finite and > 0",
+    );
+    check(
+        &[XS, YS, RADII, Column::Numbers("omega", &[0.0, 0.0, f64::INFINITY])],
+        "row 3: omega is inf, but must be finite",
+    );
+    check(
+        &[XS, YS, RADII, Column::Whole("id", &[4, 9, 4])],
+        "row 3: id is 4, but must be another than in row 1",
+    );
+    check(
+        &[XS, YS, RADII, Column::Whole("id", &[4, -9, 4])],
+        "row 2: id is -9, but must be a whole number ≥ 0",
+    );
+    check(
+        &[XS, YS, RADII, Column::Words("kind", &["grain", "wall", "grain"])],
+        "row 2: kind is wall, but must be grain or fixed or lost",
+    );
+    check(
+        &[XS, YS, Column::Words("radius", &["1", "1", "1"])],
+        "column radius holds something else, but must hold numbers",
+    );
+    check(
+        &[XS, YS, RADII, Column::Words("kind", &["fixed", "lost", "fixed"])],
+        "holds no disc, but must hold at least one",
+    );
+    let none = Column::Numbers("x", &[]);
+    check(
+        &[none, Column::Numbers("y", &[]), Column::Numbers("radius", &[])],
+        "holds no disc, but must hold at least one",
+    );
+}
+
+#[test]
+fn text_that_is_no_state_is_told_of_by_line() {
+    let folder = folder();
+    let path = folder.path().join("discs.csv");
+    let check = |table: &str, expected: &str| {
+        std::fs::write(&path, table).expect("a file");
+        let said = refusal(&["--initial", text(&path), "--data", "no"]);
+        assert_eq!(said, format!("{}: {expected}", path.display()));
+    };
+    check(
+        "# one\nid,x,y,radius\n4,0,0.1,1\n\n4,0.1,0.1,1\n",
+        "line 5: id is 4, but must be another than in line 3",
+    );
+    check(
+        "step,x,y,radius\n1,0,0.1,1\n-1,0.1,0.1,1\n",
+        "line 3: step: '-1' is none, but must be a whole number ≥ 0",
+    );
+    check(
+        "x,y,radius,kind\n0,0.1,1,grain\n0.1,0.1,1,wall\n",
+        "line 3: kind is wall, but must be grain or fixed or lost",
+    );
+    check("x,y,radius,x\n0,0.1,1,2\n", "the header line names x twice, but must name it once");
+    check("x,y,radius\n0,0.1\n", "line 2: has 2 columns, but must have 3");
+    check("step,x,y,radius\n", "holds no disc, but must hold at least one");
+}
+
+#[test]
+fn what_is_nothing_of_all_that_is_told_of() {
+    let folder = folder();
+    let empty = folder.path().join("empty");
+    std::fs::create_dir(&empty).expect("a folder");
+    let said = refusal(&["--initial", text(&empty), "--data", "no"]);
+    assert!(said.contains("empty: has no grains, but must be a file of discs"), "{said}");
+    let said = refusal(&["--initial", "no/such.parquet", "--data", "no"]);
+    assert!(said.starts_with("no/such.parquet: No such file"), "{said}");
+    let path = folder.path().join("cut.parquet");
+    std::fs::write(&path, "PAR1 and no more").expect("a file");
+    let said = refusal(&["--initial", text(&path), "--data", "no"]);
+    assert!(said.contains("but must be a Parquet file"), "{said}");
+}
+
+#[test]
+fn damaged_parquet_is_refused_or_read_and_nothing_else() {
+    let folder = folder();
+    let pile = scene("pile");
+    let mut recording = start(folder.path(), &[FormatName::Parquet], &pile);
+    record(&mut recording, &mut pile.simulation().expect("a scene"), 2, 1);
+    recording.finish().expect("a recording");
+    let whole = std::fs::read(&parts(folder.path(), "grains")[0]).expect("a part");
+    let path = folder.path().join("damaged.parquet");
+    let mut random = Pcg64::seed_from_u64(3);
+    let mut refused = 0;
+    for round in 0..600 {
+        let mut bytes = whole.clone();
+        // Most of what can go wrong is in the footer.
+        let from = if round % 2 == 0 { 0 } else { bytes.len().saturating_sub(9000) };
+        for _ in 0..random.random_range(1..4) {
+            let place = random.random_range(from.max(4)..bytes.len());
+            bytes[place] ^= 1 << random.random_range(0..8);
+        }
+        if round % 10 == 0 {
+            bytes.truncate(random.random_range(4..bytes.len()));
+        }
+        std::fs::write(&path, &bytes).expect("a file");
+        if let Err(error) = read_grains(&path, None) {
+            let said = error.to_string();
+            assert!(said.contains(" must ") && !said.contains('\n'), "{said}");
+            refused += 1;
+        }
+    }
+    assert!(refused > 90, "many were damaged where it shows: {refused}");
+}

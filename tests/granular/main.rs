@@ -1,0 +1,13 @@
+//! Measures of piles, against what is known of packings exactly and against what must hold of any pile.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod by_hand;
+mod cells;
+mod edge_cases;
+mod forces;
+mod invariance;
+mod network;
+mod packings;
+mod piles;

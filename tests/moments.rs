@@ -1,0 +1,132 @@
+//! What a moment tells of contacts, against what is known of them.
+
+use glam::DVec2;
+use slump::scene::{Scene, built_in};
+use slump::sim::{ContactState, ContactStatus, Moment, OtherBody, Simulation, Stepper};
+use slump::world::{Boundary, FrictionCone, Grain, Gravity};
+
+const RADIUS: f64 = 2e-3;
+/// What discs lie deep in the floor, m, so that they touch it: at a gap of exactly 0 they do not.
+const DEPTH: f64 = 1e-10;
+
+/// A disc on a floor, with gravity turned by an angle (rad) instead of the floor.
+fn disc_on_floor(angle: f64, bond: f64, friction: f64, cone: FrictionCone) -> Simulation {
+    let mut scene = scene_of(&[DVec2::new(0.0, RADIUS - DEPTH)], angle);
+    scene.parameters.bond = bond;
+    scene.parameters.friction = friction;
+    scene.parameters.cone = cone;
+    scene.simulation().expect("a disc on a floor")
+}
+
+fn scene_of(centres: &[DVec2], angle: f64) -> Scene {
+    let mut scene = built_in("pile").expect("the pile");
+    scene.parameters.restitution = 0.0;
+    scene.parameters.time_step_secs = 1e-3;
+    scene.mean_diameter = 2.0 * RADIUS;
+    scene.grains = centres.iter().map(|&centre| Grain::at_rest(centre, RADIUS)).collect();
+    scene.fixed_discs.clear();
+    scene.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }];
+    scene.gravity = Gravity::Uniform { acceleration: 9.81 * DVec2::new(angle.sin(), -angle.cos()) };
+    scene
+}
+
+fn only_contact(moment: &Moment) -> ContactState {
+    assert_eq!(moment.contacts.len(), 1, "{:?}", moment.contacts);
+    moment.contacts[0]
+}
+
+#[test]
+fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
+    // A rolling disc needs T = ⅓ m g sin α: it slips where that is more than μ times the bound of the cone.
+    let (angle, friction) = (0.5f64, 0.1);
+    let needed = angle.sin() / 3.0;
+    let cases = [
+        (0.0, FrictionCone::Shifted, ContactStatus::Slip),
+        (0.5, FrictionCone::Shifted, ContactStatus::Slip),
+        (1.0, FrictionCone::Shifted, ContactStatus::Stick),
+        (1.0, FrictionCone::Compressive, ContactStatus::Slip),
+    ];
+    for (bond, cone, status) in cases {
+        let bound = match cone {
+            FrictionCone::Shifted => friction * (angle.cos() + bond),
+            FrictionCone::Compressive => friction * angle.cos(),
+        };
+        assert_eq!(needed > bound, status == ContactStatus::Slip, "the situation at Bond {bond}");
+        let mut simulation = disc_on_floor(angle, bond, friction, cone);
+        simulation.take_steps(20).expect("finite steps");
+        let moment = simulation.moment();
+        let contact = only_contact(&moment);
+        assert_eq!(contact.status, status, "Bond {bond}, {cone:?}: {contact:?}");
+        let weight = moment.grains[0].mass * 9.81;
+        let force = contact.force() / weight;
+        let expected = DVec2::new(-needed.min(bound), angle.cos());
+        assert!(force.distance(expected) < 1e-6, "Bond {bond}, {cone:?}: {force} of {expected}");
+        assert_eq!(contact.other, OtherBody::Boundary(0));
+        assert!(contact.point.distance(DVec2::new(moment.grains[0].position.x, 0.0)) < 1e-9);
+        assert!(contact.branch.distance(RADIUS * DVec2::Y) < 1e-9);
+    }
+}
+
+#[test]
+fn a_disc_that_is_pulled_off_opens_at_its_cohesion() {
+    // Gravity upwards: half of the weight is less than it takes to hold a disc, twice is more.
+    for (bond, status) in [(0.5, ContactStatus::Open), (2.0, ContactStatus::Slip)] {
+        let mut simulation = disc_on_floor(std::f64::consts::PI, bond, 0.0, FrictionCone::Shifted);
+        simulation.step().expect("a finite step");
+        let moment = simulation.moment();
+        let contact = only_contact(&moment);
+        assert_eq!(contact.status, status, "Bond {bond}: {contact:?}");
+        let pull = -contact.normal_force / (moment.grains[0].mass * 9.81);
+        assert!((pull - bond.min(1.0)).abs() < 1e-9, "Bond {bond}: {pull}");
+    }
+}
+
+#[test]
+fn a_contact_is_as_old_as_it_has_lasted() {
+    // One disc rests, the other falls on the floor beside it from a height that takes some steps.
+    let height = 1.5 * RADIUS;
+    let centres = [DVec2::new(0.0, RADIUS - DEPTH), DVec2::new(6.0 * RADIUS, RADIUS + height)];
+    for stepper in Stepper::ALL.iter().copied() {
+        let mut scene = scene_of(&centres, 0.0);
+        scene.stepper = stepper;
+        let mut simulation = scene.simulation().expect("two discs");
+        // What lies there at the start was found then.
+        let mut touches = [Some(0), None];
+        assert_eq!(only_contact(&simulation.moment()).age_steps, 0, "{stepper}");
+        for step in 1..=60u64 {
+            simulation.step().expect("a finite step");
+            let moment = simulation.moment();
+            for grain in 0..2 {
+                let contact = moment.contacts.iter().find(|contact| contact.grain == grain);
+                let found = &mut touches[grain as usize];
+                *found = contact.map(|_| found.unwrap_or(step));
+                let age_steps = contact.map(|contact| contact.age_steps);
+                assert_eq!(age_steps, found.map(|found| step - found), "{stepper}, grain {grain}");
+            }
+        }
+        assert_eq!(touches[0], Some(0), "{stepper}");
+        assert!(touches[1].is_some_and(|step| step > 5), "{stepper}: {touches:?}");
+    }
+}
+
+#[test]
+fn grains_and_contacts_are_those_of_the_simulation() {
+    let mut simulation = built_in("pile").expect("the pile").simulation().expect("a simulation");
+    simulation.take_steps(30).expect("finite steps");
+    let moment = simulation.moment();
+    let snapshot = simulation.snapshot();
+    let fastest = moment.grains.iter().map(|grain| grain.velocity.length()).fold(0.0, f64::max);
+    let reach = 2.0 * fastest * simulation.parameters().time_step_secs + 1e-12;
+    assert_eq!(moment.grains.len(), snapshot.grains.len());
+    assert_eq!(moment.contacts.len(), snapshot.contacts.len());
+    for (state, view) in moment.contacts.iter().zip(&snapshot.contacts) {
+        assert_eq!(state.normal_force, view.normal_force);
+        let on_grain = matches!(state.other, OtherBody::Grain(_));
+        assert_eq!(on_grain, view.other_grain.is_some());
+        // A view's ends are where the grains are now; forces go with where the step began.
+        assert!(state.branch.distance(view.from - view.to) <= reach, "{state:?} {view:?}");
+    }
+    assert!(moment.contacts.iter().any(|contact| contact.status == ContactStatus::Slip));
+    assert!(moment.contacts.iter().any(|contact| contact.status == ContactStatus::Stick));
+    assert!(moment.contacts.iter().any(|contact| matches!(contact.other, OtherBody::FixedDisc(_))));
+}

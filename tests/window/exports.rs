@@ -1,0 +1,173 @@
+//! What the window exports of its recording.
+
+use std::collections::BTreeMap;
+
+use slump::data::FormatName;
+use slump::scene::Config;
+use slump::sim::live::Command as Live;
+use slump::sim::{Pull, Simulation};
+
+use crate::recordings::{assert_same, export, facts, headless, open, said_in, take_steps};
+use crate::robot::{Robot, pile};
+use crate::tables::{Cell, Columns, number, parquet, steps, whole};
+
+#[test]
+fn the_window_exports_what_data_writes() {
+    // The one has rough ground and cohesion, one loses a grain, and one has walls that move.
+    for (scene, duration_secs) in [("pile", 0.03), ("thin-wall", 0.04), ("moving-walls", 0.03)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (exported, written) = (folder.path().join("window"), folder.path().join("headless"));
+        let mut config = Config::of_scene(scene);
+        config.origin.duration = Some(duration_secs);
+        config.parameters.time_step_secs = Some(1e-3);
+        let formats: Vec<_> =
+            FormatName::ALL.iter().copied().filter(|format| format.check().is_ok()).collect();
+        let mut robot = open(config, &exported, &formats);
+        let steps = (duration_secs * 1e3).round() as u64;
+        take_steps(&mut robot, steps);
+        // Where the timeline stands is no matter.
+        robot.state_mut().live.send(Live::Seek(0.01));
+        robot.settle();
+        let told = export(&mut robot);
+        assert_eq!(told, format!("{} frames of data in {}", steps + 1, exported.display()));
+
+        let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
+        let (duration, names) = (duration_secs.to_string(), names.join(","));
+        let options = ["--scene", scene, "--dt", "1e-3", "--duration", &duration];
+        headless(
+            &[&options[..], &["--data-every", "1e-9", "--data-format", &names]].concat(),
+            &written,
+        );
+        assert_same(&exported, &written);
+        if scene == "thin-wall" {
+            let kinds = said_in(&exported.join("csv/grains.csv"));
+            assert!(kinds.iter().any(|line| line.contains(",lost,")), "a grain is lost");
+        }
+    }
+}
+
+#[test]
+fn frames_are_at_the_times_that_data_has_them_at() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (exported, written) = (folder.path().join("window"), folder.path().join("headless"));
+    let mut config = Config::of_scene("cradle");
+    config.origin.duration = Some(0.05);
+    config.parameters.time_step_secs = Some(1e-3);
+    let mut robot = open(config, &exported, &[FormatName::DEFAULT]);
+    robot.state_mut().preferences.data.each_step = false;
+    robot.state_mut().preferences.data.every_secs = 0.0073;
+    take_steps(&mut robot, 50);
+    export(&mut robot);
+    let options = ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.05"];
+    headless(&[&options[..], &["--data-every", "0.0073"]].concat(), &written);
+    assert_same(&exported, &written);
+}
+
+/// Places of all grains, after the steps that are in a table.
+fn places(grains: &Columns) -> BTreeMap<u64, Vec<[u64; 2]>> {
+    let mut places = BTreeMap::<u64, Vec<_>>::new();
+    for (row, step) in grains["step"].iter().enumerate() {
+        if grains["kind"][row] == Cell::Word("grain".into()) {
+            let place = ["x", "y"].map(|name| number(&grains[name][row]).to_bits());
+            places.entry(whole(step)).or_default().push(place);
+        }
+    }
+    places
+}
+
+fn place_of(simulation: &Simulation) -> Vec<[u64; 2]> {
+    let places = simulation.world().grains.positions.iter();
+    places.map(|place| place.to_array().map(f64::to_bits)).collect()
+}
+
+/// A run of 80 steps on which settings are changed and a grain is pulled: the times of all steps, and what a
+/// simulation that is treated alike has after each.
+fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
+    let scene = pile().scene(|_| true).expect("a scene");
+    let mut simulation = scene.simulation().expect("a sound scene");
+    let mut settings = *simulation.settings();
+    let pull = Pull { grain: 100, target: glam::DVec2::new(0.0, 0.1) };
+    let (mut times, mut moments) = (vec![0.0], BTreeMap::new());
+    for step in 0..80 {
+        match step {
+            10 => settings.parameters.friction = 0.3,
+            40 => settings.parameters.time_step_secs = 2e-3,
+            50 => settings.parameters.bond = 80.0,
+            _ => {}
+        }
+        let pull = (45..55).contains(&step).then_some(pull);
+        robot.state_mut().live.send(Live::Change(0, settings));
+        robot.state_mut().live.send(Live::SetPull(0, pull));
+        robot.state_mut().step();
+        simulation.change(settings).expect("sound settings");
+        simulation.set_pull(pull);
+        times.push(simulation.step().expect("a finite state").time_secs);
+        moments.insert(simulation.observables().step, place_of(&simulation));
+    }
+    robot.settle();
+    (times, moments)
+}
+
+/// Asks for what is between two steps.
+fn choose(robot: &mut Robot, stretch: [f64; 2]) {
+    for (label, secs) in ["From here", "To here"].into_iter().zip(stretch) {
+        robot.state_mut().live.send(Live::Seek(secs));
+        robot.settle();
+        robot.click(label);
+    }
+}
+
+#[test]
+fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut robot = open(pile(), folder.path(), &[FormatName::Parquet]);
+    let (times, mut moments) = changed_run(&mut robot);
+    robot.click("The whole recording");
+    choose(&mut robot, [times[33], times[60]]);
+    let told = export(&mut robot);
+    assert!(told.starts_with("28 frames of data in"), "{told}");
+    moments.retain(|step, _| (33..=60).contains(step));
+    assert_eq!(places(&parquet(folder.path(), "grains")), moments);
+    let rows = parquet(folder.path(), "steps");
+    assert_eq!(steps(&rows), (33..=60).collect::<Vec<_>>());
+    let time_steps: Vec<f64> = rows["time_step"].iter().map(number).collect();
+    assert_eq!([time_steps[7], time_steps[8]], [1e-3, 2e-3], "of steps 40 and 41");
+
+    let about = facts(folder.path());
+    // What was changed before the stretch is no change of it.
+    assert_eq!(about["parameters.friction"], "0.3");
+    assert_eq!(about["parameters.bond"], "20.0");
+    let changes: serde_json::Value = serde_json::from_str(&about["changes"]).expect("JSON");
+    let expected = serde_json::json!([
+        { "after_step": 40, "time": times[40], "parameters.time_step_secs": 2e-3 },
+        { "after_step": 50, "time": times[50], "parameters.bond": 80.0 },
+    ]);
+    assert_eq!(changes, expected);
+    assert_eq!(about["pulled_by_hand"], "grain 100 in steps 46 to 55");
+    assert_eq!(about["exported"], format!("from the window, from step 33 to {} s", times[60]));
+
+    // What is changed after a stretch is none of its changes, even where its frames end there.
+    choose(&mut robot, [times[20], times[40]]);
+    robot.click("Overwrite");
+    let told = export(&mut robot);
+    assert!(told.starts_with("21 frames of data in"), "{told}");
+    let about = facts(folder.path());
+    assert_eq!(about.get("changes"), None);
+    assert_eq!(about.get("pulled_by_hand"), None);
+
+    // An empty stretch leaves what is there alone.
+    choose(&mut robot, [times[41], times[40]]);
+    robot.click("Overwrite");
+    let refused = format!("to is {}, but must be at or after the {} s", times[40], times[41]);
+    let told = export(&mut robot);
+    assert!(told.starts_with(&refused), "{told}");
+    assert_eq!(steps(&parquet(folder.path(), "grains")), (20..=40).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_run_that_has_not_begun_is_one_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut robot = open(pile(), folder.path(), &[FormatName::Csv]);
+    let told = export(&mut robot);
+    assert!(told.starts_with("1 frames of data in"), "{told}");
+}

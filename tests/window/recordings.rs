@@ -1,0 +1,105 @@
+//! Recordings that the window exports, and those that the program writes without one.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use slump::app::DataChoices;
+use slump::data::{FormatName, read_grains};
+use slump::scene::Config;
+
+use crate::robot::Robot;
+use crate::tables::parquet;
+
+/// The tables of a recording.
+pub const TABLES: [&str; 5] = ["grains", "contacts", "steps", "measures", "histograms"];
+
+/// A window with the panel open, that exports each step into a folder.
+pub fn open(config: Config, folder: &Path, formats: &[FormatName]) -> Robot {
+    let mut robot = Robot::open(config);
+    let data = DataChoices { folder: folder.to_owned(), each_step: true, ..DataChoices::default() };
+    robot.state_mut().preferences.data = DataChoices { formats: formats.to_vec(), ..data };
+    robot.click("Data");
+    robot
+}
+
+pub fn take_steps(robot: &mut Robot, steps: u64) {
+    for _ in 0..steps {
+        robot.state_mut().step();
+    }
+    robot.settle();
+}
+
+/// Exports, and gives what is told of it.
+pub fn export(robot: &mut Robot) -> String {
+    robot.click("Export data");
+    robot.until("the export", |state| !state.is_writing());
+    robot.state().notice().expect("what became of it").0.text.clone()
+}
+
+/// Runs the program without a window and gives what it says on stderr.
+pub fn headless(arguments: &[&str], folder: &Path) -> String {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
+    let output = command.arg("--headless").args(arguments).arg("--data").arg(folder).output();
+    String::from_utf8(output.expect("the program starts").stderr).expect("UTF-8")
+}
+
+/// All files of a recording, by their paths in it.
+pub fn files(folder: &Path) -> BTreeSet<PathBuf> {
+    let mut found = BTreeSet::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in std::fs::read_dir(next).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                found.insert(path.strip_prefix(folder).expect("a path in it").to_owned());
+            }
+        }
+    }
+    found
+}
+
+/// A text file without what says how it came about: facts by lines, or many of them in a line.
+pub fn said_in(path: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(path).expect("text");
+    let is_origin = |said: &str| {
+        let fact = said.trim_start_matches("# ");
+        fact.starts_with("command: ") || fact.starts_with("exported: ")
+    };
+    let said = text.lines().flat_map(|line| line.split("; "));
+    said.filter(|said| !is_origin(said)).map(str::to_owned).collect()
+}
+
+/// What is told of a recording, and what of that is of the scene.
+pub fn facts(folder: &Path) -> BTreeMap<String, String> {
+    let text = std::fs::read(folder.join("data.json")).expect("a manifest");
+    let manifest: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    serde_json::from_value(manifest["about"].clone()).expect("words by words")
+}
+
+#[track_caller]
+pub fn assert_same(exported: &Path, written: &Path) {
+    assert_eq!(files(exported), files(written));
+    for file in files(written) {
+        let (one, other) = (exported.join(&file), written.join(&file));
+        match file.extension().and_then(|ending| ending.to_str()) {
+            Some("csv" | "dump") => assert!(said_in(&one) == said_in(&other), "{}", file.display()),
+            Some("vtp") if file.to_string_lossy().contains("grains") => {
+                let grains = |path: &Path| read_grains(path, None).ok();
+                assert_eq!(grains(&one), grains(&other), "{}", file.display());
+            }
+            _ => {}
+        }
+    }
+    for table in TABLES {
+        let (one, other) = (parquet(exported, table), parquet(written, table));
+        assert!(!other.is_empty(), "{table}");
+        assert!(one == other, "{table}");
+    }
+    let (mut one, mut other) = (facts(exported), facts(written));
+    assert!(one.remove("exported").is_some_and(|said| said.starts_with("from the window")));
+    assert!(other.remove("command").is_some());
+    assert_eq!(one, other);
+}
