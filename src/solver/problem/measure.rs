@@ -6,7 +6,7 @@ use super::kinematics::Kinematics;
 use super::model::Model;
 use super::motion::{Motion, ROUNDING, for_each_row};
 use super::step_problem::{Row, StepProblem};
-use crate::contact::law;
+use crate::contact::{Lanes, law};
 use crate::solver::friction_model::FrictionModel;
 
 /// What one pass over the rows tells of a solved step.
@@ -149,6 +149,39 @@ pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measure
     Measures { residual, model_residual, duality_gap: duality_gap::<M>(problem), ..measures }
 }
 
+/// (e_n, e_t) of [`residual`] over the effective masses, m/s, of contacts with these (σ, λ_t) and (v_n, v_t);
+/// μ and the capture speed go before.
+#[inline(always)]
+pub(crate) fn errors<M: Model, T: Lanes>(
+    [friction, capture_speed]: [f64; 2],
+    [shifted, tangential]: [T; 2],
+    restitution_velocity: T,
+    [normal_velocity, tangential_velocity]: [T; 2],
+) -> [T; 2] {
+    let error = shifted - law::signorini(shifted - normal_velocity - restitution_velocity);
+    if !M::FRICTION {
+        return [error, error.same(0.0)];
+    }
+    let compliance = shifted.same(1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE);
+    let bound = M::friction_bound(friction, shifted, capture_speed);
+    [error, tangential - law::coulomb(tangential - compliance * tangential_velocity, bound)]
+}
+
+/// The square of the scale of [`residual`], which is the same during a whole solve.
+pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
+    let mut sums = Sums::default();
+    problem.for_each_velocity(&problem.free, |row, free| sums.add_scale::<M>(row, free));
+    sums.scale
+}
+
+/// [`residual`] from the squares of its error and scale.
+pub(crate) fn residual_of<M: Model>(
+    problem: &StepProblem<M::Kinematics>,
+    [squared_error, squared_scale]: [f64; 2],
+) -> f64 {
+    Sums { error: squared_error, scale: squared_scale }.residual::<M>(problem)
+}
+
 #[derive(Default)]
 struct Sums {
     error: f64,
@@ -163,17 +196,10 @@ impl Sums {
         row: &Row<M::Kinematics>,
         motion: &Motion,
     ) {
-        let shifted = row.shifted_impulse;
-        let error = shifted - law::signorini(shifted - motion.now[0] - row.restitution_velocity);
-        let tangential_error = if M::FRICTION {
-            let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
-            let tangential = row.tangential_impulse;
-            let bound = problem.friction_bound::<M>(shifted);
-            tangential - law::coulomb(tangential - compliance * motion.now[1], bound)
-        } else {
-            0.0
-        };
-        self.add::<M>(row, [error, tangential_error], motion);
+        let numbers = [problem.friction, problem.capture_speed];
+        let impulse = [row.shifted_impulse, row.tangential_impulse];
+        let errors = errors::<M, f64>(numbers, impulse, row.restitution_velocity, motion.now);
+        self.add::<M>(row, errors, motion);
     }
 
     /// Adds the errors (e_n, e_t) of a row, m/s.
@@ -186,13 +212,22 @@ impl Sums {
     ) {
         let squared_mass = row.effective_mass * row.effective_mass;
         self.error += squared_mass * error * error;
-        let free = motion.free[0] + row.restitution_velocity;
-        self.scale += squared_mass * free * free;
+        self.add_scale::<M>(row, motion.free);
         if M::FRICTION {
             self.error += squared_mass * tangential_error * tangential_error;
+        }
+    }
+
+    /// Adds what a row would do if no contact acted, by its free (v_n, v_t), m/s.
+    #[inline(always)]
+    fn add_scale<M: Model>(&mut self, row: &Row<M::Kinematics>, free: [f64; 2]) {
+        let squared_mass = row.effective_mass * row.effective_mass;
+        let normal = free[0] + row.restitution_velocity;
+        self.scale += squared_mass * normal * normal;
+        if M::FRICTION {
             let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
-            let free = compliance * motion.free[1];
-            self.scale += squared_mass * free * free;
+            let tangential = compliance * free[1];
+            self.scale += squared_mass * tangential * tangential;
         }
     }
 

@@ -9,13 +9,16 @@ mod motion;
 mod order;
 pub(super) mod prepare;
 mod step_problem;
+mod tiles;
 
 pub(crate) use self::held::{Bound, Held, LawNumbers, Opening};
 pub use self::kinematics::Kinematics;
 pub use self::kinematics::line::{Line, LineBody};
 pub use self::kinematics::plane::{Plane, PlaneBody, SpinningPlane};
 pub use self::measure::{Measures, residual};
-pub(crate) use self::measure::{held_residual, measure, natural_map, worst};
+pub(crate) use self::measure::{
+    errors, held_residual, measure, natural_map, residual_of, squared_residual_scale, worst,
+};
 pub use self::model::{Model, StepModel};
 pub(crate) use self::model::{ModelParts, ModelVisitor};
 pub use self::motion::Motion;

@@ -3,6 +3,9 @@
 //! Whatever the order, contacts with fixed bodies come first, then those between grains, so that
 //! each kind has a loop of its own; an order is one within each kind.
 
+use std::ops::Range;
+
+use super::tiles::Tiles;
 use crate::contact::{Contact, Numbering};
 use crate::solver::ordering::Ordering;
 use crate::world::World;
@@ -23,28 +26,64 @@ const COLOURS: u32 = u128::BITS;
 pub(super) struct Sorter {
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
-    colours: Vec<(u32, u32)>,
+    tiles: Tiles,
+    /// Contacts with their tile and colour, as one number.
+    groups: Vec<(u32, u32)>,
+    /// Contacts between tiles.
+    between: Vec<u32>,
+    /// Contacts that found no colour.
+    of_their_own: Vec<u32>,
+    /// Contacts of each colour of each tile, then where the next of them goes.
+    counts: Vec<usize>,
     /// The colours that each grain has, one bit each.
     taken: Vec<u128>,
 }
 
+/// What rows of one kind, sorted by tiles and colours, can be solved at the same time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Groups {
+    /// Ends of the colours among the rows: those of a colour share no grain.
+    pub colour_ends: Vec<usize>,
+    /// Ends of the tiles among the colours: those of two tiles share no grain. The colours behind the last are
+    /// of contacts between tiles.
+    pub tile_ends: Vec<usize>,
+}
+
+impl Groups {
+    /// The rows of each colour of a tile, or of those between tiles where it is behind the last.
+    pub(crate) fn colours_of(&self, tile: usize) -> impl Iterator<Item = Range<usize>> {
+        let start_of = |ends: &[usize], at: usize| at.checked_sub(1).map_or(0, |at| ends[at]);
+        let (ends, tiles) = (&self.colour_ends, &self.tile_ends);
+        let all = tiles.len();
+        let first = start_of(tiles, tile.min(all));
+        let last = if tile < all { tiles[tile] } else { ends.len() };
+        (first..last).map(move |colour| start_of(ends, colour)..ends[colour])
+    }
+
+    fn clear(&mut self) {
+        self.colour_ends.clear();
+        self.tile_ends.clear();
+    }
+}
+
 impl Sorter {
     /// Appends the contacts `numbers` of one kind, given in the order of detection, to `rows`. Where
-    /// they are coloured, `ends` gets the end of each colour among what was appended.
+    /// they are coloured, `groups` gets which of what was appended belong together; tiles are those of
+    /// [`Sorter::begin`].
     pub(super) fn append(
         &mut self,
         ordering: Ordering,
         (world, contacts): (&World, &[Contact]),
         numbers: impl Iterator<Item = u32>,
         rows: &mut Vec<u32>,
-        ends: &mut Vec<usize>,
+        groups: &mut Groups,
     ) {
-        self.begin(numbers, ends);
+        self.take(numbers, groups);
         match ordering {
             Ordering::Detected => rows.extend(&self.detected),
             Ordering::Interleaved | Ordering::Symmetric => self.interleave(rows),
             Ordering::BottomUp => self.sort_by_height(world, contacts, rows),
-            Ordering::Coloured => self.colour(world.grains.len(), contacts, rows, ends),
+            Ordering::Coloured => self.colour(world.grains.len(), contacts, rows, groups),
         }
     }
 
@@ -55,16 +94,24 @@ impl Sorter {
         (grains, contacts): (usize, &[Contact]),
         numbers: impl Iterator<Item = u32>,
         rows: &mut Vec<u32>,
-        ends: &mut Vec<usize>,
+        groups: &mut Groups,
     ) {
-        self.begin(numbers, ends);
-        self.colour(grains, contacts, rows, ends);
+        self.tiles.lay_by_number(grains);
+        self.take(numbers, groups);
+        self.colour(grains, contacts, rows, groups);
     }
 
-    fn begin(&mut self, numbers: impl Iterator<Item = u32>, ends: &mut Vec<usize>) {
+    /// Lays the tiles of a step, where its order needs them.
+    pub(super) fn begin(&mut self, ordering: Ordering, world: &World) {
+        if ordering == Ordering::Coloured {
+            self.tiles.lay(world);
+        }
+    }
+
+    fn take(&mut self, numbers: impl Iterator<Item = u32>, groups: &mut Groups) {
         self.detected.clear();
         self.detected.extend(numbers);
-        ends.clear();
+        groups.clear();
     }
 
     fn interleave(&self, rows: &mut Vec<u32>) {
@@ -89,41 +136,85 @@ impl Sorter {
         rows.extend(self.keys.iter().map(|&(_, number)| number));
     }
 
-    /// Gives every contact the first colour that neither of its grains has yet: at most 2k − 1
-    /// colours where no grain has more than k contacts.
+    /// Sorts contacts by tiles, those between tiles last, and within a tile by colours: every contact gets
+    /// the first colour that neither of its grains has yet, which makes at most 2k − 1 colours where no
+    /// grain has more than k contacts.
     fn colour(
         &mut self,
         grains: usize,
         contacts: &[Contact],
         rows: &mut Vec<u32>,
-        ends: &mut Vec<usize>,
+        groups: &mut Groups,
     ) {
+        self.groups.clear();
+        self.of_their_own.clear();
+        self.between.clear();
         self.taken.clear();
         self.taken.resize(grains, 0);
-        self.colours.clear();
         let numbering = Numbering::of_grains(grains);
-        let mut colour_of_its_own = COLOURS;
-        for &number in &self.detected {
+        let grains_of = |number: u32| {
             let contact = &contacts[number as usize];
-            let grains_of_contact =
-                [Some(contact.grain as usize), numbering.other(contact.other).grain()];
-            let moving = || grains_of_contact.into_iter().flatten();
-            let taken = moving().fold(0, |taken, grain| taken | self.taken[grain]);
-            let mut colour = taken.trailing_ones();
-            if colour == COLOURS {
-                colour = colour_of_its_own;
-                colour_of_its_own += 1;
-            } else {
-                moving().for_each(|grain| self.taken[grain] |= 1 << colour);
+            [Some(contact.grain as usize), numbering.other(contact.other).grain()]
+        };
+        for at in 0..self.detected.len() {
+            let number = self.detected[at];
+            match self.tiles.of(grains_of(number)) {
+                Some(tile) => self.take_colour(tile, number, grains_of(number)),
+                None => self.between.push(number),
             }
-            self.colours.push((colour, number));
         }
-        self.colours.sort_unstable();
+        // Between tiles colours are counted anew: they are solved after all others.
+        self.taken.fill(0);
+        for at in 0..self.between.len() {
+            let number = self.between[at];
+            self.take_colour(self.tiles.count(), number, grains_of(number));
+        }
+        self.group(rows, groups);
+    }
+
+    fn take_colour(&mut self, tile: usize, number: u32, grains: [Option<usize>; 2]) {
+        let moving = || grains.into_iter().flatten();
+        let taken = moving().fold(0, |taken, grain| taken | self.taken[grain]);
+        let colour = taken.trailing_ones();
+        if colour == COLOURS {
+            self.of_their_own.push(number);
+            return;
+        }
+        moving().for_each(|grain| self.taken[grain] |= 1 << colour);
+        self.groups.push((tile as u32 * COLOURS + colour, number));
+    }
+
+    /// Counts how many contacts each colour of each tile has, and puts them there in the order of detection.
+    fn group(&mut self, rows: &mut Vec<u32>, groups: &mut Groups) {
+        let tiles = self.tiles.count();
+        let counts = &mut self.counts;
+        counts.clear();
+        counts.resize((tiles + 1) * COLOURS as usize, 0);
+        for &(group, _) in &self.groups {
+            counts[group as usize] += 1;
+        }
         let before = rows.len();
-        for colour in self.colours.chunk_by(|a, b| a.0 == b.0) {
-            rows.extend(colour.iter().map(|&(_, number)| number));
-            ends.push(rows.len() - before);
+        let mut end = 0;
+        for of_tile in counts.chunks_exact_mut(COLOURS as usize) {
+            for count in of_tile.iter_mut().filter(|count| **count > 0) {
+                let start = end;
+                end += std::mem::replace(count, start);
+                groups.colour_ends.push(end);
+            }
+            groups.tile_ends.push(groups.colour_ends.len());
         }
+        rows.resize(before + end, 0);
+        for &(group, number) in &self.groups {
+            let place = &mut counts[group as usize];
+            rows[before + *place] = number;
+            *place += 1;
+        }
+        // Whoever has more neighbours than there are colours lies in no tile.
+        for &number in &self.of_their_own {
+            rows.push(number);
+            groups.colour_ends.push(rows.len() - before);
+        }
+        groups.tile_ends.pop();
     }
 }
 
@@ -149,11 +240,12 @@ mod tests {
 
     fn sorted(ordering: Ordering, contacts: &[Contact]) -> (Vec<u32>, Vec<usize>) {
         let world = world();
-        let (mut rows, mut ends) = (Vec::new(), Vec::new());
+        let (mut rows, mut groups) = (Vec::new(), Groups::default());
         let numbers = 0..contacts.len() as u32;
         let mut sorter = Sorter::default();
-        sorter.append(ordering, (&world, contacts), numbers, &mut rows, &mut ends);
-        (rows, ends)
+        sorter.begin(ordering, &world);
+        sorter.append(ordering, (&world, contacts), numbers, &mut rows, &mut groups);
+        (rows, groups.colour_ends)
     }
 
     /// A hub with more neighbours than a grain keeps account of, and a ring around it.

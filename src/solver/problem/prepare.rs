@@ -111,11 +111,12 @@ impl<K: Kinematics> StepProblem<K> {
         let fixed = all.clone().filter(|index| !is_pair(index));
         let pairs = all.filter(is_pair);
         let ordering = settings.method.info().order.of_rows(settings.ordering);
-        let [fixed_ends, pair_ends] = &mut self.colour_ends;
+        let [of_fixed, of_pairs] = &mut self.groups;
         let rows = &mut self.contact_of_row;
         rows.clear();
-        self.sorter.append(ordering, (world, contacts), fixed, rows, fixed_ends);
-        self.sorter.append(ordering, (world, contacts), pairs, rows, pair_ends);
+        self.sorter.begin(ordering, world);
+        self.sorter.append(ordering, (world, contacts), fixed, rows, of_fixed);
+        self.sorter.append(ordering, (world, contacts), pairs, rows, of_pairs);
     }
 
     /// One row, with the impulses of `start` (N·s) projected on what the contact law allows now.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::kinematics::Kinematics;
 use super::model::Model;
-use super::order::Sorter;
+use super::order::{Groups, Sorter};
 use crate::contact::{Contact, ContactList, Impulse, Numbering, Other};
 use crate::solver::friction_model::FrictionModel;
 
@@ -74,9 +74,9 @@ pub struct StepProblem<K: Kinematics> {
     pub(crate) masses: Vec<f64>,
     /// Mean mass of the grains, kg.
     pub(crate) mean_mass: f64,
-    /// Ends of the colours in the rows against fixed bodies and in those between grains; empty where
-    /// rows are not coloured.
-    pub(crate) colour_ends: [Vec<usize>; 2],
+    /// Which rows against fixed bodies, and which between grains, can be solved at the same time; empty
+    /// where rows are not coloured.
+    pub(crate) groups: [Groups; 2],
     pub(super) sorter: Sorter,
 }
 
@@ -98,7 +98,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             held: Vec::new(),
             masses: Vec::new(),
             mean_mass: 0.0,
-            colour_ends: Default::default(),
+            groups: Default::default(),
             sorter: Sorter::default(),
         }
     }
@@ -154,7 +154,7 @@ impl<K: Kinematics> StepProblem<K> {
     /// Puts rows that were not made by [`StepProblem::prepare`] in the order of colours, for the
     /// method that needs it.
     pub(crate) fn sort_by_colours(&mut self) {
-        let Self { fixed_rows, pair_rows, contact_of_row, colour_ends, sorter, .. } = self;
+        let Self { fixed_rows, pair_rows, contact_of_row, groups, sorter, .. } = self;
         let contact = |row: &Row<K>, other: u32| Contact {
             grain: row.i,
             other,
@@ -167,12 +167,12 @@ impl<K: Kinematics> StepProblem<K> {
             .map(|row| contact(row, fixed_body))
             .chain(pair_rows.iter().map(|row| contact(row, row.j)))
             .collect();
-        let [fixed_ends, pair_ends] = colour_ends;
+        let [of_fixed, of_pairs] = groups;
         let (fixed, all) = (fixed_rows.len() as u32, contacts.len() as u32);
         let mut order = Vec::with_capacity(contacts.len());
         let list = (self.masses.len(), &contacts[..]);
-        sorter.append_coloured(list, 0..fixed, &mut order, fixed_ends);
-        sorter.append_coloured(list, fixed..all, &mut order, pair_ends);
+        sorter.append_coloured(list, 0..fixed, &mut order, of_fixed);
+        sorter.append_coloured(list, fixed..all, &mut order, of_pairs);
         let (of_fixed, of_pairs) = order.split_at(fixed as usize);
         *fixed_rows = of_fixed.iter().map(|&row| fixed_rows[row as usize]).collect();
         *pair_rows = of_pairs.iter().map(|&row| pair_rows[(row - fixed) as usize]).collect();

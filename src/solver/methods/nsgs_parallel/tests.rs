@@ -7,9 +7,10 @@ use rayon::ThreadPoolBuilder;
 
 use super::*;
 use crate::contact::levels;
-use crate::solver::problem::{Kinematics, Line, Plane, Row, SpinningPlane, StepModel};
+use crate::solver::problem::{Kinematics, Line, Plane, Row, SpinningPlane, StepModel, residual};
 
-/// Contacts between random bodies, every eighth against a fixed one, in the order of their colours.
+/// Contacts between bodies whose numbers are near to each other, every eighth against a fixed one, by tiles and
+/// colours.
 fn problem<M: Model>(seed: u64, bodies: usize, contacts: u32) -> StepProblem<M::Kinematics> {
     let mut random = Pcg64::seed_from_u64(seed);
     let mut problem = StepProblem::<M::Kinematics>::default();
@@ -23,7 +24,7 @@ fn problem<M: Model>(seed: u64, bodies: usize, contacts: u32) -> StepProblem<M::
     problem.before.clone_from(&problem.free);
     for contact in 0..contacts {
         let i = random.random_range(0..bodies);
-        let j = (i + random.random_range(1..bodies)) % bodies;
+        let j = (i + random.random_range(1..bodies.min(64))) % bodies;
         let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
         let normal = [if angle < 3.0 { 1.0 } else { -1.0 }, 0.0];
         let row = Row {
@@ -78,9 +79,51 @@ fn the_sum_of_squared_impulses_is_that_of_the_rows_with_a_capture_speed_each() {
         };
         let expected: f64 = problem.rows().map(square).sum();
         let mut memory = BlockMemory::default();
-        let coloured = Coloured::<Full>::new(Level::new(), &mut problem, &mut memory);
-        let found = coloured.expect("colours").squared_impulses();
+        let tiled = Tiled::<Full>::new(Level::new(), &mut problem, &mut memory);
+        let found = tiled.expect("colours").squared_impulses();
         assert!((found / expected - 1.0).abs() < 1e-14, "{found} for {expected}");
+    }
+}
+
+fn residual_is_that_of_the_rows<M: Model>() {
+    // One tile, and some with contacts between them.
+    for (bodies, contacts) in [(40, 203), (4000, 8000)] {
+        for level in levels() {
+            let mut problem = problem::<M>(4, bodies, contacts);
+            nsgs::solve::<M>(&mut problem, &mut (), &sweeps(3));
+            let expected = residual::<M>(&problem);
+            let mut memory = BlockMemory::default();
+            let mut tiled = Tiled::<M>::new(level, &mut problem, &mut memory).expect("colours");
+            let found = tiled.residual();
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} for {expected}");
+            assert!(expected > 1e-6, "something errs");
+        }
+    }
+}
+
+#[test]
+fn the_residual_in_blocks_is_that_of_the_rows() {
+    residual_is_that_of_the_rows::<StepModel<Line, false, false>>();
+    residual_is_that_of_the_rows::<StepModel<Plane, true, true>>();
+    residual_is_that_of_the_rows::<StepModel<SpinningPlane, true, false>>();
+}
+
+#[test]
+fn where_nothing_would_move_the_residual_is_none_or_infinite() {
+    type Full = StepModel<SpinningPlane, true, false>;
+    for (error, expected) in [(0.0, 0.0), (0.1, f64::INFINITY)] {
+        let mut problem = problem::<Full>(5, 40, 60);
+        problem.capture_speed = 0.0;
+        problem.free.iter_mut().for_each(|body| *body = Default::default());
+        for row in problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows) {
+            (row.restitution_velocity, row.shifted_impulse) = (0.0, error);
+            row.tangential_impulse = 0.0;
+        }
+        problem.form_velocities();
+        assert_eq!(residual::<Full>(&problem), expected);
+        let mut memory = BlockMemory::default();
+        let tiled = Tiled::<Full>::new(Level::new(), &mut problem, &mut memory);
+        assert_eq!(tiled.expect("colours").residual(), expected);
     }
 }
 
@@ -99,9 +142,8 @@ fn same_bits_at_all_levels<M: Model>() {
             assert!(bits(&solved) == bits(&expected), "{level:?}, seed {seed}");
         }
         assert!(bits(&start) != bits(&expected), "something moves");
-        for ends in &start.colour_ends {
-            let starts = [0].iter().chain(ends);
-            starts.zip(ends).for_each(|(start, end)| seen[(end - start) % LANES] += 1);
+        for groups in &start.groups {
+            groups.colours_of(0).for_each(|rows| seen[rows.len() % LANES] += 1);
         }
     }
     assert!(seen.iter().all(|&colours| colours > 10), "{seen:?}");
@@ -120,23 +162,31 @@ fn contacts_side_by_side_give_the_bits_of_one_after_the_other() {
 #[test]
 fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
     type Full = StepModel<SpinningPlane, true, false>;
-    let start = problem::<Full>(1, 40_000, 80_000);
+    let start = problem::<Full>(1, 40_960, 80_000);
     let mut one_by_one = start.clone();
     let expected = [(); 8].map(|()| nsgs::sweep::<Full, true>(&mut one_by_one));
-    let mut sums = Vec::new();
+    let (mut sums, mut residuals) = (Vec::new(), Vec::new());
     for threads in [1, 2, 4] {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         for level in levels() {
             let mut problem = start.clone();
             let mut memory = BlockMemory::default();
             let changes = pool.install(|| {
-                let coloured = Coloured::<Full>::new(level, &mut problem, &mut memory);
-                let mut coloured = coloured.expect("colours");
-                assert_eq!(coloured.threads, threads > 1, "a colour is worth threads");
-                let changes = [(); 8].map(|()| coloured.sweep::<true>());
-                coloured.store();
-                changes
+                let tiled = Tiled::<Full>::new(level, &mut problem, &mut memory);
+                let mut tiled = tiled.expect("colours");
+                assert_eq!(tiled.threads, threads > 1, "there are several tiles");
+                let changes = [(); 8].map(|()| tiled.sweep::<true>());
+                let residual = tiled.residual();
+                tiled.store();
+                let between = memory.layout.blocks.len() - blocks_of(&memory.layout.tiles);
+                assert!(between > 100, "contacts between tiles");
+                assert!(
+                    memory.layout.tiles.iter().all(|tile| tile.blocks > 100 && tile.singles > 10)
+                );
+                (changes, residual)
             });
+            let (changes, residual) = changes;
+            residuals.push(residual.to_bits());
             assert!(bits(&problem) == bits(&one_by_one), "{level:?}, {threads} threads");
             for (change, expected) in changes.iter().zip(&expected) {
                 assert!((change.squared / expected.squared - 1.0).abs() < 1e-12);
@@ -146,18 +196,34 @@ fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
         }
     }
     assert!(sums.iter().all(|sum| *sum == sums[0]), "{sums:?}");
+    assert!(residuals.iter().all(|bits| *bits == residuals[0]), "{residuals:?}");
 }
 
 #[test]
 fn rows_whose_colours_share_a_grain_are_swept_as_they_come() {
     type Full = StepModel<SpinningPlane, true, false>;
     let mut start = problem::<Full>(2, 40, 200);
-    let [_, pair_ends] = &start.colour_ends;
-    let second = pair_ends[0];
+    let second = start.groups[1].colour_ends[0];
     start.pair_rows[second] = start.pair_rows[second - 1];
     start.pair_rows.swap(0, second);
     let (mut expected, mut solved) = (start.clone(), start);
     nsgs::solve::<Full>(&mut expected, &mut (), &sweeps(5));
     solve::<Full>(&mut solved, &mut BlockMemory::default(), &sweeps(5));
+    assert!(bits(&solved) == bits(&expected));
+}
+
+#[test]
+fn tiles_that_share_a_grain_are_swept_as_they_come() {
+    type Full = StepModel<SpinningPlane, true, false>;
+    let mut start = problem::<Full>(6, 4000, 8000);
+    let ends = &start.groups[1];
+    let of_second = ends.colours_of(1).next().expect("a colour").start;
+    // The first contact of the second tile gets a grain of the first.
+    start.pair_rows[of_second].i = start.pair_rows[0].i;
+    let (mut expected, mut solved) = (start.clone(), start);
+    nsgs::solve::<Full>(&mut expected, &mut (), &sweeps(5));
+    let mut memory = BlockMemory::default();
+    assert!(Tiled::<Full>::new(Level::new(), &mut solved.clone(), &mut memory).is_none());
+    solve::<Full>(&mut solved, &mut memory, &sweeps(5));
     assert!(bits(&solved) == bits(&expected));
 }

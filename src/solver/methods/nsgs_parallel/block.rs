@@ -1,0 +1,215 @@
+//! Contacts side by side: a block holds four that share no grain, one a lane, as structure of arrays.
+//!
+//! All four are solved at once by the arithmetic of one (`shared::update`), in the vector registers
+//! that the processor turns out to have: to the last bit what they give one after the other. A block
+//! that a colour does not fill has idle lanes, which act on a body that stands in and change nothing.
+
+use fearless_simd::{Simd, SimdBase, SimdFrom, f64x4};
+
+use crate::contact::Lanes;
+use crate::solver::methods::shared::update::{Body, Change, Law, Local, squared_impulse};
+use crate::solver::problem::{Kinematics, Model, Row, errors};
+
+/// Contacts in a block: the numbers in a register of AVX2. Wider blocks would leave more lanes idle.
+pub(super) const LANES: usize = 4;
+
+/// The velocity of a body as blocks see it, an entry a degree of freedom; the rest is 0. It never straddles two
+/// cache lines.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(32))]
+pub(super) struct Slot([f64; LANES]);
+
+impl Slot {
+    /// The slot of a body.
+    pub(super) fn of<K: Kinematics>(body: &K::Body<f64>) -> Self {
+        let [x, y, spin] = K::coordinates(body);
+        Self([x, y, spin, 0.0])
+    }
+
+    /// Gives a body its velocity.
+    pub(super) fn store<K: Kinematics>(&self, body: &mut K::Body<f64>) {
+        let [x, y, spin, _] = self.0;
+        K::set(body, [x, y, spin]);
+    }
+}
+
+/// Four contacts, lane by lane as in [`Row`]: four cache lines, of which a sweep writes one.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Block {
+    i: [u32; LANES],
+    j: [u32; LANES],
+    share: [f64; LANES],
+    normal: [[f64; LANES]; 2],
+    shifted_impulse: [f64; LANES],
+    tangential_impulse: [f64; LANES],
+    restitution_velocity: [f64; LANES],
+    effective_mass: [f64; LANES],
+}
+
+impl Block {
+    /// The block of up to four rows, whose grains are in these slots. Idle lanes have the first.
+    pub(super) fn of<K: Kinematics>(rows: &[Row<K>], slots: impl Fn(&Row<K>) -> [u32; 2]) -> Self {
+        let mut block = Self {
+            i: [0; LANES],
+            j: [0; LANES],
+            share: [0.0; LANES],
+            normal: [[0.0; LANES]; 2],
+            shifted_impulse: [0.0; LANES],
+            tangential_impulse: [0.0; LANES],
+            restitution_velocity: [0.0; LANES],
+            effective_mass: [0.0; LANES],
+        };
+        for (lane, row) in rows.iter().enumerate() {
+            [block.i[lane], block.j[lane]] = slots(row);
+            block.share[lane] = row.share;
+            [block.normal[0][lane], block.normal[1][lane]] = K::components(row.normal);
+            block.shifted_impulse[lane] = row.shifted_impulse;
+            block.tangential_impulse[lane] = row.tangential_impulse;
+            block.restitution_velocity[lane] = row.restitution_velocity;
+            block.effective_mass[lane] = row.effective_mass;
+        }
+        block
+    }
+
+    /// Gives its rows their impulses.
+    pub(super) fn store<M: Model>(&self, rows: &mut [Row<M::Kinematics>]) {
+        for (lane, row) in rows.iter_mut().enumerate() {
+            row.shifted_impulse = self.shifted_impulse[lane];
+            if M::FRICTION {
+                row.tangential_impulse = self.tangential_impulse[lane];
+            }
+        }
+    }
+
+    /// Σ P² of its contacts, (N·s)², given their capture speeds.
+    #[inline(always)]
+    pub(super) fn squared_impulses(&self, captures: [f64; LANES]) -> f64 {
+        sum(std::array::from_fn(|lane| {
+            let normal = self.shifted_impulse[lane] - captures[lane];
+            let impulse = [normal, self.tangential_impulse[lane]];
+            squared_impulse(self.effective_mass[lane], impulse)
+        }))
+    }
+
+    #[inline(always)]
+    fn local<K: Kinematics, S: Simd>(&self, simd: S) -> Local<K, f64x4<S>> {
+        let [x, y] = self.normal;
+        Local {
+            normal: K::normal([f64x4::simd_from(simd, x), f64x4::simd_from(simd, y)]),
+            share: f64x4::simd_from(simd, self.share),
+            restitution_velocity: f64x4::simd_from(simd, self.restitution_velocity),
+            effective_mass: f64x4::simd_from(simd, self.effective_mass),
+        }
+    }
+
+    #[inline(always)]
+    fn impulse<S: Simd>(&self, simd: S) -> [f64x4<S>; 2] {
+        [self.shifted_impulse, self.tangential_impulse].map(|it| f64x4::simd_from(simd, it))
+    }
+}
+
+/// Bodies, one a lane.
+#[inline(always)]
+fn gather<S: Simd, M: Model>(simd: S, slots: &[Slot], indices: [u32; LANES]) -> Body<M, f64x4<S>> {
+    let bodies = indices.map(|index| f64x4::simd_from(simd, slots[index as usize].0));
+    let [x, y, spin, _] = transposed(bodies);
+    M::Kinematics::from_coordinates([x, y, spin])
+}
+
+/// Columns for rows and rows for columns. Slots are read and written whole, in one access each: single numbers
+/// would have to wait for the whole slot that the block before wrote.
+#[inline(always)]
+fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
+    let (ac, bd) = (a.zip_low(c), b.zip_low(d));
+    let (other_ac, other_bd) = (a.zip_high(c), b.zip_high(d));
+    [ac.zip_low(bd), ac.zip_high(bd), other_ac.zip_low(other_bd), other_ac.zip_high(other_bd)]
+}
+
+/// Puts gathered bodies back.
+#[inline(always)]
+fn scatter<S: Simd, M: Model>(
+    slots: &mut [Slot],
+    indices: [u32; LANES],
+    bodies: &Body<M, f64x4<S>>,
+) {
+    let [x, y, spin] = M::Kinematics::coordinates(bodies);
+    let bodies = transposed([x, y, spin, spin.same(0.0)]);
+    for (index, body) in indices.into_iter().zip(bodies) {
+        slots[index as usize] = Slot(body.to_array());
+    }
+}
+
+/// Solves blocks one after the other: of contacts with fixed bodies, then between grains.
+#[inline(always)]
+pub(super) fn solve_blocks<S: Simd, M: Model, const MEASURE: bool>(
+    simd: S,
+    law: &Law,
+    (blocks, singles): (&mut [Block], usize),
+    slots: &mut [Slot],
+) -> Change {
+    let none = f64x4::splat(simd, 0.0);
+    let mut change = Change { squared: none, absolute: none };
+    let (single, pair) = blocks.split_at_mut(singles);
+    for block in single {
+        let local = block.local::<M::Kinematics, S>(simd);
+        let [mut shifted, mut tangential] = block.impulse(simd);
+        let mut i = gather::<S, M>(simd, slots, block.i);
+        let row = (&local, [&mut shifted, &mut tangential]);
+        law.solve_single::<M, _, MEASURE>(row, &mut i, &mut change);
+        scatter::<S, M>(slots, block.i, &i);
+        block.shifted_impulse = shifted.to_array();
+        if M::FRICTION {
+            block.tangential_impulse = tangential.to_array();
+        }
+    }
+    for block in pair {
+        let local = block.local::<M::Kinematics, S>(simd);
+        let [mut shifted, mut tangential] = block.impulse(simd);
+        let mut i = gather::<S, M>(simd, slots, block.i);
+        let mut j = gather::<S, M>(simd, slots, block.j);
+        let row = (&local, [&mut shifted, &mut tangential]);
+        law.solve_pair::<M, _, MEASURE>(row, &mut i, &mut j, &mut change);
+        scatter::<S, M>(slots, block.i, &i);
+        scatter::<S, M>(slots, block.j, &j);
+        block.shifted_impulse = shifted.to_array();
+        if M::FRICTION {
+            block.tangential_impulse = tangential.to_array();
+        }
+    }
+    let Change { squared, absolute } = change;
+    Change { squared: sum(squared.to_array()), absolute: sum(absolute.to_array()) }
+}
+
+/// Σ (e_n² + e_t²) of the common residual (`problem::measure`), (N·s)².
+#[inline(always)]
+pub(super) fn squared_error<S: Simd, M: Model>(
+    simd: S,
+    law: [f64; 2],
+    (blocks, singles): (&[Block], usize),
+    slots: &[Slot],
+) -> f64 {
+    let mut sum_of_lanes = f64x4::splat(simd, 0.0);
+    for (at, block) in blocks.iter().enumerate() {
+        let local = block.local::<M::Kinematics, S>(simd);
+        let i = gather::<S, M>(simd, slots, block.i);
+        let velocity = if at < singles {
+            M::Kinematics::velocity(local.normal, &i)
+        } else {
+            let j = gather::<S, M>(simd, slots, block.j);
+            M::Kinematics::relative_velocity(local.normal, &i, &j)
+        };
+        let impulse = block.impulse(simd);
+        let [normal, tangential] =
+            errors::<M, _>(law, impulse, local.restitution_velocity, velocity)
+                .map(|error| local.effective_mass * error);
+        sum_of_lanes += normal * normal + tangential * tangential;
+    }
+    sum(sum_of_lanes.to_array())
+}
+
+/// The sum over all lanes.
+#[inline(always)]
+pub(super) fn sum([a, b, c, d]: [f64; LANES]) -> f64 {
+    (a + b) + (c + d)
+}
