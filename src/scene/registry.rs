@@ -39,7 +39,7 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 20] = [
+pub const SCENES: [SceneInfo; 22] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
@@ -163,6 +163,18 @@ pub const SCENES: [SceneInfo; 20] = [
         group: SceneGroup::Stability,
         summary: "a column under a disc 100 times as heavy",
         make: || Ok(stability::lift_off(100.0)),
+    },
+    SceneInfo {
+        name: "dilatancy",
+        group: SceneGroup::Stability,
+        summary: "a disc that slides on the floor: friction must not lift it",
+        make: || Ok(stability::dilatancy()),
+    },
+    SceneInfo {
+        name: "blow",
+        group: SceneGroup::Stability,
+        summary: "a heavy disc falls on one that slides: friction has to know at once",
+        make: || Ok(stability::blow()),
     },
 ];
 

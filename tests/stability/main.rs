@@ -5,6 +5,7 @@
 //! `cargo run --release -- stability --quick --table tests/stability/table.csv`.
 
 mod alarms;
+mod friction;
 mod remedies;
 mod theory;
 

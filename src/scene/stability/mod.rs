@@ -3,8 +3,10 @@
 
 mod arch;
 mod balls;
+mod blow;
 mod bounce;
 mod column;
+mod dilatancy;
 mod hanging;
 mod heap;
 mod lift_off;
@@ -21,11 +23,13 @@ use glam::DVec2;
 
 pub use arch::{FRICTION_OF_ARCH, arch};
 pub use balls::balls;
+pub use blow::blow;
 pub use bounce::bounce;
 pub use column::{column, column_on_line};
+pub use dilatancy::dilatancy;
 pub(crate) use hanging::{breaking_bond, hanging_chain};
-pub use heap::heap;
 pub(crate) use heap::heap_far_away;
+pub use heap::heap;
 pub(crate) use lift_off::lift_off;
 pub use logs::logs;
 pub use mass_ratio::mass_ratio;

@@ -62,7 +62,7 @@ const fn limits(holds: f64, fails: f64) -> Limits {
 }
 
 /// All challenges.
-pub static CHALLENGES: [Challenge; 24] = [
+pub static CHALLENGES: [Challenge; 26] = [
     Challenge {
         name: "column",
         driver: "discs",
@@ -278,5 +278,23 @@ pub static CHALLENGES: [Challenge; 24] = [
         measure: "grains lost",
         limits: limits(0.0, 0.0),
         error: measures::sliders,
+    },
+    Challenge {
+        name: "dilatancy",
+        driver: "time step (s)",
+        quick: &[1e-4, 1e-3, 5e-3],
+        further: &[2e-2],
+        measure: "rise or sinking of what slides / d, or relative error of its way",
+        limits: limits(0.01, 0.1),
+        error: measures::dilatancy,
+    },
+    Challenge {
+        name: "blow",
+        driver: "time step (s)",
+        quick: &[1e-4, 1e-3, 5e-3],
+        further: &[],
+        measure: "error of the way / d, or of the speed that a blow on what slides takes",
+        limits: limits(0.01, 0.1),
+        error: measures::blow,
     },
 ];

@@ -1,10 +1,11 @@
-//! Who is tried: every method of the registry, and settings that mend a known failure.
+//! Who is tried: every method of the registry, the models of friction that are not Coulomb's law, and settings
+//! that mend a known failure.
 
 use std::sync::LazyLock;
 
 use crate::scene::{Preset, Scene};
 use crate::sim::Stepper;
-use crate::solver::{METHODS, Method, Ordering};
+use crate::solver::{FrictionModel, METHODS, Method, Ordering};
 
 /// A way to step that is tried.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +21,8 @@ enum Way {
     Method(Method),
     /// Gauss–Seidel in an order of its own.
     Order(Ordering),
+    /// A model of friction, solved so many times a step by the method that solves it for certain.
+    Model(FrictionModel, u32),
     /// A stepper that solves no problem by a method.
     Stepper(Stepper),
     /// Settings that go together.
@@ -35,6 +38,12 @@ impl Contender {
                 scene.solver.method = Method::Nsgs;
                 scene.solver.ordering = ordering;
             }
+            Way::Model(friction_model, model_solves) if scene.physics.friction => {
+                scene.solver.method = Method::InteriorPoint;
+                scene.solver.friction_model = friction_model;
+                scene.solver.model_solves = model_solves;
+            }
+            Way::Model(..) => scene.solver.method = Method::InteriorPoint,
             Way::Stepper(stepper) => scene.stepper = stepper,
             Way::Preset(preset) => preset.apply(scene),
         }
@@ -51,16 +60,20 @@ impl Contender {
     }
 }
 
-/// All contenders: every method, every stepper without one, and settings that mend a known failure.
+/// All contenders: every method, every stepper without one, every model of friction beside Coulomb's law, and
+/// settings that mend a known failure.
 pub(crate) static CONTENDERS: LazyLock<Vec<Contender>> = LazyLock::new(|| {
     let methods =
         METHODS.iter().map(|info| Contender { name: info.name, way: Way::Method(info.method) });
     let steppers = Stepper::ALL.iter().filter(|stepper| !stepper.uses_method());
     let steppers =
         steppers.map(|&stepper| Contender { name: stepper.name(), way: Way::Stepper(stepper) });
+    let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
+    let models = models.map(|&model| Contender { name: model.name(), way: Way::Model(model, 1) });
     let others = [
+        Contender { name: "tresca twice", way: Way::Model(FrictionModel::Tresca, 2) },
         Contender { name: "nsgs bottom-up", way: Way::Order(Ordering::BottomUp) },
         Contender { name: "robust", way: Way::Preset(Preset::Robust) },
     ];
-    methods.chain(steppers).chain(others).collect()
+    methods.chain(steppers).chain(models).chain(others).collect()
 });

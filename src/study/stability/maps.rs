@@ -16,7 +16,6 @@ use crate::scene::Scene;
 use crate::scene::stability::{
     breaking_bond_of_cantilever, cantilever, column_on_line, mass_ratio,
 };
-use crate::solver::METHODS;
 use crate::study::chart::{Axis, Cell, Chart, Corner, INK, Layer, Look, Sheet, points};
 
 /// A grain that has gone this far is lost, in d.
@@ -181,16 +180,20 @@ fn class(contender: &Contender, scene: &Scene, may_swing: bool) -> Result<f64> {
     })
 }
 
+/// Who has a map.
+fn of_registry() -> impl Iterator<Item = &'static Contender> {
+    CONTENDERS.iter().filter(|one| one.is_of_registry())
+}
+
 /// All maps, each with its file's name: the methods of the registry side by side.
 ///
 /// # Errors
 /// Where a scene is not sound.
 pub(crate) fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
     let mut sheets = Vec::new();
-    let contenders = || CONTENDERS.iter().filter(|one| one.is_of_registry());
     for map in &MAPS {
         let mut charts = Vec::new();
-        for contender in contenders() {
+        for contender in of_registry() {
             charts.push(map.chart(contender, quick, &told)?);
         }
         for (number, charts) in charts.chunks(ABREAST).enumerate() {
@@ -213,7 +216,7 @@ pub(crate) fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, S
 
 /// Number of charts of all maps.
 pub(crate) fn count_of_maps() -> usize {
-    MAPS.len() * METHODS.len()
+    MAPS.len() * of_registry().count()
 }
 
 impl Map {

@@ -12,6 +12,9 @@ const ROW: u32 = 44;
 const BESIDE: u32 = 260;
 const BELOW: u32 = 220;
 
+/// Parameters that a line of the caption names.
+const DRIVERS_A_LINE: usize = 7;
+
 /// Colours of holding, degrading and failing, told apart also by their lightness.
 const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
 
@@ -57,7 +60,7 @@ pub(crate) fn picture(table: &StabilityTable) -> Sheet {
     let drivers =
         challenges.iter().map(|challenge| format!("{}: {}", challenge.name, challenge.driver));
     let drivers: Vec<String> = drivers.collect();
-    caption.extend(drivers.chunks(5).map(|line| line.join("; ")));
+    caption.extend(drivers.chunks(DRIVERS_A_LINE).map(|line| line.join("; ")));
     Sheet {
         size: (BESIDE + COLUMN * columns as u32, BELOW + ROW * rows as u32),
         charts: vec![chart],

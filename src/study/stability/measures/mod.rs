@@ -2,6 +2,7 @@
 
 mod cohesion;
 mod columns;
+mod friction;
 mod impacts;
 mod numbering;
 mod piles;
@@ -10,6 +11,7 @@ mod sudden;
 
 pub(super) use cohesion::{bridge, cantilever, chain, shock};
 pub(super) use columns::{column, mass_ratio, sag, sagging, size_ratio, sunk};
+pub(super) use friction::{blow, dilatancy};
 pub(super) use impacts::{bounce, newtons_cradle, thin_wall};
 pub(super) use numbering::{far, shuffle};
 pub(super) use piles::{arch, friction_limit, repose, repose_angle, rest};
