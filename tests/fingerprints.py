@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 BINARY = sys.argv[1]
 SCENES = ["pile", "cradle", "collision", "column", "mass-ratio", "chain", "cantilever", "bridge", "overlap",
     "squeeze", "moving-walls", "logs", "arch", "repose", "repose-angle", "far", "bounce", "newtons-cradle",
-    "thin-wall", "lift-off", "dilatancy", "blow", "assets/scenes/hourglass.toml"]
+    "thin-wall", "lift-off", "dilatancy", "blow", "hyperstatic", "assets/scenes/hourglass.toml"]
 METHODS = ["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
 REMEDIES = [[], ["--push-out", "true"], ["--max-travel", "0.1"], ["--calm-unsolved", "true"],
     ["--sequential-impacts", "true"], ["--speculative", "true"], ["--preset", "robust"]]

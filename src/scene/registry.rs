@@ -39,7 +39,7 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 22] = [
+pub const SCENES: [SceneInfo; 23] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
@@ -175,6 +175,12 @@ pub const SCENES: [SceneInfo; 22] = [
         group: SceneGroup::Stability,
         summary: "a heavy disc falls on one that slides: friction has to know at once",
         make: || Ok(stability::blow()),
+    },
+    SceneInfo {
+        name: "hyperstatic",
+        group: SceneGroup::Stability,
+        summary: "150 discs in a lattice with twice the contacts that it needs, normals a little off",
+        make: || Ok(stability::lattice(13, 12, 1e-4)),
     },
 ];
 

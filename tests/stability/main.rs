@@ -7,6 +7,7 @@
 mod alarms;
 mod friction;
 mod remedies;
+mod size;
 mod theory;
 
 use std::sync::OnceLock;

@@ -37,6 +37,12 @@ pub fn heap(rows: usize) -> Scene {
     scene
 }
 
+/// The largest heap of at most `count` discs, for `count` ≥ 1.
+pub fn heap_of(count: usize) -> Scene {
+    let rows = (1..).take_while(|rows| rows * (rows + 1) / 2 <= count).count();
+    Scene { name: "size".into(), ..heap(rows) }
+}
+
 /// The same heap with one disc more that falls on its slope, `distance` diameters from the origin along both axes.
 pub(crate) fn heap_far_away(rows: usize, distance: f64) -> Scene {
     let mut scene = heap(rows);

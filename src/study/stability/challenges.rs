@@ -62,7 +62,7 @@ const fn limits(holds: f64, fails: f64) -> Limits {
 }
 
 /// All challenges.
-pub static CHALLENGES: [Challenge; 26] = [
+pub static CHALLENGES: [Challenge; 28] = [
     Challenge {
         name: "column",
         driver: "discs",
@@ -296,5 +296,23 @@ pub static CHALLENGES: [Challenge; 26] = [
         measure: "error of the way / d, or of the speed that a blow on what slides takes",
         limits: limits(0.01, 0.1),
         error: measures::blow,
+    },
+    Challenge {
+        name: "hyperstatic",
+        driver: "displacement (d)",
+        quick: &[1e-4],
+        further: &[1e-6],
+        measure: "residual, way / d or speed / √(g d) after 20 steps of 40 sweeps, 3,900 contacts",
+        limits: limits(0.01, 0.2),
+        error: measures::hyperstatic,
+    },
+    Challenge {
+        name: "size",
+        driver: "grains",
+        quick: &[138.0, 500.0],
+        further: &[2000.0, 10000.0],
+        measure: "longest way / d, or speed / √(g d), after 20 steps of 40 sweeps",
+        limits: limits(1e-3, 0.1),
+        error: measures::size,
     },
 ];

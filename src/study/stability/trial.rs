@@ -22,6 +22,13 @@ impl Trial {
         scene.simulation()
     }
 
+    /// The same with so many sweeps a step, whatever the contender says of them.
+    pub(super) fn start_within(&self, sweeps: u32, mut scene: Scene) -> Result<Simulation> {
+        self.contender.apply(&mut scene);
+        scene.solver.max_sweeps = sweeps;
+        scene.simulation()
+    }
+
     /// The level as a count.
     pub(super) fn count(&self) -> usize {
         self.level as usize
@@ -46,6 +53,12 @@ pub(super) fn jitter(simulation: &Simulation) -> f64 {
     let mass: f64 = world.grains.masses.iter().sum();
     let scale = world.gravity.magnitude() * world.mean_diameter;
     (2.0 * simulation.observables().kinetic_energy / (mass * scale)).sqrt()
+}
+
+/// The longest way of any grain since `scene`, in d, or the speed that is left, in √(g d), whichever is
+/// larger: 0 for what stays at rest.
+pub(super) fn unrest(simulation: &Simulation, scene: &Scene) -> f64 {
+    longest_way(simulation, scene).max(jitter(simulation))
 }
 
 /// What the fixed bodies carry along the y axis, N: the sum of N n_y over their contacts.

@@ -6,6 +6,7 @@ mod friction;
 mod impacts;
 mod numbering;
 mod piles;
+mod size;
 mod squeezed;
 mod sudden;
 
@@ -15,5 +16,6 @@ pub(super) use friction::{blow, dilatancy};
 pub(super) use impacts::{bounce, newtons_cradle, thin_wall};
 pub(super) use numbering::{far, shuffle};
 pub(super) use piles::{arch, friction_limit, repose, repose_angle, rest};
+pub(super) use size::{hyperstatic, size};
 pub(super) use squeezed::{moving_walls, overlap, squeeze};
 pub(super) use sudden::{lift_off, sliders, time_step_switch};

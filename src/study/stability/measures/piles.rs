@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use crate::scene::stability::{
     FRICTION_OF_ARCH, STEEPEST_DEGREES, arch as arch_of, heap, heap_on_slope, logs,
 };
-use crate::study::stability::trial::{Trial, advance, jitter, longest_way, threshold};
+use crate::study::stability::trial::{Trial, advance, longest_way, threshold, unrest};
 
 /// Rows of the heap that is left standing.
 const ROWS: usize = 6;
@@ -79,5 +79,5 @@ pub(crate) fn rest(trial: &Trial) -> Result<f64> {
     let scene = heap(SMALL_ROWS);
     let mut simulation = trial.start(scene.clone())?;
     simulation.take_steps(trial.count() as u64)?;
-    Ok(longest_way(&simulation, &scene).max(jitter(&simulation)))
+    Ok(unrest(&simulation, &scene))
 }

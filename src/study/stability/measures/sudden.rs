@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 use crate::error::Result;
 use crate::scene::stability::{heap, lift_off as lift_off_of};
 use crate::sim::Pull;
-use crate::study::stability::trial::{Trial, jitter, longest_way};
+use crate::study::stability::trial::{Trial, unrest};
 use crate::world::{Boundary, Parameters};
 
 /// Steps before a sudden change, and after it.
@@ -48,7 +48,7 @@ pub(crate) fn time_step_switch(trial: &Trial) -> Result<f64> {
     let time_step_secs = SMALL_STEP_SECS * trial.level;
     simulation.set_parameters(Parameters { time_step_secs, ..*simulation.parameters() })?;
     simulation.take_steps(AFTER)?;
-    Ok(longest_way(&simulation, &scene).max(jitter(&simulation)))
+    Ok(unrest(&simulation, &scene))
 }
 
 /// Grains that have left their box after so many seconds with every slider moved at random, and a
