@@ -3,6 +3,7 @@
 //! the file of the same subject here, and [`CHALLENGES`] lists all.
 
 mod borders;
+mod challenge;
 mod challenges;
 mod contenders;
 mod maps;
@@ -12,7 +13,8 @@ mod table;
 mod trial;
 
 pub use borders::contraction_of_column;
-pub use challenges::{CHALLENGES, Challenge, Limits};
+pub use challenge::{Challenge, Limits};
+pub use challenges::CHALLENGES;
 pub(crate) use contenders::CONTENDERS;
 pub use contenders::Contender;
 pub(crate) use maps::{count_of_maps, maps};

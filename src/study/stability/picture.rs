@@ -6,7 +6,7 @@ use super::{CONTENDERS, StabilityTable, Verdict};
 use crate::study::chart::{Axis, Cell, Chart, INK, Layer, Rgb, Sheet};
 
 /// Width of a column and height of a row, pixels.
-const COLUMN: u32 = 132;
+const COLUMN: u32 = 144;
 const ROW: u32 = 44;
 /// Room for words beside and below, pixels.
 const BESIDE: u32 = 260;
