@@ -31,7 +31,7 @@ pub type Columns = BTreeMap<String, Vec<Cell>>;
 pub fn parts(folder: &Path, table: &str) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder.join(table)) else { return Vec::new() };
     let mut parts: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
-    parts.retain(|part| !part.file_name().is_some_and(|it| it.as_encoded_bytes()[0] == b'.'));
+    parts.retain(|part| part.file_name().is_some_and(|it| it.as_encoded_bytes()[0] != b'.'));
     parts.sort();
     parts
 }

@@ -1,6 +1,7 @@
 //! The problem of one step: its data, how it is set up, and what judges its solution.
 
 mod duality;
+mod groups;
 mod held;
 pub(super) mod kinematics;
 mod measure;

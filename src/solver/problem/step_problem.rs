@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
+use super::groups::Groups;
 use super::kinematics::Kinematics;
 use super::model::Model;
-use super::order::{Groups, Sorter};
+use super::order::Sorter;
 use crate::contact::{Contact, ContactList, Impulse, Numbering, Other};
 use crate::solver::friction_model::FrictionModel;
 
