@@ -3,7 +3,7 @@
 mod common;
 
 use slump::contact::ContactList;
-use slump::scene::{Rain, Scene, cradle, pile_of, settle};
+use slump::scene::{NewPile, Scene, cradle, pile_of, settle};
 use slump::sim::{ProblemVisitor, Simulation};
 use slump::solver::{
     Fallback, METHODS, Memory, Method, Model, Ordering, SolveReport, SolverSettings, StepProblem,
@@ -13,7 +13,7 @@ use slump::world::{FrictionCone, Physics};
 
 /// A small pile that has begun to fall.
 fn falling_pile(seed: u64) -> Scene {
-    let rain = Rain { grains: 50, box_width_in_diameters: 9.0, seed };
+    let rain = NewPile { grains: 50, box_width_in_diameters: 9.0, seed, ..NewPile::default() };
     let grains = settle(&rain, |_| true).expect("a pile at rest");
     let mut scene = pile_of(grains, rain.box_width_in_diameters).expect("a pile");
     scene.parameters.restitution_threshold = 2.0;

@@ -7,7 +7,7 @@ mod common;
 
 use common::{start, take_steps};
 use rayon::prelude::*;
-use slump::scene::{Rain, pile_of, settle};
+use slump::scene::{NewPile, pile_of, settle};
 use slump::world::Grain;
 
 const BOX_WIDTH_IN_DIAMETERS: f64 = 8.0;
@@ -18,7 +18,12 @@ const STUDENT_T: f64 = 2.365;
 const DURATION_SECS: f64 = 0.4;
 
 fn states() -> Vec<Vec<Grain>> {
-    let rain = |seed| Rain { grains: 48, box_width_in_diameters: BOX_WIDTH_IN_DIAMETERS, seed };
+    let rain = |seed| NewPile {
+        grains: 48,
+        box_width_in_diameters: BOX_WIDTH_IN_DIAMETERS,
+        seed,
+        ..NewPile::default()
+    };
     let settled = |seed| settle(&rain(seed), |_| true).expect("it comes to rest");
     (1..=STATES).into_par_iter().map(settled).collect()
 }

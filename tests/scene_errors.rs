@@ -9,8 +9,8 @@ use glam::DVec2;
 use rand::RngExt;
 use slump::error::Error;
 use slump::scene::{
-    GrainSource, Rain, SCENES, Scene, built_in, collision, parse_discs, read_scene, scene_to_toml,
-    settle, write_discs,
+    GrainSource, NewPile, SCENES, Scene, built_in, collision, parse_discs, read_scene,
+    scene_to_toml, settle, write_discs,
 };
 use slump::world::{Boundary, Grain, Gravity, Physics};
 
@@ -223,13 +223,13 @@ fn grains_come_from_one_place() {
 
 #[test]
 fn a_rain_outside_its_range_is_refused() {
-    let refused = |rain: Rain| settle(&rain, |_| true).expect_err("no rain").to_string();
-    assert!(refused(Rain { grains: 0, ..Rain::default() }).starts_with("grains is 0, but"));
+    let refused = |rain: NewPile| settle(&rain, |_| true).expect_err("no rain").to_string();
+    assert!(refused(NewPile { grains: 0, ..NewPile::default() }).starts_with("grains is 0, but"));
     for width in [0.0, 1.0, f64::NAN, -3.0, 1e9] {
-        let message = refused(Rain { box_width_in_diameters: width, ..Rain::default() });
+        let message = refused(NewPile { box_width_in_diameters: width, ..NewPile::default() });
         assert!(message.starts_with("box-width is "), "{message}");
     }
-    let interrupted = settle(&Rain { grains: 5, ..Rain::default() }, |_| false);
+    let interrupted = settle(&NewPile { grains: 5, ..NewPile::default() }, |_| false);
     assert!(interrupted.is_err_and(|error| error.to_string().contains("interrupted")));
 }
 

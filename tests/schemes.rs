@@ -10,7 +10,7 @@ use common::{
 use glam::DVec2;
 use rayon::prelude::*;
 use slump::contact::ContactMemory;
-use slump::scene::{Rain, Scene, paper_pile, pile_of, settle};
+use slump::scene::{NewPile, Scene, paper_pile, pile_of, settle};
 use slump::sim::{Pull, Settings, Stepper};
 use slump::world::{Grain, Physics};
 
@@ -204,7 +204,7 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
     let states: Vec<Scene> = (1..=4)
         .into_par_iter()
         .map(|seed| {
-            let rain = Rain { seed, ..Rain::default() };
+            let rain = NewPile { seed, ..NewPile::default() };
             let grains = settle(&rain, |_| true).expect("it comes to rest");
             let mut pile = pile_of(grains, rain.box_width_in_diameters).expect("a pile");
             pile.parameters.bond = 0.0;

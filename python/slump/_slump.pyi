@@ -111,6 +111,7 @@ class _Options(_Changes, total=False):
     grains: int | None
     box_width: float | None
     seed: int | None
+    deposition: Literal["rain", "drop-and-roll"] | None
     start: float | None
     preset: Literal["robust"] | None
     duration: float | None

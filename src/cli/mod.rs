@@ -30,7 +30,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Rain discs into a box over a rough base, let them come to rest, and write them as CSV
+    /// Put discs into a box over a rough base, let them come to rest, and write them as CSV
     Generate(generate::GenerateCommand),
     /// List the built-in scenes and the methods
     List,

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::file::{read_unsettled, unsettled};
-use super::{Origin, Rain, SavedState, Scene, Settling, built_in, cradle_from, pile_of, settle};
+use super::{NewPile, Origin, SavedState, Scene, Settling, built_in, cradle_from, pile_of, settle};
 use crate::data::{RecordedGrains, read_grains};
 use crate::error::{Error, Result};
 use crate::setting::{Changes, Value};
@@ -33,7 +33,7 @@ pub struct Config {
 pub struct Ground {
     scene: Scene,
     /// What its grains are the start of, where they have to settle.
-    rain: Option<Rain>,
+    new_pile: Option<NewPile>,
 }
 
 impl Ground {
@@ -42,8 +42,8 @@ impl Ground {
     /// # Errors
     /// Names the first field outside its range, or the file that cannot be read.
     pub fn of(scene: Scene, folder: &Path) -> Result<Self> {
-        let (scene, rain) = unsettled(scene, folder)?;
-        Ok(Self { scene, rain })
+        let (scene, new_pile) = unsettled(scene, folder)?;
+        Ok(Self { scene, new_pile })
     }
 }
 
@@ -85,8 +85,8 @@ impl Config {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// The scene with the changes made, checked, but for grains that are rained: those of the built-in
-    /// pile, or of the start of the rain, stand in for them. Quick, so that a wrong value is told of
+    /// The scene with the changes made, checked, but for a new pile: the grains of the built-in
+    /// one, or where they start from, stand in for it. Quick, so that a wrong value is told of
     /// before long work.
     ///
     /// # Errors
@@ -95,7 +95,7 @@ impl Config {
         self.change(&self.ground()?)
     }
 
-    /// The scene with the changes made, checked. Rained grains are settled here, which takes a while:
+    /// The scene with the changes made, checked. A new pile is made here, which takes a while:
     /// `progress` is told, and can end it by returning false.
     ///
     /// # Errors
@@ -115,9 +115,9 @@ impl Config {
         progress: impl FnMut(Settling) -> bool,
     ) -> Result<Scene> {
         let scene = self.change(&ground)?;
-        match self.rain_on(&ground) {
+        match self.new_pile_on(&ground) {
             None => Ok(scene),
-            Some(rain) => self.settled_on(ground, settle(&rain, progress)?),
+            Some(pile) => self.settled_on(ground, settle(&pile, progress)?),
         }
     }
 
@@ -135,18 +135,18 @@ impl Config {
     /// As [`Config::without_settling`].
     pub fn scene_of_discs(&self, discs: RecordedGrains) -> Result<Scene> {
         self.check_origin()?;
-        self.change(&Ground { scene: self.pile_of_recorded(discs)?, rain: None })
+        self.change(&Ground { scene: self.pile_of_recorded(discs)?, new_pile: None })
     }
 
-    /// What has to be rained for this scene, if anything.
+    /// The pile that has to be made for this scene, if any.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
-    pub fn rain(&self) -> Result<Option<Rain>> {
+    pub fn new_pile(&self) -> Result<Option<NewPile>> {
         if self.origin.makes_new_pile() {
-            return Ok(Some(self.origin.rain()));
+            return Ok(Some(self.origin.new_pile()));
         }
-        Ok(self.ground()?.rain)
+        Ok(self.ground()?.new_pile)
     }
 
     /// The scene as its file or its name says it.
@@ -157,7 +157,7 @@ impl Config {
         self.check_origin()?;
         let Origin { initial, initial_step, start, .. } = &self.origin;
         let name = self.named();
-        let (scene, rain) =
+        let (scene, new_pile) =
             if let Some(path) = initial.as_deref().filter(|path| SavedState::is_in(path)) {
                 (self.scene_of_state(path)?, None)
             } else if let Some(path) = initial {
@@ -170,7 +170,7 @@ impl Config {
             } else {
                 (built_in(name)?, None)
             };
-        Ok(Ground { scene, rain })
+        Ok(Ground { scene, new_pile })
     }
 
     /// What of a config its [`Config::ground`] hangs on: equal for all that share one.
@@ -203,8 +203,8 @@ impl Config {
             return Err(Error::value("initial-step", step, allowed));
         }
         if self.origin.makes_new_pile() {
-            self.check_pile_alone("grains, box-width or seed")?;
-            self.origin.rain().validate()?;
+            self.check_pile_alone("grains, box-width, seed or deposition")?;
+            self.origin.new_pile().validate()?;
         }
         match self.origin.start {
             Some(_) if name != Self::CRADLE => {
@@ -226,7 +226,7 @@ impl Config {
 
     fn pile_of_recorded(&self, discs: RecordedGrains) -> Result<Scene> {
         let RecordedGrains { grains, fixed_discs } = discs;
-        let mut pile = pile_of(grains, self.origin.rain().box_width_in_diameters)?;
+        let mut pile = pile_of(grains, self.origin.new_pile().box_width_in_diameters)?;
         if !fixed_discs.is_empty() {
             // The base that the grains lie on, as wide as it was.
             pile.fixed_discs = fixed_discs;
@@ -234,14 +234,14 @@ impl Config {
         Ok(pile)
     }
 
-    fn rain_on(&self, ground: &Ground) -> Option<Rain> {
+    fn new_pile_on(&self, ground: &Ground) -> Option<NewPile> {
         let new_pile = self.origin.makes_new_pile();
-        if new_pile { Some(self.origin.rain()) } else { ground.rain.clone() }
+        if new_pile { Some(self.origin.new_pile()) } else { ground.new_pile.clone() }
     }
 
     fn settled_on(&self, ground: Ground, settled: Vec<Grain>) -> Result<Scene> {
         let mut scene = if self.origin.makes_new_pile() {
-            pile_of(settled, self.origin.rain().box_width_in_diameters)?
+            pile_of(settled, self.origin.new_pile().box_width_in_diameters)?
         } else {
             ground.scene.with_settled(settled)
         };

@@ -5,7 +5,7 @@ use std::fmt::Arguments;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::Rain;
+use super::NewPile;
 use crate::data::DataSettings;
 use crate::error::{Error, Result};
 use crate::sim::{Remedies, Settings, Simulation, Stepper};
@@ -91,8 +91,9 @@ pub enum GrainSource {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         step: Option<u64>,
     },
-    /// Grains rained into a box over a rough base and left to come to rest.
-    Rain(Rain),
+    /// A new pile: grains put into a box over a rough base and left to come to rest.
+    #[serde(alias = "rain")]
+    NewPile(NewPile),
 }
 
 fn one() -> f64 {

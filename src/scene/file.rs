@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::settling::lattice;
-use super::{GrainSource, Rain, Scene, pile, settle};
+use super::deposition::start_of;
+use super::{GrainSource, NewPile, Scene, pile, settle};
 use crate::data::read_grains;
 use crate::error::{Error, Result};
 use crate::world::Grain;
@@ -11,24 +11,24 @@ use crate::world::Grain;
 /// What a scene file must be, for messages.
 const FORM: &str = "a scene file in TOML, such as `slump scene` prints";
 
-/// Reads a scene from a TOML file. Grains that come from a CSV or from rain are read or made.
+/// Reads a scene from a TOML file. Grains that come from a CSV or are a new pile are read or made.
 ///
 /// # Errors
 /// Where the file cannot be read, is no TOML, or says something that no scene says (the message
 /// names line and column), or where a value is outside its range.
 pub fn read_scene(path: &Path) -> Result<Scene> {
     match read_unsettled(path)? {
-        (scene, Some(rain)) => Ok(scene.with_settled(settle(&rain, |_| true)?)),
+        (scene, Some(pile)) => Ok(scene.with_settled(settle(&pile, |_| true)?)),
         (scene, None) => Ok(scene),
     }
 }
 
-/// The same but for the settling: where grains are rained, the rain is given as well, and the scene
-/// has them where they start from. Quick.
+/// The same but for the settling: a new pile is given as well, and the scene has its grains
+/// where they start from. Quick.
 ///
 /// # Errors
 /// As [`read_scene`].
-pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<Rain>)> {
+pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     let text = std::fs::read_to_string(path).map_err(|error| Error::unread(path, error, FORM))?;
     let scene = toml::from_str(&text).map_err(|error| {
         let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
@@ -38,12 +38,12 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<Rain>)> {
     unsettled(scene, path.parent().unwrap_or(Path::new("")))
 }
 
-/// A scene with its grains, or with those that rain starts from; files that it names lie in `folder`.
+/// A scene with its grains, or with those that a new pile starts from; files that it names lie in `folder`.
 ///
 /// # Errors
 /// As [`read_scene`].
-pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<Rain>)> {
-    let mut rained = None;
+pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<NewPile>)> {
+    let mut new_pile = None;
     if let Some(source) = scene.source.take() {
         if !scene.grains.is_empty() {
             let allowed = "left out where grains are listed";
@@ -52,10 +52,10 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
         let grains = match source {
             GrainSource::Csv { path } => read_grains(&folder.join(path), None)?.grains,
             GrainSource::Data { path, step } => read_grains(&folder.join(path), step)?.grains,
-            GrainSource::Rain(rain) => {
-                rain.validate()?;
-                let start = lattice(&rain);
-                rained = Some(rain);
+            GrainSource::NewPile(pile) => {
+                pile.validate()?;
+                let start = start_of(&pile);
+                new_pile = Some(pile);
                 start
             }
         };
@@ -65,7 +65,7 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
         *data = folder.join(&*data);
     }
     scene.validate()?;
-    Ok((scene, rained))
+    Ok((scene, new_pile))
 }
 
 impl Scene {

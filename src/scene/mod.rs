@@ -9,15 +9,14 @@ mod config_options;
 mod config_saved;
 mod cradle;
 mod csv_states;
+mod deposition;
 mod description;
 mod file;
 mod origin;
 mod pile;
 mod preset;
-mod rain;
 mod registry;
 mod saved_state;
-mod settling;
 pub mod stability;
 
 pub use collision::collision;
@@ -25,13 +24,15 @@ pub use config::{Config, Ground};
 pub(crate) use config_options::parser_of;
 pub use cradle::{cradle, cradle_from};
 pub use csv_states::{parse_discs, write_discs};
+pub(crate) use deposition::walls;
+pub use deposition::{
+    Deposition, NewPile, Rest, Settled, Settling, Support, Surface, deposit, drop_and_roll,
+    dropped, settle,
+};
 pub use description::{GrainSource, Scene, View};
 pub use file::{read_scene, scene_to_toml};
 pub use origin::Origin;
 pub use pile::{paper_pile, pile_of, rough_base};
 pub use preset::Preset;
-pub use rain::Rain;
 pub use registry::{SCENES, SceneGroup, SceneInfo, built_in};
 pub use saved_state::SavedState;
-pub(crate) use settling::walls;
-pub use settling::{Settling, settle};

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 use serde::de::MapAccess;
 
-use super::{Preset, Rain};
+use super::{Deposition, NewPile, Preset};
 
 /// Where a scene comes from, and what of it is not a setting.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, clap::Args)]
@@ -16,18 +16,18 @@ pub struct Origin {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
     /// Start the pile from discs: a CSV (header x,y,radius, optionally vx,vy,omega; metres), or what --data wrote; or the scene of a saved run from its grains
-    #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed"])]
+    #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed", "deposition"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial: Option<PathBuf>,
     /// The step of the recording that the pile starts from [default: its last]
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial_step: Option<u64>,
-    /// Rain a new pile of this many grains
+    /// Make a new pile of this many grains
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grains: Option<usize>,
-    /// Width of the box that a new pile is rained into, in mean diameters
+    /// Width of the box that a new pile is made in, in mean diameters
     #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub box_width: Option<f64>,
@@ -35,6 +35,10 @@ pub struct Origin {
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
+    /// How the grains of a new pile are put in place [default: rain]
+    #[arg(long, value_name = "WAY", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deposition: Option<Deposition>,
     /// Where the cradle's k starts, in diameters left of i, centre to centre
     #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -63,6 +67,7 @@ impl Origin {
             "grains" => self.grains = map.next_value()?,
             "box-width" => self.box_width = map.next_value()?,
             "seed" => self.seed = map.next_value()?,
+            "deposition" => self.deposition = map.next_value()?,
             "start" => self.start = map.next_value()?,
             "preset" => self.preset = map.next_value()?,
             "duration" => self.duration = map.next_value()?,
@@ -71,18 +76,22 @@ impl Origin {
         Ok(true)
     }
 
-    /// The rain that `grains`, `box_width` and `seed` ask for.
-    pub(crate) fn rain(&self) -> Rain {
-        let default = Rain::default();
-        Rain {
+    /// The pile that `grains`, `box_width`, `seed` and `deposition` ask for.
+    pub(crate) fn new_pile(&self) -> NewPile {
+        let default = NewPile::default();
+        NewPile {
             grains: self.grains.unwrap_or(default.grains),
             box_width_in_diameters: self.box_width.unwrap_or(default.box_width_in_diameters),
             seed: self.seed.unwrap_or(default.seed),
+            deposition: self.deposition.unwrap_or(default.deposition),
         }
     }
 
-    /// Whether grains have to be rained and settled.
+    /// Whether grains have to be put in place and settled.
     pub(crate) fn makes_new_pile(&self) -> bool {
-        self.grains.is_some() || self.box_width.is_some() || self.seed.is_some()
+        self.grains.is_some()
+            || self.box_width.is_some()
+            || self.seed.is_some()
+            || self.deposition.is_some()
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Rain, Scene, csv_states};
+use super::{NewPile, Scene, csv_states};
 use crate::error::{Error, Result};
 use crate::sim::{Remedies, Stepper};
 use crate::solver::SolverSettings;
@@ -32,7 +32,7 @@ const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
 /// None in a program as shipped; a changed asset is told of with its line.
 pub fn paper_pile() -> Result<Scene> {
     let grains = csv_states::parse_discs(INITIAL_STATE, "assets/pile_138.csv".as_ref())?;
-    pile_of(grains, Rain::default().box_width_in_diameters)
+    pile_of(grains, NewPile::default().box_width_in_diameters)
 }
 
 /// A pile of the given grains, for a box that was `box_width_in_diameters` wide.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::states::States;
 use crate::error::Result;
 use crate::output::Progress;
-use crate::scene::{Config, Origin, Rain};
+use crate::scene::{Config, NewPile, Origin};
 use crate::sim::Simulation;
 use crate::solver::{Fallback, FrictionModel, Method, Ordering, SolverSettings, StopTest};
 use crate::world::ParameterChanges;
@@ -50,7 +50,7 @@ impl CollectionPlan {
     /// 48 steps of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its end,
     /// and rest.
     pub(crate) fn piles(restitution_threshold: f64) -> Self {
-        let rain = Rain::default();
+        let rain = NewPile::default();
         Self {
             bonds: vec![0.0, 20.0, 50.0, 100.0],
             time_steps_secs: vec![1e-4, 1e-3, 5e-3],

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::error::Result;
-use crate::scene::{Rain, Scene, cradle, paper_pile};
+use crate::scene::{NewPile, Scene, cradle, paper_pile};
 use crate::world::Boundary;
 
 /// One run of a figure, with the times that it is shown at.
@@ -57,7 +57,7 @@ pub(crate) fn paper_runs() -> Result<Vec<PaperRun>> {
         runs.push(PaperRun { name, figure: "fig7", scene, times_secs });
     }
     // The initial state is shown with the walls that it leans on.
-    let half_width = 0.5 * Rain::default().box_width_in_diameters * pile.mean_diameter;
+    let half_width = 0.5 * NewPile::default().box_width_in_diameters * pile.mean_diameter;
     pile.boundaries = [-half_width, half_width]
         .map(|x| Boundary::Segment {
             from: DVec2::new(x, 0.0),

@@ -1,4 +1,4 @@
-//! Initial states that are rained: settled once, kept in memory and on disk, shared by all runs.
+//! Initial states that are new piles: settled once, kept in memory and on disk, shared by all runs.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use super::record;
 use crate::error::{Error, Result};
 use crate::output::{Progress, check_writable, note_line, write_file};
-use crate::scene::{Config, Rain, Scene, parse_discs, settle, write_discs};
+use crate::scene::{Config, Deposition, NewPile, Scene, parse_discs, settle, write_discs};
 use crate::world::Grain;
 
-/// Settled grains by the rain they come from.
+/// Settled grains by the pile they come from.
 pub(super) struct States {
     settled: HashMap<String, Vec<Grain>>,
 }
@@ -25,39 +25,39 @@ impl States {
         folder: PathBuf,
         configs: impl Iterator<Item = &'a Config>,
     ) -> Result<Self> {
-        let mut rains: HashMap<String, Rain> = HashMap::new();
+        let mut piles: HashMap<String, NewPile> = HashMap::new();
         let mut looked_at = HashSet::new();
         for config in configs {
             // A scene file is read once, whatever the number of its runs.
             if config.origin.makes_new_pile() || looked_at.insert(config.name_of_ground()) {
-                rains.extend(config.rain()?.map(|rain| (name(&rain), rain)));
+                piles.extend(config.new_pile()?.map(|pile| (name(&pile), pile)));
             }
         }
-        if rains.is_empty() {
+        if piles.is_empty() {
             return Ok(Self { settled: HashMap::new() });
         }
         check_writable("out", &folder)?;
-        let mut rains: Vec<_> = rains.into_iter().collect();
-        rains.sort_by(|(one, a), (other, b)| b.grains.cmp(&a.grains).then(one.cmp(other)));
-        let cost = |rain: &Rain| (rain.grains as u64).pow(2);
+        let mut piles: Vec<_> = piles.into_iter().collect();
+        piles.sort_by(|(one, a), (other, b)| b.grains.cmp(&a.grains).then(one.cmp(other)));
+        let cost = |pile: &NewPile| (pile.grains as u64).pow(2);
         let progress =
-            Progress::new("initial states", rains.iter().map(|(_, rain)| cost(rain)).sum());
-        let settled = rains
+            Progress::new("initial states", piles.iter().map(|(_, pile)| cost(pile)).sum());
+        let settled = piles
             .into_iter()
             .par_bridge()
-            .map(|(name, rain)| {
+            .map(|(name, pile)| {
                 let path = folder.join(format!("{name}.csv"));
                 // A state reads back bit for bit, so that it does not matter which way it came.
                 let grains = match kept(&path)? {
                     Some(grains) => grains,
                     None => {
-                        let grains = settle(&rain, |_| true)?;
+                        let grains = settle(&pile, |_| true)?;
                         let text = write_discs(&grains, "An initial state; metres.");
                         write_file(&path, record::sealed_text(&text).as_bytes())?;
                         grains
                     }
                 };
-                progress.advance(cost(&rain));
+                progress.advance(cost(&pile));
                 Ok((name, grains))
             })
             .collect::<Result<_>>();
@@ -67,7 +67,7 @@ impl States {
 
     /// The scene of a config, with its settled grains where it makes a new pile.
     pub(super) fn scene(&self, config: &Config) -> Result<Scene> {
-        match config.rain()?.and_then(|rain| self.settled.get(&name(&rain))) {
+        match config.new_pile()?.and_then(|pile| self.settled.get(&name(&pile))) {
             Some(grains) => config.scene_from(grains.clone()),
             None => config.scene(|_| true),
         }
@@ -88,7 +88,14 @@ fn kept(path: &Path) -> Result<Option<Vec<Grain>>> {
     Ok(grains)
 }
 
-fn name(rain: &Rain) -> String {
-    let Rain { grains, box_width_in_diameters, seed } = rain;
-    format!("pile_{grains}_width{box_width_in_diameters}_seed{seed}_v{}", env!("CARGO_PKG_VERSION"))
+fn name(pile: &NewPile) -> String {
+    let NewPile { grains, box_width_in_diameters, seed, deposition } = pile;
+    let way = match deposition {
+        Deposition::Rain => "",
+        Deposition::DropAndRoll => "_drop-and-roll",
+    };
+    format!(
+        "pile_{grains}_width{box_width_in_diameters}_seed{seed}{way}_v{}",
+        env!("CARGO_PKG_VERSION")
+    )
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use slump::error::{Error, Result};
 use slump::interchange::{ProblemFile, problem_file_at, solve_file};
-use slump::scene::{Config, GrainSource, Origin, Rain, built_in, scene_to_toml};
+use slump::scene::{Config, GrainSource, NewPile, Origin, built_in, scene_to_toml};
 use slump::solver::{METHODS, SolverSettings, StopTest};
 use slump::study::Study;
 
@@ -59,7 +59,7 @@ fn scene_files() {
     }
     let mut rained = built_in("pile").expect("a scene");
     rained.grains.clear();
-    rained.source = Some(GrainSource::Rain(Rain::default()));
+    rained.source = Some(GrainSource::NewPile(NewPile::default()));
     texts.push(scene_to_toml(&rained).expect("TOML"));
     fuzz_texts("scene-files", "toml", texts, |_, path| {
         // Where grains are rained, many of them may well take their time.

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use slump::error::Result;
-use slump::scene::{Config, GrainSource, Rain, built_in, read_scene, scene_to_toml, settle};
+use slump::scene::{Config, GrainSource, NewPile, built_in, read_scene, scene_to_toml, settle};
 use slump::study::Study;
 
 use super::{folder, run, write};
@@ -42,10 +42,10 @@ fn more_runs_than_anyone_can_wait_for_are_refused_before_they_take_room() {
 #[test]
 fn a_rained_scene_file_is_settled_once_and_no_run_of_a_plan_settles_it() {
     let folder = folder();
-    let rain = Rain { grains: 30, box_width_in_diameters: 8.0, seed: 3 };
+    let rain = NewPile { grains: 30, box_width_in_diameters: 8.0, seed: 3, ..NewPile::default() };
     let mut scene = built_in("pile").expect("a scene");
     scene.grains.clear();
-    scene.source = Some(GrainSource::Rain(rain.clone()));
+    scene.source = Some(GrainSource::NewPile(rain.clone()));
     let path = write(&folder, "rained.toml", &scene_to_toml(&scene).expect("TOML"));
 
     let start = Instant::now();
@@ -82,8 +82,8 @@ fn a_sweep_of_a_rained_scene_file_keeps_its_state() {
     let mut scene = built_in("pile").expect("a scene");
     scene.grains.clear();
     scene.duration_secs = 0.002;
-    let rain = Rain { grains: 12, box_width_in_diameters: 6.0, seed: 3 };
-    scene.source = Some(GrainSource::Rain(rain));
+    let rain = NewPile { grains: 12, box_width_in_diameters: 6.0, seed: 3, ..NewPile::default() };
+    scene.source = Some(GrainSource::NewPile(rain));
     let scene = write(&folder, "rained.toml", &scene_to_toml(&scene).expect("TOML"));
     let study = format!("name = \"r\"\n[base]\nscene = {scene:?}\n[vary]\nbond = [1, 2, 3]\n");
     let study = write(&folder, "study.toml", &study);

@@ -4,7 +4,7 @@ use egui::{Align, ComboBox, RichText, Slider, Ui};
 
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::scene::{Config, Origin, Rain, SCENES, SceneGroup};
+use crate::scene::{Config, NewPile, Origin, SCENES, SceneGroup};
 use crate::sim::live::Command;
 
 /// Most grains that the panel offers; the command line takes more.
@@ -60,7 +60,7 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
 }
 
 fn new_pile(ui: &mut Ui, state: &mut AppState) {
-    let Rain { grains, seed, .. } = state.config.origin.rain();
+    let NewPile { grains, seed, .. } = state.config.origin.new_pile();
     let id = egui::Id::unique("new pile");
     let mut draft = ui.data(|data| data.get_temp(id)).unwrap_or(Draft { grains, seed });
     ui.horizontal(|ui| {
@@ -73,7 +73,8 @@ fn new_pile(ui: &mut Ui, state: &mut AppState) {
             .labelled_by(label.id)
             .on_hover_text("Another seed is another pile of the same kind.");
         let fresh = ui.button("New pile").on_hover_text(
-            "Rain a pile and let it settle: seconds for hundreds of grains, minutes for thousands.",
+            "Rain a pile and let it settle: seconds for hundreds of grains, minutes for thousands. \
+             Where the window was opened with --deposition drop-and-roll, seconds for thousands.",
         );
         if fresh.clicked() {
             let config = pile_like_this(state, draft.clone());

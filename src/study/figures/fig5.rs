@@ -5,7 +5,7 @@ use super::verdict::Verdict;
 use super::workshop::Rows;
 use super::{Claim, Figure, Workshop};
 use crate::error::Result;
-use crate::scene::{Config, Rain};
+use crate::scene::{Config, NewPile};
 use crate::study::Outcome;
 use crate::study::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet, points};
 use crate::study::statistics::{mean, p_value, slope};
@@ -87,7 +87,7 @@ fn chart(rows: &Rows<'_>, title: &str, y: Axis, number: fn(&Outcome) -> f64) -> 
         let shared = steps.iter().filter_map(|&step| {
             let is_it = |config: &Config| {
                 config.parameters.time_step_secs == Some(step)
-                    && config.origin.seed == Some(Rain::default().seed)
+                    && config.origin.seed == Some(NewPile::default().seed)
             };
             Some((step, *of_bond.such_that(is_it).outcomes(number).first()?))
         });

@@ -14,7 +14,7 @@ use super::runs::{Ending, TimedRun, timed_steps};
 use super::{Bench, Part};
 use crate::error::Result;
 use crate::output::Progress;
-use crate::scene::{Config, Origin, Rain, Scene, walls};
+use crate::scene::{Config, Deposition, NewPile, Origin, Scene, walls};
 use crate::sim::Simulation;
 use crate::solver::{SolverSettings, StopTest};
 use crate::study::chart::{Axis, Chart, Layer, Look, Sheet, points};
@@ -22,7 +22,8 @@ use crate::study::states::States;
 use crate::world::ParameterChanges;
 
 /// The grains, as `benches/peers/run.sh` rains them.
-const RAIN: Rain = Rain { grains: 2000, box_width_in_diameters: 60.0, seed: 1 };
+const RAIN: NewPile =
+    NewPile { grains: 2000, box_width_in_diameters: 60.0, seed: 1, deposition: Deposition::Rain };
 /// Simulated time, s.
 const DURATION_SECS: f64 = 0.2;
 /// Δt, s.

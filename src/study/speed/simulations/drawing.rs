@@ -7,7 +7,7 @@ use super::super::look::{colour, dots};
 use super::super::peers::{self, PeerRun};
 use super::plan::{FINEST_SECS, Plan};
 use super::runs::{Charted, References};
-use crate::scene::Rain;
+use crate::scene::NewPile;
 use crate::sim::Stepper;
 use crate::study::chart::{Axis, Chart, INK, Layer, Look, Sheet, points};
 use crate::study::performance::pareto_front;
@@ -26,7 +26,7 @@ pub(super) fn draw(
 ) -> Sheet {
     let good: Vec<&Charted> = charted.iter().filter(|point| point.failed.is_none()).collect();
     let speeds = || {
-        let peers = peers.iter().filter(|run| run.is_collapse_of(Rain::default().grains));
+        let peers = peers.iter().filter(|run| run.is_collapse_of(NewPile::default().grains));
         good.iter().map(|point| point.speed).chain(peers.map(PeerRun::speed))
     };
     let slowest = speeds().fold(f64::INFINITY, f64::min).min(1.0);
@@ -113,11 +113,11 @@ fn said(words: impl Iterator<Item = String>) -> String {
 
 /// Runs of other engines from the shared state without cohesion, against the reference for it.
 fn peer_layers(plan: &Plan, peers: &[PeerRun], references: &References) -> Vec<Layer> {
-    let shared = (0.0, Rain::default().seed);
+    let shared = (0.0, NewPile::default().seed);
     let Some(pile) = plan.piles.iter().position(|pile| *pile == shared) else { return Vec::new() };
     let reference = references.slump(Stepper::Moreau, FINEST_SECS, pile);
     let mut by_engine: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
-    for run in peers.iter().filter(|run| run.is_collapse_of(Rain::default().grains)) {
+    for run in peers.iter().filter(|run| run.is_collapse_of(NewPile::default().grains)) {
         let error = (run.slump - reference).abs().max(LEAST_ERROR);
         by_engine.entry(&run.engine).or_default().push((run.speed(), error));
     }

@@ -1,7 +1,7 @@
 //! Which piles are run, by which methods, and how well each is to solve its steps.
 
 use super::super::entrants::{self, Entrant, Way};
-use crate::scene::{Config, Origin, Rain};
+use crate::scene::{Config, NewPile, Origin};
 use crate::sim::Stepper;
 use crate::solver::Method;
 use crate::world::ParameterChanges;
@@ -101,7 +101,7 @@ impl Plan {
 
 /// (Bond, seed) of each pile.
 fn piles(quick: bool) -> Vec<(f64, u64)> {
-    let shared = Rain::default().seed;
+    let shared = NewPile::default().seed;
     // Bond numbers are dealt out to the seeds: each is met by several, and each meets several.
     if quick {
         vec![(0.0, shared), (20.0, 1), (50.0, 2), (100.0, 3)]

@@ -1,0 +1,208 @@
+//! Drop and roll: the quick way to make a pile.
+//!
+//! Discs are dropped one by one, and each rolls to where two others hold it ([`dropped`]). That
+//! packing carries itself but for few grains, since of two supports each bears one side's weight; what
+//! it lacks are the forces. They travel by about a layer a sweep, so the pile first sways up and down
+//! as a whole, in a number of steps that grows with its layers. A medium damps just that motion:
+//! with less the pile goes on swaying, with more it creeps. Then the medium thins until grains whose
+//! supports gave way can fall, and is gone before the pile is called at rest.
+
+use glam::DVec2;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use super::new_pile::NewPile;
+use super::resting::{
+    REST_SECS, Settled, Settling, in_a_box, interrupted, kinetic_energy, not_at_rest, speeds,
+};
+use super::rolling::dropped;
+use super::sizes::{LARGEST_RADIUS, random_radius};
+use super::surface::Surface;
+use crate::error::Result;
+use crate::scene::pile::{DIAMETER, GRAVITY, rough_base};
+use crate::sim::Simulation;
+use crate::solver::SolverSettings;
+use crate::world::{Disc, Grain, Parameters};
+
+/// Of so many places that a disc may roll to it takes the lowest. With one the surface has slopes that
+/// avalanche for many steps when the pile is let go; more than a few change little.
+const TRIES: usize = 4;
+/// Part of its height by which a pile is pressed together before it settles, so that all contacts touch. Less, and the
+/// errors of the first steps (gΔt² = 8e-5 d) open them; more adds to the overlap that stays.
+const PRESSED: f64 = 2e-4;
+/// Time step of the settling, s. It stays the same: a longer one later on opens the contacts again,
+/// as steps by its square are larger than their overlaps.
+const TIME_STEP_SECS: f64 = 2e-4;
+/// Most sweeps of a step. Steps that go on from each other's forces do more for the pile than
+/// sweeps that end one step well.
+const SWEEPS: u32 = 20;
+/// Relative change of the impulses at which a step's sweeps end.
+const TOLERANCE: f64 = 1e-7;
+/// Part of the velocities that the medium takes in each step, times the number of layers: twice the
+/// frequency of the slowest sway. Half of it and the pile sways, twice and it creeps: both double the time.
+const DAMPING_BY_LAYERS: f64 = 7.0;
+/// The medium takes no more than this part in a step.
+const MOST_DAMPING: f64 = 0.2;
+/// Speed of half of all grains, in √(g·d), below which the pile no longer sways and the medium thins.
+const STILL_SPEED: f64 = 1e-3;
+/// A grain falls through the thin medium at this speed, in √(g·d).
+const TERMINAL_SPEED: f64 = 0.5;
+/// The medium goes where the mean kinetic energy of a grain is below this, in m g d, and a pile is at
+/// rest that stays below ten times that without it.
+const REST_ENERGY: f64 = 1e-7;
+/// Nor may more than one grain in [`GRAINS_A_MOVING_ONE`] be faster than this at rest, in √(g·d): it
+/// would be falling.
+const REST_SPEED: f64 = 1e-2;
+/// In a large pile there always is a grain that tips over somewhere, so that waiting for the last would take
+/// the longer the larger the pile.
+const GRAINS_A_MOVING_ONE: usize = 10_000;
+/// Steps between two looks at the speeds.
+const STEPS_PER_LOOK: u32 = 10;
+/// Steps after which it is given up, and more for each layer.
+const LIMIT_STEPS: [f64; 2] = [10_000.0, 100.0];
+
+/// Drops discs of the given radii (m, each above 0) one by one at random places between walls at
+/// ± `half_width` (m, at least the largest radius) onto fixed discs. Where they come to lie, in their order.
+pub fn drop_and_roll(
+    radii: &[f64],
+    base: &[Disc],
+    half_width: f64,
+    random: &mut Pcg64,
+) -> Vec<Disc> {
+    let fixed = base.iter().map(|disc| disc.radius);
+    let largest = radii.iter().copied().chain(fixed).fold(0.0, f64::max);
+    let mut surface = Surface::new(-largest, half_width, largest);
+    let is_within_reach = |disc: &&Disc| disc.position.x.abs() <= half_width + 2.0 * largest;
+    base.iter().filter(is_within_reach).for_each(|&disc| surface.add(disc));
+    let fixed = surface.discs().len();
+    for &radius in radii {
+        let room = half_width - radius;
+        let mut lowest = DVec2::INFINITY;
+        for _ in 0..TRIES {
+            let centre = dropped(&surface, random.random_range(-room..=room), radius).centre;
+            lowest = if centre.y < lowest.y { centre } else { lowest };
+        }
+        surface.add(Disc { position: lowest, radius });
+    }
+    surface.discs()[fixed..].to_vec()
+}
+
+/// The grains before they settle.
+pub(super) fn start_of(pile: &NewPile) -> Vec<Grain> {
+    let mut random = Pcg64::seed_from_u64(pile.seed);
+    let radii: Vec<f64> = (0..pile.grains).map(|_| random_radius(&mut random)).collect();
+    let width = pile.box_width_in_diameters;
+    let base = rough_base(width + 4.0 * LARGEST_RADIUS / DIAMETER, DIAMETER);
+    let discs = drop_and_roll(&radii, &base, 0.5 * width * DIAMETER, &mut random);
+    discs.into_iter().map(|Disc { position, radius }| Grain::at_rest(position, radius)).collect()
+}
+
+/// Drops a pile and lets it settle.
+///
+/// # Errors
+/// Where the grains do not come to rest, or `progress` returns false.
+pub(super) fn settled(
+    pile: &NewPile,
+    mut progress: impl FnMut(Settling) -> bool,
+) -> Result<Settled> {
+    let mut grains = start_of(pile);
+    for grain in &mut grains {
+        grain.position.y *= 1.0 - PRESSED;
+    }
+    let layers = grains.iter().map(|grain| grain.position.y).fold(0.0, f64::max) / DIAMETER;
+    let solver =
+        SolverSettings { tolerance: TOLERANCE, max_sweeps: SWEEPS, ..SolverSettings::default() };
+    let scene = in_a_box(grains, pile.box_width_in_diameters, TIME_STEP_SECS, solver)?;
+    let mut simulation = scene.simulation()?;
+    let law = *simulation.parameters();
+    simulation.set_parameters(Parameters { restitution: 0.0, ..law })?;
+
+    let limit_secs = TIME_STEP_SECS * (LIMIT_STEPS[0] + LIMIT_STEPS[1] * layers);
+    let mut medium = Medium::Thick { damping: (DAMPING_BY_LAYERS / layers).min(MOST_DAMPING) };
+    let mut rest_steps = 0;
+    loop {
+        for _ in 0..STEPS_PER_LOOK {
+            simulation.step()?;
+            simulation.scale_velocities(1.0 - medium.damping());
+        }
+        let motion = Motion::of(&simulation);
+        let time_secs = simulation.time_secs();
+        if !progress(Settling { time_secs, limit_secs, speed_over_rest: motion.over_rest() }) {
+            return Err(interrupted());
+        }
+        let goes = match medium {
+            Medium::Thick { .. } if motion.median_speed <= STILL_SPEED => Medium::Thin,
+            Medium::Thin if motion.is_at_rest(REST_ENERGY) => {
+                simulation.set_parameters(law)?;
+                Medium::None
+            }
+            stays => stays,
+        };
+        rest_steps = match medium {
+            Medium::None if motion.is_at_rest(10.0 * REST_ENERGY) => rest_steps + STEPS_PER_LOOK,
+            _ => 0,
+        };
+        medium = goes;
+        if f64::from(rest_steps) * TIME_STEP_SECS >= REST_SECS {
+            return Ok(Settled::of(simulation));
+        }
+        if time_secs > limit_secs {
+            return Err(not_at_rest(motion.over_rest(), limit_secs));
+        }
+    }
+}
+
+/// What slows the grains.
+#[derive(Clone, Copy)]
+enum Medium {
+    /// So thick that the pile does not sway.
+    Thick {
+        damping: f64,
+    },
+    /// So thin that grains fall.
+    Thin,
+    None,
+}
+
+impl Medium {
+    /// The part of the velocities that it takes in a step.
+    fn damping(self) -> f64 {
+        match self {
+            Self::Thick { damping } => damping,
+            Self::Thin => TIME_STEP_SECS * GRAVITY / (TERMINAL_SPEED * (GRAVITY * DIAMETER).sqrt()),
+            Self::None => 0.0,
+        }
+    }
+}
+
+/// How much the grains move: speeds of their centres or rims in √(g·d), energy in m g d.
+struct Motion {
+    energy: f64,
+    /// Of all but those few that may move.
+    fastest: f64,
+    median_speed: f64,
+}
+
+impl Motion {
+    fn of(simulation: &Simulation) -> Self {
+        let unit = (GRAVITY * DIAMETER).sqrt();
+        let mut speeds: Vec<f64> = speeds(simulation).collect();
+        let last = speeds.len() - 1 - speeds.len() / GRAINS_A_MOVING_ONE;
+        let (slower, &mut fastest, _) = speeds.select_nth_unstable_by(last, f64::total_cmp);
+        let median = match slower.len() / 2 {
+            0 => fastest,
+            middle => *slower.select_nth_unstable_by(middle, f64::total_cmp).1,
+        };
+        let energy = kinetic_energy(simulation);
+        Self { energy, fastest: fastest / unit, median_speed: median / unit }
+    }
+
+    fn is_at_rest(&self, energy: f64) -> bool {
+        self.energy <= energy && self.fastest <= REST_SPEED
+    }
+
+    /// Speed in units of the one that counts as rest, by energy or by the fastest.
+    fn over_rest(&self) -> f64 {
+        (self.energy / REST_ENERGY).sqrt().max(self.fastest / REST_SPEED)
+    }
+}
