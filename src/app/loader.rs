@@ -8,6 +8,7 @@ use super::taken::{LastOpened, Opened};
 use crate::scene::{Config, SavedState, Scene};
 use crate::sim::Tally;
 use crate::sim::live::{Loader, Progress, Start};
+use crate::solver::{Fallback, SolverSettings};
 use crate::world::Boundary;
 
 /// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
@@ -19,7 +20,7 @@ const WALL_HEIGHTS: f64 = 1.1;
 pub(crate) fn loader(config: Config, last: LastOpened) -> Loader {
     Box::new(move |tell| {
         let mut part = 0f64;
-        let scene = config.scene(|settling| {
+        let mut scene = config.scene(|settling| {
             // Rain falls for a quarter of the limit at most; then the slowing down tells how far it
             // has come.
             let rained = 4.0 * settling.time_secs / settling.limit_secs;
@@ -31,10 +32,21 @@ pub(crate) fn loader(config: Config, last: LastOpened) -> Loader {
             );
             tell(Progress { part: part as f32, text })
         })?;
+        if config.solver.fallback.is_none() {
+            leave_no_step_undefined(&mut scene.solver);
+        }
         let start = start(&scene)?;
         last.note(Opened { scene, config });
         Ok(start)
     })
+}
+
+/// Whoever watches must not take the impulses of an unsolved step for those of a law, so the window solves
+/// such a step under bounds of friction unless the scene says what else is to become of it.
+fn leave_no_step_undefined(solver: &mut SolverSettings) {
+    if solver.fallback == Fallback::OfMethod {
+        solver.fallback = Fallback::Tresca;
+    }
 }
 
 /// Makes a start of a saved run, which goes on in time.

@@ -113,8 +113,7 @@ fn beside(
     curve: &Curve,
     quantity: &Quantity<Observables>,
 ) -> impl Iterator<Item = Beside<Observables>> {
-    let last = curve.last();
-    let has = move |beside: &Beside<Observables>| last.is_some_and(|row| beside.1(row).is_some());
+    let has = |beside: &Beside<Observables>| curve.rows().any(|row| beside.1(row).is_some());
     quantity.beside.iter().copied().filter(has)
 }
 

@@ -27,9 +27,9 @@ words! {
     /// What becomes of a step whose problem is not solved under Coulomb's law.
     #[derive(Default)]
     pub enum Fallback {
-        /// `tresca` where the method is `auto`, else `none`.
+        /// `tresca` where the method is `auto`, and where the window opens a scene, else `none`.
         #[default]
-        OfMethod = "of-method", "tresca where the solver is auto, else none";
+        OfMethod = "of-method", "tresca where the solver is auto or the scene opens in the window, else none";
         /// What the method came to.
         None = "none", "the impulses that the method came to, unsolved as they are";
         /// The solution under bounds of friction at those impulses, with a certificate.

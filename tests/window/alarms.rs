@@ -3,7 +3,7 @@
 use egui_kittest::kittest::Queryable;
 use slump::scene::{Config, SCENES, SceneGroup};
 use slump::sim::Stepper;
-use slump::solver::{Method, SolverChanges, StopTest};
+use slump::solver::{Fallback, Method, SolverChanges, StopTest};
 
 use crate::robot::Robot;
 
@@ -76,6 +76,7 @@ fn a_stalled_step_of_the_stepper_range_is_told_of() {
         // Below the rounding of any step of a pile.
         tolerance: Some(1e-18),
         max_sweeps: Some(100_000),
+        fallback: Some(Fallback::None),
         ..SolverChanges::default()
     };
     let mut robot = Robot::open(config);
@@ -84,4 +85,33 @@ fn a_stalled_step_of_the_stepper_range_is_told_of() {
     assert!(robot.world().snapshot.observables.stalled);
     robot.harness.step();
     assert!(robot.harness.query_by_label_contains("stalled").is_some());
+}
+
+#[test]
+fn a_step_that_is_not_solved_falls_back_unless_it_must_not_and_the_window_says_so() {
+    for asked in [None, Some(Fallback::None)] {
+        let mut config = scene("pile");
+        config.parameters.time_step_secs = Some(5e-3);
+        config.solver =
+            SolverChanges { max_sweeps: Some(3), fallback: asked, ..SolverChanges::default() };
+        let mut robot = Robot::open(config);
+        robot.click("Solver");
+        for _ in 0..5 {
+            robot.click("Step");
+        }
+        let row = robot.world().snapshot.observables;
+        assert!(!row.converged, "three sweeps are too few");
+        robot.harness.step();
+        let says = |text: &str| robot.harness.query_all_by_label_contains(text).count();
+        if asked.is_none() {
+            assert_eq!(row.fell_back, Some(true));
+            assert!(row.model_residual.is_some_and(|residual| residual <= 1e-8), "{row:?}");
+            assert_eq!(robot.world().fallback_steps, robot.world().unconverged_steps);
+            assert!(says("fell back") >= 2, "the status bar and the panel");
+            assert_eq!(says("not Coulomb's law"), 1);
+        } else {
+            assert_eq!((row.fell_back, robot.world().fallback_steps), (None, 0));
+            assert_eq!((says("fell back"), says("not converged")), (0, 2));
+        }
+    }
 }

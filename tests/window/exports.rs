@@ -33,7 +33,8 @@ fn the_window_exports_what_data_writes() {
 
         let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
         let (duration, names) = (duration_secs.to_string(), names.join(","));
-        let options = ["--scene", scene, "--dt", "1e-3", "--duration", &duration];
+        let options =
+            ["--scene", scene, "--dt", "1e-3", "--duration", &duration, "--fallback", "tresca"];
         headless(
             &[&options[..], &["--data-every", "1e-9", "--data-format", &names]].concat(),
             &written,
@@ -58,7 +59,8 @@ fn frames_are_at_the_times_that_data_has_them_at() {
     robot.state_mut().preferences.data.every_secs = 0.0073;
     take_steps(&mut robot, 50);
     export(&mut robot);
-    let options = ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.05"];
+    let options =
+        ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.05", "--fallback", "tresca"];
     headless(&[&options[..], &["--data-every", "0.0073"]].concat(), &written);
     assert_same(&exported, &written);
 }

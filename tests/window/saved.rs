@@ -84,7 +84,7 @@ fn the_window_saves_what_save_writes() {
         let written = folder.path().join("headless.slump");
         let options =
             ["--scene", scene, "--stepper", stepper.name(), "--dt", "1e-3", "--duration", "0.04"];
-        headless(&options, &written);
+        headless(&[&options[..], &["--fallback", "tresca"]].concat(), &written);
         let bytes = |path: &Path| std::fs::read(path).expect("a file");
         assert!(bytes(&found) == bytes(&written), "{scene}, {stepper:?}");
     }

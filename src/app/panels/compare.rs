@@ -9,7 +9,7 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::sim::live::{Command, Controls};
 use crate::sim::{Settings, Stepper};
-use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
+use crate::solver::{Fallback, FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
 use crate::world::FrictionCone;
 
 /// Most worlds side by side.
@@ -117,7 +117,10 @@ const LINE_UPS: [LineUp; 7] = [
             let base = stepped(base, Stepper::Moreau);
             let by = |friction_model, model_solves| {
                 let method = Method::Nsgs;
-                let solver = SolverSettings { method, friction_model, model_solves, ..base.solver };
+                // Coulomb's law would else be mixed with tresca.
+                let fallback = Fallback::None;
+                let by_it = SolverSettings { method, fallback, ..base.solver };
+                let solver = SolverSettings { friction_model, model_solves, ..by_it };
                 Settings { solver, ..base }
             };
             let once = FrictionModel::ALL.iter().map(|&model| by(model, 1));

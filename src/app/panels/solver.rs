@@ -8,8 +8,9 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
+use crate::sim::live::WorldFrame;
 use crate::sim::{Observables, REMEDIES, Remedies, Settings};
-use crate::solver::{Method, SolverSettings, StopTest, picked};
+use crate::solver::{FrictionModel, Method, SolverSettings, StopTest, picked};
 
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -123,9 +124,10 @@ fn tolerance_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
 }
 
 /// The common residual, and that of the model of friction where there is one.
-fn residuals(last: &Observables) -> (String, &'static str) {
+fn residuals(last: &Observables, solver: &SolverSettings) -> (String, &'static str) {
     let common = format!("{:.1e}", last.residual);
-    match last.model_residual {
+    let model = solver.friction_model != FrictionModel::Coulomb || last.fell_back == Some(true);
+    match last.model_residual.filter(|_| model) {
         None => (common, "Common residual of the last step."),
         Some(of_model) => (
             format!("{common} ({of_model:.1e})"),
@@ -139,14 +141,13 @@ fn residuals(last: &Observables) -> (String, &'static str) {
 fn readings(ui: &mut Ui, state: &AppState) {
     let Some(world) = state.world() else { return };
     let (last, settings) = (&world.snapshot.observables, &world.controls.settings);
-    let dark = ui.visuals().dark_mode;
     egui::Grid::new("readings").num_columns(4).spacing([10.0, 3.0]).show(ui, |ui| {
         let reading = |ui: &mut Ui, name: &str, value: String, hint: &str| {
             ui.label(RichText::new(name).weak()).on_hover_text(hint);
             ui.label(RichText::new(value).monospace());
         };
         reading(ui, "sweeps", last.sweeps.to_string(), "Sweeps of the last step.");
-        let (value, hint) = residuals(last);
+        let (value, hint) = residuals(last, &settings.solver);
         reading(ui, "residual", value, hint);
         ui.end_row();
         if settings.solver.method == Method::Auto {
@@ -171,10 +172,17 @@ fn readings(ui: &mut Ui, state: &AppState) {
             ui.end_row();
         }
     });
-    if !settings.stepper.uses_method() {
+    if settings.stepper.uses_method() {
+        solved(ui, world);
+    } else {
         ui.label(RichText::new("a fixed amount of work, no stopping test").weak());
-        return;
     }
+}
+
+/// Whether steps were solved as asked: the last one, and those before.
+fn solved(ui: &mut Ui, world: &WorldFrame) {
+    let last = &world.snapshot.observables;
+    let dark = ui.visuals().dark_mode;
     let (mark, colour) = if last.converged {
         ("● converged".to_owned(), theme::good(dark))
     } else if last.fell_back == Some(true) {
@@ -189,7 +197,12 @@ fn readings(ui: &mut Ui, state: &AppState) {
     };
     ui.label(RichText::new(mark).color(colour));
     if world.unconverged_steps > 0 {
-        let text = format!("{} of {} steps did not converge", world.unconverged_steps, last.step);
+        let instead = match world.fallback_steps {
+            0 => String::new(),
+            steps => format!(", {steps} fell back on bounds of friction"),
+        };
+        let unsolved = world.unconverged_steps;
+        let text = format!("{unsolved} of {} steps did not converge{instead}", last.step);
         ui.label(RichText::new(text).small().color(theme::warning(dark)));
     }
 }

@@ -32,18 +32,25 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 /// Whether steps met the tolerance: the last one, and those before.
 fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
     let dark = ui.visuals().dark_mode;
-    let all = state.frame.worlds.iter().all(|world| world.snapshot.observables.converged);
-    let (mark, colour) = if all {
+    let last = || state.frame.worlds.iter().map(|world| &world.snapshot.observables);
+    let (mark, colour) = if last().all(|row| row.converged) {
         ("● converged", theme::good(dark))
+    } else if last().all(|row| row.converged || row.fell_back == Some(true)) {
+        ("◆ fell back", theme::warning(dark))
     } else {
         ("▲ not converged", theme::warning(dark))
     };
     ui.label(RichText::new(mark).color(colour)).on_hover_text(
-        "Whether the last step met the tolerance within the sweep limit: see Solver",
+        "Whether the last step met the tolerance within the sweep limit, or was solved under bounds of \
+         friction instead: see Solver",
     );
     if world.unconverged_steps > 0 {
         let steps = if world.unconverged_steps == 1 { "step" } else { "steps" };
-        let text = format!("{} {steps} did not converge", world.unconverged_steps);
+        let instead = match world.fallback_steps {
+            0 => String::new(),
+            fallback_steps => format!(", {fallback_steps} fell back"),
+        };
+        let text = format!("{} {steps} did not converge{instead}", world.unconverged_steps);
         ui.label(RichText::new(text).weak()).on_hover_text("Up to the moment that is shown");
     }
 }

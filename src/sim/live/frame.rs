@@ -68,6 +68,8 @@ pub struct WorldFrame {
     pub recorded_secs: f64,
     /// Steps up to this moment that were not solved to the tolerance.
     pub unconverged_steps: u64,
+    /// How many of these were solved under bounds of friction instead of Coulomb's law.
+    pub fallback_steps: u64,
     /// Mean time that a step takes lately, ms.
     pub step_ms: f64,
     /// Substeps of its next step.

@@ -51,6 +51,7 @@ impl Engine {
             recorded_from_secs: track.recording.start().time_secs(),
             recorded_secs: track.recording.end_secs(),
             unconverged_steps: track.tally.unconverged_steps,
+            fallback_steps: track.tally.fallback_steps,
             step_ms: 1e3 * track.step_secs,
             substeps: track.simulation.substeps(),
             critical_time_step_secs: track.simulation.critical_time_step_secs(),

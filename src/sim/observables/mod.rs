@@ -94,6 +94,11 @@ impl Observables {
         self.bond_work.is_some() || self.model_residual.is_some()
     }
 
+    /// Whether a step was solved under another model of friction than Coulomb's law.
+    fn is_of_a_model(&self) -> bool {
+        self.step > 0 && self.duality_gap.is_some_and(f64::is_finite)
+    }
+
     /// With numbers that are none where there are no bonds or no model of friction, so that rows with and
     /// without them fit in one table.
     pub fn with_further_columns(self) -> Self {
@@ -125,8 +130,8 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
         logarithmic: true,
         value: |row| row.residual,
         beside: &[
-            ("of the model of friction", |row| row.model_residual),
-            ("its duality gap", |row| row.duality_gap),
+            ("the model's", |row| row.model_residual.filter(|_| row.is_of_a_model())),
+            ("its duality gap", |row| row.duality_gap.filter(|_| row.is_of_a_model())),
         ],
         ..Quantity::PLAIN
     },
