@@ -7,6 +7,7 @@ use super::workshop::Rows;
 use super::{Claim, Figure, Workshop};
 use crate::error::Result;
 use crate::scene::Config;
+use crate::solver::SolverChanges;
 use crate::study::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
 use crate::study::statistics::{mean, p_value, slope};
 
@@ -21,11 +22,11 @@ pub(super) fn size(workshop: &Workshop) -> Result<Figure> {
     let (mut sheet, curves) =
         series(workshop, &rows, "Slump against the number of grains", x, grains)?;
     let solver = rows.0.first().map_or_else(String::new, |(config, _)| {
-        let method = config.solver.method.map_or("", |method| method.name());
-        format!(
-            "Solved by {method} to a residual of {:e}.",
-            config.solver.tolerance.unwrap_or_default()
-        )
+        let SolverChanges { method, friction_model, tolerance, .. } = config.solver;
+        let (model, residual) = (friction_model.unwrap_or_default(), tolerance.unwrap_or_default());
+        let method = method.map_or("", |method| method.name());
+        format!("Solved by {method} under {model} to a residual of {residual:e}.")
+            .replace("e-", "e−")
     });
     sheet.caption.insert(1, solver);
     if let Some(chart) = sheet.charts.first_mut() {

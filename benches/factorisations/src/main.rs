@@ -1,0 +1,90 @@
+//! Factorises the matrices of an interior point, M + Σ Hᵀ K H over the contacts of recorded piles, in four ways:
+//! by Slump's block LU (what `newton` takes) and block Cholesky (what `interior-point` takes), and by faer's
+//! simplicial and supernodal Cholesky. Prints a row a pile and a way: counts first, then times.
+//!
+//! `slump-factorisations pile/csv/contacts.csv …` reads the last frame of recordings that
+//! `slump --headless --data pile/ --data-format csv` writes.
+
+mod by_faer;
+#[allow(dead_code, reason = "solvers need more of it")]
+#[path = "../../../src/solver/linear/mod.rs"]
+mod linear;
+mod matrix;
+mod ours;
+
+use std::time::{Duration, Instant};
+
+use matrix::Matrix;
+
+/// How long a way is repeated; times are the least of all repeats.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// What one way takes for one matrix.
+pub struct Told {
+    /// Its name.
+    pub name: &'static str,
+    /// Numbers kept of the factors.
+    pub numbers: usize,
+    /// Floating-point operations of a factorisation, multiplications and additions each; none where it does not say.
+    pub flops: Option<f64>,
+    /// Order and structure of the factors, s.
+    pub analysis_secs: f64,
+    /// The factors, the matrix put in place first, s.
+    pub factors_secs: f64,
+    /// Solution with the factors, s.
+    pub solution_secs: f64,
+    /// ‖Ax − b‖ / ‖b‖.
+    pub error: f64,
+}
+
+/// The least time of as many calls as there is patience for, s.
+pub fn least_secs(mut call: impl FnMut()) -> f64 {
+    let (begun, mut least) = (Instant::now(), f64::INFINITY);
+    while begun.elapsed() < PATIENCE {
+        let begun = Instant::now();
+        call();
+        least = least.min(begun.elapsed().as_secs_f64());
+    }
+    least
+}
+
+fn main() {
+    let paths: Vec<String> = std::env::args().skip(1).collect();
+    if paths.is_empty() {
+        eprintln!("slump-factorisations: name contacts.csv of recordings, one or more");
+        std::process::exit(2);
+    }
+    println!("bodies,pairs,way,numbers,mflop,analysis_ms,factors_ms,gflop_per_s,solution_ms,error");
+    for path in &paths {
+        let matrix = match Matrix::read(path) {
+            Ok(matrix) => matrix,
+            Err(error) => {
+                eprintln!("slump-factorisations: {path}: {error}");
+                std::process::exit(2);
+            }
+        };
+        let ways = [
+            ours::block_lu(&matrix),
+            ours::block_cholesky(&matrix),
+            by_faer::simplicial(&matrix),
+            by_faer::supernodal(&matrix),
+        ];
+        for told in ways {
+            let mflop = told.flops.map_or(String::new(), |flops| format!("{:.2}", 1e-6 * flops));
+            let rate = told.flops.map_or(String::new(), |flops| {
+                format!("{:.1}", 1e-9 * flops / told.factors_secs)
+            });
+            println!(
+                "{},{},{},{},{mflop},{:.3},{:.3},{rate},{:.3},{:.1e}",
+                matrix.bodies,
+                matrix.pairs.len(),
+                told.name,
+                told.numbers,
+                1e3 * told.analysis_secs,
+                1e3 * told.factors_secs,
+                1e3 * told.solution_secs,
+                told.error,
+            );
+        }
+    }
+}

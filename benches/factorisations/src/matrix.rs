@@ -1,0 +1,120 @@
+//! The matrix of an interior point near its end: unit masses, and contacts of which some are stiff and some soft
+//! by many orders of magnitude.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+
+use crate::linear::Block;
+
+/// Orders of magnitude that the stiffness of contacts goes through, around that of the masses.
+const STIFFNESS: [f64; 2] = [-6.0, 6.0];
+
+/// M + Σ Hᵀ K H by blocks of three: two axes and the spin, in units in which a disc's masses are 1 and ½.
+pub struct Matrix {
+    /// Number of bodies.
+    pub bodies: usize,
+    /// Bodies that touch each other, the smaller number first.
+    pub pairs: Vec<(u32, u32)>,
+    /// A block a body.
+    pub diagonal: Vec<Block<3>>,
+    /// A block a pair, its rows those of the first.
+    pub off_diagonal: Vec<Block<3>>,
+    /// A right-hand side.
+    pub right_side: Vec<[f64; 3]>,
+}
+
+impl Matrix {
+    /// The matrix of the last frame of a table of contacts.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or is no such table.
+    pub fn read(path: &str) -> Result<Self, Box<dyn Error>> {
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path)?;
+        let header = reader.headers()?.clone();
+        let column = |name: &str| {
+            let at = header.iter().position(|column| column == name);
+            at.ok_or_else(|| format!("has no column {name}"))
+        };
+        let [step, i, j, kind, x, y] = [
+            column("step")?,
+            column("id_i")?,
+            column("id_j")?,
+            column("kind_j")?,
+            column("nx")?,
+            column("ny")?,
+        ];
+        let mut last = 0;
+        let mut contacts: Vec<(u32, Option<u32>, [f64; 2])> = Vec::new();
+        for record in reader.records() {
+            let record = record?;
+            let now: u64 = record[step].parse()?;
+            if now != last {
+                contacts.clear();
+                last = now;
+            }
+            let other = if &record[kind] == "grain" { Some(record[j].parse()?) } else { None };
+            contacts.push((record[i].parse()?, other, [record[x].parse()?, record[y].parse()?]));
+        }
+        Ok(Self::of(&contacts))
+    }
+
+    fn of(contacts: &[(u32, Option<u32>, [f64; 2])]) -> Self {
+        let last = contacts.iter().flat_map(|&(i, j, _)| [Some(i), j]).flatten().max();
+        let bodies = last.map_or(0, |last| last as usize + 1);
+        let mut random = 1u64;
+        let mut fraction = || {
+            // Any well-mixed sequence will do (Knuth's multiplier).
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (random >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let mut diagonal = vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]]; bodies];
+        let mut blocks: BTreeMap<(u32, u32), Block<3>> = BTreeMap::new();
+        for &(i, j, [x, y]) in contacts {
+            // The gradients of v_n and v_t, the latter with the rims' spins of both bodies.
+            let rows = [([x, y, 0.0], [-x, -y, 0.0]), ([-y, x, 1.0], [y, -x, 1.0])];
+            for (on_i, on_j) in rows {
+                let stiffness = 10f64.powf(STIFFNESS[0] + (STIFFNESS[1] - STIFFNESS[0]) * fraction());
+                let outer = |a: &[f64; 3], b: &[f64; 3]| a.map(|a| b.map(|b| stiffness * a * b));
+                add(&mut diagonal[i as usize], &outer(&on_i, &on_i));
+                if let Some(j) = j {
+                    add(&mut diagonal[j as usize], &outer(&on_j, &on_j));
+                    let block = if i < j { outer(&on_i, &on_j) } else { outer(&on_j, &on_i) };
+                    add(blocks.entry((i.min(j), i.max(j))).or_insert([[0.0; 3]; 3]), &block);
+                }
+            }
+        }
+        let right_side = (0..bodies).map(|_| [(); 3].map(|()| fraction() - 0.5)).collect();
+        let (pairs, off_diagonal) = blocks.into_iter().unzip();
+        Self { bodies, pairs, diagonal, off_diagonal, right_side }
+    }
+
+    /// ‖Ax − b‖ / ‖b‖.
+    pub fn error(&self, solution: &[[f64; 3]]) -> f64 {
+        let mut rest = self.right_side.clone();
+        let mut subtract = |to: usize, block: &Block<3>, from: usize, transposed: bool| {
+            for row in 0..3 {
+                for column in 0..3 {
+                    let entry = if transposed { block[column][row] } else { block[row][column] };
+                    rest[to][row] -= entry * solution[from][column];
+                }
+            }
+        };
+        for (body, block) in self.diagonal.iter().enumerate() {
+            subtract(body, block, body, false);
+        }
+        for (&(i, j), block) in self.pairs.iter().zip(&self.off_diagonal) {
+            subtract(i as usize, block, j as usize, false);
+            subtract(j as usize, block, i as usize, true);
+        }
+        let norm = |vector: &[[f64; 3]]| vector.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+        norm(&rest) / norm(&self.right_side)
+    }
+}
+
+fn add(to: &mut Block<3>, block: &Block<3>) {
+    for (entries, numbers) in to.iter_mut().zip(block) {
+        for (entry, number) in entries.iter_mut().zip(numbers) {
+            *entry += number;
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Slumps of piles that start from the same states and are solved in two ways, at the same Bond and Δt.
+
+use std::collections::BTreeMap;
+
+use super::verdict::{Claim, SIGNIFICANT, Verdict};
+use super::workshop::Rows;
+use crate::scene::Config;
+use crate::study::Outcome;
+use crate::study::chart::Point;
+use crate::study::statistics::{Mean, mean, p_value};
+
+/// A difference of slump up to which one way stands for the other, by the largest number of grains that it is
+/// asked of. Slumps are 0.05 to 0.5, and those of two states of a size differ by 0.1 and more.
+const MARGINS: [(usize, f64); 2] = [(138, 0.02), (usize::MAX, 0.04)];
+
+/// A Bond and a Δt at one number of grains.
+pub(super) struct Comparison {
+    pub bond: f64,
+    /// Δt, s.
+    pub step: f64,
+    /// Of the reference.
+    pub slump: Mean,
+    /// The other way's less the reference's, state by state.
+    pub difference: Mean,
+}
+
+impl Comparison {
+    /// p-value of no difference.
+    fn p(&self) -> f64 {
+        (2.0 * self.difference.p_above(0.0).min(self.difference.p_below(0.0))).min(1.0)
+    }
+
+    /// How far its 95 % interval goes from 0.
+    fn reach(&self) -> f64 {
+        self.difference.low.abs().max(self.difference.high.abs())
+    }
+
+    fn differs(&self) -> bool {
+        self.difference.low > 0.0 || self.difference.high < 0.0
+    }
+
+    /// The difference on a chart.
+    pub(super) fn point(&self, x: f64) -> Point {
+        let Mean { mean, low, high, count, .. } = self.difference;
+        // Two states tell next to nothing of their spread.
+        Point { x, y: mean, interval: (count > 2).then_some((low, high)) }
+    }
+
+    /// Its numbers in a table: states, slump of the reference, difference, standard error, ends of the interval,
+    /// p-value.
+    pub(super) fn cells(&self) -> impl Iterator<Item = String> {
+        let Mean { mean, standard_error, low, high, count, .. } = self.difference;
+        let numbers = [self.slump.mean, mean, standard_error, low, high, self.p()];
+        let written = numbers.map(|value| format!("{value:.4}"));
+        std::iter::once(count.to_string()).chain(written)
+    }
+}
+
+/// How far any of the intervals goes from 0, of those that end; 0.05 at least.
+pub(super) fn widest(all: &[Comparison]) -> f64 {
+    all.iter().map(Comparison::reach).filter(|reach| reach.is_finite()).fold(0.05, f64::max)
+}
+
+/// Runs of one number of grains, solved in two ways.
+pub(super) struct Paired<'a> {
+    pub grains: usize,
+    pub reference: Rows<'a>,
+    pub other: Rows<'a>,
+}
+
+impl Paired<'_> {
+    /// The states that ended in both ways: seed, slump of the reference, that of the other.
+    fn pairs(&self, bond: f64, step: f64) -> Vec<(Option<u64>, f64, f64)> {
+        let at = |config: &Config| {
+            let Config { parameters, .. } = config;
+            parameters.bond == Some(bond) && parameters.time_step_secs == Some(step)
+        };
+        let (one, other) = (self.reference.such_that(at), self.other.such_that(at));
+        let with = |seed| other.0.iter().find(move |(config, _)| config.origin.seed == seed);
+        let pair = |(config, outcome): &(&Config, &Outcome)| {
+            let seed = config.origin.seed;
+            Some((seed, outcome.slump, with(seed)?.1.slump))
+        };
+        one.0.iter().filter_map(pair).collect()
+    }
+
+    /// Every Δt with every Bond.
+    fn places(&self) -> Vec<(f64, f64)> {
+        let bonds = self.other.values(|config| config.parameters.bond);
+        let steps = self.other.values(|config| config.parameters.time_step_secs);
+        steps.iter().flat_map(|&step| bonds.iter().map(move |&bond| (bond, step))).collect()
+    }
+
+    /// Every Bond at every Δt.
+    pub(super) fn comparisons(&self) -> Vec<Comparison> {
+        let compared = |(bond, step)| {
+            let pairs = self.pairs(bond, step);
+            let slumps: Vec<f64> = pairs.iter().map(|(_, reference, _)| *reference).collect();
+            let differences: Vec<f64> = pairs.iter().map(|(_, one, other)| other - one).collect();
+            Comparison { bond, step, slump: mean(&slumps), difference: mean(&differences) }
+        };
+        self.places().into_iter().map(compared).collect()
+    }
+
+    /// The mean difference over all Bonds and Δt, a value a state.
+    fn of_all(&self) -> Mean {
+        let mut of_states: BTreeMap<Option<u64>, Vec<f64>> = BTreeMap::new();
+        for (bond, step) in self.places() {
+            for (seed, one, other) in self.pairs(bond, step) {
+                of_states.entry(seed).or_default().push(other - one);
+            }
+        }
+        mean(&of_states.values().map(|differences| mean(differences).mean).collect::<Vec<_>>())
+    }
+
+    fn margin(&self) -> f64 {
+        let found = MARGINS.iter().find(|(grains, _)| self.grains <= *grains);
+        found.map_or(0.0, |(_, margin)| *margin)
+    }
+
+    /// That piles slump alike `how`, and whether they do. With many comparisons some differ by chance, so
+    /// p-values are multiplied by their number (Bonferroni).
+    pub(super) fn claim(&self, how: &str) -> Claim {
+        let (all, pooled, margin) = (self.comparisons(), self.of_all(), self.margin());
+        let outside: Vec<_> = all
+            .iter()
+            .filter(|one| one.differs())
+            .map(|one| {
+                format!("Bond {} at {:e} s ({:+.3})", one.bond, one.step, one.difference.mean)
+            })
+            .collect();
+        let count = all.len();
+        let p = (all.iter().map(Comparison::p).fold(1.0, f64::min) * count as f64).min(1.0);
+        let by_chance = 100.0 * (1.0 - 0.95f64.powi(count as i32));
+        let farthest = all.iter().map(Comparison::reach).fold(0.0, f64::max);
+        let measured = format!(
+            "{} of {count} differences have a 95 % interval without 0{}{}, where without any effect at least one \
+             has in {by_chance:.0} % of such studies; any difference: {}; mean over all {:+.4} ± {:.4}; the \
+             intervals reach to ±{farthest:.3}; {} states",
+            outside.len(),
+            if outside.is_empty() { "" } else { ": " },
+            outside.join(", "),
+            p_value(p),
+            pooled.mean,
+            pooled.standard_error,
+            self.other.seeds().len(),
+        );
+        let verdict = match (p < SIGNIFICANT, farthest <= margin) {
+            (true, _) => Verdict::Fails,
+            (false, true) => Verdict::Holds,
+            (false, false) => Verdict::Open,
+        };
+        let said = format!(
+            "Beyond the paper: {} grains slump {how}, within {margin} at every Bond and Δt",
+            self.grains
+        );
+        Claim::new(said, measured.replace('-', "−"), verdict)
+    }
+}
