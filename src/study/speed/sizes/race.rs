@@ -231,11 +231,11 @@ mod tests {
     use crate::study::collection::collect;
 
     #[test]
-    fn a_race_ends_at_its_limit_and_a_certificate_has_a_gap() {
+    fn a_certificate_has_a_gap_and_a_race_ends_at_its_limit() {
         let folder = tempfile::tempdir().expect("a folder");
         let collected =
             collect(&steps(SIZES[0], false, true), folder.path()).expect("a collection");
-        let ample = Plan::new(false);
+        let (ample, short) = (Plan::new(false), Plan { limit: 1e-3, ..Plan::new(false) });
         let certified = ample.entrants.last().expect("an entrant");
         for step in &collected {
             let raced = race(step, certified, &ample).expect("a race");
@@ -243,11 +243,24 @@ mod tests {
             assert!(reached.left <= CERTIFIED * (1.0 + ROUNDING));
             assert!(reached.duality_gap.is_some_and(|gap| gap.abs() < 1e-4));
             assert!(raced.step_secs(CERTIFIED) > raced.besides_secs);
-            let short = Plan { limit: 1e-3, ..Plan::new(false) };
             let raced = race(step, &short.unit, &short).expect("a race");
             assert!(raced.course.start > RESIDUALS[0], "there is something to be solved");
             assert!(raced.course.reached.is_empty() && raced.course.gave_up_secs.is_some());
             assert_eq!(raced.step_secs(RESIDUALS[0]), f64::INFINITY);
         }
+    }
+
+    #[test]
+    fn what_is_solved_too_late_is_not_reached() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let collected = collect(&steps(60, false, true), folder.path()).expect("a collection");
+        // So few grains hold at this Bond number.
+        let step = collected.last().expect("a step");
+        let (ample, short) = (Plan::new(false), Plan { limit: 1e-9, ..Plan::new(false) });
+        let raced = race(step, &ample.unit, &ample).expect("a race");
+        assert!(raced.course.start <= RESIDUALS[0] && raced.reached(RESIDUALS[0]).is_some());
+        let raced = race(step, &short.unit, &short).expect("a race");
+        assert!(raced.course.smallest <= RESIDUALS[0], "a sweep does it");
+        assert!(raced.course.reached.is_empty());
     }
 }
