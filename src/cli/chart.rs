@@ -14,7 +14,7 @@ pub(super) struct ChartCommand {
     /// Coarser, in a few minutes
     #[arg(long)]
     quick: bool,
-    /// Also race on steps of 2,000 grains
+    /// Also race on steps of 500, 2,000 and 10,000 grains, and simulate 2,000
     #[arg(long)]
     large: bool,
     /// Chart these alone

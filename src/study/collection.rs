@@ -8,14 +8,14 @@ use rayon::prelude::*;
 use super::states::States;
 use crate::error::Result;
 use crate::output::Progress;
-use crate::scene::{Config, NewPile, Origin};
+use crate::scene::{Config, Deposition, NewPile, Origin, walls};
 use crate::sim::Simulation;
 use crate::solver::{Fallback, FrictionModel, Method, Ordering, SolverSettings, StopTest};
 use crate::world::ParameterChanges;
 
 /// How the piles get to the steps that are collected: far better solved than any claim about a pile
 /// needs, so that a collection does not favour the errors of the methods it is to compare.
-const ADVANCE: SolverSettings = SolverSettings {
+pub(super) const ADVANCE: SolverSettings = SolverSettings {
     method: Method::Newton,
     ordering: Ordering::Interleaved,
     stop: StopTest::Residual,
@@ -40,8 +40,14 @@ pub(crate) struct CollectionPlan {
     pub seeds: Vec<u64>,
     /// Grains of a pile.
     pub grains: usize,
-    /// Width of the box that the piles are rained into, in diameters.
+    /// Width of the box that the piles are made in, in diameters.
     pub box_width_in_diameters: f64,
+    /// How they are made.
+    pub deposition: Deposition,
+    /// Whether the walls of the box stay, so that the piles are at rest.
+    pub in_a_box: bool,
+    /// How the piles get to the steps.
+    pub advance: SolverSettings,
     /// Contacts slower than this many g·Δt do not bounce; 0 in the paper's scheme.
     pub restitution_threshold: f64,
 }
@@ -58,6 +64,9 @@ impl CollectionPlan {
             seeds: vec![rain.seed, 1, 2, 3],
             grains: rain.grains,
             box_width_in_diameters: rain.box_width_in_diameters,
+            deposition: rain.deposition,
+            in_a_box: false,
+            advance: ADVANCE,
             restitution_threshold,
         }
     }
@@ -67,17 +76,21 @@ impl CollectionPlan {
         Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
     }
 
-    /// 8 steps of piles of 2,000 grains, as steep as those of 138.
-    pub(crate) fn large_piles(restitution_threshold: f64) -> Self {
-        Self {
-            bonds: vec![0.0, 50.0],
-            time_steps_secs: vec![1e-3, 5e-3],
-            times_secs: vec![0.03, 0.1],
-            seeds: vec![1],
-            grains: 2000,
-            box_width_in_diameters: 60.0,
-            ..Self::piles(restitution_threshold)
-        }
+    /// The names of its steps, in their order.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let of_pile =
+            |config: &Config| self.times_secs.iter().map(|&time| self.name(config, time)).collect();
+        self.configs().iter().flat_map(|config| -> Vec<String> { of_pile(config) }).collect()
+    }
+
+    fn name(&self, config: &Config, time_secs: f64) -> String {
+        let Self { grains, in_a_box, restitution_threshold, .. } = self;
+        let ParameterChanges { bond, time_step_secs, .. } = config.parameters;
+        let (bond, step) = (bond.unwrap_or_default(), time_step_secs.unwrap_or_default());
+        let place = if *in_a_box { " in a box" } else { "" };
+        format!(
+            "{grains} grains{place}, Bond {bond}, dt {step:e}, t {time_secs}, threshold {restitution_threshold}"
+        )
     }
 
     /// A pile for every Bond number and time step. Going on by one in both, no time step and no
@@ -90,6 +103,7 @@ impl CollectionPlan {
                     grains: Some(self.grains),
                     box_width: Some(self.box_width_in_diameters),
                     seed: Some(self.seeds[(row + column) % self.seeds.len()]),
+                    deposition: Some(self.deposition),
                     ..Origin::default()
                 };
                 let parameters = ParameterChanges {
@@ -133,7 +147,10 @@ pub(crate) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec
         .with_max_len(1)
         .map(|config| {
             let mut scene = states.scene(config)?;
-            scene.solver = ADVANCE;
+            scene.solver = plan.advance;
+            if plan.in_a_box {
+                scene.boundaries = walls(plan.box_width_in_diameters);
+            }
             let mut simulation = scene.simulation()?;
             let mut collected = Vec::with_capacity(plan.times_secs.len());
             for &time_secs in &plan.times_secs {
@@ -141,13 +158,8 @@ pub(crate) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec
                     simulation.step()?;
                     progress.advance(1);
                 }
-                let (bond, time_step_secs) =
-                    (scene.parameters.bond, scene.parameters.time_step_secs);
                 collected.push(CollectedStep {
-                    name: format!(
-                        "{} grains, Bond {bond}, dt {time_step_secs:e}, t {time_secs}, threshold {}",
-                        plan.grains, plan.restitution_threshold
-                    ),
+                    name: plan.name(config, time_secs),
                     simulation: simulation.clone(),
                 });
             }
@@ -171,7 +183,7 @@ mod tests {
             seeds: vec![1, 2],
             grains: 30,
             box_width_in_diameters: 8.0,
-            restitution_threshold: 2.0,
+            ..CollectionPlan::piles(2.0)
         }
     }
 
@@ -215,11 +227,13 @@ mod tests {
                 simulation.time_secs()
             );
             assert_eq!(step.name, told);
+            assert!(simulation.world().boundaries.is_empty());
             assert_eq!(simulation.parameters().restitution_threshold, 2.0);
         }
         let mut names: Vec<_> = collected.iter().map(|step| &step.name).collect();
         names.dedup();
         assert_eq!(names.len(), collected.len(), "every step has a name of its own");
+        assert!(names.into_iter().eq(&small().names()), "which is known before");
     }
 
     #[test]

@@ -8,6 +8,7 @@ use plotters::prelude::*;
 use plotters::style::register_font;
 
 use super::places::Places;
+use super::sheet::{CAPTION_LINE, LEGEND};
 use super::{Cell, Chart, Corner, Layer, Look, Rgb, Sheet};
 use crate::error::{Error, Result};
 
@@ -15,8 +16,6 @@ use crate::error::{Error, Result};
 const TITLE: u32 = 27;
 const WORDS: u32 = 24;
 const CAPTION: u32 = 20;
-/// Room below the charts for one line of the caption, pixels.
-const CAPTION_LINE: u32 = 28;
 /// Room for the words beside the vertical axis, and for each character of longer ones, pixels.
 const BESIDE: u32 = 104;
 const CHARACTER: u32 = 12;
@@ -95,7 +94,8 @@ fn draw<DB: DrawingBackend>(sheet: &Sheet, area: DrawingArea<DB, Shift>) -> Resu
 /// The names of a chart's curves, one below the other.
 fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
     let style = (FONT, CAPTION + 2).into_font().color(&rgb(super::INK));
-    let mut y = 70;
+    let [above, line_height, between] = LEGEND.map(|room| room as i32);
+    let mut y = above;
     for layer in &chart.layers {
         let Layer::Curve { name, colour, look, .. } = layer else { continue };
         let colour = rgb(*colour);
@@ -126,9 +126,9 @@ fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>)
         }
         for part in name.split('\n') {
             area.draw_text(part, &style, (58, y - 11)).map_err(failed)?;
-            y += CAPTION_LINE as i32;
+            y += line_height;
         }
-        y += 8;
+        y += between;
     }
     Ok(())
 }

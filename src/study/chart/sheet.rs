@@ -135,9 +135,14 @@ impl Layer {
     }
 
     /// The same curve, number `index` of `count` side by side.
-    pub fn beside(mut self, index: usize, count: usize) -> Self {
+    pub fn beside(self, index: usize, count: usize) -> Self {
+        self.aside(ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0)))
+    }
+
+    /// The same curve, so far aside, in widths of the chart.
+    pub(crate) fn aside(mut self, widths: f64) -> Self {
         if let Self::Curve { aside, .. } = &mut self {
-            *aside = ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0));
+            *aside = widths;
         }
         self
     }
@@ -224,6 +229,12 @@ impl Chart {
     }
 }
 
+/// Rooms of legends that stand beside charts, pixels: above the first entry, for a line of words, and between two
+/// entries.
+pub(super) const LEGEND: [u32; 3] = [70, CAPTION_LINE, 8];
+/// Room below the charts for one line of the caption, pixels.
+pub(super) const CAPTION_LINE: u32 = 28;
+
 /// Charts side by side, with words below.
 #[derive(Clone, Debug)]
 pub struct Sheet {
@@ -239,5 +250,41 @@ impl Sheet {
     /// One chart of the usual size.
     pub(crate) fn of(chart: Chart) -> Self {
         Self { size: (1200, 820), charts: vec![chart], caption: Vec::new() }
+    }
+
+    /// The same, as high as its longest legend beside charts needs.
+    pub(crate) fn high_enough(mut self) -> Self {
+        let [above, line, between] = LEGEND;
+        let entry = |layer: &Layer| match layer {
+            Layer::Curve { name, .. } => line * name.split('\n').count() as u32 + between,
+            Layer::Cells { .. } | Layer::Words { .. } => 0,
+        };
+        let legends = self.charts.iter().filter(|chart| chart.only_legend);
+        let height = |chart: &Chart| above + chart.layers.iter().map(entry).sum::<u32>();
+        let caption = CAPTION_LINE * (self.caption.len() as u32 + 1);
+        let needed = legends.map(height).max().unwrap_or(0) + caption;
+        self.size.1 = self.size.1.max(needed);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sheet_is_as_high_as_its_legend() {
+        let nowhere = Axis::linear("", 0.0, 1.0);
+        let mut chart = Chart::new("", nowhere.clone(), nowhere);
+        let sheet = |mut chart: Chart| {
+            let legend = Chart::legend_of(std::slice::from_mut(&mut chart), 0.3);
+            Sheet { charts: vec![chart.clone(), legend], ..Sheet::of(chart) }.high_enough().size.1
+        };
+        assert_eq!(sheet(chart.clone()), 820);
+        for number in 0..40 {
+            let name = format!("method {number}\nof two lines");
+            chart.layers.push(Layer::curve(name, Vec::new(), INK, Look::Line(1)));
+        }
+        assert_eq!(sheet(chart), 70 + 40 * (2 * 28 + 8) + 28);
     }
 }

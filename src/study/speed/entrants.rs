@@ -48,6 +48,12 @@ pub(super) fn all() -> Vec<Entrant> {
     entrants
 }
 
+/// A method that solves the problem of a step.
+pub(super) fn of_method(method: Method) -> Entrant {
+    let look = METHODS.iter().position(|info| info.method == method).unwrap_or_default();
+    of_model(method, FrictionModel::Coulomb, look)
+}
+
 /// Those that solve the problem of a step, and Gauss–Seidel in its other orders where `orders` are
 /// asked for.
 pub(super) fn of_problems(orders: bool) -> Vec<Entrant> {
@@ -68,23 +74,42 @@ pub(super) fn of_problems(orders: bool) -> Vec<Entrant> {
     entrants
 }
 
-/// Models of friction in the place of Coulomb's law, by the method that takes them: they solve another problem,
-/// so that whole simulations alone can tell what they are worth.
+/// Models of friction in the place of Coulomb's law, by sweeps, and the one that piles do not tell from it by the
+/// method that certifies it: they solve another problem, so that whole simulations alone can tell what they are
+/// worth.
 pub(super) fn models() -> Vec<Entrant> {
     let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
-    let entrant = |(look, &friction_model): (usize, &FrictionModel)| {
-        let solver =
-            SolverSettings { method: Method::Nsgs, friction_model, ..SolverSettings::default() };
-        let name = format!("nsgs {friction_model}");
-        Entrant { name, look: looks() + look, stepper: Stepper::Moreau, solver }
+    let by_sweeps = OTHER_LOOKS.into_iter().zip(models);
+    let mut entrants: Vec<Entrant> =
+        by_sweeps.map(|(look, &model)| of_model(Method::Nsgs, model, looks() + look)).collect();
+    entrants.push(certified());
+    entrants
+}
+
+/// The convex model that piles do not tell from Coulomb's law, by the method that certifies it. `auto`, which is
+/// on no chart, leaves it its look.
+pub(super) fn certified() -> Entrant {
+    of_model(Method::InteriorPoint, FrictionModel::Tresca, of_method(Method::Auto).look)
+}
+
+fn of_model(method: Method, friction_model: FrictionModel, look: usize) -> Entrant {
+    let solver = SolverSettings { method, friction_model, ..SolverSettings::default() };
+    let name = match friction_model {
+        FrictionModel::Coulomb => method.to_string(),
+        _ => format!("{method} {friction_model}"),
     };
-    OTHER_LOOKS.into_iter().zip(models).map(entrant).collect()
+    Entrant { name, look, stepper: Stepper::Moreau, solver }
 }
 
 impl Entrant {
     /// Its method, if it has one.
     pub(super) fn method(&self) -> Option<Method> {
         self.stepper.uses_method().then_some(self.solver.method)
+    }
+
+    /// Whether it solves another problem than Coulomb's law poses.
+    pub(super) fn is_of_model(&self) -> bool {
+        self.solver.friction_model != FrictionModel::Coulomb
     }
 
     /// Warm-started, down to a residual.

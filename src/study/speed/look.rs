@@ -1,10 +1,17 @@
-//! One look a method, the same on every chart: a colour, and dashes after the colours run out.
+//! One look a method, the same on every chart: a colour, and dashes after the colours run out. After the dashes
+//! run out too, another colour.
 
 use crate::study::chart::{Layer, Look, PALETTE, Point, Rgb, points};
 
+/// In the place of black, which would come dashed a second time.
+const WINE: Rgb = (136, 34, 85);
+
 /// The colour of method number `index` of the registry.
 pub(super) fn colour(index: usize) -> Rgb {
-    PALETTE[index % PALETTE.len()]
+    match index % PALETTE.len() {
+        0 if index >= 2 * PALETTE.len() => WINE,
+        place => PALETTE[place],
+    }
 }
 
 fn dashed(index: usize) -> bool {
@@ -53,4 +60,22 @@ pub(super) fn staircase(corners: &[(f64, f64)], end: f64) -> Vec<Point> {
         line.push((end, y));
     }
     points(line)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::super::entrants::{all, models, of_problems};
+    use super::*;
+
+    #[test]
+    fn no_two_of_a_chart_look_alike() {
+        let with_models = all().into_iter().chain(models()).collect();
+        for entrants in [of_problems(true), with_models] {
+            let looks = entrants.iter().map(|entrant| (colour(entrant.look), dashed(entrant.look)));
+            let names: Vec<_> = entrants.iter().map(|entrant| &entrant.name).collect();
+            assert_eq!(looks.collect::<HashSet<_>>().len(), entrants.len(), "{names:?}");
+        }
+    }
 }

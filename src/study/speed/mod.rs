@@ -1,5 +1,5 @@
-//! Speed charted against accuracy: of single steps, of whole simulations, and what a scene saves by
-//! computing no more than it needs. Every method of the registry is on every chart.
+//! Speed charted against accuracy: of single steps, by their size as well, of whole simulations, and what a scene
+//! saves by computing no more than it needs. Every method of the registry is on every chart.
 //!
 //! The folder of a chart holds pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and
 //! `measured/`: journals of what was measured, by program and processor, so that the same command
@@ -15,6 +15,7 @@ mod race;
 mod rest;
 mod runs;
 mod simulations;
+mod sizes;
 mod steps;
 
 use std::path::{Path, PathBuf};
@@ -37,6 +38,8 @@ pub(crate) enum ChartPart {
     Model,
     /// A step of 2,000 grains at rest against other engines
     Rest,
+    /// A step of 500 to 10,000 grains, to residuals and to a certificate
+    Size,
 }
 
 /// What to chart, and how.
@@ -46,7 +49,7 @@ pub(crate) struct ChartOptions {
     pub out: PathBuf,
     /// Coarser, in a few minutes.
     pub quick: bool,
-    /// Also steps of 2,000 grains.
+    /// Also steps of up to 10,000 grains, and simulations of 2,000.
     pub large: bool,
     /// The parts; all where there is none.
     pub only: Vec<ChartPart>,
@@ -67,16 +70,23 @@ pub(crate) fn chart_speed(options: &ChartOptions) -> Result<()> {
         peers: options.peers.clone(),
         machine: Machine::this()?,
     };
-    // Settling 2,000 grains takes longer than the whole quick pass.
-    let unasked = |part| options.only.is_empty() && !(options.quick && part == ChartPart::Rest);
-    let wanted = |part| unasked(part) || options.only.contains(&part);
+    let unasked = |part| match part {
+        // Settling 2,000 grains takes longer than the whole quick pass.
+        ChartPart::Rest => !options.quick,
+        ChartPart::Size => options.large,
+        ChartPart::Step | ChartPart::Simulation | ChartPart::Model => true,
+    };
+    let wanted = |part| {
+        if options.only.is_empty() { unasked(part) } else { options.only.contains(&part) }
+    };
     let mut report = format!("# Speed against accuracy\n\n{}\n", bench.machine.words());
     type Make = fn(&Bench) -> Result<Vec<Part>>;
-    let makers: [(ChartPart, &str, Make); 4] = [
+    let makers: [(ChartPart, &str, Make); 5] = [
         (ChartPart::Step, "Single steps", steps::make),
         (ChartPart::Simulation, "Whole simulations", simulations::make),
         (ChartPart::Model, "What a scene's model costs", models::make),
         (ChartPart::Rest, "A step at rest, against other engines", rest::make),
+        (ChartPart::Size, "Steps by size", sizes::make),
     ];
     for (part, title, make) in makers {
         if !wanted(part) {

@@ -17,6 +17,10 @@ pub(super) struct PeerRun {
     pub time_step_secs: f64,
     /// Substeps of a step.
     pub substeps: u32,
+    /// Stiffness of its contacts, Hz.
+    pub contact_hertz: f64,
+    /// Overlap that it leaves alone, in diameters.
+    pub slop: f64,
     /// Grains of the pile.
     pub grains: usize,
     /// Δy_G at the end.

@@ -8,7 +8,9 @@ use super::entrants::Entrant;
 use crate::contact::ContactList;
 use crate::output::number;
 use crate::sim::ProblemVisitor;
-use crate::solver::{Memory, Model, SolverSettings, StepProblem, residual, solve};
+use crate::solver::{
+    Measures, Memory, Model, SolverSettings, StepProblem, measure, residual, solve,
+};
 use crate::study::performance::Timing;
 
 /// Least number of solves that a time is the minimum of.
@@ -18,7 +20,7 @@ const ENOUGH_SECS: f64 = 2e-3;
 /// See [`ENOUGH_SECS`].
 const MOST_REPEATS: usize = 12;
 /// A method's own residual may differ from the one measured here by rounding.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// What a race runs to.
 #[derive(Clone, Debug)]
@@ -97,7 +99,9 @@ impl ProblemVisitor for Runner<'_> {
                 if repeat >= LEAST_REPEATS && sum > ENOUGH_SECS {
                     break;
                 }
-                let (secs, _, left) = timed::<M>(problem, &settings);
+                let memory = &mut Memory::default();
+                let (secs, _, Measures { residual: left, .. }) =
+                    timed::<M>(problem, memory, &settings);
                 race.smallest_residual = race.smallest_residual.min(left);
                 // What is not a number has not reached anything.
                 if left.is_nan() || left > tolerance * (1.0 + ROUNDING) {
@@ -116,7 +120,9 @@ impl ProblemVisitor for Runner<'_> {
 impl Runner<'_> {
     /// The sweeps that fit in the time limit, from what a few take.
     fn sweeps_in_time<M: Model>(&self, problem: &StepProblem<M::Kinematics>) -> u32 {
-        let of = |sweeps| timed::<M>(problem, &self.entrant.sweeps(sweeps).solver);
+        let of = |sweeps| {
+            timed::<M>(problem, &mut Memory::default(), &self.entrant.sweeps(sweeps).solver)
+        };
         let (few_secs, few, _) = of(20);
         let (many_secs, many, _) = of(220);
         if many <= few {
@@ -128,14 +134,15 @@ impl Runner<'_> {
     }
 }
 
-/// Seconds, sweeps and residual of one solve of a copy.
-fn timed<M: Model>(
+/// Seconds and sweeps of one solve of a copy, and what it came to.
+pub(super) fn timed<M: Model>(
     problem: &StepProblem<M::Kinematics>,
+    memory: &mut Memory<M::Kinematics>,
     settings: &SolverSettings,
-) -> (f64, u32, f64) {
-    let (mut copy, mut memory) = (problem.clone(), Memory::default());
+) -> (f64, u32, Measures) {
+    let mut copy = problem.clone();
     let started = Instant::now();
-    let report = solve::<M>(&mut copy, &mut memory, settings);
+    let report = solve::<M>(&mut copy, memory, settings);
     let secs = started.elapsed().as_secs_f64();
-    (secs, report.sweeps, residual::<M>(&copy))
+    (secs, report.sweeps, measure::<M>(&copy))
 }

@@ -1,129 +1,169 @@
-//! The chart of whole simulations, with its Pareto front and the other engines.
+//! The chart of whole simulations, with its Pareto fronts and the other engines.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::Bench;
 use super::super::look::{colour, dots};
 use super::super::peers::{self, PeerRun};
-use super::plan::{FINEST_SECS, Plan};
+use super::alone::{ALONE, alone, of_peer};
+use super::plan::Plan;
 use super::runs::{Charted, References};
-use crate::scene::NewPile;
-use crate::sim::Stepper;
-use crate::study::chart::{Axis, Chart, INK, Layer, Look, Sheet, points};
+use crate::study::chart::{Axis, Chart, INK, Layer, Look, Rgb, Sheet, points};
 use crate::study::performance::pareto_front;
 
 /// Errors below this are drawn here.
 const LEAST_ERROR: f64 = 1e-3;
+const MEAN: &str = "mean error of Δy_G";
+const GREY: Rgb = (130, 130, 130);
+
+/// A panel: where the points of all methods are, and how far two references are from each other.
+struct Panel<'a> {
+    title: String,
+    /// What its errors are.
+    errors: &'static str,
+    /// (point, its speed and error); those that failed are left out.
+    places: Vec<(&'a Charted, (f64, f64))>,
+    floor: Option<f64>,
+}
 
 /// Draws a point for each method, effort and Δt.
 pub(super) fn draw(
     bench: &Bench,
     plan: &Plan,
     charted: &[Charted],
-    floor: f64,
     references: &References,
     peers: &[PeerRun],
 ) -> Sheet {
-    let good: Vec<&Charted> = charted.iter().filter(|point| point.failed.is_none()).collect();
+    let panels = panels(plan, charted, references);
+    let engines = by_engine(plan, peers, references);
     let speeds = || {
-        let peers = peers.iter().filter(|run| run.is_collapse_of(NewPile::default().grains));
-        good.iter().map(|point| point.speed).chain(peers.map(PeerRun::speed))
+        let ours = panels.iter().flat_map(|panel| &panel.places).map(|(_, (speed, _))| *speed);
+        ours.chain(engines.values().flatten().map(|(speed, _)| *speed))
     };
-    let slowest = speeds().fold(f64::INFINITY, f64::min).min(1.0);
-    let fastest = speeds().fold(0.0, f64::max).max(10.0 * slowest);
-    let mut charts = Vec::new();
-    for (panel, title) in ["against the same Δt", "against Δt = 10⁻⁴ s"].into_iter().enumerate()
-    {
-        let mut chart = Chart::new(
-            format!("Error of the slump {title}"),
-            Axis::log("simulated seconds per second", 0.7 * slowest, 1.5 * fastest),
-            Axis::log("mean error of Δy_G", LEAST_ERROR, 1.0),
-        );
-        if panel == 0 {
-            let line = [0.7 * slowest, 1.5 * fastest].map(|x| (x, floor.max(LEAST_ERROR)));
-            let grey = (130, 130, 130);
-            chart.layers.push(Layer::curve(
-                "two references\nfrom each other",
-                points(line),
-                grey,
-                Look::Dashes(2),
-            ));
+    let slowest = 0.7 * speeds().fold(f64::INFINITY, f64::min).min(1.0);
+    let fastest = 1.5 * speeds().fold(0.0, f64::max).max(10.0 * slowest);
+    let mut charts: Vec<Chart> =
+        panels.iter().map(|panel| panel.chart(plan, charted, [slowest, fastest])).collect();
+    if let Some(last) = charts.last_mut() {
+        let layers = engines.into_iter().enumerate().map(|(index, (engine, places))| {
+            let places = points(places.into_iter().map(|(x, y)| (x, y.max(LEAST_ERROR))));
+            Layer::curve(engine, places, peers::colour(index), Look::Rings(9))
+        });
+        last.layers.extend(layers);
+    }
+    let legend = Chart::legend_of(&mut charts, 0.42);
+    charts.push(legend);
+    let steps = said(plan.time_steps_secs.iter().map(|step| format!("{step:e} s")));
+    let (piles, grains) = (plan.piles.len(), plan.made_as.grains);
+    let processors: BTreeSet<&str> = peers.iter().map(|run| run.processor.as_str()).collect();
+    let elsewhere = if processors.is_empty() {
+        String::new()
+    } else {
+        format!(" Other engines: from the same state, on {}.", said(processors.iter()))
+    };
+    let caption = bench.caption(&[
+        &format!(
+            "A point for each method, effort and Δt (the larger the dot, the larger: {steps}); means over {piles} piles of {grains} grains, and on the right the one without cohesion alone."
+        ),
+        &format!(
+            "References by {}. Slump after {} s. On the lower edge: the reference itself.{elsewhere}",
+            plan.reference.name, plan.duration_secs
+        ),
+    ]);
+    Sheet { size: (2500, 900), charts, caption }.high_enough()
+}
+
+/// Against the same Δt, against the finest one, and the same of the pile without cohesion.
+fn panels<'a>(plan: &Plan, charted: &'a [Charted], references: &References) -> [Panel<'a>; 3] {
+    let good = || charted.iter().filter(|point| point.failed.is_none());
+    let finest = format!("Δt = {:e} s", plan.finest_secs);
+    let of_all =
+        |number: usize| good().map(|point| (point, (point.speed, point.errors[number]))).collect();
+    let one = charted.iter().filter_map(|point| {
+        let alone = alone(plan, point, references)?;
+        Some((point, (alone.speed, alone.error)))
+    });
+    [
+        Panel {
+            title: "Error of the slump against the same Δt".into(),
+            errors: MEAN,
+            places: of_all(0),
+            floor: Some(references.floor(plan, 0..plan.piles.len())),
+        },
+        Panel {
+            title: format!("Error of the slump against {finest}"),
+            errors: MEAN,
+            places: of_all(1),
+            floor: None,
+        },
+        Panel {
+            title: format!("Bond 0 alone, against {finest}"),
+            errors: "error of Δy_G",
+            places: one.collect(),
+            floor: Some(references.floor(plan, ALONE..ALONE + 1)),
+        },
+    ]
+}
+
+impl Panel<'_> {
+    fn chart(&self, plan: &Plan, charted: &[Charted], [from, to]: [f64; 2]) -> Chart {
+        let x = Axis::log("simulated seconds per second", from, to);
+        let y = Axis::log(self.errors, LEAST_ERROR, 1.0);
+        let mut chart = Chart::new(self.title.clone(), x, y);
+        if let Some(floor) = self.floor {
+            let line = points([from, to].map(|x| (x, floor.max(LEAST_ERROR))));
+            let name = "two references\nfrom each other";
+            chart.layers.push(Layer::curve(name, line, GREY, Look::Dashes(2)));
         }
-        let places: Vec<(f64, f64)> =
-            good.iter().map(|point| (point.speed, point.errors[panel].max(LEAST_ERROR))).collect();
         // Below the floor no error is better than another.
-        let honest: Vec<_> = places.iter().map(|&(x, y)| (x, y.max(floor))).collect();
+        let least = self.floor.unwrap_or(0.0).max(LEAST_ERROR);
+        let honest: Vec<_> = self.places.iter().map(|(_, (x, y))| (*x, y.max(least))).collect();
         let front = pareto_front(&honest).into_iter().map(|index| honest[index]);
         chart.layers.push(Layer::curve("Pareto front", points(front), INK, Look::Line(1)));
-        let drawn: Vec<_> = good.iter().copied().zip(places).collect();
         for number in 0..plan.entrants.len() {
-            chart.layers.extend(method_layers(plan, number, charted, &drawn, panel == 1));
+            chart.layers.extend(self.method_layers(plan, number, charted));
         }
-        if panel == 1 {
-            chart.layers.extend(peer_layers(plan, peers, references));
-        }
-        charts.push(chart);
+        chart
     }
-    let legend = Chart::legend_of(&mut charts, 0.36);
-    charts.push(legend);
-    Sheet {
-        size: (1900, 820),
-        charts,
-        caption: bench.caption(&[&format!(
-            "A point for each method, effort and Δt (the larger the dot, the larger: {}); means over {} piles of 138 grains. On the lower edge: the reference itself.",
-            said(plan.time_steps_secs.iter().map(|step| format!("{step:e} s"))),
-            plan.piles.len()
-        )]),
+
+    /// The dots of one entrant: a layer for each Δt.
+    fn method_layers(&self, plan: &Plan, number: usize, charted: &[Charted]) -> Vec<Layer> {
+        let entrant = &plan.entrants[number];
+        let is_its = |point: &Charted| plan.efforts[point.effort].entrant == number;
+        let of_method = || charted.iter().filter(|point| is_its(point));
+        let failed = of_method().filter(|point| point.failed.is_some()).count();
+        let name = match failed {
+            0 => entrant.name.clone(),
+            failed => format!("{}\n{failed} of {} failed", entrant.name, of_method().count()),
+        };
+        let layers = plan.time_steps_secs.iter().enumerate().map(|(size, time_step_secs)| {
+            let here = self
+                .places
+                .iter()
+                .filter(|(point, _)| is_its(point) && point.time_step_secs == *time_step_secs);
+            let places = points(here.map(|(_, (x, y))| (*x, y.max(LEAST_ERROR))));
+            let look = dots(entrant.look, 4 + 2 * size as u32);
+            let make = if size == 0 { Layer::curve } else { Layer::quiet };
+            make(name.clone(), places, colour(entrant.look), look)
+        });
+        layers.collect()
     }
 }
 
-/// The dots of one entrant, of those that did not fail at their places: a layer for each Δt.
-fn method_layers(
+fn said(words: impl Iterator<Item = impl ToString>) -> String {
+    words.map(|word| word.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// Speed and error of other engines.
+fn by_engine<'a>(
     plan: &Plan,
-    number: usize,
-    charted: &[Charted],
-    drawn: &[(&Charted, (f64, f64))],
-    mut in_legend: bool,
-) -> Vec<Layer> {
-    let entrant = &plan.entrants[number];
-    let is_its = |point: &Charted| plan.efforts[point.effort].entrant == number;
-    let of_method = || charted.iter().filter(|point| is_its(point));
-    let failed = of_method().filter(|point| point.failed.is_some()).count();
-    let told = match failed {
-        0 => entrant.name.clone(),
-        failed => format!("{}\n{failed} of {} failed", entrant.name, of_method().count()),
-    };
-    let mut layers = Vec::new();
-    for (size, time_step_secs) in plan.time_steps_secs.iter().enumerate() {
-        let here = drawn
-            .iter()
-            .filter(|(point, _)| is_its(point) && point.time_step_secs == *time_step_secs);
-        let layer = points(here.map(|(_, place)| *place));
-        let look = dots(entrant.look, 4 + 2 * size as u32);
-        let make = if in_legend { Layer::curve } else { Layer::quiet };
-        in_legend = false;
-        layers.push(make(told.clone(), layer, colour(entrant.look), look));
-    }
-    layers
-}
-
-fn said(words: impl Iterator<Item = String>) -> String {
-    words.collect::<Vec<_>>().join(", ")
-}
-
-/// Runs of other engines from the shared state without cohesion, against the reference for it.
-fn peer_layers(plan: &Plan, peers: &[PeerRun], references: &References) -> Vec<Layer> {
-    let shared = (0.0, NewPile::default().seed);
-    let Some(pile) = plan.piles.iter().position(|pile| *pile == shared) else { return Vec::new() };
-    let reference = references.slump(Stepper::Moreau, FINEST_SECS, pile);
+    peers: &'a [PeerRun],
+    references: &References,
+) -> BTreeMap<&'a str, Vec<(f64, f64)>> {
     let mut by_engine: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
-    for run in peers.iter().filter(|run| run.is_collapse_of(NewPile::default().grains)) {
-        let error = (run.slump - reference).abs().max(LEAST_ERROR);
-        by_engine.entry(&run.engine).or_default().push((run.speed(), error));
+    for run in peers {
+        let alone = of_peer(plan, run, references);
+        by_engine.entry(&run.engine).or_default().push((alone.speed, alone.error));
     }
-    let layers = by_engine.into_iter().enumerate().map(|(index, (engine, places))| {
-        let name = format!("{engine},\nBond 0 alone");
-        Layer::curve(name, points(places), peers::colour(index), Look::Rings(9))
-    });
-    layers.collect()
+    by_engine
 }

@@ -29,11 +29,6 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<Part>> {
     ] {
         raced.push(race_all(bench, &plan, &course, label, title)?);
     }
-    if bench.large {
-        let plan = CollectionPlan::large_piles(THRESHOLD);
-        let title = "2,000 grains, restitution from 2 g·Δt up";
-        raced.push(race_all(bench, &plan, &course, "-large", title)?);
-    }
     parts.push(residuals(bench, &raced, &course));
     for raced in &raced {
         parts.push(profiles(bench, raced));
