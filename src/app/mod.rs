@@ -12,6 +12,7 @@ mod drop;
 mod export;
 mod fill;
 mod graphics;
+mod hint;
 mod keys;
 mod loader;
 mod method_box;

@@ -5,7 +5,7 @@ use egui::{CentralPanel, CollapsingHeader, Frame, Margin, Panel, RichText, Scrol
 use super::fill::fill;
 use super::panels::{SECTIONS, Section, help, plots, scene, status, transport};
 use super::state::AppState;
-use super::{drop, keys};
+use super::{drop, hint, keys};
 
 /// Width of the sidebar, points.
 const SIDEBAR: f32 = 296.0;
@@ -59,8 +59,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
 
 fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
     transport::release_button(ui, state);
-    let hint = "A larger Δt makes the grains stick better: set Δt and Bond, release, and see whether the pile holds.";
-    ui.label(RichText::new(hint).small().weak());
+    if let Some(hint) = state.world().map(|world| hint::what_to_try(&world.controls.settings)) {
+        ui.label(RichText::new(hint).small().weak());
+    }
     ui.add_space(2.0);
     for Section { id, title, open, show } in SECTIONS {
         let Some(title) = title(state) else { continue };

@@ -46,6 +46,25 @@ pub(crate) fn coulomb<T: Lanes>(tangential_impulse: T, bound: T) -> T {
     tangential_impulse.larger(-bound).smaller(bound)
 }
 
+/// The point of |λ_t| ≤ μσ nearest to `trial`, in the metric diag(1, c) with c = m_n/m_t. With a trial (a, b): the trial
+/// itself where |b| ≤ μa, the apex where a + μc|b| ≤ 0, and else the point of the nearer edge that
+///
+/// > minimises ½(σ − a)² + ½c(μσ − |b|)²:  σ = (a + μc|b|)/(1 + μ²c),  λ_t = ±μσ.
+#[inline(always)]
+pub(crate) fn nearest_on_cone(
+    friction: f64,
+    tangential_compliance: f64,
+    [normal, tangential]: [f64; 2],
+) -> [f64; 2] {
+    let across = tangential.abs();
+    if across <= friction * normal {
+        return [normal, tangential];
+    }
+    let pull = friction * tangential_compliance;
+    let shifted = signorini((normal + pull * across) / (1.0 + friction * pull));
+    [shifted, (friction * shifted).copysign(tangential)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -43,7 +43,7 @@ pub const SCENES: [SceneInfo; 23] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
-        summary: "138 cohesive grains on a rough base; at t = 0 the walls go (paper section 3)",
+        summary: "cohesive grains on a rough base, 138 unless asked otherwise; at t = 0 the walls go (paper section 3)",
         make: paper_pile,
     },
     SceneInfo {

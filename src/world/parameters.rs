@@ -41,7 +41,8 @@ settings! {
             control: Some(Control {
                 label: "Bond",
                 symbol: "Bond",
-                hint: "Cohesion: how many times its own weight a contact can pull before it opens.",
+                hint: "Cohesion: a contact pulls with up to so many times the weight of its effective mass \
+                       m_i·m_j/(m_i + m_j), which for two equal discs is half a disc's, and on a base a whole one's.",
                 range: [0.0, 200.0],
                 ..Control::PLAIN
             }),

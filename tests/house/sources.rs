@@ -12,7 +12,10 @@ pub fn below(folder: &str) -> BTreeMap<String, String> {
         for entry in std::fs::read_dir(&folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
-                folders.push(path);
+                // A package below may have been built: what that wrote is nobody's source.
+                if !path.ends_with("target") {
+                    folders.push(path);
+                }
             } else if path.extension().is_some_and(|extension| extension == "rs") {
                 let name = path.strip_prefix(&root).unwrap().to_str().unwrap().replace('\\', "/");
                 found.insert(name, std::fs::read_to_string(&path).unwrap());

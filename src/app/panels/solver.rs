@@ -183,7 +183,9 @@ fn readings(ui: &mut Ui, state: &AppState) {
 fn solved(ui: &mut Ui, world: &WorldFrame) {
     let last = &world.snapshot.observables;
     let dark = ui.visuals().dark_mode;
-    let (mark, colour) = if last.converged {
+    let (mark, colour) = if last.step == 0 {
+        ("○ no step yet".to_owned(), ui.visuals().weak_text_color())
+    } else if last.converged {
         ("● converged".to_owned(), theme::good(dark))
     } else if last.fell_back == Some(true) {
         ("◆ not Coulomb's law: solved under bounds of friction".to_owned(), theme::warning(dark))

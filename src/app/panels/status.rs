@@ -33,7 +33,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
     let dark = ui.visuals().dark_mode;
     let last = || state.frame.worlds.iter().map(|world| &world.snapshot.observables);
-    let (mark, colour) = if last().all(|row| row.converged) {
+    let (mark, colour) = if last().all(|row| row.step == 0) {
+        ("○ no step yet", ui.visuals().weak_text_color())
+    } else if last().all(|row| row.converged) {
         ("● converged", theme::good(dark))
     } else if last().all(|row| row.converged || row.fell_back == Some(true)) {
         ("◆ fell back", theme::warning(dark))

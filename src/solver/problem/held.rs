@@ -13,10 +13,7 @@
 //!
 //! In each the impulses of a contact are the point nearest to (σ − w − s, λ_t − v m_t/m_n) of a convex set, in
 //! the metric diag(1, m_n/m_t). That is Gauss–Seidel's update of a solid disc's contact, whose Delassus
-//! block is diagonal, and the natural map. On the cone, with c = m_n/m_t and a trial (a, b): the trial itself
-//! where |b| ≤ μa, the apex where a + μc|b| ≤ 0, and else the point of the nearer edge that
-//!
-//! > minimises ½(σ − a)² + ½c(μσ − |b|)²:  σ = (a + μc|b|)/(1 + μ²c),  λ_t = ±μσ.
+//! block is diagonal, and the natural map.
 
 use super::kinematics::Kinematics;
 use super::model::Model;
@@ -78,15 +75,9 @@ pub(crate) enum Opening {}
 
 impl Held for Opening {
     #[inline(always)]
-    fn project<M: Model>(law: LawNumbers, held: f64, trial: [f64; 2]) -> [f64; 2] {
-        let (normal, tangential) = (trial[0] - held, trial[1]);
-        let (friction, across) = (law.friction, tangential.abs());
-        if across <= friction * normal {
-            return [normal, tangential];
-        }
-        let pull = friction * M::Kinematics::TANGENTIAL_COMPLIANCE;
-        let shifted = law::signorini((normal + pull * across) / (1.0 + friction * pull));
-        [shifted, (friction * shifted).copysign(tangential)]
+    fn project<M: Model>(numbers: LawNumbers, held: f64, trial: [f64; 2]) -> [f64; 2] {
+        let compliance = M::Kinematics::TANGENTIAL_COMPLIANCE;
+        law::nearest_on_cone(numbers.friction, compliance, [trial[0] - held, trial[1]])
     }
 
     #[inline(always)]

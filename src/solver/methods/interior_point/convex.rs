@@ -7,6 +7,11 @@ use crate::solver::problem::Model;
 
 /// Factorisations without a smaller natural map after which a start is given up.
 const PATIENCE: u32 = 15;
+/// Where the natural map is below this and not yet small enough, proximal multipliers are to end the solve. On cones they
+/// are not tried: paths there do not slow down.
+const POLISH_FROM: f64 = 1e-6;
+/// Where they did not, they are tried again below this share of it.
+const POLISH_AGAIN: f64 = 0.1;
 /// Sweeps that stand for a solution where there is none.
 const SWEEPS_INSTEAD: u32 = 100;
 /// Starts, each further up the path.
@@ -23,6 +28,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         for start in 0..STARTS {
             self.start(start);
             let (mut best, mut since_best) = (f64::INFINITY, 0);
+            let mut polish_from = if S::CONE { 0.0 } else { POLISH_FROM };
             while since_best < PATIENCE {
                 if self.is_spent() {
                     break;
@@ -30,6 +36,13 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
                 let (_, left) = self.advance();
                 if self.finishes(left) {
                     return self.report;
+                }
+                if left <= polish_from {
+                    if self.is_bounded() && self.polish() {
+                        return self.report;
+                    }
+                    self.take_impulses();
+                    polish_from = POLISH_AGAIN * left;
                 }
                 // Not a number is not below anything.
                 since_best = if left < best { 0 } else { since_best + 1 };
@@ -39,6 +52,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
                 }
             }
             self.go_back();
+        }
+        if self.solve_from_far() {
+            return self.report;
         }
         // Where no velocities satisfy all contacts at once, impulses grow without bound along the path.
         set_impulses(self.problem, &self.workspace.first);

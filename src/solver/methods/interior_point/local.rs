@@ -245,14 +245,7 @@ impl Contact {
 
     fn centre_on_cone(&mut self, shared: Shared, trial: [f64; 2], centre: f64) {
         let Shared { slope, tangential_compliance, .. } = shared;
-        let across = trial[1].abs();
-        let pull = slope * tangential_compliance;
-        let nearest = if across <= slope * trial[0] {
-            trial
-        } else {
-            let normal = law::signorini((trial[0] + pull * across) / (1.0 + slope * pull));
-            [normal, (slope * normal).copysign(trial[1])]
-        };
+        let nearest = law::nearest_on_cone(slope, tangential_compliance, trial);
         // (w, v) that the nearest point is to have, and the multipliers that push so.
         let normal_velocity = nearest[0] - trial[0];
         let velocity = tangential_compliance * (nearest[1] - trial[1]);

@@ -1,6 +1,7 @@
 //! What the interior point keeps from one factorisation, and from one step, to the next.
 
 use super::local::{Contact, Direction};
+use super::near::Near;
 use super::shape::PAIRS;
 use super::system::System;
 use crate::solver::methods::newton::NewtonMemory;
@@ -34,6 +35,10 @@ pub(super) struct Workspace<const D: usize> {
     pub kept: Vec<[f64; 2]>,
     /// The same as the solve began.
     pub first: Vec<[f64; 2]>,
+    /// Of the proximal multipliers, by row.
+    pub near: Vec<Near>,
+    /// M(V − V_free) of these, by place, kg m/s.
+    pub momenta: Vec<[f64; D]>,
     /// Bodies at which a step was stopped.
     pub stopped: Vec<bool>,
 }

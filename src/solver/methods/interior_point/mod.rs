@@ -16,6 +16,9 @@
 //! factorised hardly depends on the number of contacts, which is what sets the method apart: sweeps and
 //! guesses need more of everything on a larger pile.
 //!
+//! Where steps become short near the end, as on dense piles, whose contacts carry more than they need, proximal
+//! multipliers (`proximal`) end the solve; where the path leads nowhere they are tried from far away.
+//!
 //! A start is the point of the path that is nearest to where the natural map leads from the impulses of the
 //! step before, as far along as these are good.
 //!
@@ -26,9 +29,13 @@ mod convex;
 mod folds;
 mod local;
 mod memory;
+mod near;
 mod newton_step;
+mod proximal;
 mod shape;
 mod system;
+#[cfg(test)]
+mod tests;
 
 use std::marker::PhantomData;
 
@@ -255,6 +262,11 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
     fn is_bounded(&self) -> bool {
         let contacts = &self.workspace.contacts;
         contacts.iter().all(|contact| contact.impulse[0] <= self.largest_impulse)
+    }
+
+    /// The same of the rows' impulses.
+    fn has_bounded_rows(&self) -> bool {
+        self.problem.rows().all(|(_, row)| row.shifted_impulse <= self.largest_impulse)
     }
 
     /// Keeps the rows' impulses, whose natural map is `left`.

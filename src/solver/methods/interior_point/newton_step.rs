@@ -4,7 +4,7 @@ use super::InteriorPoint;
 use super::local::{Contact, Direction};
 use super::memory::Workspace;
 use super::shape::{PAIRS, Shape};
-use super::system::gradients;
+use super::system::{for_each_change, push_all};
 use crate::solver::problem::Model;
 
 /// Least and largest share of the present mean product that a step aims at.
@@ -114,7 +114,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
             contact.velocity = [normal + contact.opening, tangential];
             contact.stiffen::<S>(*shared);
         });
-        system.assemble::<M, S>(problem, graph, contacts, *shared);
+        let answers = contacts.iter().map(|contact| contact.stiffness::<S>(*shared));
+        system.assemble::<M, S>(problem, graph, answers);
     }
 
     /// Finds the step to the targets, with the factors that there are; the largest share that can be taken.
@@ -124,35 +125,18 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let elimination = &graph.elimination;
         vector.clear();
         vector.resize(problem.bodies.len(), [0.0; D]);
-        let fixed_count = problem.fixed_rows.len();
-        for (number, row) in problem.rows() {
-            let contact = &contacts[number];
-            let impulse = contact.load::<S>(*shared, &targets[number]);
-            let impulse = impulse.map(|part| row.effective_mass * part);
-            let [on_i, on_j] = gradients::<M, D>(row);
-            add_push(&mut vector[elimination.place_of[row.i as usize] as usize], &on_i, impulse);
-            if number >= fixed_count {
-                let place = elimination.place_of[row.j as usize] as usize;
-                add_push(&mut vector[place], &on_j, impulse);
-            }
-        }
+        let loads = contacts.iter().zip(&*targets);
+        let loads = loads.map(|(contact, targets)| contact.load::<S>(*shared, targets));
+        push_all::<M, D>(problem, elimination, loads, vector);
         system.solve::<S>(elimination, vector);
         step.clear();
         let mut share: f64 = 1.0;
-        for (number, row) in problem.rows() {
-            let [on_i, on_j] = gradients::<M, D>(row);
-            let mut change =
-                relative(&vector[elimination.place_of[row.i as usize] as usize], &on_i);
-            if number >= fixed_count {
-                let place = elimination.place_of[row.j as usize] as usize;
-                let of_j = relative(&vector[place], &on_j);
-                change = [change[0] + of_j[0], change[1] + of_j[1]];
-            }
+        for_each_change::<M, D>(problem, elimination, vector, |number, change| {
             let contact = &contacts[number];
             let direction = contact.direction::<S>(*shared, &targets[number], change);
             share = share.min(contact.longest::<S>(&direction));
             step.push(direction);
-        }
+        });
         share
     }
 }
@@ -164,16 +148,4 @@ fn pairs<'a, S: Shape>(
     targets: &'a mut [f64; PAIRS],
 ) -> impl Iterator<Item = (usize, &'a mut f64)> {
     targets.iter_mut().enumerate().take(contact.end::<S>()).skip(S::FIRST)
-}
-
-#[inline(always)]
-fn add_push<const D: usize>(to: &mut [f64; D], on: &[[f64; D]; 2], impulse: [f64; 2]) {
-    for axis in 0..D {
-        to[axis] += on[0][axis] * impulse[0] + on[1][axis] * impulse[1];
-    }
-}
-
-#[inline(always)]
-fn relative<const D: usize>(velocity: &[f64; D], on: &[[f64; D]; 2]) -> [f64; 2] {
-    on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
 }

@@ -1,6 +1,5 @@
 //! The linear system of a Newton step: M + Hᵀ m S⁻¹ H, symmetric but for Coulomb's law.
 
-use super::local::{Contact, Shared};
 use super::shape::Shape;
 use crate::solver::linear::{Block, BlockMatrix, Elimination, SymmetricBlockMatrix};
 use crate::solver::methods::shared::contact_graph::ContactGraph;
@@ -15,13 +14,12 @@ pub(super) struct System<const D: usize> {
 }
 
 impl<const D: usize> System<D> {
-    /// Sets the matrix up for contacts that have been made ready, and factorises it.
+    /// Sets the matrix up for the S⁻¹ of each contact, and factorises it.
     pub(super) fn assemble<M: Model, S: Shape>(
         &mut self,
         problem: &StepProblem<M::Kinematics>,
         graph: &ContactGraph,
-        contacts: &[Contact],
-        shared: Shared,
+        mut answers: impl Iterator<Item = Block<2>>,
     ) {
         let elimination = &graph.elimination;
         if S::LEANS {
@@ -36,20 +34,19 @@ impl<const D: usize> System<D> {
             }
             self.add_to_diagonal::<S>(elimination.place_of[body], &block);
         }
-        let (of_fixed, of_pairs) = contacts.split_at(problem.fixed_rows.len());
-        for (row, contact) in problem.fixed_rows.iter().zip(of_fixed) {
+        for (row, answer) in problem.fixed_rows.iter().zip(&mut answers) {
             let [on_i, _] = gradients::<M, D>(row);
-            let answer = answer::<S>(shared, row.effective_mass, contact);
+            let answer = heavy(row.effective_mass, answer);
             let block = stiffness(&answer, &on_i, &on_i);
             self.add_to_diagonal::<S>(elimination.place_of[row.i as usize], &block);
         }
-        for ((row, &number), contact) in
-            problem.pair_rows.iter().zip(&graph.pair_blocks).zip(of_pairs)
+        for ((row, &number), answer) in
+            problem.pair_rows.iter().zip(&graph.pair_blocks).zip(answers)
         {
             let [on_i, on_j] = gradients::<M, D>(row);
             let (i, j) =
                 (elimination.place_of[row.i as usize], elimination.place_of[row.j as usize]);
-            let answer = answer::<S>(shared, row.effective_mass, contact);
+            let answer = heavy(row.effective_mass, answer);
             self.add_to_diagonal::<S>(i, &stiffness(&answer, &on_i, &on_i));
             self.add_to_diagonal::<S>(j, &stiffness(&answer, &on_j, &on_j));
             if S::LEANS {
@@ -94,10 +91,63 @@ pub(super) fn gradients<M: Model, const D: usize>(row: &Row<M::Kinematics>) -> [
     M::Kinematics::gradients(row.normal).map(|of_body| of_body.map(part))
 }
 
+/// Adds Hᵀ m p to `momenta` (by place), of (σ, λ) in m/s by row; kg m/s.
+#[inline(always)]
+pub(super) fn push_all<M: Model, const D: usize>(
+    problem: &StepProblem<M::Kinematics>,
+    elimination: &Elimination,
+    impulses: impl Iterator<Item = [f64; 2]>,
+    momenta: &mut [[f64; D]],
+) {
+    let fixed_count = problem.fixed_rows.len();
+    for ((number, row), impulse) in problem.rows().zip(impulses) {
+        let impulse = impulse.map(|part| row.effective_mass * part);
+        let [on_i, on_j] = gradients::<M, D>(row);
+        add_push(&mut momenta[elimination.place_of[row.i as usize] as usize], &on_i, impulse);
+        if number >= fixed_count {
+            let place = elimination.place_of[row.j as usize] as usize;
+            add_push(&mut momenta[place], &on_j, impulse);
+        }
+    }
+}
+
+/// Visits the rows, by their numbers, with the change of (v_n, v_t) that goes with a change of velocities (by place).
+#[inline(always)]
+pub(super) fn for_each_change<M: Model, const D: usize>(
+    problem: &StepProblem<M::Kinematics>,
+    elimination: &Elimination,
+    changes: &[[f64; D]],
+    mut visit: impl FnMut(usize, [f64; 2]),
+) {
+    let fixed_count = problem.fixed_rows.len();
+    for (number, row) in problem.rows() {
+        let [on_i, on_j] = gradients::<M, D>(row);
+        let mut change = relative(&changes[elimination.place_of[row.i as usize] as usize], &on_i);
+        if number >= fixed_count {
+            let place = elimination.place_of[row.j as usize] as usize;
+            let of_j = relative(&changes[place], &on_j);
+            change = [change[0] + of_j[0], change[1] + of_j[1]];
+        }
+        visit(number, change);
+    }
+}
+
+#[inline(always)]
+fn add_push<const D: usize>(to: &mut [f64; D], on: &[[f64; D]; 2], impulse: [f64; 2]) {
+    for axis in 0..D {
+        to[axis] += on[0][axis] * impulse[0] + on[1][axis] * impulse[1];
+    }
+}
+
+#[inline(always)]
+fn relative<const D: usize>(velocity: &[f64; D], on: &[[f64; D]; 2]) -> [f64; 2] {
+    on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
+}
+
 /// m S⁻¹, kg.
 #[inline(always)]
-fn answer<S: Shape>(shared: Shared, mass: f64, contact: &Contact) -> Block<2> {
-    contact.stiffness::<S>(shared).map(|row| row.map(|entry| mass * entry))
+fn heavy(mass: f64, answer: Block<2>) -> Block<2> {
+    answer.map(|row| row.map(|entry| mass * entry))
 }
 
 /// m Hᵀ S⁻¹ H of two bodies, kg.

@@ -1,0 +1,249 @@
+//! Proximal multipliers with semi-smooth Newton and exact line search: what ends a solve where the interior point's steps
+//! become short, and what is tried where its path leads nowhere.
+//!
+//! With p the impulses so far, (w, v) the velocities of a contact, R = diag(1, m_n/m_t), ε a compliance and Π the nearest
+//! point that the model allows in the metric R, let y = p − R⁻¹(w, v)/ε. Then
+//!
+//! > F(V) = ½‖V − V_free‖²_M + Σ (m ε/2) (‖y‖²_R − ‖y − Π(y)‖²_R)
+//!
+//! is convex and once differentiable, with
+//!
+//! > ∇F = M(V − V_free) − Σ Hᵀ m Π(y),  M + Σ (m/ε) Hᵀ J R⁻¹ H
+//!
+//! for its Hessian where Π has the derivative J: positive definite, with the blocks of the interior point's systems.
+//! At its minimum V is what the impulses Π(y) make, and p ← Π(y) brings them nearer to the solution (R. T. Rockafellar, 1976;
+//! with Newton's method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and others, 2022). F is a
+//! quadratic function where the pieces of Π stay the same, so a whole step within one of them is the minimum, and along a line
+//! F′ is piecewise linear and rising, which Newton's method finds the root of.
+//!
+//! V is not formed anew from impulses: the velocities of contacts and M(V − V_free) change by their parts of each step, since
+//! rounding would eat what a small ε magnifies.
+
+use super::InteriorPoint;
+use super::memory::Workspace;
+use super::near::Near;
+use super::shape::Shape;
+use super::system::{for_each_change, push_all};
+use crate::solver::problem::{Kinematics, Model, natural_map};
+
+/// ε of a solve from far away, and of one that ends what the interior point has begun.
+const FAR: f64 = 0.1;
+/// See [`FAR`].
+const CLOSE: f64 = 1e-5;
+/// ε is no smaller: rounding would eat more than is gained.
+const LEAST: f64 = 1e-10;
+/// Factor of ε from one minimum to the next.
+const FACTOR: f64 = 0.1;
+/// Factorisations without half of the natural map after which a solve from far away is given up.
+const PATIENCE: u32 = 40;
+/// Factorisations of one that is near.
+const FEW: u32 = 16;
+/// (∇F)² that is small enough, over that where ε was set.
+const NEAR_MINIMUM: f64 = 1e-4;
+/// Evaluations of F′ on a line.
+const TRIALS: u32 = 40;
+/// F′ is 0 below this share of what it is where the line begins.
+const ROOT: f64 = 1e-9;
+
+impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
+    /// Goes on from the impulses of the present point, which are nearly a solution; whether that ends the solve.
+    pub(super) fn polish(&mut self) -> bool {
+        self.approach(CLOSE, FEW, FEW)
+    }
+
+    /// Begins at the impulses of the smallest natural map so far; whether that ends the solve.
+    pub(super) fn solve_from_far(&mut self) -> bool {
+        self.go_back();
+        let kept = std::mem::take(&mut self.workspace.kept);
+        let contacts = self.workspace.contacts.iter_mut();
+        contacts.zip(&kept).for_each(|(contact, impulse)| contact.impulse = *impulse);
+        self.workspace.kept = kept;
+        self.approach(FAR, u32::MAX, PATIENCE)
+    }
+
+    fn approach(&mut self, mut compliance: f64, most: u32, patience: u32) -> bool {
+        self.begin_near();
+        let (mut factorisations, mut milestone, mut since_milestone) = (0, f64::INFINITY, 0);
+        loop {
+            let mut steps = 0;
+            let mut left_of_minimum = self.gradient(compliance);
+            let enough = NEAR_MINIMUM * left_of_minimum;
+            while left_of_minimum > enough {
+                if factorisations >= most || since_milestone >= patience || self.is_spent() {
+                    return false;
+                }
+                self.step_near(compliance);
+                (steps, factorisations) = (steps + 1, factorisations + 1);
+                self.report.factorisations += 1;
+                let left = self.take_allowed(compliance);
+                if left.is_nan() {
+                    return false;
+                }
+                let is_bounded = self.has_bounded_rows();
+                if left < self.best && is_bounded {
+                    self.keep(left);
+                }
+                if left <= self.settings.tolerance && is_bounded && self.settles_in(1) {
+                    return true;
+                }
+                since_milestone += 1;
+                if left < 0.5 * milestone {
+                    (milestone, since_milestone) = (left, 0);
+                }
+                left_of_minimum = self.gradient(compliance);
+            }
+            if steps == 0 {
+                return false;
+            }
+            let Self { workspace, shared, .. } = self;
+            for contact in &mut workspace.near {
+                let trial = contact.trial(*shared, compliance, 0.0);
+                contact.impulse = contact.allowed::<S>(*shared, trial);
+            }
+            compliance = (FACTOR * compliance).max(LEAST);
+        }
+    }
+
+    /// Takes up the contacts' impulses, and the velocities that they make.
+    fn begin_near(&mut self) {
+        let shared = self.shared;
+        let Workspace { near, contacts, .. } = &mut *self.workspace;
+        near.clear();
+        near.extend(contacts.iter().map(|contact| {
+            let near = Near { bound: contact.bound, ..Near::default() };
+            Near { impulse: near.allowed::<S>(shared, contact.impulse), ..near }
+        }));
+        self.take_near(|contact| contact.impulse);
+        let Self { problem, workspace, .. } = self;
+        let Workspace { near, contacts, momenta, graph, .. } = &mut **workspace;
+        let mut of_contacts = near.iter_mut().zip(&*contacts);
+        problem.for_each_velocity(&problem.bodies, |_, [normal, tangential]| {
+            let Some((near, contact)) = of_contacts.next() else { return };
+            near.velocity = [normal + contact.opening, tangential];
+        });
+        momenta.clear();
+        momenta.resize(problem.bodies.len(), [0.0; D]);
+        let impulses = near.iter().map(|contact| contact.impulse);
+        push_all::<M, D>(problem, &graph.elimination, impulses, momenta);
+    }
+
+    /// Gives the rows impulses, and the bodies the velocities that these make.
+    fn take_near(&mut self, impulse: impl Fn(&Near) -> [f64; 2]) {
+        let Self { problem, workspace, .. } = self;
+        let rows = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
+        for (row, contact) in rows.zip(&workspace.near) {
+            [row.shifted_impulse, row.tangential_impulse] = impulse(contact);
+        }
+        problem.form_velocities();
+    }
+
+    /// Gives the rows Π(y); the natural map there.
+    fn take_allowed(&mut self, compliance: f64) -> f64 {
+        let shared = self.shared;
+        self.take_near(|contact| {
+            contact.allowed::<S>(shared, contact.trial(shared, compliance, 0.0))
+        });
+        natural_map::<M>(self.problem)
+    }
+
+    /// Puts −∇F in the place of a right-hand side; its square in the metric of M, J.
+    fn gradient(&mut self, compliance: f64) -> f64 {
+        let Self { problem, workspace, shared, .. } = self;
+        let Workspace { graph, vector, near, momenta, .. } = &mut **workspace;
+        let (shared, elimination) = (*shared, &graph.elimination);
+        vector.clear();
+        vector.extend(momenta.iter().map(|of_body| of_body.map(|momentum| -momentum)));
+        let impulses = near
+            .iter()
+            .map(|contact| contact.allowed::<S>(shared, contact.trial(shared, compliance, 0.0)));
+        push_all::<M, D>(problem, elimination, impulses, vector);
+        let mut squared = 0.0;
+        for (&body, momenta) in elimination.body_at.iter().zip(&*vector) {
+            for (momentum, inertia) in momenta.iter().zip(M::Kinematics::INERTIA_OVER_MASS) {
+                squared += momentum * momentum / (inertia * problem.masses[body as usize]);
+            }
+        }
+        squared
+    }
+
+    /// Takes a Newton step, with the gradient that was formed.
+    fn step_near(&mut self, compliance: f64) {
+        let Self { problem, workspace, shared, .. } = self;
+        let Workspace { graph, system, vector, near, .. } = &mut **workspace;
+        let (shared, elimination) = (*shared, &graph.elimination);
+        let answers = near.iter().map(|contact| {
+            let trial = contact.trial(shared, compliance, 0.0);
+            contact.piece::<S>(shared, trial).stiffness(shared, compliance)
+        });
+        system.assemble::<M, S>(problem, graph, answers);
+        system.solve::<S>(elimination, vector);
+        for_each_change::<M, D>(problem, elimination, vector, |number, change| {
+            near[number].change = change;
+        });
+        let share = self.least_on_line(compliance);
+        let Self { problem, workspace, .. } = self;
+        let Workspace { graph, vector, near, momenta, .. } = &mut **workspace;
+        for (&body, (momenta, change)) in
+            graph.elimination.body_at.iter().zip(momenta.iter_mut().zip(&*vector))
+        {
+            let mass = problem.masses[body as usize];
+            for axis in 0..D {
+                let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+                momenta[axis] += share * inertia * change[axis];
+            }
+        }
+        for contact in near {
+            for (velocity, change) in contact.velocity.iter_mut().zip(contact.change) {
+                *velocity += share * change;
+            }
+        }
+    }
+
+    /// The share of the step at which F is least.
+    fn least_on_line(&self, compliance: f64) -> f64 {
+        let Self { problem, workspace, shared, .. } = self;
+        let Workspace { graph, vector, near, momenta, .. } = &**workspace;
+        let (mut of_masses, mut at_start) = (0.0, 0.0);
+        for (&body, (momenta, change)) in
+            graph.elimination.body_at.iter().zip(momenta.iter().zip(vector))
+        {
+            let mass = problem.masses[body as usize];
+            for axis in 0..D {
+                let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+                of_masses += inertia * change[axis] * change[axis];
+                at_start += momenta[axis] * change[axis];
+            }
+        }
+        // F′ and F″ after a share of the step.
+        let slopes = |share: f64| {
+            let mut slopes = [at_start + share * of_masses, of_masses];
+            for ((_, row), contact) in problem.rows().zip(near) {
+                let trial = contact.trial(*shared, compliance, share);
+                let allowed = contact.allowed::<S>(*shared, trial);
+                let stiffness = contact.piece::<S>(*shared, trial).stiffness(*shared, compliance);
+                let [normal, tangential] = contact.change;
+                let along = |of: [f64; 2]| normal * of[0] + tangential * of[1];
+                slopes[0] -= row.effective_mass * along(allowed);
+                slopes[1] += row.effective_mass * along(stiffness.map(along));
+            }
+            slopes
+        };
+        let small = ROOT * slopes(0.0)[0].abs();
+        let (mut before, mut behind, mut share) = (0.0, f64::INFINITY, 1.0);
+        for _ in 0..TRIALS {
+            let [slope, curvature] = slopes(share);
+            if slope.abs() <= small {
+                break;
+            }
+            if slope > 0.0 {
+                behind = share;
+            } else {
+                before = share;
+            }
+            let next = share - slope / curvature;
+            let halfway = if behind.is_finite() { 0.5 * (before + behind) } else { 2.0 * share };
+            share = if next > before && next < behind { next } else { halfway };
+        }
+        share
+    }
+}
