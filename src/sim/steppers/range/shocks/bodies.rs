@@ -2,11 +2,34 @@
 
 use glam::DVec2;
 
-use super::{NEVER, RESTS_BELOW, Shocks};
 use crate::contact::{Candidates, Contact, ContactList};
 use crate::sim::steppers::range::numbers::StepNumbers;
-use crate::solver::{Kinematics, Row, StepProblem, for_each_row};
+use crate::solver::{Kinematics, Measures, Row, SolveReport, StepProblem, for_each_row, worst};
 use crate::world::World;
+
+/// Contacts that were struck and close again are struck once more above this part of the fastest shock of
+/// the step. Smaller: clusters of touching grains take more passes; larger: restitution is lost in them.
+pub(super) const LEAST_AGAIN: f64 = 1e-3;
+
+/// Grains that come to what they touch slower than this many steps of gravity rest on it. Smaller: in a pile
+/// at rest grains would be taken to fall; larger: a ball that has just come down would not have the speed of its fall.
+pub(super) const RESTS_BELOW: f64 = 2.0;
+
+/// Meetings that are this part of Δt apart happen at once: symmetric motions stay symmetric.
+pub(super) const SAME_MOMENT: f64 = 1e-6;
+
+/// No moment of the step.
+pub(super) const NEVER: f64 = f64::INFINITY;
+
+/// What the shocks of a step came to.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Passed {
+    pub report: SolveReport,
+    /// Works, and the residual of the shocks' own problems.
+    pub measures: Measures,
+    /// What gravity did of that until meetings, J: the step counts it once more.
+    pub of_gravity: f64,
+}
 
 /// A row on its way through the shocks.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +91,17 @@ pub(super) struct Body {
     pub cluster: (f64, u32),
 }
 
+/// What is known of shocks. Memory is kept from one step to the next.
+#[derive(Clone, Debug, Default)]
+pub(in super::super) struct Shocks {
+    pub(super) pairs: Vec<Pair>,
+    pub(super) bodies: Vec<Body>,
+    /// λ_n·m_ij from which on a contact that touches is struck, N·s.
+    pub(super) least: f64,
+    /// The fastest shock of the step so far, m/s.
+    pub(super) fastest: f64,
+}
+
 /// Where shocks happen.
 pub(super) struct Surroundings<'a> {
     pub world: &'a World,
@@ -108,10 +142,36 @@ pub(super) fn grains<K: Kinematics>(
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
+/// ‖m_n (v_n^free + what the law adds)‖ of a problem, N·s, which its residual is measured by.
+pub(super) fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
+    let mut squared = 0.0;
+    for_each_row(problem, |_, row, motion| {
+        let free = row.effective_mass * (motion.free[0] + row.restitution_velocity);
+        squared += free * free;
+    });
+    squared.sqrt()
+}
+
 /// Along x and y.
 pub(super) fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
     let [x, y, _] = K::coordinates(body);
     if K::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
+}
+
+impl Passed {
+    pub(super) fn nothing_yet() -> Self {
+        let (report, measures) = (SolveReport::nothing_yet(), Measures::default());
+        Self { report, measures, of_gravity: 0.0 }
+    }
+
+    /// Counts another problem.
+    pub(super) fn add(&mut self, report: SolveReport, measures: Measures) {
+        self.report.add(report);
+        let all = &mut self.measures;
+        all.residual = worst(all.residual, measures.residual);
+        all.normal_work += measures.normal_work;
+        all.tangential_work += measures.tangential_work;
+    }
 }
 
 impl Body {
@@ -146,10 +206,7 @@ impl Shocks {
         bodies.extend(problem.before.iter().zip(&problem.free).map(Body::untouched::<K>));
         pairs.clear();
         let is_cohesive = problem.capture_speed > 0.0;
-        let mut scale = 0.0;
         for_each_row(problem, |number, row, motion| {
-            let free = row.effective_mass * (motion.free[0] + row.restitution_velocity);
-            scale += free * free;
             let Contact { normal, gap, .. } = *around.contact(problem, number);
             let touches = gap <= around.numbers.touch;
             let speed = motion.before[0] - problem.wall_speed(number);
@@ -181,7 +238,7 @@ impl Shocks {
             let fallen = along_axes::<K>(&K::from_coordinates(body.gain));
             body.rest_of_way = -0.5 * around.numbers.time_step_secs * fallen;
         }
-        self.least = tolerance * scale.sqrt();
+        self.least = tolerance * scale(problem);
         self.fastest = 0.0;
     }
 }

@@ -2,9 +2,11 @@
 
 use glam::DVec2;
 
-use super::bodies::{Pair, Surroundings, along_axes, grains};
-use super::{LEAST_AGAIN, NEVER, SAME_MOMENT, Shocks, StepNumbers};
+use super::bodies::{
+    LEAST_AGAIN, NEVER, Pair, SAME_MOMENT, Shocks, Surroundings, along_axes, grains,
+};
 use crate::contact::Course;
+use crate::sim::steppers::range::numbers::StepNumbers;
 use crate::solver::{Kinematics, Row, StepProblem};
 
 impl Shocks {

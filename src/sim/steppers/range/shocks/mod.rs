@@ -50,51 +50,17 @@ mod foreseen;
 mod result;
 mod struck;
 
-pub(super) use result::Closed;
+pub(super) use self::bodies::{Passed, Shocks};
+pub(super) use self::result::Closed;
 
-use self::bodies::{Body, Pair, Surroundings};
+use self::bodies::{NEVER, Surroundings};
 use super::numbers::StepNumbers;
 use crate::sim::stepping::Stage;
-use crate::solver::{Measures, Model, SolveReport, SolverSettings, worst};
+use crate::solver::{Model, SolverSettings};
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
 /// step, restitution is lost; larger: a wedge of grains that bounces ever faster holds the step up.
 const MOST_PASSES: u32 = 24;
-
-/// Contacts that were struck and close again are struck once more above this part of the fastest shock of
-/// the step. Smaller: clusters of touching grains take more passes; larger: restitution is lost in them.
-const LEAST_AGAIN: f64 = 1e-3;
-
-/// Grains that come to what they touch slower than this many steps of gravity rest on it. Smaller: in a pile
-/// at rest grains would be taken to fall; larger: a ball that has just come down would not have the speed of its fall.
-const RESTS_BELOW: f64 = 2.0;
-
-/// Meetings that are this part of Δt apart happen at once: symmetric motions stay symmetric.
-const SAME_MOMENT: f64 = 1e-6;
-
-/// No moment of the step.
-const NEVER: f64 = f64::INFINITY;
-
-/// What the shocks of a step came to.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Passed {
-    pub report: SolveReport,
-    /// Works, and the residual of the shocks' own problems.
-    pub measures: Measures,
-    /// What gravity did of that until meetings, J: the step counts it once more.
-    pub of_gravity: f64,
-}
-
-/// What is known of shocks. Memory is kept from one step to the next.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Shocks {
-    pairs: Vec<Pair>,
-    bodies: Vec<Body>,
-    /// λ_n·m_ij from which on a contact that touches is struck, N·s.
-    least: f64,
-    /// The fastest shock of the step so far, m/s.
-    fastest: f64,
-}
 
 /// Takes a prepared problem through the shocks of its step: from then on its bodies begin with v⁺.
 pub(super) fn pass<M: Model>(
@@ -125,20 +91,4 @@ pub(super) fn pass<M: Model>(
     }
     shocks.hand_over(problem, &around);
     passed
-}
-
-impl Passed {
-    fn nothing_yet() -> Self {
-        let (report, measures) = (SolveReport::nothing_yet(), Measures::default());
-        Self { report, measures, of_gravity: 0.0 }
-    }
-
-    /// Counts another problem.
-    fn add(&mut self, report: SolveReport, measures: Measures) {
-        self.report.add(report);
-        let all = &mut self.measures;
-        all.residual = worst(all.residual, measures.residual);
-        all.normal_work += measures.normal_work;
-        all.tangential_work += measures.tangential_work;
-    }
 }

@@ -2,8 +2,7 @@
 
 use glam::DVec2;
 
-use super::bodies::{Pair, Surroundings, grains};
-use super::{NEVER, Shocks};
+use super::bodies::{NEVER, Pair, Shocks, Surroundings, grains};
 use crate::sim::steppers::range::numbers::StepNumbers;
 use crate::solver::{Kinematics, StepProblem};
 use crate::world::World;

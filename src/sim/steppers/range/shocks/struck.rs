@@ -2,8 +2,7 @@
 
 use glam::DVec2;
 
-use super::bodies::{Body, Surroundings, along_axes, grains};
-use super::{NEVER, Passed, Shocks};
+use super::bodies::{Body, NEVER, Passed, Shocks, Surroundings, along_axes, grains, scale};
 use crate::solver::{
     Fallback, FrictionModel, Kinematics, Measures, Memory, Method, Model, Ordering, Row,
     SolveReport, SolverSettings, StepProblem, StopTest, measure, solve, sweep,
@@ -25,11 +24,15 @@ const TIGHTLY: SolverSettings = SolverSettings {
     fallback: Fallback::None,
 };
 
-/// Solves shocks that share grains.
+/// Largest tolerance of shocks, which are small against the step's own velocities.
+const LOOSEST: f64 = 1e-3;
+
+/// Solves shocks that share grains, as tightly as a step is solved in which contacts may err by `least` (N·s).
 fn solve_together<M: Model>(
     part: &mut StepProblem<M::Kinematics>,
     memory: &mut Memory<M::Kinematics>,
     settings: &SolverSettings,
+    least: f64,
 ) -> SolveReport {
     let mut earlier = SolveReport::default();
     if part.contact_of_row.len() <= FEW {
@@ -38,7 +41,12 @@ fn solve_together<M: Model>(
             return earlier;
         }
     }
-    solve::<M>(part, memory, settings).after(earlier)
+    let of_step = (least / scale(part)).min(LOOSEST);
+    let tolerance = match settings.stop {
+        StopTest::Residual => settings.tolerance.max(of_step),
+        StopTest::RelativeChange | StopTest::ImpulsePerMass => settings.tolerance,
+    };
+    solve::<M>(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
 }
 
 impl Shocks {
@@ -135,9 +143,11 @@ impl Shocks {
             sweep::<M, false>(part);
             SolveReport::nothing_yet()
         } else {
-            solve_together::<M>(part, memory, settings)
+            solve_together::<M>(part, memory, settings, self.least)
         };
         let Measures { residual, normal_work, tangential_work, .. } = measure::<M>(part);
+        // Against the scale of the step, as all of it is.
+        let residual = residual * (settings.tolerance * scale(part) / self.least).min(1.0);
         let mut measures =
             Measures { residual, normal_work, tangential_work, ..Measures::default() };
         for ((_, row), &number) in part.rows().zip(&part.contact_of_row) {
