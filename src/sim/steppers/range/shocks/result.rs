@@ -24,6 +24,12 @@ impl Shocks {
     /// beginning, which bars a grain from passing another one that it would have missed. Where that would
     /// happen, and the two do not meet, the gap is taken as its tangent at the end of the step: v⁺ itself
     /// then obeys every contact.
+    ///
+    /// **None has to open.** A pair that was struck at t opens from then on, as if from a gap of −t v_n⁺. Were
+    /// it to end the step with no overlap at all, v_n would have to be above 0 for it and could not be for
+    /// others that hold it: v = 0 would no longer obey every contact, and a cluster in which many were struck
+    /// is then often not solved. So v_n ≥ 0 is all that is asked for, and what is left of an overlap,
+    /// t v_n⁺ at the most, is pushed out (`range::separation`).
     pub(super) fn hand_over<K: Kinematics>(
         &mut self,
         problem: &mut StepProblem<K>,
@@ -44,7 +50,7 @@ impl Shocks {
             let capture = self.capture_left(problem, around, number);
             let wall_speed = problem.wall_speed(number);
             let row = problem.row_at_mut(number);
-            row.restitution_velocity = allowed - wall_speed;
+            row.restitution_velocity = allowed.max(0.0) - wall_speed;
             row.normal = normal.map_or(row.normal, |normal| K::normal(normal.to_array()));
             if let Some([before, after]) = capture {
                 row.shifted_impulse = (row.shifted_impulse - before + after).max(0.0);
