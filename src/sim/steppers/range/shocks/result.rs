@@ -30,6 +30,9 @@ impl Shocks {
     /// others that hold it: v = 0 would no longer obey every contact, and a cluster in which many were struck
     /// is then often not solved. So v_n ≥ 0 is all that is asked for, and what is left of an overlap,
     /// t v_n⁺ at the most, is pushed out (`range::separation`).
+    ///
+    /// **Gaps below the touch are none** after a shock as before it. Slacks of the size of rounding between
+    /// grains that touch make a contact open or shut by less than a step is solved to.
     pub(super) fn hand_over<K: Kinematics>(
         &mut self,
         problem: &mut StepProblem<K>,
@@ -78,8 +81,7 @@ impl Shocks {
             self.bodies[i].rest_of_way - j.map_or(DVec2::ZERO, |j| self.bodies[j].rest_of_way);
         let rest = pair.normal.dot(rest_of_way) / secs;
         let left = 1.0 - pair.struck_at / secs;
-        let gap = if pair.has_met { pair.gap } else { (pair.gap - touch).max(0.0) };
-        let mut allowed = (gap + pair.shift) / secs + rest;
+        let mut allowed = (pair.gap + pair.shift - touch) / secs + rest;
         if self.acts_late(number, i, j) {
             allowed = left * rest.max(0.0);
         }
