@@ -93,7 +93,7 @@ fn methods_agree_on_steps_with_bonds() {
     scene.solver.tolerance = 1e-9;
     let mut simulation = start(&scene);
     let methods = [Method::Nsgs, Method::Nncg, Method::NsgsParallel];
-    let mut agreeing = [0; 3];
+    let mut solved = [0; 3];
     const MOMENTS: u32 = 12;
     for _ in 0..MOMENTS {
         take_steps(&mut simulation, 10);
@@ -101,17 +101,24 @@ fn methods_agree_on_steps_with_bonds() {
             let mut copy = simulation.clone();
             copy.set_solver(SolverSettings { method, ..scene.solver }).expect("fine");
             take_steps(&mut copy, 1);
-            copy.world().grains.velocities.clone()
+            copy
         };
         let reference = next(Method::Newton);
-        for (count, method) in agreeing.iter_mut().zip(methods) {
+        for (count, method) in solved.iter_mut().zip(methods) {
             let found = next(method);
-            let off = found.iter().zip(&reference).map(|(a, b)| (*a - *b).length());
-            *count += u32::from(off.fold(0.0, f64::max) < 1e-5);
+            if !(found.observables().converged && reference.observables().converged) {
+                continue;
+            }
+            *count += 1;
+            let [found, reference] =
+                [&found, &reference].map(|simulation| &simulation.world().grains.velocities);
+            let off = found.iter().zip(reference).map(|(a, b)| (*a - *b).length());
+            let off = off.fold(0.0, f64::max);
+            assert!(off < 1e-5, "{method:?}: {off} m/s off, and both have solved it");
         }
     }
-    // With friction a step can have more than one solution.
-    assert!(agreeing.iter().all(|&count| count >= MOMENTS - 3), "{agreeing:?} of {MOMENTS}");
+    // What is left unsolved within the sweeps allowed tells nothing of agreement.
+    assert!(solved.iter().all(|&count| 2 * count > MOMENTS), "{solved:?} of {MOMENTS}");
 }
 
 #[test]

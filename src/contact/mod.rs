@@ -10,6 +10,7 @@ mod grid;
 mod lanes;
 pub(crate) mod law;
 mod look_ahead;
+mod meeting;
 mod numbering;
 pub(crate) mod range;
 mod separate;
@@ -26,5 +27,6 @@ pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;
 pub(crate) use look_ahead::LookAhead;
+pub(crate) use meeting::Course;
 pub use numbering::{Numbering, Other};
 pub(crate) use too_close::check_distances;

@@ -10,6 +10,8 @@ use super::problem::{
 pub(crate) struct Slot<K: Kinematics> {
     /// The problem.
     pub problem: StepProblem<K>,
+    /// Room for some of its rows, to be solved by themselves.
+    pub part: StepProblem<K>,
     /// What the methods keep.
     pub memory: Memory<K>,
 }

@@ -40,6 +40,26 @@ pub fn range(bond: f64, time_step_secs: f64) -> Parameters {
     }
 }
 
+/// A scene under `range`, solved as loosely as by default.
+pub fn ranged(
+    physics: Physics,
+    gravity: DVec2,
+    parameters: Parameters,
+    grains: Vec<Grain>,
+) -> Scene {
+    Scene {
+        stepper: Stepper::Range,
+        solver: SolverSettings::default(),
+        parameters: Parameters { debonding_distance: DISTANCE_IN_DIAMETERS, ..parameters },
+        ..scene(physics, gravity, parameters, grains)
+    }
+}
+
+/// A grain in free flight.
+pub fn weightless(grain: Grain) -> Grain {
+    Grain { feels_gravity: false, ..grain }
+}
+
 /// As far as rounding allows.
 pub fn tight() -> SolverSettings {
     to_residual(1e-12)

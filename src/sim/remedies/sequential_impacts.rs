@@ -112,7 +112,7 @@ pub(in crate::sim) fn follow<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
 ) -> Option<SolveReport> {
-    let Stage { state, problem, memory } = stage;
+    let Stage { state, problem, memory, .. } = stage;
     let parameters = &settings.parameters;
     if problem.capture_speed > 0.0 || parameters.restitution == 0.0 {
         return None;

@@ -23,13 +23,14 @@ pub trait Advance {
 pub struct Stage<'a, M: Model> {
     pub(crate) state: &'a mut State,
     pub(crate) problem: &'a mut StepProblem<M::Kinematics>,
+    pub(crate) part: &'a mut StepProblem<M::Kinematics>,
     pub(crate) memory: &'a mut Memory<M::Kinematics>,
 }
 
 impl<'a, M: Model> Stage<'a, M> {
     pub(crate) fn new(state: &'a mut State, slot: &'a mut Slot<M::Kinematics>) -> Self {
-        let Slot { problem, memory } = slot;
-        Self { state, problem, memory }
+        let Slot { problem, part, memory } = slot;
+        Self { state, problem, part, memory }
     }
 
     /// The world as it is now.

@@ -203,6 +203,22 @@ impl<K: Kinematics> StepProblem<K> {
         self.fixed_rows.iter().chain(&self.pair_rows).enumerate()
     }
 
+    /// A row by its number (fixed rows, then pair rows).
+    pub(crate) fn row_at(&self, number: usize) -> &Row<K> {
+        let fixed = self.fixed_rows.len();
+        if number < fixed { &self.fixed_rows[number] } else { &self.pair_rows[number - fixed] }
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn row_at_mut(&mut self, number: usize) -> &mut Row<K> {
+        let fixed = self.fixed_rows.len();
+        if number < fixed {
+            &mut self.fixed_rows[number]
+        } else {
+            &mut self.pair_rows[number - fixed]
+        }
+    }
+
     /// Visits the rows, fixed rows first, with (v_n, v_t) among these bodies, m/s.
     #[inline(always)]
     pub(crate) fn for_each_velocity(

@@ -17,12 +17,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::numbers::StepNumbers;
-use super::shocks;
+use super::shocks::{self, Closed, Passed, Shocks};
 use crate::contact::range::{Bond, Opening};
 use crate::sim::settings::Settings;
 use crate::sim::stepping::{BondEnergies, Stage};
 use crate::solver::{
-    Kinematics, Measures, Model, SolveReport, StepProblem, for_each_row, relative_velocities, solve,
+    Kinematics, Model, Motion, Row, SolveReport, StepProblem, for_each_row, solve,
 };
 
 /// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
@@ -40,9 +40,7 @@ const FALL: f64 = 1e-6;
 #[serde(deny_unknown_fields)]
 pub(in crate::sim) struct Memory {
     #[serde(skip)]
-    shocks: shocks::Workspace,
-    #[serde(skip)]
-    speeds: Vec<f64>,
+    pub(super) shocks: Shocks,
     #[serde(skip)]
     lowered: Vec<(usize, f64)>,
     /// Whether bonds were about to break in the last step.
@@ -53,8 +51,8 @@ pub(in crate::sim) struct Memory {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solved {
     pub report: SolveReport,
-    /// Works of the shocks, and the residual of theirs.
-    pub of_shocks: Measures,
+    /// What the shocks came to, where there were any.
+    pub of_shocks: Option<Passed>,
     pub bonds: BondEnergies,
     /// False where a bond breaks that may not.
     pub done: bool,
@@ -71,16 +69,15 @@ pub(super) fn solve_range<M: Model>(
     let mut report = SolveReport::nothing_yet();
     let of_shocks = pass_shocks(stage, remembered, settings, &mut report);
     let numbers = StepNumbers::of(stage.world(), settings);
-    let StepNumbers { time_step_secs, debonding_distance, .. } = numbers;
-    let Memory { shocks, speeds, lowered, restless } = remembered;
-    let Stage { state, problem, memory } = stage;
+    let Memory { shocks, lowered, restless } = remembered;
+    let Stage { state, problem, memory, .. } = stage;
     let contacts = &mut state.contacts;
     let mut round = 0;
     loop {
         round += 1;
         report.add(solve::<M>(problem, memory, &settings.solver));
         let bonds = contacts.bonds();
-        let limits = Limits { bonds, speeds, debonding_distance, time_step_secs };
+        let limits = Limits { bonds, shocks, numbers };
         if round == 1 {
             limits.lowered::<M>(problem, STRENGTH_OF_RESTLESS_BONDS, lowered);
             *restless |= !lowered.is_empty();
@@ -95,37 +92,75 @@ pub(super) fn solve_range<M: Model>(
         }
         shorten(problem, lowered);
     }
-    let bonds = update_bonds(problem, contacts.bonds_mut(), shocks, speeds, numbers);
+    shocks.finish(problem);
+    let bonds = update_bonds(problem, contacts.bonds_mut(), shocks, numbers);
     Solved { report, of_shocks, bonds, done: true }
 }
 
-/// Tells the bonds, one a contact, what the solved step has made of them. `speeds` are those after the
-/// shocks.
+/// How a bond opens in a step, or in what a shock that closed it has left of the step.
+struct Run {
+    /// The part of the step.
+    part: f64,
+    /// Whether a shock closed it.
+    is_closed: bool,
+    /// v at the beginning, m/s.
+    speed: f64,
+    /// J, m/s.
+    load: f64,
+    /// The bond's own impulse, m/s.
+    impulse: f64,
+}
+
+impl Run {
+    /// That of a row which tells of a bond. Other forces are even over the whole step, so that a part of it
+    /// has that part of them.
+    fn of<K: Kinematics>(
+        problem: &StepProblem<K>,
+        (number, row, motion): (usize, &Row<K>, &Motion),
+        (shocks, bond, numbers): (&Shocks, Bond, StepNumbers),
+    ) -> Self {
+        let closed = shocks.closed(number, bond.alive, numbers.time_step_secs);
+        let Closed { part, gained } = closed.unwrap_or(Closed { part: 1.0, gained: 0.0 });
+        let [impulse, _] = problem.reduced_impulse(number, row);
+        let [now, before] = [motion.now, motion.before].map(|[normal, _]| normal);
+        Self {
+            part,
+            is_closed: closed.is_some(),
+            speed: before - problem.wall_speed(number) + gained,
+            load: part * (now - before - impulse),
+            impulse,
+        }
+    }
+
+    /// (v + v^n)/2, m/s.
+    fn opening_speed(&self) -> f64 {
+        self.speed + 0.5 * (self.load + self.impulse)
+    }
+}
+
+/// Tells the bonds, one a contact, what the solved step has made of them.
 fn update_bonds<K: Kinematics>(
     problem: &StepProblem<K>,
     bonds: &mut [Bond],
-    shocks: &shocks::Workspace,
-    speeds: &[f64],
+    shocks: &Shocks,
     numbers: StepNumbers,
 ) -> BondEnergies {
-    let StepNumbers { time_step_secs, debonding_distance, touch, .. } = numbers;
+    let StepNumbers { time_step_secs, debonding_distance, .. } = numbers;
     let mut energies = BondEnergies::default();
     for_each_row(problem, |number, row, motion| {
         let bond = &mut bonds[problem.contact_of_row[number] as usize];
         let cohesion_force = row.effective_mass * problem.capture_speed / time_step_secs;
-        let now = motion.now[0] - problem.wall_speed(number);
-        let opening_speed = 0.5 * (speeds[number] + now);
-        let was_alive = bond.alive;
-        let before = if was_alive { cohesion_force * bond.stretch } else { 0.0 };
-        // A pair that was to meet may have been kept apart by the step after all.
-        let gap_left = (motion.now[0] + row.restitution_velocity) * time_step_secs;
-        let was_struck = shocks.struck.get(number).is_some_and(|&impulse| impulse > 0.0);
-        let meets = was_struck && gap_left <= touch;
-        if row.shifted_impulse > 0.0 || (meets && !was_alive) {
+        let run = Run::of(problem, (number, row, &motion), (shocks, *bond, numbers));
+        let opening_speed = run.opening_speed();
+        let before = if bond.alive { cohesion_force * bond.stretch } else { 0.0 };
+        if run.is_closed || row.shifted_impulse > 0.0 {
             *bond = Bond { alive: true, stretch: 0.0 };
-        } else if bond.alive {
-            bond.stretch = (bond.stretch + opening_speed * time_step_secs).max(0.0);
-            let broken = problem.capture(number) < problem.capture_speed;
+        }
+        let was_alive = bond.alive;
+        if bond.alive && row.shifted_impulse <= 0.0 {
+            let opened = bond.stretch + run.part * opening_speed * time_step_secs;
+            bond.stretch = opened.max(0.0);
+            let broken = problem.capture(number) < run.part * problem.capture_speed;
             bond.alive = !broken && bond.stretch < debonding_distance;
         }
         if bond.alive {
@@ -134,39 +169,33 @@ fn update_bonds<K: Kinematics>(
             energies.work -= stored - before;
         } else if was_alive {
             let taken = row.effective_mass * problem.capture(number) * opening_speed;
-            energies.broken += before + taken;
-            energies.work -= taken;
+            let kept = if run.is_closed { 0.0 } else { before };
+            energies.broken += kept + taken;
+            energies.work -= taken + kept - before;
         }
     });
     energies
 }
 
-/// Takes a prepared problem through its shocks, and notes the speeds after them.
+/// Takes a prepared problem through its shocks.
 pub(super) fn pass_shocks<M: Model>(
     stage: &mut Stage<'_, M>,
     remembered: &mut Memory,
     settings: &Settings,
     report: &mut SolveReport,
-) -> Measures {
+) -> Option<Passed> {
     let numbers = StepNumbers::of(stage.world(), settings);
-    let Stage { problem, memory, .. } = stage;
-    let Memory { shocks, speeds, .. } = remembered;
-    let passed = shocks::pass::<M>(problem, memory, shocks, numbers, &settings.solver);
-    relative_velocities(problem, &problem.before, speeds);
-    let Some(passed) = passed else { return Measures::default() };
+    let passed = shocks::pass::<M>(stage, &mut remembered.shocks, numbers, &settings.solver)?;
     report.add(passed.report);
-    passed.measures
+    Some(passed)
 }
 
 /// What the bounds of a step hang on.
 struct Limits<'a> {
     /// One a contact.
     bonds: &'a [Bond],
-    /// Speeds after the shocks, m/s, one a row.
-    speeds: &'a [f64],
-    /// δ_c, m.
-    debonding_distance: f64,
-    time_step_secs: f64,
+    shocks: &'a Shocks,
+    numbers: StepNumbers,
 }
 
 impl Limits<'_> {
@@ -182,16 +211,20 @@ impl Limits<'_> {
         if problem.captures.is_empty() {
             return;
         }
+        let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         for_each_row(problem, |number, row, motion| {
             let before = strength * problem.capture(number);
-            let speed = self.speeds[number];
-            let [impulse, _] = problem.reduced_impulse(number, row);
-            let stretch = self.bonds[problem.contact_of_row[number] as usize].stretch;
-            let left = (self.debonding_distance - stretch).max(0.0);
-            let now = motion.now[0] - problem.wall_speed(number);
-            let opening = Opening { left, speed, load: now - speed - impulse };
-            let bound = opening.bound(strength * problem.capture_speed, self.time_step_secs);
-            if before > 0.0 && bound < (1.0 - FALL) * before {
+            if before <= 0.0 {
+                return;
+            }
+            let bond = self.bonds[problem.contact_of_row[number] as usize];
+            let run = Run::of(problem, (number, row, &motion), (self.shocks, bond, self.numbers));
+            let stretch = if run.is_closed { 0.0 } else { bond.stretch };
+            let left = (debonding_distance - stretch).max(0.0);
+            let opening = Opening { left, speed: run.speed, load: run.load };
+            let capture_speed = strength * run.part * problem.capture_speed;
+            let bound = opening.bound(capture_speed, run.part * time_step_secs);
+            if bound < (1.0 - FALL) * before {
                 lowered.push((number, bound));
             }
         });
@@ -200,14 +233,9 @@ impl Limits<'_> {
 
 /// Lowers the bounds of bonds that do not live to the end of the step.
 fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, lowered: &[(usize, f64)]) {
-    let fixed_count = problem.fixed_rows.len();
     for &(number, bound) in lowered {
         let before = std::mem::replace(&mut problem.captures[number], bound);
-        let row = if number < fixed_count {
-            &mut problem.fixed_rows[number]
-        } else {
-            &mut problem.pair_rows[number - fixed_count]
-        };
+        let row = problem.row_at_mut(number);
         row.shifted_impulse = (row.shifted_impulse - before + bound).max(0.0);
     }
     problem.form_velocities();

@@ -18,6 +18,7 @@ mod shocks;
 pub(in crate::sim) use bonds::Memory;
 
 use self::bonds::{Solved, pass_shocks, solve_range};
+use self::shocks::Passed;
 use super::StepperInfo;
 use crate::contact::LookAhead;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
@@ -25,7 +26,7 @@ use crate::error::Error;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::stepping::{BondEnergies, Outcome, Stage};
-use crate::solver::{Approach, Model, SolveReport};
+use crate::solver::{Approach, Model, SolveReport, worst};
 use crate::world::{FrictionCone, World};
 
 /// The row of the registry.
@@ -38,6 +39,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
         "rho",
         "mu",
         "cone",
+        "restitution-threshold",
         "debonding-distance",
         "solver",
         "ordering",
@@ -167,11 +169,15 @@ fn try_step<M: Model>(
         return Err(report);
     }
     let mut outcome = stage.move_by(report, settings);
+    memory.shocks.shift(&mut stage.state.world);
     outcome.bonds = Some(bonds);
-    let measures = &mut outcome.measures;
-    measures.residual = measures.residual.max(of_shocks.residual);
-    measures.normal_work += of_shocks.normal_work;
-    measures.tangential_work += of_shocks.tangential_work;
+    if let Some(Passed { measures: of_shocks, of_gravity, .. }) = of_shocks {
+        let measures = &mut outcome.measures;
+        measures.residual = worst(measures.residual, of_shocks.residual);
+        measures.normal_work += of_shocks.normal_work;
+        measures.tangential_work += of_shocks.tangential_work;
+        outcome.gravity_work -= of_gravity;
+    }
     separation::separate::<M>(stage.state);
     Ok(outcome)
 }
