@@ -6,7 +6,7 @@ program=${SLUMP:-$here/../../target/release/slump}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 tables=
-for pile in 500,30.5,rain 2000,61,drop-and-roll 10000,134,drop-and-roll ${PILES:-}; do
+for pile in 500,30.5,rain 2000,61,rain 10000,134,drop-and-roll ${PILES:-}; do
     grains=$(echo "$pile" | cut -d, -f1)
     width=$(echo "$pile" | cut -d, -f2)
     "$program" --headless --grains "$grains" --box-width "$width" --deposition "${pile##*,}" --bond 20 --dt 1e-4 \
