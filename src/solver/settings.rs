@@ -167,6 +167,22 @@ fn is_one(value: &u32) -> bool {
 }
 
 impl SolverSettings {
+    /// Solving to a common residual, whatever the step's own settings: under Coulomb's law, from the impulses that
+    /// there are.
+    pub(crate) const fn to_residual(method: Method, tolerance: f64, max_sweeps: u32) -> Self {
+        Self {
+            method,
+            ordering: Ordering::Interleaved,
+            stop: StopTest::Residual,
+            tolerance,
+            max_sweeps,
+            warm_start: true,
+            friction_model: FrictionModel::Coulomb,
+            model_solves: 1,
+            fallback: Fallback::None,
+        }
+    }
+
     /// Checks the numbers against their ranges, and whether method, model of friction and number of solves go
     /// together.
     ///

@@ -10,7 +10,7 @@ use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
 use crate::sim::live::WorldFrame;
 use crate::sim::{Observables, REMEDIES, Remedies, Settings};
-use crate::solver::{FrictionModel, Method, SolverSettings, StopTest, picked};
+use crate::solver::{Method, SolverSettings, StopTest, picked};
 
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -124,10 +124,9 @@ fn tolerance_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
 }
 
 /// The common residual, and that of the model of friction where there is one.
-fn residuals(last: &Observables, solver: &SolverSettings) -> (String, &'static str) {
+fn residuals(last: &Observables) -> (String, &'static str) {
     let common = format!("{:.1e}", last.residual);
-    let model = solver.friction_model != FrictionModel::Coulomb || last.fell_back == Some(true);
-    match last.model_residual.filter(|_| model) {
+    match last.model_residual.filter(|_| last.is_of_a_model()) {
         None => (common, "Common residual of the last step."),
         Some(of_model) => (
             format!("{common} ({of_model:.1e})"),
@@ -147,7 +146,7 @@ fn readings(ui: &mut Ui, state: &AppState) {
             ui.label(RichText::new(value).monospace());
         };
         reading(ui, "sweeps", last.sweeps.to_string(), "Sweeps of the last step.");
-        let (value, hint) = residuals(last, &settings.solver);
+        let (value, hint) = residuals(last);
         reading(ui, "residual", value, hint);
         ui.end_row();
         if settings.solver.method == Method::Auto {

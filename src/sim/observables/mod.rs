@@ -95,7 +95,7 @@ impl Observables {
     }
 
     /// Whether a step was solved under another model of friction than Coulomb's law.
-    fn is_of_a_model(&self) -> bool {
+    pub(crate) fn is_of_a_model(&self) -> bool {
         self.step > 0 && self.duality_gap.is_some_and(f64::is_finite)
     }
 

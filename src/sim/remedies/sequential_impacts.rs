@@ -47,9 +47,8 @@ use crate::sim::settings::Settings;
 use crate::sim::steppers::stepper::Stepper;
 use crate::sim::stepping::Stage;
 use crate::solver::{
-    Fallback, FrictionModel, Kinematics, Memory, Method, Model, Ordering, Row, SolveReport,
-    SolverSettings, StepProblem, StopTest, for_each_row, relative_velocities,
-    solve as solve_problem,
+    Kinematics, Memory, Method, Model, Row, SolveReport, SolverSettings, StepProblem, for_each_row,
+    relative_velocities, solve as solve_problem,
 };
 
 /// The row of the registry.
@@ -75,17 +74,7 @@ const LEAST_GAIN: f64 = 1e-6;
 const HALVINGS: u32 = 5;
 
 /// How a pass is solved, whatever the step's own method: contacts that close together are few.
-const PASS: SolverSettings = SolverSettings {
-    method: Method::Nsgs,
-    ordering: Ordering::Interleaved,
-    stop: StopTest::Residual,
-    tolerance: 1e-12,
-    max_sweeps: 1000,
-    warm_start: true,
-    friction_model: FrictionModel::Coulomb,
-    model_solves: 1,
-    fallback: Fallback::None,
-};
+const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
 /// Solves a prepared step whose contacts open as its shocks say.
 pub(in crate::sim) fn solve<M: Model>(

@@ -48,10 +48,9 @@ use super::method::Method;
 use super::newton;
 use super::nsgs::{solve_models, sweep_of_model};
 use super::report::SolveReport;
-use crate::solver::friction_model::{Fallback, FrictionModel};
-use crate::solver::ordering::Ordering;
+use crate::solver::friction_model::FrictionModel;
 use crate::solver::problem::{Kinematics, Model, StepProblem, natural_map};
-use crate::solver::settings::{SolverSettings, StopTest};
+use crate::solver::settings::SolverSettings;
 
 /// What there is to know of it.
 pub(super) const INFO: MethodInfo = MethodInfo {
@@ -76,15 +75,8 @@ const SWEEPS_LAST: u32 = 2;
 
 /// How well a problem is solved on which a step falls back.
 const CERTIFIED: SolverSettings = SolverSettings {
-    method: Method::InteriorPoint,
-    ordering: Ordering::Interleaved,
-    stop: StopTest::Residual,
-    tolerance: 1e-8,
-    max_sweeps: 1_000,
-    warm_start: true,
     friction_model: FrictionModel::Tresca,
-    model_solves: 1,
-    fallback: Fallback::None,
+    ..SolverSettings::to_residual(Method::InteriorPoint, 1e-8, 1_000)
 };
 
 /// Solves a prepared problem under the model of friction that it was prepared for.

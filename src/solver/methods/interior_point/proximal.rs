@@ -53,11 +53,10 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
 
     /// Begins at the impulses of the smallest natural map so far; whether that ends the solve.
     pub(super) fn solve_from_far(&mut self) -> bool {
-        self.go_back();
-        let kept = std::mem::take(&mut self.workspace.kept);
-        let contacts = self.workspace.contacts.iter_mut();
-        contacts.zip(&kept).for_each(|(contact, impulse)| contact.impulse = *impulse);
-        self.workspace.kept = kept;
+        let Workspace { contacts, kept, .. } = &mut *self.workspace;
+        for (contact, &impulse) in contacts.iter_mut().zip(&*kept) {
+            contact.impulse = impulse;
+        }
         self.approach(FAR, u32::MAX, PATIENCE)
     }
 

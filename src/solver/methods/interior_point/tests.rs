@@ -5,6 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::*;
+use crate::solver::StopTest;
 use crate::solver::problem::{Line, Plane, Row, SpinningPlane, StepModel};
 
 const FRICTION: f64 = 0.6;

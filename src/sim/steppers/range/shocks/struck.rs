@@ -4,25 +4,15 @@ use glam::DVec2;
 
 use super::bodies::{Body, NEVER, Passed, Shocks, Surroundings, along_axes, grains, scale};
 use crate::solver::{
-    Fallback, FrictionModel, Kinematics, Measures, Memory, Method, Model, Ordering, Row,
-    SolveReport, SolverSettings, StepProblem, StopTest, measure, solve, sweep,
+    Kinematics, Measures, Memory, Method, Model, Row, SolveReport, SolverSettings, StepProblem,
+    StopTest, measure, solve, sweep,
 };
 
 /// Rows from which on shocks are solved no more tightly than the step.
 const FEW: usize = 16;
 
 /// How tightly few rows are solved, which takes next to no time.
-const TIGHTLY: SolverSettings = SolverSettings {
-    method: Method::Nsgs,
-    ordering: Ordering::Interleaved,
-    stop: StopTest::Residual,
-    tolerance: 1e-13,
-    max_sweeps: 500,
-    warm_start: true,
-    friction_model: FrictionModel::Coulomb,
-    model_solves: 1,
-    fallback: Fallback::None,
-};
+const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13, 500);
 
 /// Largest tolerance of shocks, which are small against the step's own velocities.
 const LOOSEST: f64 = 1e-3;
