@@ -17,7 +17,7 @@ pub(super) fn what_to_try(settings: &Settings) -> &'static str {
             "A larger Δt makes these grains stick better: set Δt and Bond, release, and see whether the pile holds."
         }
         Stepper::Moreau if parameters.cone == FrictionCone::Shifted => {
-            "So strong a pile hardly gains from a larger Δt, and may lose: overlaps grow, and contacts are lost."
+            "So strong a pile hardly gains from a larger Δt; where steps are left unsolved, as in the paper, it even loses."
         }
         Stepper::Moreau => {
             "In this cone a larger Δt makes strong piles stick better, too: set Δt, release, and see."
