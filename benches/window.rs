@@ -79,7 +79,15 @@ fn load(simulation: Simulation) -> Command {
     Command::Load(Box::new(move |_| {
         let view = [glam::DVec2::new(-0.1, 0.0), glam::DVec2::new(0.1, 0.06)];
         let (name, held_by, tally) = ("bench".to_owned(), Vec::new(), Tally::default());
-        Ok(Start { name, simulation, tally, duration_secs: f64::INFINITY, held_by, view })
+        Ok(Start {
+            name,
+            simulation,
+            tally,
+            duration_secs: f64::INFINITY,
+            held_by,
+            view,
+            worlds: Vec::new(),
+        })
     }))
 }
 

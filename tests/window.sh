@@ -151,4 +151,39 @@ rm -f "$state"
 window=$!
 wait_for "the pile" "s['scene'] == 'pile'"
 wait_for "the layout of the last time" "abs(s['controls']['scene'][3] - $without_plots) < 2"
+
+# Nobody has asked for a scene: the tour. The plots again, release, and the effect within ten seconds of a
+# machine that does nothing else.
+wait_for "the tour" "s['station'] == 1 and s['worlds'] == 2"
+xdotool mousemove $(at "Plots" 0.5) click 1
+xdotool search --name Slump windowfocus
+sleep 1
+import -window root "$shots/window-tour-start.png"
+xdotool key space
+wait_for "the end of the first station" "not s['playing'] and s['time_secs'] > 0.99"
+[ "$(value "s['slump'] > 0.3")" = True ] || fail "the first pile of the tour stands"
+import -window root "$shots/window-tour-end.png"
+xdotool key r
+wait_for "the reset" "s['step'] == 0"
+xdotool key Right
+sleep 1
+import -window root "$shots/window-ghost.png"
+for station in 2 3; do
+    xdotool mousemove $(at "next station" 0.5) click 1
+    wait_for "station $station" "s['station'] == $station and s['step'] == 0 and not s['playing']"
+    xdotool key space
+    wait_for "the end of station $station" "not s['playing'] and s['time_secs'] > 0.9"
+    import -window root "$shots/window-tour-$station.png"
+done
+
+# What was chosen outlives the window that is killed.
+sleep 3
+kill -9 "$window"
+wait "$window" 2> /dev/null || true
+rm -f "$state"
+"$program" --export-state "$state" > "$work/log" 2>&1 &
+window=$!
+wait_for "the station of the time before" "s['station'] == 3 and s['worlds'] == 2"
+xdotool mousemove $(at "leave tour" 0.5) click 1
+wait_for "the end of the tour" "s['station'] == 0"
 echo "window.sh: Δt dragged to $dragged s reached the solver; screenshots in $shots"

@@ -21,6 +21,10 @@ pub(super) fn act(context: &Context, state: &mut AppState) {
     if context.input_mut(|input| input.consume_shortcut(&quit)) {
         context.send_viewport_cmd(egui::ViewportCommand::Close);
     }
+    let undo = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+    if context.input_mut(|input| input.consume_shortcut(&undo)) {
+        state.undo();
+    }
     let pressed = |key: Key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     if pressed(Key::Space) {
         state.toggle_play();

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 
+use super::effort;
 use super::taken::{LastOpened, Opened};
+use super::tour::Station;
 use crate::scene::{Config, SavedState, Scene};
 use crate::sim::Tally;
 use crate::sim::live::{Loader, Progress, Start};
-use crate::solver::{Fallback, SolverSettings};
 use crate::world::Boundary;
 
 /// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
@@ -32,21 +33,24 @@ pub(crate) fn loader(config: Config, last: LastOpened) -> Loader {
             );
             tell(Progress { part: part as f32, text })
         })?;
-        if config.solver.fallback.is_none() {
-            leave_no_step_undefined(&mut scene.solver);
-        }
+        effort::complete(&mut scene, &config.solver);
         let start = start(&scene)?;
         last.note(Opened { scene, config });
         Ok(start)
     })
 }
 
-/// Whoever watches must not take the impulses of an unsolved step for those of a law, so the window solves
-/// such a step under bounds of friction unless the scene says what else is to become of it.
-fn leave_no_step_undefined(solver: &mut SolverSettings) {
-    if solver.fallback == Fallback::OfMethod {
-        solver.fallback = Fallback::Tresca;
-    }
+/// Makes the start of a station of the tour, with its worlds side by side.
+pub(crate) fn loader_of_station(station: &'static Station, last: LastOpened) -> Loader {
+    Box::new(move |_| {
+        let config = Config::of_scene(station.scene);
+        let mut scene = config.without_settling()?;
+        effort::complete(&mut scene, &config.solver);
+        let worlds = (station.worlds)(scene.settings());
+        let start = Start { worlds, ..start(&scene)? };
+        last.note(Opened { scene, config });
+        Ok(start)
+    })
 }
 
 /// Makes a start of a saved run, which goes on in time.
@@ -69,6 +73,7 @@ fn start_of_run(state: SavedState, last: &LastOpened) -> Start {
         duration_secs: scene.duration_secs,
         held_by: Vec::new(),
         view: [view.min, view.max],
+        worlds: Vec::new(),
     };
     let config = Config::of_scene(&scene.name);
     last.note(Opened { scene, config });
@@ -84,6 +89,7 @@ fn start(scene: &Scene) -> crate::error::Result<Start> {
         duration_secs: scene.duration_secs,
         held_by: walls(scene),
         view: [view.min, view.max],
+        worlds: Vec::new(),
     })
 }
 

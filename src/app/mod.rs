@@ -6,9 +6,12 @@
 
 mod camera;
 mod canvas;
+mod command_line;
 mod data_choices;
+mod data_desk;
 mod data_export;
 mod drop;
+mod effort;
 mod export;
 mod fill;
 mod graphics;
@@ -16,6 +19,7 @@ mod hint;
 mod keys;
 mod loader;
 mod method_box;
+mod notice;
 mod number;
 mod options;
 mod panels;
@@ -29,14 +33,16 @@ mod state;
 mod storage;
 mod taken;
 pub mod theme;
+pub mod tour;
 mod ui;
 mod window;
 
 pub use canvas::Canvas;
 pub use data_choices::DataChoices;
+pub use notice::Notice;
 pub(crate) use options::WindowOptions;
 pub use preferences::Preferences;
-pub use state::{AppState, GrainRef, Notice};
+pub use state::{AppState, GrainRef};
 pub use ui::ui;
 pub use window::SOFTWARE_FRAME_INTERVAL;
 pub(crate) use window::run;

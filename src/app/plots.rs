@@ -23,6 +23,8 @@ const BESIDE: [LineStyle; 2] =
 pub(crate) struct PlotData {
     /// Name, colour and rows of each world.
     pub worlds: Vec<(String, Color32, Curve)>,
+    /// Rows of the run before, behind the others.
+    pub ghosts: Vec<Curve>,
     /// The plots.
     pub quantities: Vec<&'static Quantity<Observables>>,
     /// The moment that is shown, s.
@@ -91,11 +93,16 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
         .label_formatter(move |position| hover_text(position, log))
         .show(ui, |plot| {
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
+            let scaled = |value: f64| if log { value.log10() } else { value };
+            for ghost in &data.ghosts {
+                let values = points(ghost, |row| scaled((quantity.value)(row)) / factor);
+                let grey = Color32::from_gray(128).gamma_multiply(0.6);
+                plot.line(Line::new("the run before", values).color(grey).width(1.2));
+            }
             for (name, colour, curve) in &data.worlds {
                 let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
                     Line::new(name, points(curve, |row| value(row) / factor)).color(*colour)
                 };
-                let scaled = |value: f64| if log { value.log10() } else { value };
                 let value = |row: &Observables| scaled((quantity.value)(row));
                 plot.line(line(name.clone(), &value).width(1.6));
                 for ((what, value), style) in beside(curve, quantity).zip(BESIDE) {

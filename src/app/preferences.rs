@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::data_choices::DataChoices;
+use super::tour::Tour;
 use crate::error::Result;
 use crate::headless::HeadlessOptions;
 use crate::render::{Style, Theme};
@@ -22,10 +23,14 @@ pub struct Preferences {
     pub style: Style,
     /// Whether the sidebar is open.
     pub sidebar: bool,
+    /// Whether the run before shows behind the present one.
+    pub ghost: bool,
     /// Whether the plots are open.
     pub plots: bool,
     /// The quantities that are plotted, by their names.
     pub quantities: Vec<String>,
+    /// Size of the window, points; none before the first.
+    pub window_points: Option<[f64; 2]>,
     /// Simulated time per time on the wall.
     pub speed: f64,
     /// As fast as the machine computes, whatever `speed` says.
@@ -38,6 +43,8 @@ pub struct Preferences {
     pub data: DataChoices,
     /// The scene that was open last.
     pub scene: Config,
+    /// How far the tour has come.
+    pub tour: Tour,
 }
 
 impl Default for Preferences {
@@ -46,14 +53,17 @@ impl Default for Preferences {
             theme: egui::ThemePreference::Light,
             style: Style::default(),
             sidebar: true,
+            ghost: true,
             plots: true,
             quantities: QUANTITIES.iter().map(|quantity| quantity.name.to_owned()).collect(),
+            window_points: None,
             speed: 0.2,
             full_speed: false,
             picture_size: [1600, 1000],
             folder: PathBuf::from("."),
             data: DataChoices::default(),
             scene: Config::default(),
+            tour: Tour::default(),
         }
     }
 }

@@ -3,23 +3,21 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::mpsc::Receiver;
-use std::time::Instant;
 
 use egui::Rect;
 
 use super::camera::SceneCamera;
+use super::data_desk::DataDesk;
 use super::data_export::DataExport;
 use super::export::{Export, Exporter, STATE_ENDING};
 use super::loader::{loader, loader_of_file, loader_of_run};
+use super::notice::Notice;
 use super::preferences::Preferences;
 use super::scene_legend::LegendCache;
 use super::taken::{LastOpened, TakenRun};
 use crate::scene::{Config, SavedState};
 use crate::sim::Settings;
 use crate::sim::live::{Command, Controls, Frame, Live, WorldFrame};
-
-/// How long a notice stays, s.
-const NOTICE_SECS: f32 = 8.0;
 
 /// A grain of one of the worlds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,31 +26,6 @@ pub struct GrainRef {
     pub world: usize,
     /// Index of the grain.
     pub grain: usize,
-}
-
-/// A sentence for the status bar.
-#[derive(Clone, Debug)]
-pub struct Notice {
-    /// The sentence.
-    pub text: String,
-    /// Whether it tells of a failure.
-    pub(crate) failure: bool,
-    since: Instant,
-}
-
-/// What the panel about data is busy with.
-#[derive(Default)]
-pub(crate) struct DataDesk {
-    /// First and last simulated time of what is exported, s; all that is recorded where there are none.
-    pub stretch: Option<[f64; 2]>,
-    /// Whether an earlier recording in the folder is to be removed.
-    pub overwrite: bool,
-    /// The export that is going on.
-    pub export: Option<DataExport>,
-    /// What became of the last one, and whether it failed.
-    pub told: Option<(String, bool)>,
-    /// The file of a saved run, as it is typed.
-    pub saved_run: String,
 }
 
 /// The state of the user interface.
@@ -75,6 +48,10 @@ pub struct AppState {
     pub pinned: Option<GrainRef>,
     /// The grain at the end of the mouse's spring.
     pub grabbed: Option<GrainRef>,
+    /// Whether the tour is being taken.
+    pub touring: bool,
+    /// The panel that is to be opened, where a station asks for one.
+    pub(crate) opened_panel: Option<&'static str>,
     /// Whether the help overlay shows.
     pub(crate) help: bool,
     /// Writes files without keeping the window waiting.
@@ -86,7 +63,7 @@ pub struct AppState {
     /// Set where the window is to open its graphics device anew.
     pub(crate) restart_graphics: bool,
     pub(super) legend: LegendCache,
-    last_opened: LastOpened,
+    pub(super) last_opened: LastOpened,
     notice: Option<Notice>,
     seen_start: u64,
     seen_refusal: Option<std::sync::Arc<str>>,
@@ -95,6 +72,13 @@ pub struct AppState {
 impl AppState {
     /// The state at the start of the program; loading `config` begins.
     pub fn new(live: Live, config: Config, preferences: Preferences) -> Self {
+        let mut state = Self::idle(live, preferences);
+        state.load(config);
+        state
+    }
+
+    /// The same, with nothing that is loaded.
+    pub(crate) fn idle(live: Live, preferences: Preferences) -> Self {
         let mut state = Self {
             live,
             frame: Frame::default(),
@@ -105,6 +89,8 @@ impl AppState {
             camera: SceneCamera::default(),
             pinned: None,
             grabbed: None,
+            touring: false,
+            opened_panel: None,
             help: false,
             exporter: Exporter::default(),
             data: DataDesk::default(),
@@ -116,24 +102,28 @@ impl AppState {
             seen_start: 0,
             seen_refusal: None,
         };
+        // A window that was closed on the tour and is opened for something else has the user's own choices.
+        state.preferences.put_tour_away();
         state.live.send(Command::SetPace(state.preferences.pace()));
-        state.load(config);
         state
     }
 
     /// Opens a scene.
     pub fn load(&mut self, config: Config) {
+        self.leave_tour();
         self.config = config.clone();
         self.live.send(Command::Load(loader(config, self.last_opened.clone())));
     }
 
     /// Opens a saved run, to go on with it.
     pub fn load_run(&mut self, state: SavedState) {
+        self.leave_tour();
         self.live.send(Command::Load(loader_of_run(state, self.last_opened.clone())));
     }
 
     /// Opens the file of a saved run, to go on with it.
     pub fn load_saved(&mut self, path: &Path) {
+        self.leave_tour();
         self.data.saved_run = path.display().to_string();
         let loader = loader_of_file(path.to_owned(), self.last_opened.clone());
         self.live.send(Command::Load(loader));
@@ -168,7 +158,6 @@ impl AppState {
             if let Some(opened) = self.last_opened.get() {
                 self.config.clone_from(&opened.config);
             }
-            self.preferences.scene = self.config.clone();
         }
         if self.frame.refusal != self.seen_refusal {
             self.seen_refusal.clone_from(&self.frame.refusal);
@@ -179,6 +168,9 @@ impl AppState {
         let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
         if in_step || self.wanted.len() != self.frame.worlds.len() {
             self.wanted = self.frame.worlds.iter().map(|world| world.controls).collect();
+        }
+        if let Some(wanted) = self.wanted.get(self.selected).filter(|_| !self.touring) {
+            self.preferences.scene = self.config.clone().with_settings(&wanted.settings);
         }
         let worlds = self.frame.worlds.len();
         self.selected = self.selected.min(worlds.saturating_sub(1));
@@ -257,20 +249,26 @@ impl AppState {
         self.live.send(Command::Reset);
     }
 
+    /// Back to the run that the present one has taken the place of last.
+    pub(crate) fn undo(&mut self) {
+        if let Some(last) = self.frame.past.last() {
+            self.live.send(Command::Return(last.number));
+        }
+    }
+
     /// Says something in the status bar for a while.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         self.say(text.into(), true);
     }
 
     fn say(&mut self, text: String, failure: bool) {
-        self.notice = Some(Notice { text, failure, since: Instant::now() });
+        self.notice = Some(Notice::new(text, failure));
     }
 
     /// What the status bar has to say, and for how long yet, s.
     pub fn notice(&self) -> Option<(&Notice, f32)> {
         let notice = self.notice.as_ref()?;
-        let left = NOTICE_SECS - notice.since.elapsed().as_secs_f32();
-        (left > 0.0).then_some((notice, left))
+        Some((notice, notice.left_secs()?))
     }
 
     /// Forgets what lives in an egui context: it is about to be replaced.

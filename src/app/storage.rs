@@ -4,6 +4,7 @@
 //! repair it. What cannot be written is not kept, and nothing else is lost.
 
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
@@ -40,10 +41,53 @@ pub(super) fn forget() {
     }
 }
 
-/// Keeps it.
-pub(super) fn save(stored: &Stored) {
+/// Least time between two looks at what has changed: a window that is killed loses no more than that.
+const INTERVAL: Duration = Duration::from_secs(2);
+
+/// Keeps what changes while the window is open.
+pub(super) struct Keeper {
+    looked: Instant,
+    kept: Preferences,
+    text: String,
+}
+
+impl Keeper {
+    /// With what was loaded.
+    pub(super) fn new(kept: Preferences) -> Self {
+        Self { looked: Instant::now(), kept, text: String::new() }
+    }
+
+    /// Keeps what has changed, if it is time to look. Otherwise, where something has, how long until then.
+    pub(super) fn look(
+        &mut self,
+        preferences: &Preferences,
+        context: &egui::Context,
+    ) -> Option<Duration> {
+        let left = INTERVAL.saturating_sub(self.looked.elapsed());
+        if !left.is_zero() {
+            return (*preferences != self.kept).then_some(left);
+        }
+        self.keep(preferences, context);
+        None
+    }
+
+    /// Keeps what has changed.
+    pub(super) fn keep(&mut self, preferences: &Preferences, context: &egui::Context) {
+        self.looked = Instant::now();
+        self.kept.clone_from(preferences);
+        let layout = context.memory(Clone::clone);
+        let Ok(text) = ron::to_string(&Stored { preferences: preferences.clone(), layout }) else {
+            return;
+        };
+        if text != self.text {
+            save(&text);
+            self.text = text;
+        }
+    }
+}
+
+fn save(text: &str) {
     let Some(path) = path() else { return };
-    let Ok(text) = ron::to_string(stored) else { return };
     if let Some(folder) = path.parent() {
         let _ = std::fs::create_dir_all(folder);
     }

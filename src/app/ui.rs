@@ -3,7 +3,7 @@
 use egui::{CentralPanel, CollapsingHeader, Frame, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::fill::fill;
-use super::panels::{SECTIONS, Section, help, plots, scene, status, transport};
+use super::panels::{SECTIONS, Section, help, plots, scene, status, tour, transport};
 use super::state::AppState;
 use super::{drop, hint, keys};
 
@@ -25,6 +25,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     fill(ui, ui.max_rect(), ui.visuals().panel_fill);
     let tight = Frame::new().inner_margin(Margin::symmetric(8, 4));
     Panel::bottom("status").frame(tight).resizable(false).show(ui, |ui| status::show(ui, state));
+    if state.touring {
+        Panel::top("tour").frame(tight).resizable(false).show(ui, |ui| tour::show(ui, state));
+    }
     let mut sidebar = state.preferences.sidebar;
     Panel::left("sidebar")
         .frame(Frame::new().inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 4 }))
@@ -59,9 +62,13 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
 
 fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
     transport::release_button(ui, state);
-    if let Some(hint) = state.world().map(|world| hint::what_to_try(&world.controls.settings)) {
-        ui.label(RichText::new(hint).small().weak());
+    if !state.touring {
+        if let Some(hint) = state.world().map(|world| hint::what_to_try(&world.controls.settings)) {
+            ui.label(RichText::new(hint).small().weak());
+        }
+        tour::resume_button(ui, state);
     }
+    let asked = state.opened_panel.take();
     ui.add_space(2.0);
     for Section { id, title, open, show } in SECTIONS {
         let Some(title) = title(state) else { continue };
@@ -69,6 +76,7 @@ fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
         let shown = CollapsingHeader::new(RichText::new(title).heading())
             .id_salt(id)
             .default_open(*open)
+            .open((asked == Some(*id)).then_some(true))
             .show_unindented(ui, |ui| show(ui, state));
         state.note_control(id, shown.header_response.rect);
     }

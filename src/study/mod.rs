@@ -27,7 +27,8 @@ pub(crate) use course::series_path;
 pub(crate) use figures::{figure_names, reproduce};
 pub(crate) use outcome::{Outcome, Status};
 pub(crate) use paper::{
-    FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
+    FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PILE_SOLVER, PaperRun,
+    paper_runs,
 };
 pub use plan::{SeriesSettings, Study};
 pub use planned_run::PlannedRun;

@@ -32,9 +32,9 @@ fn the_window_exports_what_data_writes() {
         assert_eq!(told, format!("{} frames of data in {}", steps + 1, exported.display()));
 
         let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
-        let (duration, names) = (duration_secs.to_string(), names.join(","));
-        let options =
-            ["--scene", scene, "--dt", "1e-3", "--duration", &duration, "--fallback", "tresca"];
+        let names = names.join(",");
+        let line = robot.state().command_line().expect("a command line");
+        let options: Vec<&str> = line.split(' ').skip(2).collect();
         headless(
             &[&options[..], &["--data-every", "1e-9", "--data-format", &names]].concat(),
             &written,

@@ -20,6 +20,7 @@ mod recordings;
 mod robot;
 mod saved;
 mod speed;
+mod tour;
 
 #[path = "../data/tables.rs"]
 #[allow(dead_code, reason = "tests of recordings use more of it")]

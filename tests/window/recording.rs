@@ -1,6 +1,5 @@
 //! The recording gives back what was computed, bit for bit.
 
-use egui_kittest::kittest::Queryable;
 use slump::sim::live::{Command, Live, LiveOptions, Start};
 use slump::sim::{Pull, Tally};
 use slump::sim::{Settings, Stepper};
@@ -56,20 +55,82 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
 }
 
 #[test]
-fn a_run_that_goes_on_differently_forgets_the_old_future() {
+fn a_step_in_the_past_deletes_nothing() {
     let mut robot = Robot::open(pile());
     for _ in 0..50 {
         robot.state_mut().step();
     }
     robot.settle();
+    let (end, until) = (bits(robot.world()), robot.state().frame.recorded_secs());
+    robot.state_mut().live.send(Command::Seek(0.02));
+    robot.settle();
+    assert!(robot.state().frame.replaying);
+    robot.key(egui::Key::ArrowRight);
+    assert_eq!(robot.steps(), 21);
+    assert_eq!(robot.state().frame.recorded_secs(), until);
+    assert_eq!(robot.world().curve.len(), 51);
+    for _ in 21..50 {
+        robot.state_mut().step();
+    }
+    robot.settle();
+    assert_eq!(bits(robot.world()), end);
+    assert!(!robot.state().frame.replaying && robot.state().frame.past.is_empty());
+    robot.key(egui::Key::ArrowRight);
+    assert_eq!((robot.steps(), robot.world().curve.len()), (51, 52));
+}
+
+#[test]
+fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
+    let mut robot = Robot::open(pile());
+    for _ in 0..50 {
+        robot.state_mut().step();
+    }
+    robot.settle();
+    let curve: Vec<_> = robot.world().curve.rows().copied().collect();
     robot.state_mut().live.send(Command::Seek(0.02));
     robot.settle();
     robot.click("5e-3");
+    assert!(robot.state().frame.branching);
     robot.click("Step");
     assert_eq!(robot.steps(), 21);
     assert_eq!(robot.world().curve.len(), 22);
     assert!((robot.state().frame.recorded_secs() - 0.025).abs() < 1e-12);
-    assert!(robot.harness.query_by_label("Timeline").is_some());
+    assert_eq!(robot.state().frame.past.len(), 1);
+
+    robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    robot.harness.step();
+    robot.settle();
+    let again: Vec<_> = robot.world().curve.rows().copied().collect();
+    assert_eq!(again, curve);
+    let past = robot.state().frame.past.clone();
+    assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
+
+    // What is undone can be done again, as often as one likes.
+    robot.state_mut().live.send(Command::Return(past[0].number));
+    robot.settle();
+    assert_eq!(robot.world().curve.len(), 22);
+}
+
+#[test]
+fn a_reset_and_other_worlds_keep_the_run_and_four_are_kept() {
+    let mut robot = Robot::open(pile());
+    for round in 1..=6 {
+        for _ in 0..3 * round {
+            robot.state_mut().step();
+        }
+        robot.settle();
+        robot.key(egui::Key::R);
+        assert_eq!(robot.steps(), 0);
+        assert_eq!(robot.state().frame.past.len(), round.min(4));
+    }
+    // A reset of nothing keeps nothing.
+    robot.key(egui::Key::R);
+    let lengths: Vec<usize> =
+        robot.state().frame.past.iter().map(|run| run.worlds[0].curve.len()).collect();
+    assert_eq!(lengths, [10, 13, 16, 19]);
+    robot.state_mut().load(pile());
+    robot.settle();
+    assert!(robot.state().frame.past.is_empty(), "they are of another start");
 }
 
 #[test]
@@ -92,6 +153,7 @@ fn little_memory_is_enough_to_get_anywhere() {
             duration_secs: 1.0,
             held_by: Vec::new(),
             view: [glam::DVec2::ZERO, glam::DVec2::ONE],
+            worlds: Vec::new(),
         })
     })));
     for _ in 0..200 {

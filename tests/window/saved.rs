@@ -82,9 +82,9 @@ fn the_window_saves_what_save_writes() {
         assert_eq!(found.file_name().and_then(|name| name.to_str()), Some(&*name));
 
         let written = folder.path().join("headless.slump");
-        let options =
-            ["--scene", scene, "--stepper", stepper.name(), "--dt", "1e-3", "--duration", "0.04"];
-        headless(&[&options[..], &["--fallback", "tresca"]].concat(), &written);
+        let line = robot.state().command_line().expect("a command line");
+        let options: Vec<&str> = line.split(' ').skip(2).collect();
+        headless(&options, &written);
         let bytes = |path: &Path| std::fs::read(path).expect("a file");
         assert!(bytes(&found) == bytes(&written), "{scene}, {stepper:?}");
     }

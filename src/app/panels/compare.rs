@@ -3,6 +3,7 @@
 use egui::{Button, RichText, Ui};
 
 use super::physics::PAPER_TIME_STEPS;
+use crate::app::effort::FIGURES;
 use crate::app::method_box::method_box;
 use crate::app::number::written;
 use crate::app::state::AppState;
@@ -10,6 +11,7 @@ use crate::app::theme;
 use crate::sim::live::{Command, Controls};
 use crate::sim::{Settings, Stepper};
 use crate::solver::{Fallback, FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
+use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
 use crate::world::FrictionCone;
 
 /// Most worlds side by side.
@@ -74,10 +76,11 @@ struct LineUp {
 const LINE_UPS: [LineUp; 7] = [
     LineUp {
         name: "Paper Fig. 4",
-        hint: "Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s.",
+        hint: "Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s, each step solved as for the figure.",
         worlds: |base| {
-            let of_bond = |bond| [1e-4, 1e-3, 2e-3].map(|secs| with(base, bond, secs));
-            [20.0, 100.0].into_iter().flat_map(of_bond).collect()
+            let base = Settings { solver: FIGURES.settings, ..stepped(base, Stepper::Moreau) };
+            let of_bond = |bond| FIG4_TIME_STEPS_SECS.map(|secs| with(base, bond, secs));
+            FIG4_BONDS.into_iter().flat_map(of_bond).collect()
         },
     },
     LineUp {
@@ -198,13 +201,17 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
 
 /// What tells a world from the others.
 pub(crate) fn title(state: &AppState, index: usize) -> String {
-    let Some(&Controls { settings, .. }) = state.wanted.get(index) else {
+    title_among(&state.wanted, index)
+}
+
+/// What tells one of such worlds from the others.
+pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
+    let Some(&Controls { settings, .. }) = worlds.get(index) else {
         return String::new();
     };
     let Settings { stepper, parameters, solver, .. } = settings;
-    let differ = |other: &dyn Fn(&Settings) -> bool| {
-        state.wanted.iter().any(|wanted| other(&wanted.settings))
-    };
+    let differ =
+        |other: &dyn Fn(&Settings) -> bool| worlds.iter().any(|wanted| other(&wanted.settings));
     let methods_differ = differ(&|other| other.solver.method != solver.method);
     let method = if methods_differ { format!(", {}", solver.method) } else { String::new() };
     let models_differ = differ(&|other| {

@@ -4,10 +4,11 @@ use egui::{Align2, RichText, Ui};
 
 use crate::app::state::AppState;
 
-const KEYS: [(&str, &str); 9] = [
+const KEYS: [(&str, &str); 10] = [
     ("space", "release, pause, play on"),
     ("→  ←", "one step on, one step back"),
-    ("R", "reset to the start, with the present settings"),
+    ("R", "reset to the start, with the present settings; the run is kept"),
+    ("Ctrl Z", "back to the run that was there before"),
     ("F", "frame the whole scene"),
     ("S", "save a picture of the scene"),
     ("H", "this help"),

@@ -6,6 +6,7 @@ pub(super) mod compare;
 mod data;
 mod grain;
 pub(super) mod help;
+mod past;
 mod physics;
 pub(super) mod plots;
 mod run;
@@ -14,6 +15,7 @@ mod see;
 mod solver;
 mod speed;
 pub(super) mod status;
+pub(super) mod tour;
 pub(super) mod transport;
 
 use egui::Ui;

@@ -29,6 +29,9 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
                 (name, theme::world_colour(index, dark), world.curve.clone())
             })
             .collect(),
+        ghosts: super::past::ghost(state).map_or_else(Vec::new, |run| {
+            run.worlds.iter().map(|world| world.curve.clone()).collect()
+        }),
         quantities: QUANTITIES.iter().filter(|quantity| is_shown(state, quantity)).collect(),
         now_secs: state.frame.time_secs(),
         // An empty plot is as wide as a short run; a long one is seen as a whole.

@@ -2,10 +2,13 @@
 
 use egui::{Align, ComboBox, RichText, Slider, Ui};
 
+use super::past;
+use crate::app::effort;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::scene::{Config, NewPile, Origin, SCENES, SceneGroup};
-use crate::sim::live::Command;
+use crate::sim::live::{Command, Controls};
+use crate::solver::SolverChanges;
 
 /// Most grains that the panel offers; the command line takes more.
 const MOST_GRAINS: usize = 20_000;
@@ -17,6 +20,16 @@ const SPEEDS: [f64; 2] = [0.01, 10.0];
 struct Draft {
     grains: usize,
     seed: u64,
+    box_width_in_diameters: f64,
+}
+
+impl Draft {
+    /// Gives the box the width in which so many grains make a pile as steep as the paper's.
+    fn keep_shape(&mut self) {
+        let paper = NewPile::default();
+        let scale = (self.grains as f64 / paper.grains as f64).sqrt();
+        self.box_width_in_diameters = (paper.box_width_in_diameters * scale).round();
+    }
 }
 
 /// Shows the panel.
@@ -29,6 +42,21 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     }
     loading(ui, state);
     speed(ui, state);
+    past::show(ui, state);
+    command_line(ui, state);
+}
+
+/// What makes the run again without a window.
+fn command_line(ui: &mut Ui, state: &AppState) {
+    let copy = ui.button("Copy command line").on_hover_text(
+        "The command that computes the selected world from its start with the present settings, without a window \
+         and to the last digit.",
+    );
+    if copy.clicked()
+        && let Some(line) = state.command_line()
+    {
+        ui.ctx().copy_text(line);
+    }
 }
 
 fn scene_box(ui: &mut Ui, state: &mut AppState) {
@@ -60,14 +88,26 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
 }
 
 fn new_pile(ui: &mut Ui, state: &mut AppState) {
-    let NewPile { grains, seed, .. } = state.config.origin.new_pile();
+    let NewPile { grains, seed, box_width_in_diameters, .. } = state.config.origin.new_pile();
     let id = egui::Id::unique("new pile");
-    let mut draft = ui.data(|data| data.get_temp(id)).unwrap_or(Draft { grains, seed });
+    let drafted = ui.data(|data| data.get_temp(id));
+    let mut draft = drafted.unwrap_or(Draft { grains, seed, box_width_in_diameters });
     ui.horizontal(|ui| {
         let label = ui.label("Grains");
-        ui.add(egui::DragValue::new(&mut draft.grains).range(1..=MOST_GRAINS).speed(2.0))
+        let grains = egui::DragValue::new(&mut draft.grains).range(1..=MOST_GRAINS).speed(2.0);
+        let grains = ui.add(grains).labelled_by(label.id);
+        if grains.on_hover_text("Number of grains of a new pile.").changed() {
+            draft.keep_shape();
+        }
+        let label = ui.label("Box");
+        let width = egui::DragValue::new(&mut draft.box_width_in_diameters);
+        ui.add(width.range(3.0..=1e4).max_decimals(1).suffix(" d").speed(0.5))
             .labelled_by(label.id)
-            .on_hover_text("Number of grains of a new pile.");
+            .on_hover_text(
+                "Width of the box in diameters: with the grains, how high and steep a pile is.",
+            );
+    });
+    ui.horizontal(|ui| {
         let label = ui.label("Seed");
         ui.add(egui::DragValue::new(&mut draft.seed).speed(0.1))
             .labelled_by(label.id)
@@ -85,19 +125,24 @@ fn new_pile(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// A new pile with the numbers that the controls show.
-fn pile_like_this(state: &AppState, Draft { grains, seed }: Draft) -> Config {
+fn pile_like_this(state: &AppState, draft: Draft) -> Config {
+    let Draft { grains, seed, box_width_in_diameters } = draft;
     let origin = Origin {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
         grains: Some(grains),
         seed: Some(seed),
+        box_width: Some(box_width_in_diameters),
         initial: None,
         ..state.config.origin.clone()
     };
     let config = Config { origin, ..state.config.clone() };
-    match state.wanted.get(state.selected) {
-        Some(wanted) => config.with_settings(&wanted.settings),
-        None => config,
-    }
+    let Some(Controls { settings, .. }) = state.wanted.get(state.selected) else { return config };
+    let (now, Some(world)) = (settings.solver, state.world()) else { return config };
+    let begun_with = effort::for_grains(world.snapshot.grains.len()).settings;
+    let config = config.with_settings(settings);
+    // Whoever has left that choice to the window leaves it for the new size, too.
+    let solver = if now == begun_with { SolverChanges::default() } else { config.solver };
+    Config { solver, ..config }
 }
 
 fn loading(ui: &mut Ui, state: &mut AppState) {

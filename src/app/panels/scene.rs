@@ -3,6 +3,7 @@
 use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui};
 use glam::DVec2;
 
+use super::past;
 use crate::app::export::{Export, stem};
 use crate::app::fill::fill;
 use crate::app::scene_callback::scene_callback;
@@ -113,6 +114,7 @@ fn world(
     let place = Place { camera, ..place };
     let picture = scene_picture(&frame.snapshot, style, &camera, size[0], size[1]);
     ui.painter().with_clip_rect(cell).add(scene_callback(index, cell, picture));
+    place.ghost(ui, state);
     place.words(ui, state, style, size);
     place.marks(ui, state, &response);
     if index == state.selected {
@@ -184,6 +186,18 @@ impl Place<'_> {
                 state.camera.zoom(factor, at - self.cell.center());
             }
         }
+    }
+
+    /// The same world of the run before, where that had one.
+    fn ghost(&self, ui: &Ui, state: &AppState) {
+        let Some(run) = past::ghost(state) else { return };
+        if run.worlds.len() != state.frame.worlds.len() {
+            return;
+        }
+        let Some(world) = run.worlds.get(self.index) else { return };
+        let metre = self.to_screen(DVec2::X) - self.to_screen(DVec2::ZERO);
+        let to_screen = |position| self.to_screen(position);
+        past::paint(ui, world, self.cell, to_screen, f64::from(metre.x));
     }
 
     /// Title and label of the scale bar.

@@ -2,6 +2,7 @@
 
 use egui::{RichText, Ui};
 
+use crate::app::effort::{EFFORTS, Effort};
 use crate::app::method_box::method_box;
 use crate::app::setting_control;
 use crate::app::state::AppState;
@@ -53,6 +54,7 @@ fn about(name: &str) -> &'static About {
 
 /// How a step's problem is solved, and when that is done.
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
+    effort_buttons(ui, &mut settings.solver);
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
         ui.label("Method").on_hover_text("How the impulses of a step are found.");
         method_box(ui, "method", &mut settings.solver);
@@ -70,7 +72,6 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
         let control = Control { unit: if per_mass { "m/s" } else { "" }, ..control };
         setting_control::show_as(ui, tolerance, &control, settings, start);
     }
-    tolerance_buttons(ui, &mut settings.solver);
     setting_control::show(ui, about("max-sweeps"), settings, start);
 }
 
@@ -104,20 +105,12 @@ fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
 }
 
 /// Care and speed, one click away.
-fn tolerance_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
-    if solver.stop != StopTest::RelativeChange {
-        return;
-    }
+fn effort_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
     ui.horizontal(|ui| {
-        for (tolerance, name, hint) in [
-            (1e-3, "1e-3 fast", "For a look: piles slump that hold when solved well."),
-            (1e-6, "1e-6 live", "For watching a pile."),
-            (1e-7, "1e-7 figures", "For what is to be published; slower."),
-        ] {
-            let text = RichText::new(name).size(11.5);
-            let button = egui::Button::selectable(solver.tolerance == tolerance, text);
+        for Effort { name, hint, settings } in EFFORTS {
+            let button = egui::Button::selectable(*solver == settings, name);
             if ui.add(button).on_hover_text(hint).clicked() {
-                solver.tolerance = tolerance;
+                *solver = settings;
             }
         }
     });

@@ -12,8 +12,12 @@ pub(crate) fn release_button(ui: &mut Ui, state: &mut AppState) {
     let failed = frame.worlds.iter().any(|world| world.failure.is_some());
     let (text, hint) = if frame.playing {
         ("❚❚  Pause", "Stop time (space)")
-    } else if frame.held() {
+    } else if frame.held() && !frame.replaying {
         ("▶  Release the walls", "At t = 0 the walls go, and the pile holds or slumps (space)")
+    } else if frame.branching {
+        ("▶  Go on from here", "With what was changed; the run so far is kept under Run (space)")
+    } else if frame.replaying {
+        ("▶  Replay", "Show the record from this moment on; at its end, compute on (space)")
     } else if frame.at_start() {
         ("▶  Start", "Let time pass (space)")
     } else {

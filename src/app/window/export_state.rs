@@ -29,6 +29,8 @@ struct State<'a> {
     /// Parameters of the next step, as the solver's thread has them.
     parameters: Option<Parameters>,
     worlds: usize,
+    /// The station of the tour, from 1; 0 where it is not being taken.
+    station: usize,
     steps_per_sec: f64,
     /// How often a graphics device was opened.
     devices: u32,
@@ -61,6 +63,7 @@ impl StateFile {
             slump: last.slump,
             parameters: world.map(|world| world.controls.settings.parameters),
             worlds: state.frame.worlds.len(),
+            station: if state.touring { state.preferences.tour.at + 1 } else { 0 },
             steps_per_sec: state.frame.steps_per_sec,
             devices,
             frames: state.frame.number,

@@ -8,14 +8,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::application::ApplicationHandler;
-use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
 use super::options::WindowOptions;
 use super::state::AppState;
-use super::storage::{self, Stored};
+use super::storage::{self, Keeper};
 use super::theme;
 use super::ui::ui;
 use crate::error::{Error, Result};
@@ -24,12 +23,9 @@ use crate::render::RendererChoice;
 use crate::scene::Config;
 use crate::sim::live::{Live, LiveOptions};
 use export_state::StateFile;
-use start::{no_display, start_config};
+use start::{First, attributes, no_display};
 use surface::{Drawn, Surface};
 
-/// Size of a new window, points.
-const SIZE: [f64; 2] = [1280.0, 800.0];
-const LEAST_SIZE: [f64; 2] = [720.0, 480.0];
 /// Least time between two frames that only the run asks for. A software rasteriser takes processor
 /// time that the solver needs; the eye follows a pile at 25 frames a second.
 pub(crate) const FRAME_INTERVAL: Duration = Duration::from_millis(16);
@@ -60,7 +56,7 @@ pub(crate) fn run(
     }
     let mut stored = storage::load();
     stored.preferences.follow(pictures)?;
-    let (config, saved) = start_config(config, pictures.saving.restart.as_deref(), &stored)?;
+    let first = First::of(config, pictures.saving.restart.as_deref(), &stored.preferences)?;
     let events =
         EventLoop::<Message>::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();
@@ -70,10 +66,8 @@ pub(crate) fn run(
         wake: Box::new(move || drop(wake.send_event(Message::Repaint))),
         ..LiveOptions::default()
     })?;
-    let mut state = AppState::new(live, config, stored.preferences.clone());
-    if let Some(saved) = saved {
-        state.load_run(saved);
-    }
+    let mut state = AppState::idle(live, stored.preferences.clone());
+    first.open(&mut state);
     let mut app = App {
         context: context(&proxy, stored.layout),
         proxy,
@@ -86,6 +80,7 @@ pub(crate) fn run(
         drawn: Instant::now(),
         state_file: options.export_state.clone().map(StateFile::new),
         renderer: pictures.renderer,
+        keeper: Keeper::new(stored.preferences),
     };
     events.run_app(&mut app).map_err(|error| no_display(&error))?;
     app.failure.map_or(Ok(()), Err)
@@ -119,6 +114,7 @@ struct App {
     drawn: Instant,
     state_file: Option<StateFile>,
     renderer: RendererChoice,
+    keeper: Keeper,
 }
 
 /// What exists while the window does.
@@ -130,10 +126,7 @@ struct Open {
 
 impl App {
     fn open(&mut self, events: &ActiveEventLoop) -> Result<Open> {
-        let attributes = Window::default_attributes()
-            .with_title("Slump")
-            .with_inner_size(LogicalSize::new(SIZE[0], SIZE[1]))
-            .with_min_inner_size(LogicalSize::new(LEAST_SIZE[0], LEAST_SIZE[1]));
+        let attributes = attributes(events, self.state.preferences.window_points);
         let window =
             Arc::new(events.create_window(attributes).map_err(|error| no_display(&error))?);
         let surface = Surface::new(events, &window, self.renderer)?;
@@ -215,6 +208,10 @@ impl App {
         }
         self.next_repaint = None;
         self.drawn = Instant::now();
+        self.state.preferences.window_points =
+            Some(window.inner_size().to_logical::<f64>(window.scale_factor()).into());
+        let until_kept = self.keeper.look(&self.state.preferences, &self.context);
+        let delay = delay.min(until_kept.unwrap_or(Duration::MAX));
         match drawn {
             Drawn::Shown => {
                 self.losses = 0;
@@ -286,10 +283,7 @@ impl ApplicationHandler<Message> for App {
     }
 
     fn exiting(&mut self, _events: &ActiveEventLoop) {
-        storage::save(&Stored {
-            preferences: self.state.preferences.clone(),
-            layout: self.context.memory(Clone::clone),
-        });
+        self.keeper.keep(&self.state.preferences, &self.context);
         // The surface goes while its window and display still exist.
         self.open = None;
     }

@@ -2,31 +2,85 @@
 
 use std::path::Path;
 
-use crate::app::storage::Stored;
+use winit::dpi::LogicalSize;
+use winit::event_loop::ActiveEventLoop;
+use winit::monitor::MonitorHandle;
+use winit::window::{Window, WindowAttributes};
+
+use crate::app::preferences::Preferences;
+use crate::app::state::AppState;
 use crate::error::{Error, Result};
 use crate::scene::{Config, SavedState};
 
-/// What is opened first: what the command line asks for, or the last scene, or the default one where
-/// that is gone. A saved run that is to go on is opened in its place.
-pub(super) fn start_config(
-    asked: &Config,
-    restart: Option<&Path>,
-    stored: &Stored,
-) -> Result<(Config, Option<SavedState>)> {
-    if let Some(path) = restart {
-        let mut saved = SavedState::open(path)?;
-        asked.change_state(&mut saved)?;
-        return Ok((Config::default(), Some(saved)));
+/// Size of a new window, points.
+const SIZE: [f64; 2] = [1280.0, 800.0];
+const LEAST_SIZE: [f64; 2] = [720.0, 480.0];
+
+/// What is opened first.
+pub(super) enum First {
+    /// The station of the tour that was open last.
+    Tour(usize),
+    Scene(Box<Config>),
+    /// A saved run that is to go on.
+    Run(Box<SavedState>),
+}
+
+impl First {
+    /// What the command line asks for; else the tour, until it is left, or the last scene, or the default one
+    /// where that is gone.
+    ///
+    /// # Errors
+    /// Names the first field of the command line or the saved run that is outside its range, or the file that
+    /// cannot be read.
+    pub(super) fn of(
+        asked: &Config,
+        restart: Option<&Path>,
+        preferences: &Preferences,
+    ) -> Result<Self> {
+        if let Some(path) = restart {
+            let mut saved = SavedState::open(path)?;
+            asked.change_state(&mut saved)?;
+            return Ok(Self::Run(Box::new(saved)));
+        }
+        // A pile is made on the solver's thread; everything else of a scene is checked before a window
+        // opens.
+        if !asked.is_empty() {
+            asked.without_settling()?;
+            return Ok(Self::Scene(Box::new(asked.clone())));
+        }
+        if preferences.tour.on {
+            return Ok(Self::Tour(preferences.tour.at));
+        }
+        let last = &preferences.scene;
+        let is_there = last.without_settling().is_ok();
+        Ok(Self::Scene(Box::new(if is_there { last.clone() } else { Config::default() })))
     }
-    // A pile is made on the solver's thread; everything else of a scene is checked before a window
-    // opens.
-    if !asked.is_empty() {
-        asked.without_settling()?;
-        return Ok((asked.clone(), None));
+
+    /// Opens it.
+    pub(super) fn open(self, state: &mut AppState) {
+        match self {
+            Self::Tour(at) => state.visit(at),
+            Self::Scene(config) => state.load(*config),
+            Self::Run(saved) => state.load_run(*saved),
+        }
     }
-    let last = &stored.preferences.scene;
-    let is_there = last.without_settling().is_ok();
-    Ok((if is_there { last.clone() } else { Config::default() }, None))
+}
+
+/// What a window is like, of that size (points) if it has been open before, and no larger than the screen.
+pub(super) fn attributes(
+    events: &ActiveEventLoop,
+    window_points: Option<[f64; 2]>,
+) -> WindowAttributes {
+    let [width, height] = window_points.unwrap_or(SIZE);
+    let on_screen = |monitor: MonitorHandle| monitor.size().to_logical(monitor.scale_factor());
+    let screen: Option<LogicalSize<f64>> = events.primary_monitor().map(on_screen);
+    // A driver may know of no screen, or of one without a size.
+    let screen = screen.filter(|screen| screen.width > 0.0 && screen.height > 0.0);
+    let most = screen.unwrap_or(LogicalSize::new(f64::INFINITY, f64::INFINITY));
+    Window::default_attributes()
+        .with_title("Slump")
+        .with_inner_size(LogicalSize::new(width.min(most.width), height.min(most.height)))
+        .with_min_inner_size(LogicalSize::new(LEAST_SIZE[0], LEAST_SIZE[1]))
 }
 
 /// What is missing where no window can be opened, and what brings it.

@@ -24,6 +24,8 @@ pub struct Start {
     pub held_by: Vec<Boundary>,
     /// Lower left and upper right corner of what pictures show, m.
     pub view: [DVec2; 2],
+    /// The settings of the worlds that are side by side at first; none for one world with those of the simulation.
+    pub worlds: Vec<Settings>,
 }
 
 /// How far a long preparation has come.
@@ -71,20 +73,24 @@ pub enum Command {
     Load(Loader),
     /// Give up the loading that is going on.
     CancelLoading,
-    /// Run worlds with these settings side by side from the present start; one is the ordinary case.
+    /// Run worlds with these settings side by side from the present start; one is the ordinary case. The
+    /// present run is kept.
     Compare(Vec<Settings>),
     /// Change the settings of a world from its next step on.
     Change(usize, Settings),
     /// Tie a spring to a grain of a world, or take it away.
     SetPull(usize, Option<Pull>),
-    /// Let time pass.
+    /// Let time pass: what is recorded is shown, and more is computed at its end. With other settings than those
+    /// that were recorded, the run branches off, and what is recorded is kept.
     Play,
     /// Stop time.
     Pause,
     /// Take one step (the world with the largest time step does; the others catch up), and pause.
     Step,
-    /// Back to the start with the present settings; forgets the recording; pauses.
+    /// Back to the start with the present settings; pauses. The run is kept ([`Frame::past`](super::Frame::past)).
     Reset,
+    /// Back to the earlier run of that number, where it was left; pauses. The present one is kept.
+    Return(u64),
     /// Go to the recorded moment nearest to this simulated time, s; pauses.
     Seek(f64),
     /// Hand out what a world has come to.

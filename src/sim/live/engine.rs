@@ -9,6 +9,7 @@ use triple_buffer::Input;
 
 use super::clock::Clock;
 use super::frame::message;
+use super::past::Past;
 use super::worlds::Worlds;
 use super::{Command, Frame, LiveOptions, Progress, Start, StartInfo};
 use crate::sim::{Settings, Surroundings};
@@ -26,6 +27,7 @@ pub(super) struct Engine {
     pub(super) info: Option<Arc<StartInfo>>,
     pub(super) held: Option<Arc<Surroundings>>,
     pub(super) worlds: Worlds,
+    pub(super) past: Past,
     pub(super) clock: Clock,
     pub(super) playing: bool,
     pub(super) seeking: bool,
@@ -59,6 +61,7 @@ impl Engine {
             info: None,
             held: None,
             worlds: Worlds::default(),
+            past: Past::default(),
             clock: Clock::new(),
             playing: false,
             seeking: false,
@@ -175,6 +178,12 @@ impl Engine {
                 let variants = self.worlds.variants();
                 self.restart(&variants);
             }
+            Command::Return(number) => {
+                if let Some(mut worlds) = self.past.take(number) {
+                    worlds.keep_within(self.options.recording_bytes);
+                    self.put_in_place(worlds);
+                }
+            }
             Command::Seek(time_secs) => {
                 self.playing = false;
                 self.seeking = true;
@@ -217,12 +226,22 @@ impl Engine {
             return;
         }
         let start = (&start.simulation, start.tally);
-        self.worlds = Worlds::new(start, variants, self.options.recording_bytes);
+        let worlds = Worlds::new(start, variants, self.options.recording_bytes);
+        self.put_in_place(worlds);
+    }
+
+    /// Keeps the present worlds for later, and goes on with others.
+    fn put_in_place(&mut self, worlds: Worlds) {
+        let before = std::mem::replace(&mut self.worlds, worlds);
+        self.past.keep(before, self.options.recording_bytes);
         self.playing = false;
         self.seeking = false;
     }
 
     fn tick(&mut self) {
+        if self.worlds.branch() {
+            self.past.keep(self.worlds.clone(), self.options.recording_bytes);
+        }
         let (steps, all_well) = self.worlds.tick();
         self.clock.count(steps, self.worlds.time_secs());
         self.playing &= all_well;
@@ -255,6 +274,7 @@ impl Command {
                 | Self::Play
                 | Self::Step
                 | Self::Reset
+                | Self::Return(..)
                 | Self::Take(..)
         )
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Controls, Curve, Progress};
+use super::{Controls, Curve, PastRun, Progress};
 use crate::error::Error;
 use crate::sim::{Settings, Snapshot};
 use crate::world::Physics;
@@ -20,8 +20,14 @@ pub struct Frame {
     pub start: Option<Arc<StartInfo>>,
     /// The worlds, one unless they are compared.
     pub worlds: Vec<WorldFrame>,
+    /// Runs that others have taken the place of, the newest last.
+    pub past: Arc<[PastRun]>,
     /// Whether time passes.
     pub playing: bool,
+    /// Whether the next step is one that is recorded.
+    pub replaying: bool,
+    /// Whether the next step leaves what is recorded behind.
+    pub branching: bool,
     /// Whether a recorded moment is being computed.
     pub seeking: bool,
     /// A start that is being made.

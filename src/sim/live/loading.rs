@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::engine::Engine;
 use super::frame::message;
+use super::worlds::Worlds;
 use super::{Command, Loader, Progress, Start, StartInfo};
 use crate::sim::Surroundings;
 
@@ -50,9 +51,10 @@ impl Engine {
         interrupted
     }
 
-    fn begin(&mut self, start: Start) {
+    fn begin(&mut self, mut start: Start) {
         self.loads += 1;
         let settings = *start.simulation.settings();
+        let alone = [settings];
         self.info = Some(Arc::new(StartInfo {
             number: self.loads,
             name: start.name.clone(),
@@ -65,7 +67,10 @@ impl Engine {
         let mut surroundings = Surroundings::clone(&start.simulation.snapshot().surroundings);
         surroundings.boundaries.extend_from_slice(&start.held_by);
         self.held = Some(Arc::new(surroundings));
+        self.worlds = Worlds::default();
+        self.past.forget();
+        let worlds = std::mem::take(&mut start.worlds);
         self.start = Some(start);
-        self.restart(&[settings]);
+        self.restart(if worlds.is_empty() { &alone } else { &worlds });
     }
 }

@@ -115,10 +115,7 @@ impl Recording {
     }
 
     fn thin(&mut self) {
-        let newest = &self.keyframes[self.keyframes.len() - 1].simulation;
-        if self.keyframes.len() * memory_bytes(newest) <= self.budget_bytes
-            || self.keyframes.len() < 3
-        {
+        if self.is_within_budget() {
             return;
         }
         self.spacing *= 2;
@@ -127,6 +124,40 @@ impl Recording {
             index += 1;
             index % 2 == 1
         });
+    }
+
+    fn is_within_budget(&self) -> bool {
+        let newest = &self.keyframes[self.keyframes.len() - 1].simulation;
+        self.keyframes.len() < 3 || self.keyframes.len() * memory_bytes(newest) <= self.budget_bytes
+    }
+
+    /// Keeps about that much of keyframes from now on.
+    pub(crate) fn keep_within(&mut self, budget_bytes: usize) {
+        self.budget_bytes = budget_bytes;
+        while !self.is_within_budget() {
+            self.thin();
+        }
+    }
+
+    /// Whether anything is recorded.
+    pub(crate) fn has_steps(&self) -> bool {
+        self.end_step > self.start().observables().step
+    }
+
+    /// Whether the next step of a simulation is a recorded one. A hand that is there now and was not then, or
+    /// another one, makes a difference; one that is not there does not, as it went when that moment was sought.
+    pub(crate) fn replays(&self, simulation: &Simulation) -> bool {
+        let step = simulation.observables().step;
+        let same = |recorded: &Controls| {
+            let now = Controls::of(simulation);
+            now.settings == recorded.settings && (now.pull.is_none() || now.pull == recorded.pull)
+        };
+        self.is_before_end(simulation) && self.controls_after(step).is_some_and(same)
+    }
+
+    /// Whether more is recorded than what led to a state.
+    pub(crate) fn is_before_end(&self, simulation: &Simulation) -> bool {
+        simulation.observables().step < self.end_step
     }
 
     /// The keyframe at or before a simulated time, and the sums over the steps up to it.

@@ -9,7 +9,8 @@ use crate::sim::{Settings, Simulation, Tally};
 /// Weight of the newest step in the mean time a step takes.
 const NEWEST: f64 = 0.05;
 
-/// One world of a live run.
+/// One world of a live run. A clone shares what is recorded.
+#[derive(Clone)]
 pub(super) struct Track {
     pub simulation: Simulation,
     pub recording: Recording,
@@ -59,10 +60,30 @@ impl Track {
         self.simulation.parameters().time_step_secs
     }
 
-    /// Takes a step and records it. Whether it succeeded.
+    /// Takes a step that is recorded, as it was. Whether it succeeded.
+    fn step_in_the_record(&mut self) -> bool {
+        self.recording.restore_controls(&mut self.simulation);
+        let before = Instant::now();
+        let is_taken = self.replay_step();
+        self.note_duration(before.elapsed().as_secs_f64());
+        if !self.recording.is_before_end(&self.simulation) {
+            self.simulation.set_pull(None);
+        }
+        is_taken
+    }
+
+    /// Whether its next step leaves what is recorded behind.
+    pub(super) fn branches(&self) -> bool {
+        self.recording.is_before_end(&self.simulation) && !self.recording.replays(&self.simulation)
+    }
+
+    /// Takes a step and records it, unless it is one that is recorded. Whether it succeeded.
     pub(super) fn step(&mut self) -> bool {
         if self.failure.is_some() {
             return false;
+        }
+        if self.recording.replays(&self.simulation) {
+            return self.step_in_the_record();
         }
         let step = self.simulation.observables().step;
         self.recording.before_step(&self.simulation, &self.tally);

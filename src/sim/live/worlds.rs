@@ -7,7 +7,7 @@ use crate::sim::{Settings, Simulation, Tally};
 
 /// One track a world. The world with the largest time step leads; the others follow to within half
 /// a step of their own.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Worlds {
     pub tracks: Vec<Track>,
 }
@@ -27,6 +27,28 @@ impl Worlds {
 
     pub(super) fn variants(&self) -> Vec<Settings> {
         self.tracks.iter().map(Track::variant).collect()
+    }
+
+    /// Whether any step is recorded.
+    pub(super) fn have_steps(&self) -> bool {
+        self.tracks.iter().any(|track| track.recording.has_steps())
+    }
+
+    /// Whether the next tick leaves what is recorded behind.
+    pub(super) fn branch(&self) -> bool {
+        self.tracks.iter().any(Track::branches)
+    }
+
+    /// Whether the next tick shows what is recorded.
+    pub(super) fn replay(&self) -> bool {
+        let replays = |track: &Track| track.recording.replays(&track.simulation);
+        !self.branch() && self.tracks.iter().any(replays)
+    }
+
+    /// Keeps about that much of keyframes from now on, of all worlds together.
+    pub(super) fn keep_within(&mut self, budget_bytes: usize) {
+        let each = budget_bytes / self.tracks.len().max(1);
+        self.tracks.iter_mut().for_each(|track| track.recording.keep_within(each));
     }
 
     pub(super) fn has_failed(&self) -> bool {

@@ -1,0 +1,69 @@
+//! How well steps are solved: what the window begins with, and what else is one click away.
+
+use crate::scene::{Config, Scene};
+use crate::solver::{Fallback, Method, SolverChanges, SolverSettings};
+use crate::study::PILE_SOLVER;
+
+/// Piles of more grains begin with sweeps that are counted, so that they move before one's eyes.
+const MOST_SOLVED_GRAINS: usize = 2_000;
+
+/// A way to solve steps that has a name.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// On its button.
+    pub name: &'static str,
+    /// What it costs, in time and in accuracy.
+    pub hint: &'static str,
+    /// What it is.
+    pub settings: SolverSettings,
+}
+
+/// So well that tighter solutions tell no other mean (`RESULTS.md`, speed against accuracy).
+pub(super) const TRUSTED: Effort = Effort {
+    name: "Trusted",
+    hint: "Each step to a residual of 1e-6: tighter ones change no mean of piles. At 138 grains also the fastest \
+           that does so.",
+    settings: SolverSettings {
+        fallback: Fallback::Tresca,
+        ..SolverSettings::to_residual(Method::Auto, 1e-6, 500)
+    },
+};
+
+/// Forty sweeps, by all cores.
+pub(super) const FAST: Effort = Effort {
+    name: "Fast",
+    hint: "40 sweeps a step, solved or not, for large piles: slump is off by about 0.11 in the mean, as much as \
+           by Δt itself. A step of 10,000 grains takes some 10 ms.",
+    settings: SolverSettings {
+        fallback: Fallback::None,
+        ..SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40)
+    },
+};
+
+/// As the paper's figures are drawn.
+pub(super) const FIGURES: Effort = Effort {
+    name: "Figures",
+    hint: "Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are computed: the same \
+           to the last digit. Four times as slow as Trusted.",
+    settings: SolverSettings { fallback: Fallback::None, ..PILE_SOLVER },
+};
+
+/// All of them.
+pub(super) const EFFORTS: [Effort; 3] = [FAST, TRUSTED, FIGURES];
+
+/// What a pile of that many grains begins with.
+pub(super) fn for_grains(grains: usize) -> Effort {
+    if grains <= MOST_SOLVED_GRAINS { TRUSTED } else { FAST }
+}
+
+/// What a scene begins with whose user says nothing of how well its steps are to be solved: a pile what suits its
+/// size, every other what it says itself. Whoever watches must not take the impulses of an unsolved
+/// step for those of a law, so such a step is then solved under bounds of friction.
+pub(super) fn complete(scene: &mut Scene, asked: &SolverChanges) {
+    let is_pile = scene.name == Config::DEFAULT_SCENE;
+    if is_pile && scene.solver == SolverSettings::default() {
+        scene.solver = for_grains(scene.grains.len()).settings;
+    } else if asked.fallback.is_none() && scene.solver.fallback == Fallback::OfMethod {
+        scene.solver.fallback = Fallback::Tresca;
+    }
+}
