@@ -6,6 +6,7 @@
 mod course;
 mod dem;
 mod info;
+mod mean_pair;
 pub(super) mod moreau;
 mod range;
 pub(super) mod stepper;
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 pub use dem::SpringDashpot;
 pub use info::StepperInfo;
+pub use mean_pair::FractureWork;
 pub use stepper::Stepper;
 
 use super::settings::Settings;

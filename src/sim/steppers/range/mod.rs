@@ -20,6 +20,7 @@ pub(in crate::sim) use bonds::Memory;
 use self::bonds::{Solved, pass_shocks, solve_range};
 use self::shocks::Passed;
 use super::StepperInfo;
+use super::mean_pair::MeanPair;
 use crate::contact::LookAhead;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
 use crate::error::Error;
@@ -54,6 +55,10 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     check: |parameters| match parameters.cone {
         FrictionCone::Shifted => Ok(()),
         cone => Err(Error::value("cone", cone, "shifted where stepper is range")),
+    },
+    fracture_work: |world, physics, parameters| {
+        let distance = parameters.debonding_distance * world.mean_diameter;
+        MeanPair::of(world).fracture_work(physics, parameters, |force| force * distance)
     },
     ..StepperInfo::WHOLE
 };
