@@ -91,6 +91,7 @@ impl Simulation {
         let mut memory = std::mem::take(&mut self.memory);
         let pieces = max_travel::pieces(&self.state, &self.settings);
         self.take_step(pieces, &mut memory);
+        self.watch.look_at_length(memory.take_longest_step_secs(), &self.observables);
         self.memory = memory;
         self.look()
     }
