@@ -52,6 +52,15 @@ fn parameters_outside_their_range_are_named_with_value_and_range() {
     check(|s| s.parameters.friction = -0.5, "mu is -0.5, but must be a finite number ≥ 0");
     check(|s| s.solver.tolerance = 0.0, "tolerance is 0, but must be a finite number > 0");
     check(|s| s.solver.max_sweeps = 0, "max-sweeps is 0, but must be at least 1");
+    let stiffness = "but must be a finite number of N/m ≥ 0; 0 takes it from the pile's weight";
+    check(|s| s.parameters.stiffness = -1.0, &format!("stiffness is -1, {stiffness}"));
+    check(|s| s.parameters.stiffness = f64::NAN, &format!("stiffness is NaN, {stiffness}"));
+    let damping = "but must be a finite number ≥ 0; 0 takes it from rho";
+    check(|s| s.parameters.damping_ratio = -0.1, &format!("damping-ratio is -0.1, {damping}"));
+    check(
+        |s| s.parameters.damping_ratio = f64::INFINITY,
+        &format!("damping-ratio is inf, {damping}"),
+    );
     check(
         |s| s.parameters.substeps = 100_001,
         "substeps is 100001, but must be at most 100000; 0 leaves it to the stepper",

@@ -12,7 +12,7 @@ use slump::world::{Boundary, Physics};
 
 fn springs(simulation: &Simulation) -> SpringDashpot {
     let physics = simulation.physics();
-    SpringDashpot::of(simulation.world(), physics.axes, simulation.parameters().restitution)
+    SpringDashpot::of(simulation.world(), physics.axes, simulation.parameters())
 }
 
 /// Steps until two discs that meet have parted, and gives speed after over speed before.

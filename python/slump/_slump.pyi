@@ -39,6 +39,8 @@ class _Settings(TypedDict):
     cone: Literal["shifted", "compressive"]
     restitution_threshold: float
     debonding_distance: float
+    stiffness: float
+    damping_ratio: float
     substeps: int
     solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
     ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"]
@@ -64,6 +66,8 @@ class _Changes(TypedDict, total=False):
     cone: Literal["shifted", "compressive"] | None
     restitution_threshold: float | None
     debonding_distance: float | None
+    stiffness: float | None
+    damping_ratio: float | None
     substeps: int | None
     solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"] | None
     ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"] | None
@@ -89,6 +93,8 @@ class _Attributes:
     cone: Literal["shifted", "compressive"]
     restitution_threshold: float
     debonding_distance: float
+    stiffness: float
+    damping_ratio: float
     substeps: int
     solver: Literal["nsgs", "nsgs-parallel", "newton", "nncg", "apgd", "admm", "jacobi", "interior-point", "auto"]
     ordering: Literal["interleaved", "detected", "bottom-up", "symmetric", "coloured"]

@@ -22,6 +22,7 @@ pub(super) fn run() {
             stepper.info().solves,
             stepper.info().source
         ));
+        print_line(format_args!("  {:14} reads {}", "", stepper.info().settings.join(", ")));
     }
     print_line(format_args!("Methods, for steppers that solve each step's problem by one:"));
     for info in METHODS {

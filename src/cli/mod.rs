@@ -48,7 +48,8 @@ enum Command {
     /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
     Stability(stability::StabilityCommand),
     /// Print a scene, with the changes asked for, as a scene file
-    Scene(scene::SceneCommand),
+    // By far the largest of them.
+    Scene(Box<scene::SceneCommand>),
 }
 
 /// Exit code of all that went wrong, but for a signal.

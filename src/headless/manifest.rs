@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::output::Draft;
 use crate::scene::Scene;
-use crate::sim::{Alarm, Observables, Tally};
+use crate::sim::{Alarm, FractureWork, Observables, Tally};
 use crate::study::Recorded;
 
 /// `manifest.json`.
@@ -99,6 +99,12 @@ pub(super) struct RunEntry {
     /// The longest substep that is surely stable, s, where the method has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_time_step_secs: Option<f64>,
+    /// How long two grains of the mean mass that meet push each other, s, where contacts are springs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_time_secs: Option<f64>,
+    /// What it takes to break the bond of two such grains, where the contact law says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fracture_work: Option<FractureWork>,
 }
 
 /// A moment of a run.
@@ -213,6 +219,8 @@ impl RunEntry {
             capture_speed: scene.parameters.capture_speed(gravity),
             substeps: start.substeps(),
             critical_time_step_secs: start.critical_time_step_secs(),
+            contact_time_secs: start.contact_time_secs(),
+            fracture_work: start.fracture_work(),
         })
     }
 

@@ -28,11 +28,14 @@ pub enum AlarmKind {
     SweepLimit,
     /// A contact overlaps by more than 5 % of d.
     Overlap,
+    /// Bonds were about to break in a step that is too long to see it, under the law `range`.
+    BreakUnseen,
 }
 
 impl AlarmKind {
     /// All kinds.
-    pub const ALL: [Self; 4] = [Self::NotFinite, Self::GrainLost, Self::SweepLimit, Self::Overlap];
+    pub const ALL: [Self; 5] =
+        [Self::NotFinite, Self::GrainLost, Self::SweepLimit, Self::Overlap, Self::BreakUnseen];
 
     /// Its name in files.
     pub fn name(self) -> &'static str {
@@ -41,6 +44,7 @@ impl AlarmKind {
             Self::GrainLost => "grain-lost",
             Self::SweepLimit => "sweep-limit",
             Self::Overlap => "overlap",
+            Self::BreakUnseen => "break-unseen",
         }
     }
 }
@@ -54,6 +58,9 @@ pub struct Alarm {
     pub step: u64,
     /// Simulated time of that step, s.
     pub time_secs: f64,
+    /// The longest time step that would do, s, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_time_step_secs: Option<f64>,
 }
 
 impl Alarm {
@@ -64,6 +71,7 @@ impl Alarm {
             AlarmKind::GrainLost => "a grain has gone through a wall or left the world",
             AlarmKind::SweepLimit => "100 steps in a row were not solved to their tolerance",
             AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
+            AlarmKind::BreakUnseen => "bonds break faster than a step can be cut into",
         };
         let Self { step, time_secs, .. } = self;
         let advice = self.advice(settings);
@@ -73,7 +81,10 @@ impl Alarm {
     /// The change that is most likely to help.
     fn advice(&self, settings: &Settings) -> String {
         let Settings { stepper, parameters, solver, .. } = settings;
-        let smaller = format!("try a time step below {} s", parameters.time_step_secs);
+        let smaller = self.longest_time_step_secs.map_or_else(
+            || format!("try a time step below {} s", parameters.time_step_secs),
+            |secs| format!("try a time step of at most {:e} s", rounded_down(secs)),
+        );
         match self.kind {
             AlarmKind::NotFinite if stepper.reads("substeps") && parameters.substeps > 0 => {
                 format!(
@@ -81,7 +92,10 @@ impl Alarm {
                     parameters.substeps
                 )
             }
-            AlarmKind::NotFinite | AlarmKind::GrainLost | AlarmKind::Overlap => smaller,
+            AlarmKind::NotFinite
+            | AlarmKind::GrainLost
+            | AlarmKind::Overlap
+            | AlarmKind::BreakUnseen => smaller,
             AlarmKind::SweepLimit
                 if parameters.restitution_threshold == 0.0 && parameters.restitution > 0.0 =>
             {
@@ -95,6 +109,14 @@ impl Alarm {
             }
         }
     }
+}
+
+/// A number > 0 to two digits, not above itself.
+fn rounded_down(number: f64) -> f64 {
+    let unit = 10f64.powf(number.log10().floor() - 1.0);
+    let below = (number / unit).floor() * unit;
+    // As it is written, without the rounding of the product.
+    format!("{below:.1e}").parse().unwrap_or(below)
 }
 
 /// What watches over a simulation. Part of it, so that a moment that is computed anew tells the same.
@@ -154,6 +176,21 @@ impl Watch {
         }
     }
 
+    /// Tells of a step that was too long for its bonds, where one was: `longest_secs` is the longest that is not.
+    pub(super) fn look_at_length(&mut self, longest_secs: Option<f64>, observables: &Observables) {
+        let Some(longest_secs) = longest_secs else { return };
+        if !self.has(AlarmKind::BreakUnseen) {
+            let Observables { step, time_secs, .. } = *observables;
+            let longest_time_step_secs = Some(longest_secs);
+            self.alarms.push(Alarm {
+                kind: AlarmKind::BreakUnseen,
+                step,
+                time_secs,
+                longest_time_step_secs,
+            });
+        }
+    }
+
     /// Whether it watches over so many grains.
     pub(super) fn is_of(&self, grains: usize) -> bool {
         self.losses.is_of(grains)
@@ -171,7 +208,7 @@ impl Watch {
     fn raise(&mut self, kind: AlarmKind, observables: &Observables) {
         if !self.has(kind) {
             let Observables { step, time_secs, .. } = *observables;
-            self.alarms.push(Alarm { kind, step, time_secs });
+            self.alarms.push(Alarm { kind, step, time_secs, longest_time_step_secs: None });
         }
     }
 }

@@ -30,7 +30,7 @@ pub use run::RunEnding;
 pub use settings::Settings;
 pub use simulation::Simulation;
 pub use snapshot::{ContactView, GrainView, Snapshot, Surroundings};
-pub use steppers::{SpringDashpot, Stepper, StepperInfo};
+pub use steppers::{FractureWork, SpringDashpot, Stepper, StepperInfo};
 pub use stepping::{Advance, BondEnergies, Outcome, Stage};
 pub use tally::Tally;
 pub use visits::ProblemVisitor;

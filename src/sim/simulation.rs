@@ -1,5 +1,6 @@
 //! A running simulation: a world and what is needed to step it.
 
+mod numbers;
 mod saved;
 
 use std::sync::Arc;
@@ -90,6 +91,7 @@ impl Simulation {
         let mut memory = std::mem::take(&mut self.memory);
         let pieces = max_travel::pieces(&self.state, &self.settings);
         self.take_step(pieces, &mut memory);
+        self.watch.look_at_length(memory.take_longest_step_secs(), &self.observables);
         self.memory = memory;
         self.look()
     }
@@ -244,19 +246,6 @@ impl Simulation {
     pub fn set_pull(&mut self, pull: Option<Pull>) {
         let exists = |pull: &Pull| (pull.grain as usize) < self.state.world.grains.len();
         self.state.pull = pull.filter(|pull| exists(pull) && pull.target.is_finite());
-    }
-
-    /// Substeps of the next step: 1 where its problem is solved as a whole.
-    pub fn substeps(&self) -> u32 {
-        let Settings { stepper, parameters, .. } = &self.settings;
-        (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)
-    }
-
-    /// The longest substep, s, with which the springs of the next step are surely stable; none
-    /// where there are no springs.
-    pub fn critical_time_step_secs(&self) -> Option<f64> {
-        let Settings { stepper, parameters, .. } = &self.settings;
-        (stepper.info().critical_time_step_secs)(&self.state.world, self.state.physics, parameters)
     }
 
     /// What the last step measured; before the first step, the initial state.

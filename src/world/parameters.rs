@@ -134,6 +134,42 @@ settings! {
                 logarithmic: true,
             }),
         }
+        /// k of the stepper `dem`, N/m; 0 leaves it to the stepper, which takes it from the weight of the pile.
+        #[serde(default, skip_serializing_if = "is_none_given")]
+        stiffness: f64 = 0.0, {
+            name: "stiffness",
+            value_name: "K",
+            help: "Stiffness of the springs of the stepper dem, N/m; 0 takes it from the pile's weight",
+            allowed: "a finite number of N/m ≥ 0; 0 takes it from the pile's weight",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "k, stiffness",
+                symbol: "k",
+                unit: "N/m",
+                hint: "Force by overlap: a softer bond takes more work to break. 0 takes the stiffness at which \
+                       the pile's own weight makes an overlap of 1e-3 d.",
+                range: [0.0, 1e5],
+                logarithmic: true,
+            }),
+        }
+        /// ζ of the stepper `dem`: of a contact by itself, in critical damping; 0 takes that which ρ asks for.
+        /// Nothing is lost by that: no damping is ρ = 1.
+        #[serde(default, skip_serializing_if = "is_none_given")]
+        damping_ratio: f64 = 0.0, {
+            name: "damping-ratio",
+            value_name: "ZETA",
+            help: "Damping ratio of the contacts of the stepper dem, in place of rho; 0 takes it from rho",
+            allowed: "a finite number ≥ 0; 0 takes it from rho",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "ζ, damping ratio",
+                symbol: "ζ",
+                hint: "Dashpot of a contact by itself, in that of critical damping, in place of ρ. 0 takes what ρ \
+                       asks for.",
+                range: [0.0, 2.0],
+                ..Control::PLAIN
+            }),
+        }
         /// Substeps of a stepper that cuts every step; 0 leaves their number to it.
         #[serde(default, skip_serializing_if = "is_zero")]
         substeps: u32 = 0, {
@@ -159,6 +195,10 @@ fn default_debonding_distance() -> f64 {
 
 fn is_zero(count: &u32) -> bool {
     *count == 0
+}
+
+fn is_none_given(number: &f64) -> bool {
+    *number == 0.0
 }
 
 impl Parameters {

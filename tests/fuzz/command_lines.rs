@@ -64,8 +64,10 @@ const OPTIONS: [(&str, &[&str]); 25] = [
     ("--start", &["6", "6.5", "8"]),
 ];
 /// Options of which a value that is merely large is granted, and takes as long as it takes.
-const LONG: [(&str, &[&str]); 4] = [
+const LONG: [(&str, &[&str]); 6] = [
     ("--substeps", &["0", "1", "7"]),
+    ("--stiffness", &["0", "10", "1e4"]),
+    ("--damping-ratio", &["0", "0.05", "3"]),
     ("--max-sweeps", &["1", "5", "300"]),
     ("--times", &["0", "0.001", "0,0.001,0.002", "0.002,0.001"]),
     ("--fps", &["25", "1000", "0.1"]),

@@ -60,6 +60,8 @@ fn parameters(u: &mut Unstructured<'_>) -> Result<Parameters> {
         cone: *u.choose(FrictionCone::ALL)?,
         restitution_threshold: *u.choose(&[0.0, 2.0])?,
         debonding_distance: ratio(u, [1e-4, 0.1])?,
+        stiffness: *u.choose(&[0.0, 0.0, 10.0, 1e4])?,
+        damping_ratio: *u.choose(&[0.0, 0.0, 0.05, 3.0])?,
         substeps: *u.choose(&[0, 0, 1, 7])?,
     })
 }

@@ -2,8 +2,10 @@
 
 use glam::DVec2;
 use slump::scene::Scene;
+use slump::scene::paper_pile;
 use slump::scene::stability::{cantilever, column, heap, mass_ratio, overlapped};
 use slump::sim::{AlarmKind, Stepper};
+use slump::solver::{Method, StopTest};
 
 /// The kinds of alarms of a run, and what they say.
 fn alarms(scene: &Scene, steps: u32) -> Vec<(AlarmKind, String)> {
@@ -56,6 +58,49 @@ fn a_state_that_is_not_finite_is_told_of_with_what_helps() {
     let (_, words) =
         said.iter().find(|(kind, _)| *kind == AlarmKind::NotFinite).expect("it blows up");
     assert!(words.contains("more than 1 substeps"), "{words}");
+}
+
+/// A scene whose bonds break fast, by the law `range`.
+fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
+    scene.stepper = Stepper::Range;
+    scene.solver.method = Method::Newton;
+    scene.solver.stop = StopTest::Residual;
+    scene.solver.tolerance = 1e-6;
+    scene.parameters.restitution_threshold = 2.0;
+    scene.parameters.bond = bond;
+    scene.parameters.debonding_distance = 1e-4;
+    scene.parameters.time_step_secs = time_step_secs;
+    scene
+}
+
+#[test]
+fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not() {
+    // Runs until bonds have broken, or for 0.1 s: what it says of breaks, and whether there were any.
+    let run = |scene: &Scene| {
+        let mut simulation = scene.simulation().expect("a sound scene");
+        let mut broken = 0.0;
+        while simulation.time_secs() < 0.1 && broken == 0.0 {
+            let step = simulation.step().expect("finite");
+            broken = step.broken_bond_energy.unwrap_or_default();
+        }
+        let alarms = simulation.alarms().iter();
+        let unseen = alarms.filter(|alarm| alarm.kind == AlarmKind::BreakUnseen).copied();
+        (unseen.collect::<Vec<_>>(), broken > 0.0)
+    };
+    let pile = paper_pile().expect("the shipped state");
+    let long = brittle(pile.clone(), 20.0, 5e-3);
+    let (said, broke) = run(&long);
+    assert!(broke && said.len() == 1, "{said:?}");
+    // Sixteen substeps of 0.4 √(2 δc d / (Bond g)), 7.14e-5 s, are 4.57e-4 s.
+    let bond_time = (2.0 * 1e-4 * pile.mean_diameter / (20.0 * 9.8f64)).sqrt();
+    let longest = said[0].longest_time_step_secs.expect("the step that can");
+    assert!((longest - 6.4 * bond_time).abs() < 1e-12, "{longest}");
+    let words = said[0].message(&long.settings());
+    assert!(words.contains("time step of at most 4.5e-4 s"), "{words}");
+    // At that step breaks are seen; without bonds, and where none is about to break, there is nothing to see.
+    assert_eq!(run(&brittle(pile.clone(), 20.0, 4.5e-4)), (Vec::new(), true));
+    assert_eq!(run(&brittle(pile, 0.0, 5e-3)), (Vec::new(), false));
+    assert_eq!(run(&brittle(heap(5), 20.0, 5e-3)), (Vec::new(), false));
 }
 
 #[test]

@@ -25,6 +25,21 @@ fn an_alarm_stands_in_the_status_bar_until_the_run_is_reset() {
 }
 
 #[test]
+fn a_break_that_is_not_seen_is_told_of_with_the_time_step_that_sees_it() {
+    let mut config = scene("pile");
+    config.stepper = Some(Stepper::Range);
+    config.parameters.bond = Some(20.0);
+    config.parameters.time_step_secs = Some(5e-3);
+    config.parameters.debonding_distance = Some(1e-4);
+    let mut robot = Robot::open(config);
+    for _ in 0..12 {
+        robot.click("Step");
+    }
+    let said = &robot.world().alarms;
+    assert!(said.iter().any(|alarm| alarm.contains("at most 4.5e-4 s")), "{said:?}");
+}
+
+#[test]
 fn the_robust_button_pushes_the_overlap_out() {
     let mut robot = Robot::open(scene("overlap"));
     robot.click("Solver");

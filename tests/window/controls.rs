@@ -27,6 +27,26 @@ fn a_paper_value_is_one_click_away() {
 }
 
 #[test]
+fn springs_are_set_in_the_panel_which_tells_what_follows() {
+    let mut robot = Robot::open(pile());
+    robot.click("dem");
+    robot.settle();
+    robot.type_number("Bond", "20");
+    robot.type_number("k, stiffness", "2000");
+    robot.settle();
+    assert_eq!(robot.world().controls.settings.parameters.stiffness, 2000.0);
+    let (mass, g, d) = (std::f64::consts::PI * 6.25e-6, 9.8, 5e-3);
+    // C₀²/2k of two grains whose mass is near that of a disc of the mean diameter.
+    let expected = (20.0 * 0.5 * mass * g).powi(2) / 4000.0 / (mass * g * d);
+    let told = robot.world().fracture_work.expect("bonds").over_mgd;
+    assert!((told / expected - 1.0).abs() < 0.05, "{told} is not {expected}");
+    robot.harness.step();
+    for words in ["contact time t_c", "work of fracture", &format!("= {told:.1e} m g d")] {
+        assert!(robot.harness.query_by_label_contains(words).is_some(), "{words}");
+    }
+}
+
+#[test]
 fn the_run_changes_while_it_runs() {
     let mut robot = Robot::open(pile());
     robot.click("▶  Release the walls");

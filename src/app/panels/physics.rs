@@ -119,10 +119,22 @@ fn derived(ui: &mut Ui, state: &AppState, settings: &Settings) {
             let (prefix, factor) = si_prefix(escape);
             ui.label(RichText::new(format!("{:.3} {prefix}m/s", escape / factor)).color(accent));
             ui.end_row();
-            ui.label(RichText::new("work of a bond C₀δc").weak())
-                .on_hover_text("In units of m_ij·g·d: what lifts the pair's mass by a diameter.");
-            let work = parameters.bond * parameters.debonding_distance;
-            ui.label(RichText::new(format!("{work:.3} m_ij g d")).color(accent));
+        }
+        if let Some(secs) = world.contact_time_secs {
+            ui.label(RichText::new("contact time t_c").weak())
+                .on_hover_text("How long two grains of the mean mass push each other that meet.");
+            let (prefix, factor) = si_prefix(secs);
+            ui.label(RichText::new(format!("{:.3} {prefix}s", secs / factor)).color(accent));
+            ui.end_row();
+        }
+        if let Some(work) = world.fracture_work {
+            ui.label(RichText::new("work of fracture").weak()).on_hover_text(
+                "What it takes to break the bond of two grains of the mean mass m slowly: C₀δc under range, \
+                 C₀²/2k under dem. m·g·d lifts one of them by a diameter.",
+            );
+            let (prefix, factor) = si_prefix(work.joules);
+            let text = format!("{:.2} {prefix}J = {:.1e} m g d", work.joules / factor, work.over_mgd);
+            ui.label(RichText::new(text).color(accent));
             ui.end_row();
         }
     });

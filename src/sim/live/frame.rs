@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::{Controls, Curve, PastRun, Progress};
 use crate::error::Error;
-use crate::sim::{Settings, Snapshot};
+use crate::sim::{FractureWork, Settings, Snapshot};
 use crate::world::Physics;
 
 /// The newest moment of a live run.
@@ -82,6 +82,10 @@ pub struct WorldFrame {
     pub substeps: u32,
     /// The longest substep that is surely stable, s, where the method has one.
     pub critical_time_step_secs: Option<f64>,
+    /// How long two grains of the mean mass that meet push each other, s, where contacts are springs.
+    pub contact_time_secs: Option<f64>,
+    /// What it takes to break a bond slowly, where the law says so.
+    pub fracture_work: Option<FractureWork>,
     /// What went wrong up to this moment, and what is most likely to help.
     pub alarms: Vec<Arc<str>>,
     /// Why the run cannot go on from here.

@@ -58,6 +58,8 @@ impl Engine {
             step_ms: 1e3 * track.step_secs,
             substeps: track.simulation.substeps(),
             critical_time_step_secs: track.simulation.critical_time_step_secs(),
+            contact_time_secs: track.simulation.contact_time_secs(),
+            fracture_work: track.simulation.fracture_work(),
             alarms: alarms(&track.simulation),
             failure: track.failure.clone(),
         }

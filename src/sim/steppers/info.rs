@@ -1,5 +1,6 @@
 //! What the room of a way to step says of it.
 
+use super::mean_pair::FractureWork;
 use crate::error::Result;
 use crate::world::{Parameters, Physics, World};
 
@@ -21,6 +22,10 @@ pub struct StepperInfo {
     pub substeps: fn(&World, Physics, &Parameters) -> u32,
     /// The longest substep, s, that is stable whatever the grains do; none where that is no question.
     pub critical_time_step_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
+    /// How long two grains of the mean mass that meet push each other, s; none where that is no time.
+    pub contact_time_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
+    /// What it takes to break a bond slowly; none where the law does not say, or the physics has no cohesion.
+    pub fracture_work: fn(&World, Physics, &Parameters) -> Option<FractureWork>,
 }
 
 impl StepperInfo {
@@ -33,5 +38,7 @@ impl StepperInfo {
         check: |_| Ok(()),
         substeps: |_, _, _| 1,
         critical_time_step_secs: |_, _, _| None,
+        contact_time_secs: |_, _, _| None,
+        fracture_work: |_, _, _| None,
     };
 }

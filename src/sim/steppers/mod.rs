@@ -6,6 +6,7 @@
 mod course;
 mod dem;
 mod info;
+mod mean_pair;
 pub(super) mod moreau;
 mod range;
 pub(super) mod stepper;
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 pub use dem::SpringDashpot;
 pub use info::StepperInfo;
+pub use mean_pair::FractureWork;
 pub use stepper::Stepper;
 
 use super::settings::Settings;
@@ -67,6 +69,12 @@ impl Advance for Memory {
 }
 
 impl Memory {
+    /// Where a step since the last call was too long for the bonds that were about to break in it: the longest
+    /// that is not, s.
+    pub(super) fn take_longest_step_secs(&mut self) -> Option<f64> {
+        self.range.longest_step_secs.take()
+    }
+
     /// Detects the contacts of the next step and sets up its problem, as it is before any solution.
     pub(super) fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {

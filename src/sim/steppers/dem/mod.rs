@@ -11,9 +11,10 @@ mod spring_dashpot;
 
 pub use spring_dashpot::SpringDashpot;
 
-use self::spring_dashpot::{critical_time_step_secs, substeps};
+use self::spring_dashpot::{contact_time_secs, critical_time_step_secs, substeps};
 use super::StepperInfo;
 use super::course::Course;
+use super::mean_pair::MeanPair;
 use crate::contact::{Contact, ContactMemory, Impulse, law};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
@@ -25,10 +26,17 @@ use crate::solver::{Kinematics, Model};
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
-    settings: &["bond", "dt", "rho", "mu", "cone", "substeps"],
+    settings: &["bond", "dt", "rho", "mu", "cone", "stiffness", "damping-ratio", "substeps"],
     substeps,
     critical_time_step_secs: |world, physics, parameters| {
         Some(critical_time_step_secs(world, physics, parameters))
+    },
+    contact_time_secs: |world, physics, parameters| {
+        Some(contact_time_secs(world, physics, parameters))
+    },
+    fracture_work: |world, physics, parameters| {
+        let springs = SpringDashpot::of(world, physics.axes, parameters);
+        MeanPair::of(world).fracture_work(physics, parameters, |force| springs.fracture_work(force))
     },
     ..StepperInfo::WHOLE
 };
@@ -41,7 +49,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let substeps = substeps(world, physics, parameters);
     let cohesion = if physics.cohesion { parameters.bond } else { 0.0 };
     let elements = Elements {
-        springs: SpringDashpot::of(world, physics.axes, parameters.restitution),
+        springs: SpringDashpot::of(world, physics.axes, parameters),
         cohesive_acceleration: cohesion * world.gravity.magnitude(),
         friction: parameters.friction,
         substep_secs: parameters.time_step_secs / f64::from(substeps),

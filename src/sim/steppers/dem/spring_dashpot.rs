@@ -10,6 +10,20 @@
 //! e^{−2} between the two. It falls with ζ, towards 1/(4ζ²), and reaches 0 at no finite damping:
 //! smaller restitutions than [`LEAST_RESTITUTION`] are taken as that.
 //!
+//! **Contact time.** The same time at which the force ends (T. Schwager & T. Pöschel, 2007) is
+//!
+//! > t_c = (2/ω₀) arccos ζ / √(1 − ζ²),  for ζ > 1  t_c = (2/ω₀) arcosh ζ / √(ζ² − 1),
+//!
+//! π/ω₀ without damping, and ρ = e^{−ζω₀t_c}. The discs are then still parting.
+//!
+//! **Work of fracture.** A bonded pair without load rests at the overlap C₀/k, where N = 0. It resists with
+//! C₀ − kδ where it is pulled apart so slowly that the dashpot does nothing, and with nothing from δ = 0 on:
+//!
+//! > W = ∫₀^{C₀/k} (C₀ − kδ) dδ = C₀²/(2k).
+//!
+//! Thrown apart it may lose more. Where γ v_n > kδ spring and dashpot do not push, and all of C₀ pulls: a pair
+//! that leaves that fast loses C₀·C₀/k = 2W, and none loses more.
+//!
 //! **Critical time step.** Velocities first, then positions, with the forces of the beginning of
 //! the substep: a mode of frequency ω and damping ratio ζ has z² − (2 − 2ζωh − ω²h²) z + 1 − 2ζωh = 0,
 //! and its first root to leave the unit circle does so at z = −1, where ω²h² + 4ζωh = 4:
@@ -20,6 +34,7 @@
 //! mode of the whole is faster than the fastest one of a contact by itself, ω² = z k/m_ij, ζ√z.
 //! With k_t = k m_t/m_n and γ_t = γ m_t/m_n the tangential mode is as fast as the normal one.
 
+use super::super::mean_pair::MeanPair;
 use crate::sim::pull::GRAVITY_IF_NONE;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
@@ -46,22 +61,18 @@ pub struct SpringDashpot {
 }
 
 impl SpringDashpot {
-    /// Stiff enough for a pile of the world's grains, damped for restitution ρ.
-    ///
-    /// The load is the weight of a column as high as the grains are many along an axis, √n in the
-    /// plane.
-    pub fn of(world: &World, axes: u8, restitution: f64) -> Self {
-        let masses = &world.grains.masses;
-        let count = masses.len() as f64;
-        let column = if axes == 1 { count } else { count.sqrt() };
-        let g = match world.gravity.magnitude() {
-            0.0 => GRAVITY_IF_NONE,
-            magnitude => magnitude,
-        };
-        let load = column * g * masses.iter().sum::<f64>() / count;
+    /// As the parameters say; where they leave it open, stiff enough for a pile of the world's grains, and
+    /// damped for restitution ρ.
+    pub fn of(world: &World, axes: u8, parameters: &Parameters) -> Self {
         Self {
-            stiffness: load / (STATIC_OVERLAP * world.mean_diameter),
-            damping_ratio: damping_ratio(restitution),
+            stiffness: match parameters.stiffness {
+                0.0 => stiffness_for_weight(world, axes),
+                given => given,
+            },
+            damping_ratio: match parameters.damping_ratio {
+                0.0 => damping_ratio(parameters.restitution),
+                given => given,
+            },
         }
     }
 
@@ -77,6 +88,34 @@ impl SpringDashpot {
         let damping_ratio = self.damping_ratio * neighbours.sqrt();
         2.0 / frequency / (damping_ratio.hypot(1.0) + damping_ratio)
     }
+
+    /// t_c, s, of two discs of that effective mass (kg) that meet and do not cohere.
+    pub fn contact_time_secs(&self, effective_mass: f64) -> f64 {
+        let frequency = (self.stiffness / effective_mass).sqrt();
+        match angle_and_root(self.damping_ratio) {
+            Some((angle, root)) => 2.0 * angle / root / frequency,
+            None => 2.0 / frequency,
+        }
+    }
+
+    /// C₀²/(2k), J, of a bond of that C₀ (N).
+    pub fn fracture_work(&self, cohesion_force: f64) -> f64 {
+        0.5 * cohesion_force * cohesion_force / self.stiffness
+    }
+}
+
+/// The stiffness, N/m, at which the weight of a column as high as the grains are many along an axis, √n in the
+/// plane, makes the static overlap.
+fn stiffness_for_weight(world: &World, axes: u8) -> f64 {
+    let masses = &world.grains.masses;
+    let count = masses.len() as f64;
+    let column = if axes == 1 { count } else { count.sqrt() };
+    let g = match world.gravity.magnitude() {
+        0.0 => GRAVITY_IF_NONE,
+        magnitude => magnitude,
+    };
+    let load = column * g * masses.iter().sum::<f64>() / count;
+    load / (STATIC_OVERLAP * world.mean_diameter)
 }
 
 /// The ζ that gives a restitution.
@@ -100,14 +139,19 @@ fn damping_ratio(restitution: f64) -> f64 {
 
 /// The restitution that a damping ratio gives.
 fn restitution_of(damping_ratio: f64) -> f64 {
+    match angle_and_root(damping_ratio) {
+        Some((angle, root)) => (-2.0 * damping_ratio * angle / root).exp(),
+        None => (-2f64).exp(),
+    }
+}
+
+/// arccos ζ and √(1 − ζ²), or arcosh ζ and √(ζ² − 1); none at ζ = 1, where their ratio is 1.
+fn angle_and_root(damping_ratio: f64) -> Option<(f64, f64)> {
     // As a product: near 1 the difference of squares would lose its digits.
     let root = ((1.0 - damping_ratio) * (1.0 + damping_ratio)).abs().sqrt();
-    if root == 0.0 {
-        return (-2f64).exp();
-    }
-    // arccos ζ and arcosh ζ, from the root for the same reason.
+    // From the root for the same reason.
     let angle = if damping_ratio < 1.0 { root.atan2(damping_ratio) } else { root.asinh() };
-    (-2.0 * damping_ratio * angle / root).exp()
+    (root != 0.0).then_some((angle, root))
 }
 
 /// The longest stable substep, s, when the smallest grains have as many neighbours as fit.
@@ -116,7 +160,7 @@ pub(super) fn critical_time_step_secs(
     physics: Physics,
     parameters: &Parameters,
 ) -> f64 {
-    let springs = SpringDashpot::of(world, physics.axes, parameters.restitution);
+    let springs = SpringDashpot::of(world, physics.axes, parameters);
     let mut smallest = [f64::INFINITY; 2];
     for &mass in &world.grains.masses {
         smallest[1] = smallest[1].min(mass.max(smallest[0]));
@@ -125,6 +169,12 @@ pub(super) fn critical_time_step_secs(
     let effective_mass = 1.0 / (1.0 / smallest[0] + 1.0 / smallest[1]);
     let neighbours = NEIGHBOURS[usize::from(physics.axes == 1)];
     springs.critical_time_step_secs(effective_mass, neighbours)
+}
+
+/// t_c, s, of two grains of the mean mass.
+pub(super) fn contact_time_secs(world: &World, physics: Physics, parameters: &Parameters) -> f64 {
+    let springs = SpringDashpot::of(world, physics.axes, parameters);
+    springs.contact_time_secs(MeanPair::of(world).effective_mass())
 }
 
 /// As many substeps as are asked for, or as keep h at the safe fraction of the critical step.

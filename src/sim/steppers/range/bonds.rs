@@ -45,6 +45,9 @@ pub(in crate::sim) struct Memory {
     lowered: Vec<(usize, f64)>,
     /// Whether bonds were about to break in the last step.
     pub restless: bool,
+    /// Where a step was too long for the bonds that were about to break in it: the longest that is not, s.
+    #[serde(skip)]
+    pub longest_step_secs: Option<f64>,
 }
 
 /// What solving a step came to.
@@ -69,7 +72,7 @@ pub(super) fn solve_range<M: Model>(
     let mut report = SolveReport::nothing_yet();
     let of_shocks = pass_shocks(stage, remembered, settings, &mut report);
     let numbers = StepNumbers::of(stage.world(), settings);
-    let Memory { shocks, lowered, restless } = remembered;
+    let Memory { shocks, lowered, restless, .. } = remembered;
     let Stage { state, problem, memory, .. } = stage;
     let contacts = &mut state.contacts;
     let mut round = 0;

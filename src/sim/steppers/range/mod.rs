@@ -5,7 +5,8 @@
 //!
 //! * A step is long against the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile whose
 //!   bonds are not is stepped at full length. Where the step before was cut and bonds were restless to
-//!   its end, the next one is cut without being tried.
+//!   its end, the next one is cut without being tried. Where sixteen substeps are too long for a break, the
+//!   step says so, and which one would not be (`sim::alarm`).
 //! * Grains go far. A contact's normal is that of the beginning of the step, so the constraint
 //!   v_n + gap/Δt ≥ 0 bars a grain from passing another one that it would have missed: without cohesion,
 //!   where only this asks for substeps, a pile slumps too little at a large Δt.
@@ -20,6 +21,7 @@ pub(in crate::sim) use bonds::Memory;
 use self::bonds::{Solved, pass_shocks, solve_range};
 use self::shocks::Passed;
 use super::StepperInfo;
+use super::mean_pair::MeanPair;
 use crate::contact::LookAhead;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
 use crate::error::Error;
@@ -54,6 +56,10 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     check: |parameters| match parameters.cone {
         FrictionCone::Shifted => Ok(()),
         cone => Err(Error::value("cone", cone, "shifted where stepper is range")),
+    },
+    fracture_work: |world, physics, parameters| {
+        let distance = parameters.debonding_distance * world.mean_diameter;
+        MeanPair::of(world).fracture_work(physics, parameters, |force| force * distance)
     },
     ..StepperInfo::WHOLE
 };
@@ -93,6 +99,8 @@ struct Cut {
     substeps: u32,
     /// Whether it is tried as a whole first.
     whole_first: bool,
+    /// The longest step (s) in whose substeps a break is seen, where this one is longer.
+    longest_step_secs: Option<f64>,
 }
 
 impl Cut {
@@ -107,7 +115,12 @@ impl Cut {
         let bond_time = bond_time_secs(parameters.bond, world.gravity.magnitude(), distance);
         let of_bonds = (whole / (SUBSTEP_IN_BOND_TIMES * bond_time)).ceil();
         let substeps = of_travel.max(of_bonds).clamp(1.0, MOST_SUBSTEPS) as u32;
-        Self { substeps, whole_first: substeps == 1 || (of_travel <= 1.0 && !restless) }
+        let longest_secs = MOST_SUBSTEPS * SUBSTEP_IN_BOND_TIMES * bond_time;
+        Self {
+            substeps,
+            whole_first: substeps == 1 || (of_travel <= 1.0 && !restless),
+            longest_step_secs: (of_bonds > MOST_SUBSTEPS).then_some(longest_secs),
+        }
     }
 }
 
@@ -119,7 +132,7 @@ pub(super) fn advance<M: Model>(
 ) -> Outcome {
     prepare(stage, settings);
     let restless = std::mem::take(&mut memory.restless);
-    let Cut { substeps, whole_first } = Cut::of(stage.state, settings, restless);
+    let Cut { substeps, whole_first, longest_step_secs } = Cut::of(stage.state, settings, restless);
     let mut outcome = Outcome { bonds: Some(BondEnergies::default()), ..Outcome::nothing_yet() };
     if whole_first {
         match try_step(stage, settings, memory, substeps == 1) {
@@ -128,18 +141,22 @@ pub(super) fn advance<M: Model>(
             Err(given_up) => outcome.report = outcome.report.after(given_up),
         }
     }
-    stage.in_pieces(substeps, settings, outcome, |stage, settings, outcome| {
+    let outcome = stage.in_pieces(substeps, settings, outcome, |stage, settings, outcome| {
         prepare(stage, settings);
         if let Ok(piece) = try_step(stage, settings, memory, true) {
             outcome.add(piece);
         }
-    })
+    });
+    if memory.restless {
+        memory.longest_step_secs = longest_step_secs.or(memory.longest_step_secs);
+    }
+    outcome
 }
 
 /// Sets up the first problem that is solved with the loads of the step, its shocks passed.
 pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings, memory: &mut Memory) {
     prepare(stage, settings);
-    let Cut { substeps, whole_first } = Cut::of(stage.state, settings, memory.restless);
+    let Cut { substeps, whole_first, .. } = Cut::of(stage.state, settings, memory.restless);
     let first = settings.over(settings.parameters.time_step_secs / f64::from(substeps));
     let first = if whole_first { *settings } else { first };
     prepare(stage, &first);
