@@ -74,6 +74,8 @@ fn packed(kind: &str, count: usize) -> World {
         grains: Grains::new(&grains, 1.0),
         fixed_discs: Vec::new(),
         boundaries: Vec::new(),
+        motions: Vec::new(),
+        gravity_turn: None,
         gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
     }
 }

@@ -50,7 +50,7 @@ impl Lists {
                 rows.j.push(row.j);
                 rows.nx.push(row.normal[0]);
                 rows.ny.push(row.normal[1]);
-                rows.share.push(row.share);
+                rows.share.push(row.share());
                 rows.restitution.push(row.restitution_velocity);
                 rows.shifted.push(row.shifted_impulse);
                 rows.tangential.push(row.tangential_impulse);

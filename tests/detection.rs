@@ -77,6 +77,8 @@ fn random_world(kind: usize, origin: DVec2, random: &mut Pcg64) -> World {
     World {
         grains: Grains::new(&grains, 1.0),
         fixed_discs,
+        motions: Vec::new(),
+        gravity_turn: None,
         boundaries: vec![Boundary::HalfSpace {
             point: origin + DVec2::new(0.5, 0.0),
             normal: DVec2::new(2.0, 0.1),

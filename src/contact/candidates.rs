@@ -16,7 +16,7 @@ use super::broad_phase::BroadPhase;
 use super::features::Feature;
 use super::numbering::{Numbering, Other};
 use crate::error::Result;
-use crate::world::World;
+use crate::world::{Carry, World};
 
 /// How far the candidate search looks, m.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -41,11 +41,10 @@ pub struct Candidates {
     /// The boundary that each feature is a part of, by its number.
     #[serde(skip)]
     boundary_of: Vec<usize>,
-    /// Boundaries that can move, each with the number of its feature.
-    #[serde(skip)]
-    pistons: Vec<(usize, usize)>,
-    /// Longest way that a feature can have gone since the last build, m.
+    /// Longest way that a feature can have gone since the last build, as far as grains see it, m.
     way_of_features: f64,
+    /// Longest way that a fixed disc can have gone since then, m.
+    way_of_discs: f64,
     #[serde(skip)]
     broad_phase: BroadPhase,
     /// Radii of grains, then of fixed discs.
@@ -70,11 +69,8 @@ impl Candidates {
     /// # Errors
     /// Where a boundary makes no shape.
     pub fn new(world: &World, reach: Reach) -> Result<Self> {
-        let (mut features, mut boundary_of, mut pistons) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut features, mut boundary_of) = (Vec::new(), Vec::new());
         for (index, boundary) in world.boundaries.iter().enumerate() {
-            if boundary.can_move() {
-                pistons.push((index, features.len()));
-            }
             Feature::collect(boundary, &format!("boundaries[{index}]"), &mut features)?;
             boundary_of.resize(features.len(), index);
         }
@@ -84,8 +80,8 @@ impl Candidates {
             reach,
             features,
             boundary_of,
-            pistons,
             way_of_features: 0.0,
+            way_of_discs: 0.0,
             broad_phase: BroadPhase::of(&radii),
             radii,
             skins: Vec::new(),
@@ -107,19 +103,29 @@ impl Candidates {
         self.boundary_of[feature]
     }
 
-    /// The boundaries that can move, by their number, each with the number of its feature.
-    pub(crate) fn pistons(&self) -> &[(usize, usize)] {
-        &self.pistons
-    }
-
-    /// Moves features, given by their numbers, each by its way, m.
-    pub(crate) fn shift_features(&mut self, ways: impl Iterator<Item = (usize, DVec2)>) {
+    /// Has features follow their boundaries, which have just been carried; `carry_of` gives the way of a boundary
+    /// by its number. Discs have gone by `way_of_discs` at the most, m.
+    pub(crate) fn follow<'a>(
+        &mut self,
+        world: &World,
+        carry_of: impl Fn(usize) -> Option<&'a Carry>,
+        way_of_discs: f64,
+    ) {
         let mut longest = 0f64;
-        for (feature, way) in ways {
-            self.features[feature].shift(way);
-            longest = longest.max(way.length());
+        for (feature, &boundary) in self.features.iter_mut().zip(&self.boundary_of) {
+            let Some(carry) = carry_of(boundary) else { continue };
+            // What a half-space does to its distance from a grain grows with how far that is from the pivot.
+            let far = |from: f64, place: DVec2| from.max(place.distance(carry.pivot()));
+            let reach = match (carry.angle == 0.0, feature.is_half_space()) {
+                (true, _) => 0.0,
+                (false, true) => self.centres.iter().copied().fold(0.0, far),
+                (false, false) => feature.corners().fold(0.0, far),
+            };
+            longest = longest.max(carry.longest_way(reach));
+            feature.carry(carry, &world.boundaries[boundary]);
         }
         self.way_of_features += longest;
+        self.way_of_discs += way_of_discs;
     }
 
     /// The gap below which a pair touches, m.
@@ -152,7 +158,9 @@ impl Candidates {
         let grains = positions.iter().zip(&self.centres).zip(&self.skins).enumerate();
         let still_good = self.starts.len() == positions.len() + 1
             && self.way_of_features + way_of_others <= self.skin_of_features
-            && self.skins[positions.len()..].iter().all(|&skin| way_of_others <= skin)
+            && self.skins[positions.len()..]
+                .iter()
+                .all(|&skin| self.way_of_discs + way_of_others <= skin)
             && grains.take(positions.len()).all(|(at, ((&now, &then), &skin))| {
                 distance::<AXES>(now, then) + way_of_grain(at) <= skin
             });
@@ -176,7 +184,7 @@ impl Candidates {
 
     fn rebuild<const AXES: usize>(&mut self, world: &World) {
         let grain_count = world.grains.len();
-        self.way_of_features = 0.0;
+        (self.way_of_features, self.way_of_discs) = (0.0, 0.0);
         self.centres.clone_from(&world.grains.positions);
         self.centres.extend(world.fixed_discs.iter().map(|disc| disc.position));
         self.pairs.clear();

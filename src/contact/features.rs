@@ -6,7 +6,7 @@ use parry2d_f64::shape::{HalfSpace, Segment, SegmentPointLocation};
 
 use super::corners::{check_convex, check_finite, count_of};
 use crate::error::{Error, Result};
-use crate::world::Boundary;
+use crate::world::{Boundary, Carry};
 
 /// A part of a boundary that a disc touches in at most one point.
 #[derive(Clone, Debug)]
@@ -113,18 +113,39 @@ impl Feature {
         Ok(())
     }
 
-    /// Moves it, m.
-    pub(crate) fn shift(&mut self, by: DVec2) {
-        let shift =
-            |segment: &mut Segment| (segment.a, segment.b) = (segment.a + by, segment.b + by);
+    /// Follows its boundary, which has just been carried: to the last bit what would be made of it anew.
+    pub(crate) fn carry(&mut self, carry: &Carry, boundary: &Boundary) {
+        let follow = |segment: &mut Segment| {
+            (segment.a, segment.b) = (carry.place(segment.a), carry.place(segment.b));
+        };
         match self {
-            Feature::HalfSpace { point, .. } => *point += by,
-            Feature::Segment { shape, before, .. } => {
-                shift(shape);
-                before.iter_mut().for_each(shift);
+            Feature::HalfSpace { point, shape } => {
+                *point = carry.place(*point);
+                if let Boundary::HalfSpace { normal, .. } = boundary {
+                    *shape = HalfSpace::new(*normal / normal.length());
+                }
             }
-            Feature::ConvexPolygon { sides } => sides.iter_mut().for_each(shift),
+            Feature::Segment { shape, before, .. } => {
+                follow(shape);
+                before.iter_mut().for_each(follow);
+            }
+            Feature::ConvexPolygon { sides } => sides.iter_mut().for_each(follow),
         }
+    }
+
+    /// Its corners, m.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = DVec2> + '_ {
+        let (segment, sides): (_, &[Segment]) = match self {
+            Feature::HalfSpace { .. } => (None, &[]),
+            Feature::Segment { shape, .. } => (Some([shape.a, shape.b]), &[]),
+            Feature::ConvexPolygon { sides } => (None, sides),
+        };
+        segment.into_iter().flatten().chain(sides.iter().map(|side| side.a))
+    }
+
+    /// Whether it is a half-space.
+    pub(crate) fn is_half_space(&self) -> bool {
+        matches!(self, Feature::HalfSpace { .. })
     }
 
     /// Distance of `centre` from the surface (m), corners that another feature tells of included:

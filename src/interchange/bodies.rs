@@ -29,6 +29,12 @@ impl BodyForm {
             ("normal", self.normal.len(), contacts),
             ("restitution_velocity", self.restitution_velocity.len(), contacts),
         ];
+        let surface_speeds = self.surface_speed.len();
+        let lengths = lengths.into_iter().chain((surface_speeds > 0).then_some((
+            "surface_speed",
+            surface_speeds,
+            contacts,
+        )));
         for (field, found, wanted) in lengths {
             if found != wanted {
                 let field = format!("the length of bodies.{field}");
@@ -111,15 +117,15 @@ impl BodyForm {
                     continue;
                 }
                 let mass = self.mass[i as usize];
-                let share =
-                    j.map_or(1.0, |j| self.mass[j as usize] / (mass + self.mass[j as usize]));
-                let effective_mass = mass * share;
+                let share = j.map(|j| self.mass[j as usize] / (mass + self.mass[j as usize]));
+                let effective_mass = share.map_or(mass, |share| mass * share);
+                let surface_speed = self.surface_speed.get(contact).copied().unwrap_or(0.0);
                 let [normal, tangential] = starts[contact];
                 let row = Row {
                     i,
                     j: j.unwrap_or(0),
                     normal: M::Kinematics::normal(self.normal[contact]),
-                    share,
+                    of_other: share.unwrap_or(surface_speed),
                     restitution_velocity: self.restitution_velocity[contact],
                     shifted_impulse: normal / effective_mass + self.capture_speed,
                     tangential_impulse: tangential / effective_mass,

@@ -27,4 +27,8 @@ pub struct BodyForm {
     pub normal: Vec<[f64; 2]>,
     /// Restitution's term in q of each contact, m/s.
     pub restitution_velocity: Vec<f64>,
+    /// How fast the surface of the fixed body of each contact goes along t, n turned by +90°, m/s; 0 between two
+    /// bodies, and left out where none moves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub surface_speed: Vec<f64>,
 }

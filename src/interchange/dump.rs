@@ -90,6 +90,7 @@ impl ProblemVisitor for Dump<'_> {
                 })
                 .collect(),
             restitution_velocity: rows().map(|row| row.restitution_velocity).collect(),
+            surface_speed: problem.surface_speeds(),
         };
         let cohesions = || problem.rows().map(|(at, row)| row.effective_mass * problem.capture(at));
         let starts = problem.rows().flat_map(|(at, row)| {

@@ -64,6 +64,8 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
         source: None,
         data: None,
         boundaries: Vec::new(),
+        motions: Vec::new(),
+        gravity_turn: None,
         fixed_discs: Vec::new(),
         grains: vec![i, j, k],
     }

@@ -10,7 +10,10 @@ use crate::data::DataSettings;
 use crate::error::{Error, Result};
 use crate::sim::{Remedies, Settings, Simulation, Stepper};
 use crate::solver::SolverSettings;
-use crate::world::{Boundary, Disc, Grain, Grains, Gravity, Parameters, Physics, World};
+use crate::world::{
+    Boundary, Disc, Grain, Grains, Gravity, GravityTurn, Motion, Parameters, Physics,
+    TurningGravity, World, check_motions,
+};
 
 /// A scene, built-in or from a TOML file, which says the same things by the same names.
 /// Plain data, checked where a simulation is made of it ([`Scene::validate`]).
@@ -33,6 +36,9 @@ pub struct Scene {
     pub physics: Physics,
     /// The field that accelerates the grains.
     pub gravity: Gravity,
+    /// How it turns, if it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity_turn: Option<GravityTurn>,
     /// The way to step, with its contact law.
     #[serde(default)]
     pub stepper: Stepper,
@@ -59,6 +65,9 @@ pub struct Scene {
     /// Fixed discs.
     #[serde(default)]
     pub fixed_discs: Vec<Disc>,
+    /// How some of these shapes and discs move by themselves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub motions: Vec<Motion>,
     /// The moving discs.
     #[serde(default)]
     pub grains: Vec<Grain>,
@@ -182,6 +191,9 @@ impl Scene {
         {
             return Err(Error::value("gravity.centre", centre, "finite"));
         }
+        if let Some(turn) = &self.gravity_turn {
+            turn.check(&self.gravity, self.physics)?;
+        }
         if let Some(View { min, max }) = self.view
             && !(min.cmplt(max).all() && (max - min).is_finite())
         {
@@ -194,6 +206,7 @@ impl Scene {
         if self.physics.axes == 1 {
             self.validate_line()?;
         }
+        check_motions(&self.motions, &self.boundaries, self.fixed_discs.len(), self.physics.axes)?;
         Ok(())
     }
 
@@ -251,7 +264,9 @@ impl Scene {
             grains: Grains::new(&self.grains, self.areal_density),
             fixed_discs: self.fixed_discs.clone(),
             boundaries: self.boundaries.clone(),
+            motions: self.motions.clone(),
             gravity: self.gravity,
+            gravity_turn: TurningGravity::of(self.gravity, self.gravity_turn.as_ref()),
             mean_diameter: self.mean_diameter,
         };
         Simulation::new(world, self.physics, self.settings(), self.gap_tolerance)

@@ -11,6 +11,7 @@ mod cradle;
 mod csv_states;
 mod deposition;
 mod description;
+mod experiments;
 mod file;
 mod origin;
 mod pile;

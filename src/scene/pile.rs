@@ -73,6 +73,8 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Sc
         source: None,
         data: None,
         boundaries: Vec::new(),
+        motions: Vec::new(),
+        gravity_turn: None,
         fixed_discs: rough_base(base_width, DIAMETER),
         grains,
     })

@@ -1,6 +1,6 @@
 //! The built-in scenes by name.
 
-use super::{Scene, collision, cradle, paper_pile, stability};
+use super::{Scene, collision, cradle, experiments, paper_pile, stability};
 use crate::error::{Error, Result};
 
 /// What a scene is there for.
@@ -8,18 +8,21 @@ use crate::error::{Error, Result};
 pub enum SceneGroup {
     /// The paper's scenes.
     Paper,
+    /// Experiments of granular physics.
+    Experiments,
     /// Scenes made to break methods.
     Stability,
 }
 
 impl SceneGroup {
     /// All groups, in the order that lists show them.
-    pub(crate) const ALL: [Self; 2] = [Self::Paper, Self::Stability];
+    pub(crate) const ALL: [Self; 3] = [Self::Paper, Self::Experiments, Self::Stability];
 
     /// Heading of the group in lists.
     pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Paper => "Scenes",
+            Self::Experiments => "Experiments",
             Self::Stability => "Scenes made to break methods",
         }
     }
@@ -39,7 +42,7 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 23] = [
+pub const SCENES: [SceneInfo; 25] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
@@ -57,6 +60,18 @@ pub const SCENES: [SceneInfo; 23] = [
         group: SceneGroup::Paper,
         summary: "one grain dropped on a fixed one (paper section 2.2)",
         make: || Ok(collision()),
+    },
+    SceneInfo {
+        name: "drum",
+        group: SceneGroup::Experiments,
+        summary: "150 grains in a rough drum that turns: they rise with it and roll down a slope",
+        make: || Ok(experiments::drum()),
+    },
+    SceneInfo {
+        name: "vibrated",
+        group: SceneGroup::Experiments,
+        summary: "120 grains and a large one in a box that is shaken with 3 g",
+        make: || Ok(experiments::vibrated()),
     },
     SceneInfo {
         name: "column",

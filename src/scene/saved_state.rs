@@ -18,6 +18,7 @@ use super::Scene;
 use crate::error::{Error, Result};
 use crate::output::write_file;
 use crate::sim::{Simulation, Tally};
+use crate::world::Gravity;
 
 /// What files begin with.
 const MAGIC: &[u8] = b"slump-state ";
@@ -125,6 +126,9 @@ impl SavedState {
             return Err(Error::file(path, DAMAGED));
         }
         rmp_serde::from_slice(&content).map_err(|error| {
+            // Of what is not known, the list of all that is would be longer than all else.
+            let said = error.to_string();
+            let error = said.split(", expected one of").next().unwrap_or(&said);
             let reason = format!("holds no state of this layout ({error}), but must be {FORM}");
             Error::file(path, format!("{reason} with this very program"))
         })
@@ -135,9 +139,17 @@ impl SavedState {
     pub fn as_start(&self) -> Scene {
         let world = self.simulation.world();
         let grains = &world.grains;
+        let turning = world.gravity_turn.as_ref();
+        let gravity = turning.map_or(self.scene.gravity, |turning| Gravity::Uniform {
+            acceleration: turning.listed,
+        });
         Scene {
+            gravity,
+            gravity_turn: turning.map(|turning| turning.turn.clone()),
             grains: (0..grains.len()).map(|index| grains.grain(index)).collect(),
             boundaries: world.boundaries.clone(),
+            fixed_discs: world.fixed_discs.clone(),
+            motions: world.motions.clone(),
             ..self.scene.clone()
         }
     }

@@ -4,7 +4,8 @@
 //! comes from one side of a segment to the other, or through a polygon, has gone where no disc can go.
 //! Half-spaces and polygons push grains out again that are not deep inside. Ways are looked at once
 //! they are a quarter of a radius long. A disc that goes around the end of a wall stays by its radius
-//! off that end, so that no such way cuts the wall.
+//! off that end, so that no such way cuts the wall. Where walls move, ways are relative to them, and looked at in
+//! every step.
 
 use glam::DVec2;
 use parry2d_f64::shape::Segment;
@@ -37,13 +38,16 @@ pub(super) struct Losses {
     on_line: bool,
     /// Whether all grains have been looked at once: some may be in a wall from the start.
     begun: bool,
+    /// Two points of each wall when it was looked at last, m; none where no motion carries any.
+    frames: Vec<[DVec2; 2]>,
 }
 
 /// Where the world ends.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Edges {
-    /// Corners, m; none where nothing is fixed, or on open ground: grains may go where they like.
+    /// Corners, m; none where nothing is fixed, on open ground, or where what is fixed goes: grains may go where they
+    /// like.
     corners: Option<[DVec2; 2]>,
     /// A direction and how far it goes, m: down, to below all that was there at the start.
     bottom: Option<(DVec2, f64)>,
@@ -61,6 +65,10 @@ impl Losses {
             world: Edges::of(world, features),
             on_line: physics.axes == 1,
             begun: false,
+            frames: match world.motions.is_empty() {
+                true => Vec::new(),
+                false => features.iter().map(frame).collect(),
+            },
         }
     }
 
@@ -80,6 +88,7 @@ impl Losses {
             return;
         }
         let look_at_all = walls_move || !std::mem::replace(&mut self.begun, true);
+        let are_carried = !self.frames.is_empty();
         let deep = -LOST_DEPTH * world.mean_diameter;
         for (index, &to) in world.grains.positions.iter().enumerate() {
             let way = WAY_IN_RADII * world.grains.radii[index];
@@ -88,11 +97,17 @@ impl Losses {
             if !(is_long || look_at_all) || self.lost[index] {
                 continue;
             }
-            let fate = features.iter().map(|feature| fate(feature, from, to, deep)).max();
-            match fate.unwrap_or(Fate::There) {
-                Fate::Inside => {}
+            let frames = self.frames.iter().map(Some).chain(std::iter::repeat(None));
+            let fates = features.iter().zip(frames).map(|(feature, before)| {
+                let from = before.map_or(from, |before| carried(from, *before, frame(feature)));
+                (fate(feature, from, to, deep), from)
+            });
+            let (fate, carried_from) =
+                fates.max_by_key(|(fate, _)| *fate).unwrap_or((Fate::There, from));
+            match fate {
+                Fate::Inside => self.from[index] = carried_from,
                 Fate::There if !self.world.is_outside(to) => {
-                    if is_long {
+                    if is_long || are_carried {
                         self.from[index] = to;
                     }
                 }
@@ -101,6 +116,9 @@ impl Losses {
                     self.count += 1;
                 }
             }
+        }
+        for (before, feature) in self.frames.iter_mut().zip(features) {
+            *before = frame(feature);
         }
     }
 
@@ -128,6 +146,12 @@ impl Losses {
 
 impl Edges {
     fn of(world: &World, features: &[Feature]) -> Self {
+        // Where walls go, or down goes elsewhere, there is no telling where the world ends.
+        if world.gravity_turn.is_some()
+            || world.motions.iter().any(|motion| motion.course.is_some())
+        {
+            return Self::default();
+        }
         let discs = world.fixed_discs.iter().map(|disc| disc.position);
         let mut fixed: Vec<DVec2> = discs.collect();
         for feature in features {
@@ -171,6 +195,27 @@ enum Fate {
     /// Its centre is in a solid polygon, and where it comes out will tell.
     Inside,
     Lost,
+}
+
+/// Two points that go with a wall, m. A half-space asks for no way of a grain, and so for none.
+fn frame(feature: &Feature) -> [DVec2; 2] {
+    match feature {
+        Feature::HalfSpace { point, .. } => [*point; 2],
+        Feature::Segment { shape, .. } => [shape.a, shape.b],
+        Feature::ConvexPolygon { sides } => [sides[0].a, sides[0].b],
+    }
+}
+
+/// Where a place would be now had it gone with a wall from one frame to another: a grain's way across the wall is
+/// its way relative to it.
+fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
+    let [then, along_now] = [before, now].map(|[from, to]| to - from);
+    if before == now || then == DVec2::ZERO {
+        return place;
+    }
+    let offset = place - before[0];
+    let local = DVec2::new(then.dot(offset), then.perp_dot(offset)) / then.length_squared();
+    now[0] + local.x * along_now + local.y * along_now.perp()
 }
 
 /// What became of a grain that went `from` a place that is in no polygon `to` another one.

@@ -54,7 +54,7 @@ impl Simulation {
     ) -> Result<Self> {
         physics.validate()?;
         settings.validate()?;
-        world.grains.validate()?;
+        world.validate(physics)?;
         let candidates = Candidates::new(&world, reach_in(&world, gap_tolerance)?)?;
         let surroundings = Arc::new(Surroundings::of(&world));
         let mut simulation = Self {
@@ -146,7 +146,7 @@ impl Simulation {
     fn look(&mut self) -> Result<&Observables> {
         let finite = self.state.is_finite();
         let State { world, candidates, .. } = &self.state;
-        let walls = (candidates.features(), !candidates.pistons().is_empty());
+        let walls = (candidates.features(), world.has_motion());
         self.watch.look(world, walls, &mut self.observables, finite);
         if finite {
             return Ok(&self.observables);

@@ -32,12 +32,16 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// Begins a step of that length: the contacts' forces stay what they were, walls get their speeds.
+    /// Begins a step of that length: the contacts' forces stay what they were, walls get their speeds, and gravity its
+    /// direction.
     pub(crate) fn begin(&mut self, time_step_secs: f64) {
         let before = self.time_step_of_impulses_secs;
         if time_step_secs != before {
             self.contacts.scale_impulses(time_step_secs / before);
             self.time_step_of_impulses_secs = time_step_secs;
+        }
+        if let Some(turning) = &self.world.gravity_turn {
+            self.world.gravity = turning.in_next(time_step_secs);
         }
         self.walls.begin(&self.world, &self.candidates, time_step_secs);
     }
@@ -73,7 +77,7 @@ impl State {
 
     /// Speed of the fastest grain or wall of a step that has begun, m/s.
     pub(crate) fn fastest(&self) -> f64 {
-        self.fastest_with(self.walls.fastest())
+        self.fastest_with(self.walls.fastest(&self.world, &self.candidates))
     }
 
     /// Speed of the fastest grain or wall in the next step, if that is of such a length, m/s.
@@ -102,7 +106,10 @@ impl State {
                 *angle += time_step_secs * spin;
             }
         }
-        if self.walls.any_move() {
+        if let Some(turning) = &mut self.world.gravity_turn {
+            turning.turn.elapsed_secs += time_step_secs;
+        }
+        if self.walls.any_move() || !self.world.motions.is_empty() {
             self.walls.advance(&mut self.world, &mut self.candidates, time_step_secs);
         }
     }

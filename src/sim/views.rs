@@ -59,11 +59,10 @@ impl Simulation {
 
     /// What no grain moves, where it is now.
     pub(super) fn surroundings(&self) -> Arc<Surroundings> {
-        if self.state.candidates.pistons().is_empty() {
+        if !self.state.world.has_motion() {
             return Arc::clone(&self.surroundings);
         }
-        let boundaries = self.state.world.boundaries.clone();
-        Arc::new(Surroundings { boundaries, ..Surroundings::clone(&self.surroundings) })
+        Arc::new(Surroundings::of(&self.state.world))
     }
 
     /// Centre of another disc, or the nearest point of another shape, m.

@@ -1,39 +1,94 @@
-//! Walls that move along their normal (`Boundary::Piston`).
+//! Bodies that move by themselves (`world::motion`, and pistons).
 //!
-//! In a step each has one velocity: its own, or in its last step what is left of its way over Δt. The
-//! contacts see it (`StepProblem::drive`), and with the grains the wall is moved by it.
+//! In a step each has one rigid velocity: the mean of its course over Δt, or in its last step what is left of its
+//! way over Δt. The contacts see it where they touch (`solver::problem::surfaces`), and with the grains the body is
+//! carried by it.
 
 use glam::DVec2;
 
 use crate::contact::{Candidates, Contact, Numbering, Other};
-use crate::world::World;
+use crate::solver::Surface;
+use crate::world::{Boundary, Carry, RigidVelocity, World};
 
-/// The walls that move in the present step.
+/// No wall.
+const NONE: u32 = u32::MAX;
+
+/// What moves in the present step. Memory is kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,
+    /// The wall of each boundary, of each fixed disc, and of each feature, or [`NONE`].
+    of_boundary: Vec<u32>,
+    of_disc: Vec<u32>,
+    of_feature: Vec<u32>,
+    /// Whether each feature is a half-space, and whether it goes along its normal and no other way.
+    shapes: Vec<(bool, bool)>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Wall {
-    /// Its number among the boundaries.
-    boundary: usize,
-    /// Its number among their features.
-    feature: usize,
-    /// m/s.
-    velocity: DVec2,
+    mover: Mover,
+    velocity: RigidVelocity,
+    /// Along the tangent besides, m/s.
+    surface_speed: f64,
+}
+
+/// What says how a wall goes.
+#[derive(Clone, Copy, Debug)]
+enum Mover {
+    /// The boundary of that number itself.
+    Boundary(usize),
+    /// The motion of that number.
+    Motion(usize),
 }
 
 impl Walls {
     /// Begins a step of that length.
     pub(crate) fn begin(&mut self, world: &World, candidates: &Candidates, time_step_secs: f64) {
-        let walls = candidates.pistons().iter().map(|&(boundary, feature)| Wall {
-            boundary,
-            feature,
-            velocity: world.boundaries[boundary].velocity(time_step_secs),
-        });
         self.moving.clear();
-        self.moving.extend(walls.filter(|wall| wall.velocity != DVec2::ZERO));
+        let by_themselves = world.boundaries.iter().enumerate().filter_map(|(index, boundary)| {
+            let velocity = boundary.velocity_in(time_step_secs)?;
+            Some(Wall { mover: Mover::Boundary(index), velocity, surface_speed: 0.0 })
+        });
+        let by_motions = world.motions.iter().enumerate().map(|(index, motion)| Wall {
+            mover: Mover::Motion(index),
+            velocity: motion.velocity_in(time_step_secs),
+            surface_speed: motion.surface_speed,
+        });
+        let moves = |wall: &Wall| wall.velocity.moves() || wall.surface_speed != 0.0;
+        self.moving.extend(by_themselves.chain(by_motions).filter(moves));
+        if !self.moving.is_empty() {
+            self.find_bodies(world, candidates);
+        }
+    }
+
+    /// Notes which bodies move.
+    fn find_bodies(&mut self, world: &World, candidates: &Candidates) {
+        let Self { moving, of_boundary, of_disc, of_feature, shapes } = self;
+        of_boundary.clear();
+        of_boundary.resize(world.boundaries.len(), NONE);
+        of_disc.clear();
+        of_disc.resize(world.fixed_discs.len(), NONE);
+        for (number, wall) in (0..).zip(&*moving) {
+            match wall.mover {
+                Mover::Boundary(boundary) => of_boundary[boundary] = number,
+                Mover::Motion(motion) => {
+                    let motion = &world.motions[motion];
+                    motion.boundaries.iter().for_each(|&boundary| of_boundary[boundary] = number);
+                    motion.fixed_discs.iter().for_each(|&disc| of_disc[disc] = number);
+                }
+            }
+        }
+        of_feature.clear();
+        shapes.clear();
+        for feature in 0..candidates.features().len() {
+            let index = candidates.boundary_of(feature);
+            let (number, boundary) = (of_boundary[index], &world.boundaries[index]);
+            of_feature.push(number);
+            let wall = moving.get(number as usize);
+            let is_pushed = wall.is_some_and(|wall| wall.pushes(world, boundary));
+            shapes.push((boundary.is_half_space(), is_pushed));
+        }
     }
 
     /// Whether any wall moves.
@@ -41,35 +96,108 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Speed of the fastest, m/s.
-    pub(crate) fn fastest(&self) -> f64 {
-        self.moving.iter().map(|wall| wall.velocity.length()).fold(0.0, f64::max)
+    /// Speed of the fastest shape, m/s. Of a half-space that turns, that which it has at the farthest grain.
+    pub(crate) fn fastest(&self, world: &World, candidates: &Candidates) -> f64 {
+        let turns = |number: u32| {
+            self.moving.get(number as usize).map(|wall| wall.velocity).filter(|it| it.spin != 0.0)
+        };
+        let straight = self.moving.iter().map(|wall| wall.velocity.velocity.length());
+        let fastest = straight.fold(0.0, f64::max);
+        if self.moving.iter().all(|wall| wall.velocity.spin == 0.0) {
+            return fastest;
+        }
+        let discs = self.of_disc.iter().zip(&world.fixed_discs);
+        let of_discs = discs.filter_map(|(&number, disc)| {
+            let velocity = turns(number)?;
+            Some(velocity.at(disc.position).length() + velocity.spin.abs() * disc.radius)
+        });
+        let features = self.of_feature.iter().zip(candidates.features());
+        let of_features = features.filter_map(|(&number, feature)| {
+            let velocity = turns(number)?;
+            let speed = |place: DVec2| velocity.at(place).length();
+            let grains = world.grains.positions.iter().copied();
+            Some(match feature.is_half_space() {
+                true => grains.map(speed).fold(0.0, f64::max),
+                false => feature.corners().map(speed).fold(0.0, f64::max),
+            })
+        });
+        of_discs.chain(of_features).fold(fastest, f64::max)
     }
 
-    /// How fast the other body of a contact comes along its normal, m/s, if it is such a wall.
+    /// How the surface of the other body of a contact goes, if that moves.
     #[inline]
-    pub(crate) fn speed(&self, world: &World, contact: &Contact) -> f64 {
+    pub(crate) fn surface(&self, world: &World, contact: &Contact) -> Option<Surface> {
         if self.moving.is_empty() {
-            return 0.0;
+            return None;
         }
-        let Other::Feature(feature) = Numbering::of(world).other(contact.other) else { return 0.0 };
-        let wall = self.moving.iter().find(|wall| wall.feature == feature);
-        wall.map_or(0.0, |wall| wall.velocity.dot(contact.normal))
+        let (number, (is_half_space, is_pushed)) = match Numbering::of(world).other(contact.other) {
+            Other::Grain(_) => return None,
+            Other::FixedDisc(disc) => (self.of_disc[disc], (false, false)),
+            Other::Feature(feature) => (self.of_feature[feature], self.shapes[feature]),
+        };
+        let wall = self.moving.get(number as usize)?;
+        let (grain, grains) = (contact.grain as usize, &world.grains);
+        let place = grains.positions[grain] - (grains.radii[grain] + contact.gap) * contact.normal;
+        let velocity = wall.velocity.at(place);
+        Some(Surface { velocity, round: wall.surface_speed, is_half_space, is_pushed })
     }
 
-    /// Moves the walls for `secs`.
+    /// How fast the surface of the other body of a contact goes along n and t, m/s.
+    #[inline]
+    pub(crate) fn velocity(&self, world: &World, contact: &Contact) -> [f64; 2] {
+        let surface = self.surface(world, contact);
+        surface.map_or([0.0; 2], |surface| surface.along(contact.normal))
+    }
+
+    /// Moves the walls for `secs`, and all clocks on.
     pub(crate) fn advance(&self, world: &mut World, candidates: &mut Candidates, secs: f64) {
-        for wall in &self.moving {
-            world.boundaries[wall.boundary].advance(secs * wall.velocity);
+        let carries: Vec<Carry> =
+            self.moving.iter().map(|wall| wall.velocity.carry(secs)).collect();
+        let World { boundaries, fixed_discs, motions, .. } = &mut *world;
+        let of = |numbers: &[u32], at: usize| {
+            let number = *numbers.get(at)?;
+            carries.get(number as usize).filter(|carry| carry.goes())
+        };
+        for (index, boundary) in boundaries.iter_mut().enumerate() {
+            if let Some(carry) = of(&self.of_boundary, index) {
+                boundary.carry(carry);
+            }
         }
-        let ways = self.moving.iter().map(|wall| (wall.feature, secs * wall.velocity));
-        candidates.shift_features(ways);
+        let mut longest = 0f64;
+        for (index, disc) in fixed_discs.iter_mut().enumerate() {
+            if let Some(carry) = of(&self.of_disc, index) {
+                let now = carry.place(disc.position);
+                longest = longest.max(now.distance(disc.position));
+                disc.position = now;
+            }
+        }
+        let mut walls = self.moving.iter().zip(&carries).peekable();
+        for (index, motion) in motions.iter_mut().enumerate() {
+            let is_it = |wall: &Wall| matches!(wall.mover, Mover::Motion(moved) if moved == index);
+            while walls.next_if(|(wall, _)| matches!(wall.mover, Mover::Boundary(_))).is_some() {}
+            let carry = walls.next_if(|(wall, _)| is_it(wall)).map(|(_, carry)| *carry);
+            motion.advance(secs, &carry.unwrap_or_else(|| RigidVelocity::NONE.carry(secs)));
+        }
+        candidates.follow(world, |boundary| of(&self.of_boundary, boundary), longest);
     }
 
     /// Speed of the fastest wall in a next step of that length, m/s.
     pub(crate) fn fastest_in(world: &World, candidates: &Candidates, secs: f64) -> f64 {
-        let walls = candidates.pistons().iter();
-        let speeds = walls.map(|&(wall, _)| world.boundaries[wall].velocity(secs).length());
-        speeds.fold(0.0, f64::max)
+        let mut walls = Self::default();
+        walls.begin(world, candidates, secs);
+        walls.fastest(world, candidates)
+    }
+}
+
+impl Wall {
+    /// Whether it moves a boundary along its normal and no other way.
+    fn pushes(&self, world: &World, boundary: &Boundary) -> bool {
+        self.surface_speed == 0.0
+            && match self.mover {
+                Mover::Boundary(_) => true,
+                Mover::Motion(motion) => world.motions[motion]
+                    .direction(&self.velocity)
+                    .is_some_and(|direction| boundary.is_pushed_along(direction)),
+            }
     }
 }

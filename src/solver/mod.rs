@@ -31,6 +31,8 @@ pub use problem::{
     Kinematics, Line, LineBody, Measures, Model, Motion, Plane, PlaneBody, Row, SpinningPlane,
     StepModel, StepProblem, residual,
 };
-pub(crate) use problem::{ModelParts, ModelVisitor, for_each_row, measure, relative_velocities};
+pub(crate) use problem::{
+    ModelParts, ModelVisitor, Surface, for_each_row, measure, relative_velocities,
+};
 pub use settings::{SolverChanges, SolverSettings, StopTest};
 pub(crate) use slots::{Slot, SlotVisitor, Slots, visit_model};

@@ -4,7 +4,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// A disc that never moves.
+use super::carry::{Carry, RigidVelocity};
+use super::motion::within;
+
+/// A disc that no grain moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disc {
@@ -25,7 +28,8 @@ pub enum Boundary {
         /// Points out of the solid.
         normal: DVec2,
     },
-    /// A half-space that moves along its normal, whatever is in its way, and then stays.
+    /// A half-space that moves along its normal, whatever is in its way, and then stays: short for one with
+    /// such a [`Motion`](super::Motion).
     Piston {
         /// A point of the surface.
         point: DVec2,
@@ -109,41 +113,58 @@ impl Boundary {
         }
     }
 
-    /// Whether it can move. What does is a single feature of the contacts' search.
-    pub fn can_move(&self) -> bool {
-        match self {
-            Self::Piston { .. } => true,
-            Self::HalfSpace { .. }
-            | Self::Segment { .. }
-            | Self::Polyline { .. }
-            | Self::ConvexPolygon { .. } => false,
-        }
+    /// Whether it moves without a [`Motion`](super::Motion) of its own.
+    pub(crate) fn moves_by_itself(&self) -> bool {
+        matches!(self, Self::Piston { .. })
     }
 
-    /// Its mean velocity in the next `secs`, m/s.
-    pub(crate) fn velocity(&self, secs: f64) -> DVec2 {
+    /// How it goes by itself in the next `secs`; nothing where that is not at all.
+    pub(crate) fn velocity_in(&self, secs: f64) -> Option<RigidVelocity> {
         match *self {
             Self::Piston { normal, speed, travel, .. } => {
-                speed.signum() * speed.abs().min(travel / secs) * normal.normalize_or_zero()
+                let speed = within(speed, Some(travel), secs);
+                Some(RigidVelocity::straight(speed * normal.normalize_or_zero()))
             }
             Self::HalfSpace { .. }
             | Self::Segment { .. }
             | Self::Polyline { .. }
-            | Self::ConvexPolygon { .. } => DVec2::ZERO,
+            | Self::ConvexPolygon { .. } => None,
         }
     }
 
-    /// Moves it by a part of its way.
-    pub fn advance(&mut self, by: DVec2) {
+    /// Moves it.
+    pub(crate) fn carry(&mut self, carry: &Carry) {
+        let move_all = |points: &mut [DVec2]| {
+            points.iter_mut().for_each(|point| *point = carry.place(*point));
+        };
         match self {
-            Self::Piston { point, travel, .. } => {
-                *point += by;
-                *travel = (*travel - by.length()).max(0.0);
+            Self::HalfSpace { point, normal } => {
+                *point = carry.place(*point);
+                *normal = carry.turned(*normal);
             }
-            Self::HalfSpace { .. }
-            | Self::Segment { .. }
-            | Self::Polyline { .. }
-            | Self::ConvexPolygon { .. } => {}
+            Self::Piston { point, travel, .. } => {
+                *point = carry.place(*point);
+                *travel = (*travel - carry.by.length()).max(0.0);
+            }
+            Self::Segment { from, to } => {
+                (*from, *to) = (carry.place(*from), carry.place(*to));
+            }
+            Self::Polyline { points } | Self::ConvexPolygon { points } => move_all(points),
         }
+    }
+
+    /// Whether what goes in that direction goes along its normal, so that its surface does not rub.
+    pub(crate) fn is_pushed_along(&self, direction: DVec2) -> bool {
+        match self {
+            Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => {
+                normal.perp_dot(direction) == 0.0
+            }
+            Self::Segment { .. } | Self::Polyline { .. } | Self::ConvexPolygon { .. } => false,
+        }
+    }
+
+    /// Whether its surface is a line without ends.
+    pub(crate) fn is_half_space(&self) -> bool {
+        matches!(self, Self::HalfSpace { .. } | Self::Piston { .. })
     }
 }

@@ -1,19 +1,29 @@
 //! Bodies, boundaries, gravity and parameters: plain data, in SI units and f64.
 
 mod boundary;
+mod carry;
 mod grains;
 mod gravity;
+mod gravity_turn;
+mod motion;
+mod motion_check;
 mod parameters;
 mod physics;
 
 pub use boundary::{Boundary, Disc, Edge};
+pub(crate) use carry::{Carry, RigidVelocity};
 pub use grains::{Grain, Grains};
 pub use gravity::Gravity;
+pub use gravity_turn::{GravityTurn, TurnCourse, TurningGravity};
+pub use motion::{Motion, MotionCourse};
+pub(crate) use motion_check::check_motions;
 pub(crate) use parameters::MAX_SUBSTEPS;
 pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};
 pub use physics::Physics;
 
 use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
 
 /// Everything that a step reads and moves. Plain data, checked where a simulation takes it on; a running
 /// one shows its own and lends none.
@@ -22,12 +32,35 @@ use serde::{Deserialize, Serialize};
 pub struct World {
     /// The moving discs.
     pub grains: Grains,
-    /// Discs that never move, such as the rough base of the pile.
+    /// Discs that no grain moves, such as the rough base of the pile.
     pub fixed_discs: Vec<Disc>,
     /// Other shapes that no grain moves.
     pub boundaries: Vec<Boundary>,
+    /// How some of both move by themselves.
+    pub motions: Vec<Motion>,
     /// The field that accelerates the grains.
     pub gravity: Gravity,
+    /// How it turns, if it does: then `gravity` is what it is in the last step.
+    pub gravity_turn: Option<TurningGravity>,
     /// The diameter d that lengths are measured in, m.
     pub mean_diameter: f64,
+}
+
+impl World {
+    /// Checks its grains and motions, and how its gravity turns.
+    ///
+    /// # Errors
+    /// Names the first of them that does not fit.
+    pub(crate) fn validate(&self, physics: Physics) -> Result<()> {
+        self.grains.validate()?;
+        if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
+            turn.check(&self.gravity, physics)?;
+        }
+        check_motions(&self.motions, &self.boundaries, self.fixed_discs.len(), physics.axes)
+    }
+
+    /// Whether anything can move that no grain moves.
+    pub fn has_motion(&self) -> bool {
+        !self.motions.is_empty() || self.boundaries.iter().any(Boundary::moves_by_itself)
+    }
 }

@@ -101,6 +101,8 @@ pub fn scene(
         source: None,
         data: None,
         boundaries: Vec::new(),
+        motions: Vec::new(),
+        gravity_turn: None,
         fixed_discs: Vec::new(),
         grains,
     }

@@ -61,6 +61,7 @@ fn finite(simulation: &Simulation, step: &Observables) {
         step.potential_energy,
         step.normal_work,
         step.tangential_work,
+        step.wall_work,
         step.gravity_work,
         step.slump,
     ];
@@ -79,8 +80,11 @@ fn solved(scene: &Scene, step: &Observables) {
     }
 }
 
-/// Whether a grain is where none can come to.
+/// Whether a grain is where none can come to, as far as what is fixed stays.
 fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
+    if !scene.motions.is_empty() {
+        return false;
+    }
     let (from, to) = (scene.grains[grain].position, simulation.world().grains.positions[grain]);
     let unseen = UNSEEN_IN_RADII * scene.grains[grain].radius;
     let beyond = |boundary: &Boundary| match boundary {

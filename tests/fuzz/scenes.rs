@@ -5,7 +5,10 @@ use glam::DVec2;
 use slump::scene::{Scene, built_in, read_scene, scene_to_toml};
 use slump::sim::{Remedies, Stepper};
 use slump::solver::{Fallback, FrictionModel, METHODS, Ordering, SolverSettings, StopTest};
-use slump::world::{Boundary, Disc, FrictionCone, Grain, Gravity, Parameters, Physics};
+use slump::world::{
+    Boundary, Disc, FrictionCone, Grain, Gravity, GravityTurn, Motion, MotionCourse, Parameters,
+    Physics, TurnCourse,
+};
 
 use super::Target;
 use super::parsers::check;
@@ -126,7 +129,41 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     scene.fixed_discs = (0..discs).map(|_| disc(u)).collect::<Result<_>>()?;
     scene.boundaries =
         (0..u.int_in_range(0..=3)?).map(|_| boundary(u, size)).collect::<Result<_>>()?;
+    if u.ratio(1, 3)? {
+        scene.motions = vec![motion(u, size, &scene)?];
+    }
+    if u.ratio(1, 8)? && matches!(scene.gravity, Gravity::Uniform { .. }) {
+        let course = TurnCourse::Rate { rate: number(u, [-100.0, 100.0])? };
+        scene.gravity_turn = Some(GravityTurn { course, elapsed_secs: 0.0 });
+    }
     Ok(scene)
+}
+
+/// All fixed bodies that can move, on any course.
+fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> {
+    let is_free = |index: &usize| !matches!(scene.boundaries[*index], Boundary::Piston { .. });
+    let (pivot, travel) = (point(u, size)?, *u.choose(&[None, None, Some(0.0), Some(0.3)])?);
+    let frequency_hz = ratio(u, [1e-1, 1e4])?;
+    let times_secs = vec![0.0, ratio(u, [1e-5, 1.0])?];
+    let course = match u.int_in_range(0..=6)? {
+        0 => MotionCourse::Straight { direction: pivot, speed: number(u, [-3.0, 3.0])?, travel },
+        1 => MotionCourse::Rotation { pivot, rate: number(u, [-100.0, 100.0])?, travel },
+        2 => MotionCourse::Sine { amplitude: 0.1 * pivot, frequency_hz, phase: 0.5 },
+        3 => MotionCourse::Swing { pivot, amplitude: 0.5, frequency_hz, phase: 0.0 },
+        4 => MotionCourse::Table { times_secs, offsets: vec![DVec2::ZERO, point(u, size)?] },
+        5 => MotionCourse::AngleTable { pivot, times_secs, angles: vec![0.0, 3.0] },
+        _ => {
+            let boundaries = (0..scene.boundaries.len()).collect();
+            return Ok(Motion { boundaries, surface_speed: 1.0, ..Motion::default() });
+        }
+    };
+    Ok(Motion {
+        boundaries: (0..scene.boundaries.len()).filter(is_free).collect(),
+        fixed_discs: (0..scene.fixed_discs.len()).collect(),
+        course: Some(course),
+        surface_speed: *u.choose(&[0.0, 0.0, 2.0])?,
+        elapsed_secs: *u.choose(&[0.0, 0.0, 1.0])?,
+    })
 }
 
 /// One line alone, all on the x axis.
@@ -135,6 +172,8 @@ fn on_line(mut scene: Scene) -> Scene {
     for grain in &mut scene.grains {
         (grain.position.y, grain.velocity.y, grain.angular_velocity) = (0.0, 0.0, 0.0);
     }
+    scene.motions.clear();
+    scene.gravity_turn = None;
     scene.fixed_discs.iter_mut().for_each(|disc| disc.position.y = 0.0);
     scene.boundaries.retain_mut(|boundary| match boundary {
         Boundary::HalfSpace { normal, .. } | Boundary::Piston { normal, .. } => {

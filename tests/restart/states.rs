@@ -6,6 +6,7 @@ use slump::scene::{SCENES, Scene, built_in};
 use slump::setting::{Group, Kind, Value};
 use slump::sim::{AlarmKind, Pull, REMEDIES, Remedies, Remedy, Settings, Simulation, Stepper};
 use slump::solver::{FrictionModel, Method, SolverSettings};
+use slump::world::{Boundary, GravityTurn, Motion, MotionCourse, TurnCourse};
 
 use super::{bytes_of, read};
 use crate::common::{every_way, parameters, pressed_pile, start};
@@ -167,6 +168,70 @@ fn a_spring_that_pulls_and_walls_that_move_go_on() {
     assert!(pulled != 0.0, "the spring works");
     let end = goes_on(&scene, &simulation, 20, "pulled");
     assert_eq!(end.pull(), simulation.pull());
+}
+
+/// A pile on a shaken base, beside a plate that turns back and forth, a wall on its way along a table, a
+/// belt, and a wall that is about to come to its end.
+fn among_motions() -> Scene {
+    let mut scene = pressed_pile(40, 0.3, 5, parameters(5.0, 1e-3, 0.3, 0.5));
+    let at = DVec2::new;
+    scene.boundaries = vec![
+        Boundary::Segment { from: at(-0.021, 0.0), to: at(-0.023, 0.04) },
+        Boundary::HalfSpace { point: at(0.02, 0.0), normal: at(-1.0, 0.1) },
+        Boundary::ConvexPolygon { points: vec![at(0.0, 0.04), at(0.01, 0.05), at(-0.01, 0.05)] },
+        Boundary::HalfSpace { point: at(0.0, -0.004), normal: at(0.0, 1.0) },
+    ];
+    let discs = 0..scene.fixed_discs.len();
+    let amplitude = at(5e-4, 3e-4);
+    let shaken = MotionCourse::Sine { amplitude, frequency_hz: 30.0, phase: 0.2 };
+    let pivot = at(-0.021, 0.0);
+    let swing = MotionCourse::Swing { pivot, amplitude: 0.2, frequency_hz: 10.0, phase: 0.0 };
+    let table = MotionCourse::Table {
+        times_secs: vec![0.01, 0.02, 0.05],
+        offsets: vec![at(0.0, 0.0), at(-1e-3, 0.0), at(0.0, 1e-3)],
+    };
+    let turning = MotionCourse::Rotation { pivot: at(0.0, 0.045), rate: 20.0, travel: Some(0.5) };
+    let moved = |boundary: usize, course: MotionCourse| Motion {
+        boundaries: vec![boundary],
+        course: Some(course),
+        ..Motion::default()
+    };
+    scene.motions = vec![
+        Motion { fixed_discs: discs.collect(), course: Some(shaken), ..Motion::default() },
+        moved(0, swing),
+        moved(1, table),
+        moved(2, turning),
+        Motion { boundaries: vec![3], surface_speed: 0.3, ..Motion::default() },
+    ];
+    let course = TurnCourse::Rate { rate: 2.0 };
+    scene.gravity_turn = Some(GravityTurn { course, elapsed_secs: 0.0 });
+    scene.solver.max_sweeps = 60;
+    scene
+}
+
+#[test]
+fn bodies_on_their_way_go_on() {
+    for (stepper, method) in every_way() {
+        let mut scene = Scene { stepper, ..among_motions() };
+        scene.solver.method = method;
+        let mut simulation = start(&scene);
+        simulation.take_steps(17).expect("finite states");
+        let what = format!("{stepper}, {method}");
+        assert_ne!(simulation.world().boundaries, scene.boundaries, "{what}: they have moved");
+        let end = goes_on(&scene, &simulation, 20, &what);
+        let worlds = [simulation.world(), end.world()];
+        assert_ne!(worlds[0].fixed_discs, worlds[1].fixed_discs, "{what}: and go on moving");
+        // What is left of the way is in the file, and all that a new start from there takes.
+        let mut anew = start(&read(&bytes_of(&scene, &simulation)).as_start());
+        let begin = anew.world().boundaries.clone();
+        anew.take_steps(20).expect("finite states");
+        assert_eq!(begin, simulation.world().boundaries, "{what}");
+        // Under range a new start cuts its steps otherwise, and so do the bodies on their way.
+        if stepper != Stepper::Range {
+            assert_eq!(anew.world().boundaries, end.world().boundaries, "{what}");
+            assert_eq!(anew.world().gravity, end.world().gravity, "{what}");
+        }
+    }
 }
 
 #[test]

@@ -10,9 +10,10 @@ impl Candidates {
     /// # Errors
     /// Where they tell of bodies that do not exist.
     pub(crate) fn complete(self, world: &World) -> Result<Self> {
-        let Self { reach, way_of_features, skins, skin_of_features, .. } = self;
+        let Self { reach, way_of_features, way_of_discs, skins, skin_of_features, .. } = self;
         let Self { centres, starts, others, .. } = self;
-        let whole = Self { way_of_features, skin_of_features, ..Self::new(world, reach)? };
+        let whole =
+            Self { way_of_features, way_of_discs, skin_of_features, ..Self::new(world, reach)? };
         let count = world.grains.len();
         let bodies = whole.radii.len() + whole.features.len();
         let is_list = starts.len() == count + 1

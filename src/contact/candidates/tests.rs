@@ -13,6 +13,8 @@ fn rows(count: usize, radii: &[f64], mean_diameter: f64) -> World {
         grains: Grains::new(&(0..count).map(grain).collect::<Vec<_>>(), 1.0),
         fixed_discs: Vec::new(),
         boundaries: Vec::new(),
+        motions: Vec::new(),
+        gravity_turn: None,
         gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
         mean_diameter,
     }

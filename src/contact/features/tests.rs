@@ -1,4 +1,5 @@
 use super::*;
+use crate::world::{Motion, MotionCourse};
 
 fn features(boundary: Boundary) -> Vec<Feature> {
     let mut features = Vec::new();
@@ -36,24 +37,42 @@ fn a_polygon_pushes_out_through_its_nearest_side() {
 }
 
 #[test]
-fn a_feature_that_is_shifted_takes_all_of_its_surface_along() {
+fn a_feature_that_is_carried_takes_all_of_its_surface_along() {
     let corners = [DVec2::ZERO, DVec2::X, DVec2::new(0.5, 1.0)].to_vec();
-    let by = DVec2::new(4.0, -8.0);
-    for boundary in [
+    let straight = Motion {
+        course: Some(MotionCourse::Straight {
+            direction: DVec2::new(1.0, -2.0),
+            speed: 9.0,
+            travel: None,
+        }),
+        ..Motion::default()
+    };
+    let turning = MotionCourse::Rotation { pivot: DVec2::new(-1.0, 3.0), rate: -2.5, travel: None };
+    let turning = Motion { course: Some(turning), ..Motion::default() };
+    for (boundary, motion) in [
         Boundary::HalfSpace { point: DVec2::ONE, normal: DVec2::new(1.0, 2.0) },
+        Boundary::Segment { from: DVec2::ONE, to: DVec2::new(0.0, 0.5) },
         Boundary::Polyline { points: corners.clone() },
         Boundary::ConvexPolygon { points: corners },
-    ] {
-        for mut feature in features(boundary) {
+    ]
+    .into_iter()
+    .flat_map(|boundary| [&straight, &turning].map(|motion| (boundary.clone(), motion)))
+    {
+        let carry = motion.velocity_in(0.7).carry(0.7);
+        let mut there = boundary.clone();
+        there.carry(&carry);
+        let made_anew = features(there.clone());
+        for (feature, anew) in features(boundary).into_iter().zip(made_anew) {
+            let mut moved = feature.clone();
+            moved.carry(&carry, &there);
+            assert_eq!(format!("{moved:?}"), format!("{anew:?}"), "to the last bit");
             for centre in [DVec2::new(0.5, 0.25), DVec2::new(1.5, -0.5), DVec2::new(0.5, 2.0)] {
-                let before = feature.clone();
-                feature.shift(by);
-                let [then, now] = [before.distance(centre), feature.distance(centre + by)];
+                let [then, now] = [feature.distance(centre), moved.distance(carry.place(centre))];
                 assert_eq!(then.is_some(), now.is_some());
                 for ((old, far), (new, distance)) in then.into_iter().zip(now) {
-                    assert!(old.distance(new) < 1e-14 && (far - distance).abs() < 1e-14);
+                    let off = carry.turned(old).distance(new);
+                    assert!(off < 1e-14 && (far - distance).abs() < 1e-14);
                 }
-                feature = before;
             }
         }
     }

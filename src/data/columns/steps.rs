@@ -77,6 +77,12 @@ const COLUMNS: &[Declared<Observables>] = &[
         "work of the tangential contact forces in the step",
         |row| row.tangential_work,
     ),
+    Declared::number(
+        "wall_work",
+        "J",
+        "part of both that surfaces which move did in the step",
+        |row| row.wall_work,
+    ),
     Declared::number("gravity_work", "J", "work of the gravity field in the step", |row| {
         row.gravity_work
     }),

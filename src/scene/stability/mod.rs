@@ -59,7 +59,7 @@ const TOUCH: f64 = 1e-6;
 const TIME_STEP_SECS: f64 = 1e-3;
 
 /// Grains under gravity, without cohesion and restitution.
-fn dry(name: &str, grains: Vec<Grain>) -> Scene {
+pub(super) fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     Scene {
         name: name.into(),
         mean_diameter: DIAMETER,
@@ -82,6 +82,8 @@ fn dry(name: &str, grains: Vec<Grain>) -> Scene {
         source: None,
         data: None,
         boundaries: Vec::new(),
+        motions: Vec::new(),
+        gravity_turn: None,
         fixed_discs: Vec::new(),
         grains,
     }

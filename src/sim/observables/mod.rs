@@ -68,6 +68,10 @@ pub struct Observables {
     pub normal_work: f64,
     /// Work that the tangential contact forces did in this step, J.
     pub tangential_work: f64,
+    /// Work that surfaces which move did on grains in this step, a part of the two before, J: what is left of those
+    /// is what contacts took.
+    #[serde(default)]
+    pub wall_work: f64,
     /// Work of the gravity field, and of a spring that pulls a grain, in this step, J.
     pub gravity_work: f64,
     /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11), both sums over the grains that are not
@@ -203,7 +207,7 @@ fn of_state<M: Model>(
     let SolveReport { sweeps, factorisations, converged, stalled, fell_back } = report;
     let Measures { residual, model_residual, duality_gap, .. } = measures;
     let Measures { compressive_contacts, tensile_contacts, .. } = measures;
-    let Measures { normal_work, tangential_work, .. } = measures;
+    let Measures { normal_work, tangential_work, wall_work, .. } = measures;
     let [mean_overlap, max_overlap] = overlaps(state, bonds.is_some());
     let [heights, potential_energy] = heights(state);
     let dropped = initial_heights - heights;
@@ -230,6 +234,7 @@ fn of_state<M: Model>(
         potential_energy,
         normal_work,
         tangential_work,
+        wall_work,
         gravity_work,
         // On a line nothing can slump, and about a mean height of 0 a relative drop says nothing.
         slump: if M::Kinematics::AXES == 1 || initial_heights == 0.0 {
@@ -252,7 +257,7 @@ mod tests {
     /// Columns that the window does not plot.
     const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled fell_back \
         contacts compressive_contacts tensile_contacts max_overlap potential_energy normal_work \
-        tangential_work gravity_work bond_work lost_grains";
+        tangential_work wall_work gravity_work bond_work lost_grains";
 
     #[test]
     fn every_column_is_plotted_or_said_not_to_be() {

@@ -54,7 +54,7 @@ pub(in crate::sim) fn push_out(state: &mut State, time_step_secs: f64) {
         let j = numbering.other(contact.other).grain();
         let velocity_of_other = j.map_or(DVec2::ZERO, |j| grains.velocities[j]);
         let approach = (grains.velocities[i] - velocity_of_other).dot(contact.normal);
-        let approach = approach - walls.speed(world, contact);
+        let approach = approach - walls.velocity(world, contact)[0];
         let depth = -(contact.gap + time_step_secs * approach) - left;
         deepest = deepest.max(depth);
         let inverse = 1.0 / grains.masses[i] + j.map_or(0.0, |j| 1.0 / grains.masses[j]);

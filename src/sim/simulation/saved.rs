@@ -52,7 +52,7 @@ impl Simulation {
     fn complete(mut self) -> Result<Self> {
         self.settings.validate()?;
         self.state.physics.validate()?;
-        self.state.world.grains.validate()?;
+        self.state.world.validate(self.state.physics)?;
         self.state.candidates = self.state.candidates.complete(&self.state.world)?;
         let Self { state, watch, .. } = &self;
         let grains = state.world.grains.len();

@@ -30,6 +30,7 @@ pub(super) struct Works {
     normal: f64,
     tangential: f64,
     gravity: f64,
+    wall: f64,
 }
 
 impl<K: Kinematics> Course<K> {
@@ -55,9 +56,10 @@ impl<K: Kinematics> Course<K> {
         stage: &Stage<'_, M>,
         sweeps: u32,
     ) -> Outcome {
-        let Works { normal, tangential, gravity: gravity_work } = self.works;
+        let Works { normal, tangential, gravity: gravity_work, wall: wall_work } = self.works;
         let measures = measure::<M>(stage.problem);
-        let measures = Measures { normal_work: normal, tangential_work: tangential, ..measures };
+        let measures =
+            Measures { normal_work: normal, tangential_work: tangential, wall_work, ..measures };
         let report = SolveReport { sweeps, ..SolveReport::nothing_yet() };
         Outcome { report, measures, gravity_work, bonds: None }
     }
@@ -106,5 +108,10 @@ impl Works {
     pub(super) fn add(&mut self, mass: f64, impulse: [f64; 2], start: [f64; 2], end: [f64; 2]) {
         self.normal += 0.5 * mass * impulse[0] * (start[0] + end[0]);
         self.tangential += 0.5 * mass * impulse[1] * (start[1] + end[1]);
+    }
+
+    /// Counts what of it a wall did that goes with (V_n, V_t), m/s.
+    pub(super) fn add_of_wall(&mut self, mass: f64, impulse: [f64; 2], velocity: [f64; 2]) {
+        self.wall += mass * (impulse[0] * velocity[0] + impulse[1] * velocity[1]);
     }
 }

@@ -84,7 +84,7 @@ impl<'a, M: Model> Stage<'a, M> {
             ProblemNumbers { time_step_secs, friction: parameters.friction, capture_speed };
         problem.prepare::<M>(world, contacts, numbers, &settings.solver, rebound);
         if walls.any_move() {
-            problem.drive(contacts, rebound, |contact| walls.speed(world, contact));
+            problem.drive::<M>(contacts, rebound, |contact| walls.surface(world, contact));
         }
         if let Some(push) = push {
             pull::apply::<M::Kinematics>(&mut problem.free, push);

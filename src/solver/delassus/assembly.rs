@@ -63,7 +63,7 @@ impl Assembled {
             let [normal, tangential] = if pair {
                 K::relative_velocity(row.normal, free(row.i), free(row.j))
             } else {
-                K::velocity(row.normal, free(row.i))
+                row.velocity(free(row.i))
             };
             free_velocities.extend([normal + row.restitution_velocity, tangential]);
         }

@@ -27,6 +27,8 @@ pub struct Measures {
     pub normal_work: f64,
     /// Work of the tangential impulses, J.
     pub tangential_work: f64,
+    /// Of both, the work of surfaces that move, J.
+    pub wall_work: f64,
 }
 
 impl Measures {
@@ -40,8 +42,8 @@ impl Measures {
     /// Counts another piece of the same step; the contacts are those at its end.
     pub fn add(&mut self, piece: Self) {
         let Self { residual, model_residual, duality_gap, .. } = piece;
-        let Self { compressive_contacts, tensile_contacts, normal_work, tangential_work, .. } =
-            piece;
+        let Self { compressive_contacts, tensile_contacts, .. } = piece;
+        let Self { normal_work, tangential_work, wall_work, .. } = piece;
         self.residual = worst(self.residual, residual);
         self.model_residual = worst_of(self.model_residual, model_residual);
         self.duality_gap = worst_of(self.duality_gap, duality_gap);
@@ -49,6 +51,7 @@ impl Measures {
         self.tensile_contacts = tensile_contacts;
         self.normal_work += normal_work;
         self.tangential_work += tangential_work;
+        self.wall_work += wall_work;
     }
 }
 
@@ -144,6 +147,11 @@ pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measure
             measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
         }
     });
+    if problem.has_moving_walls() {
+        let [whole, tangential_part] = problem.surface_works();
+        measures.wall_work = whole;
+        measures.tangential_work += tangential_part;
+    }
     let residual = sums.residual::<M>(problem);
     let model_residual = model_residual::<M>(problem, residual);
     Measures { residual, model_residual, duality_gap: duality_gap::<M>(problem), ..measures }

@@ -10,6 +10,8 @@ mod motion;
 mod order;
 pub(super) mod prepare;
 mod step_problem;
+mod surface;
+mod surfaces;
 mod tiles;
 
 pub(crate) use self::held::{Bound, Held, LawNumbers, Opening};
@@ -25,3 +27,4 @@ pub(crate) use self::model::{ModelParts, ModelVisitor};
 pub use self::motion::Motion;
 pub(crate) use self::motion::{for_each_row, relative_velocities};
 pub use self::step_problem::{Row, StepProblem};
+pub(crate) use self::surface::Surface;

@@ -8,7 +8,8 @@ use super::step_problem::{Row, StepProblem};
 /// which nothing happens; larger: errors would go unseen.
 pub(super) const ROUNDING: f64 = 1e-14;
 
-/// Relative (normal, tangential) velocities of one contact, m/s.
+/// Relative (normal, tangential) velocities of one contact, m/s: along the tangent relative to a surface that
+/// moves.
 pub struct Motion {
     /// At the end of the step.
     pub now: [f64; 2],
@@ -24,7 +25,7 @@ pub(crate) fn for_each_row<K: Kinematics>(
     mut visit: impl FnMut(usize, &Row<K>, Motion),
 ) {
     for (number, row) in problem.fixed_rows.iter().enumerate() {
-        let of = |bodies: &[K::Body<f64>]| K::velocity(row.normal, &bodies[row.i as usize]);
+        let of = |bodies: &[K::Body<f64>]| row.velocity(&bodies[row.i as usize]);
         let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
         visit(number, row, Motion { now, before, free });
     }

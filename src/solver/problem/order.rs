@@ -205,6 +205,8 @@ mod tests {
             grains: Grains::new(&grains, 1.0),
             fixed_discs: Vec::new(),
             boundaries: Vec::new(),
+            motions: Vec::new(),
+            gravity_turn: None,
             gravity: Gravity::Uniform { acceleration: -9.8 * DVec2::Y },
             mean_diameter: 0.8,
         }

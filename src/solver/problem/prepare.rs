@@ -47,6 +47,7 @@ impl<K: Kinematics> StepProblem<K> {
         self.capture_speed = numbers.capture_speed;
         self.captures.clear();
         self.wall_speeds.clear();
+        self.surfaces.clear();
         self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
         self.masses.clone_from(&grains.masses);
         self.place_bodies(world, numbers.time_step_secs);
@@ -66,8 +67,8 @@ impl<K: Kinematics> StepProblem<K> {
             let contact = &contacts.contacts()[index];
             let (i, normal) = (contact.grain as usize, K::normal(contact.normal.to_array()));
             let j = numbering.other(contact.other).grain();
-            let ([velocity, _], mass, share) = match j {
-                None => (K::velocity(normal, &self.before[i]), grains.masses[i], 1.0),
+            let ([velocity, _], mass, of_other) = match j {
+                None => (K::velocity(normal, &self.before[i]), grains.masses[i], 0.0),
                 Some(j) => {
                     let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
                     let velocity = K::relative_velocity(normal, &self.before[i], &self.before[j]);
@@ -77,7 +78,7 @@ impl<K: Kinematics> StepProblem<K> {
             let in_touch = contacts.is_in_touch(index);
             let rebound = rebound(Approach { velocity, gap: contact.gap, in_touch });
             let start = settings.warm_start.then(|| contacts.impulses()[index]);
-            let row = self.row::<M>(contact, (mass, share), rebound, self.capture(at), start);
+            let row = self.row::<M>(contact, (mass, of_other), rebound, self.capture(at), start);
             match j {
                 None => self.fixed_rows.push(row),
                 Some(_) => self.pair_rows.push(row),
@@ -123,7 +124,7 @@ impl<K: Kinematics> StepProblem<K> {
     fn row<M: Model<Kinematics = K>>(
         &self,
         contact: &Contact,
-        (effective_mass, share): (f64, f64),
+        (effective_mass, of_other): (f64, f64),
         restitution_velocity: f64,
         capture_speed: f64,
         start: Option<Impulse>,
@@ -141,35 +142,11 @@ impl<K: Kinematics> StepProblem<K> {
             i: contact.grain,
             j: contact.other,
             normal: K::normal(contact.normal.to_array()),
-            share,
+            of_other,
             restitution_velocity,
             shifted_impulse,
             tangential_impulse,
             effective_mass,
-        }
-    }
-
-    /// Tells a problem that has just been prepared of walls that move along their normal: `speed` gives
-    /// how fast the wall of a contact comes, m/s.
-    ///
-    /// Relative to a wall of speed V a grain has v_n − V and, since the wall is a plane, the same v_t
-    /// as ever. So the law's v_n + ρ v_n^{n−1} becomes v_n − V + ρ (v_n^{n−1} − V): what is added to v_n
-    /// is another number, and no method has to know.
-    pub(crate) fn drive(
-        &mut self,
-        contacts: &ContactList,
-        rebound: impl Fn(Approach) -> f64,
-        speed: impl Fn(&Contact) -> f64,
-    ) {
-        let Self { fixed_rows, before, contact_of_row, wall_speeds, .. } = self;
-        for (row, &index) in fixed_rows.iter_mut().zip(&*contact_of_row) {
-            let contact = &contacts.contacts()[index as usize];
-            let speed = speed(contact);
-            let [velocity, _] = K::velocity(row.normal, &before[row.i as usize]);
-            let in_touch = contacts.is_in_touch(index as usize);
-            let approach = Approach { velocity: velocity - speed, gap: contact.gap, in_touch };
-            row.restitution_velocity = rebound(approach) - speed;
-            wall_speeds.push(speed);
         }
     }
 }

@@ -6,6 +6,7 @@ use super::groups::Groups;
 use super::kinematics::Kinematics;
 use super::model::Model;
 use super::order::Sorter;
+use super::surface::Surface;
 use crate::contact::{Contact, ContactList, Impulse, Numbering, Other};
 use crate::solver::friction_model::FrictionModel;
 
@@ -23,10 +24,11 @@ pub struct Row<K: Kinematics> {
     pub j: u32,
     /// n, from j to i.
     pub normal: K::Normal<f64>,
-    /// g_i = m_ij/m_i; 1 against a fixed body.
-    pub share: f64,
+    /// Of a pair g_i = m_ij/m_i ([`Row::share`]). Against a fixed body, where that is 1, how fast the body's
+    /// surface goes along t, m/s ([`Row::surface_speed`]): the law's v_t is relative to it.
+    pub of_other: f64,
     /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold, and less
-    /// the speed of a wall that comes (`StepProblem::drive`).
+    /// the speed of a wall that comes (`problem::surfaces`).
     pub restitution_velocity: f64,
     /// σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
@@ -34,6 +36,28 @@ pub struct Row<K: Kinematics> {
     pub tangential_impulse: f64,
     /// m_ij, kg.
     pub effective_mass: f64,
+}
+
+impl<K: Kinematics> Row<K> {
+    /// g_i of a pair.
+    #[inline(always)]
+    pub fn share(&self) -> f64 {
+        self.of_other
+    }
+
+    /// How fast the surface of the fixed body goes along t, m/s.
+    #[inline(always)]
+    pub fn surface_speed(&self) -> f64 {
+        self.of_other
+    }
+
+    /// (v_n, v_t) of grain i against a fixed body, m/s: v_t relative to the body's surface, v_n to a body at rest,
+    /// since the speed of a wall that comes is in `restitution_velocity`.
+    #[inline(always)]
+    pub fn velocity(&self, i: &K::Body<f64>) -> [f64; 2] {
+        let [normal, tangential] = K::velocity(self.normal, i);
+        [normal, tangential - self.surface_speed()]
+    }
 }
 
 /// All contacts of one step. Memory is kept between steps.
@@ -65,6 +89,8 @@ pub struct StepProblem<K: Kinematics> {
     pub(crate) captures: Vec<f64>,
     /// How fast the wall of each fixed row comes along the normal, m/s; empty where no wall moves.
     pub(crate) wall_speeds: Vec<f64>,
+    /// How the surface behind each of these goes, if it moves.
+    pub(super) surfaces: Vec<Option<Surface>>,
     /// What is asked of friction.
     pub(crate) friction_model: FrictionModel,
     /// What the model holds row by row as the step begins, m/s (`problem::held`); empty under Coulomb's law.
@@ -94,6 +120,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             capture_speed: 0.0,
             captures: Vec::new(),
             wall_speeds: Vec::new(),
+            surfaces: Vec::new(),
             friction_model: FrictionModel::Coulomb,
             held_at_start: Vec::new(),
             held: Vec::new(),
@@ -146,7 +173,7 @@ impl<K: Kinematics> StepProblem<K> {
         for (at, row) in (self.fixed_rows.len()..).zip(&self.pair_rows) {
             let impulse = self.reduced_impulse(at, row);
             let (mut i, mut j) = (self.bodies[row.i as usize], self.bodies[row.j as usize]);
-            K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+            K::push_pair(&mut i, &mut j, row.normal, impulse, row.share());
             self.bodies[row.i as usize] = i;
             self.bodies[row.j as usize] = j;
         }
@@ -186,12 +213,6 @@ impl<K: Kinematics> StepProblem<K> {
         if self.captures.is_empty() { self.capture_speed } else { self.captures[number] }
     }
 
-    /// How fast the wall of a row comes, by the row's number (fixed rows, then pair rows), m/s.
-    #[inline(always)]
-    pub fn wall_speed(&self, number: usize) -> f64 {
-        self.wall_speeds.get(number).copied().unwrap_or(0.0)
-    }
-
     /// (λ_n, λ_t) of a row with its number, m/s.
     #[inline(always)]
     pub fn reduced_impulse(&self, number: usize, row: &Row<K>) -> [f64; 2] {
@@ -219,7 +240,8 @@ impl<K: Kinematics> StepProblem<K> {
         }
     }
 
-    /// Visits the rows, fixed rows first, with (v_n, v_t) among these bodies, m/s.
+    /// Visits the rows, fixed rows first, with (v_n, v_t) among these bodies, m/s; v_t relative to surfaces that
+    /// move.
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,
@@ -227,19 +249,12 @@ impl<K: Kinematics> StepProblem<K> {
         mut visit: impl FnMut(&Row<K>, [f64; 2]),
     ) {
         for row in &self.fixed_rows {
-            visit(row, K::velocity(row.normal, &bodies[row.i as usize]));
+            visit(row, row.velocity(&bodies[row.i as usize]));
         }
         for row in &self.pair_rows {
             let (i, j) = (&bodies[row.i as usize], &bodies[row.j as usize]);
             visit(row, K::relative_velocity(row.normal, i, j));
         }
-    }
-
-    /// Every row, to be changed, with how fast its wall comes, m/s: 0 where that does not move.
-    pub(crate) fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<K>, f64)> {
-        let Self { fixed_rows, pair_rows, wall_speeds, .. } = self;
-        let walls = wall_speeds.iter().copied().chain(std::iter::repeat(0.0));
-        fixed_rows.iter_mut().chain(pair_rows).zip(walls)
     }
 
     /// The largest |λ_t| that a shifted normal impulse allows, m/s.

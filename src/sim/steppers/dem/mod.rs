@@ -66,9 +66,11 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         course.begin(stage);
         elements.push(stage, &course.start, &mut totals, &mut pushes);
         let bodies = &stage.problem.bodies;
-        for (contact, &(mass, impulse)) in stage.state.contacts.contacts().iter().zip(&pushes) {
+        let list = stage.state.contacts.contacts();
+        for (contact, &(mass, impulse, of_wall)) in list.iter().zip(&pushes) {
             let of = |bodies: &[_]| velocity::<M::Kinematics>(contact, bodies);
             course.works.add(mass, impulse, of(&course.start), of(bodies));
+            course.works.add_of_wall(mass, impulse, of_wall);
         }
         course.add_gravity_work(bodies, &stage.state.world.grains.masses);
         course.place(stage);
@@ -124,13 +126,13 @@ impl Elements {
     }
 
     /// Pushes the bodies by the forces that the present overlaps and the velocities `start` make.
-    /// `pushes` gets m_ij and the impulses λ (m/s) of each contact.
+    /// `pushes` gets m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
     fn push<M: Model>(
         &self,
         stage: &mut Stage<'_, M>,
         start: &[<M::Kinematics as Kinematics>::Body<f64>],
         totals: &mut Totals,
-        pushes: &mut Vec<(f64, [f64; 2])>,
+        pushes: &mut Vec<(f64, [f64; 2], [f64; 2])>,
     ) {
         let h = self.substep_secs;
         let State { world, contacts, walls, .. } = &mut *stage.state;
@@ -144,9 +146,9 @@ impl Elements {
             let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
             let mass = masses[i] * share;
             let [normal_velocity, tangential_velocity] = velocity::<M::Kinematics>(contact, start);
-            let normal_velocity = normal_velocity - walls.speed(world, contact);
-
-            self.force::<M>(memory, contact.gap, mass, [normal_velocity, tangential_velocity]);
+            let of_wall = walls.velocity(world, contact);
+            let slip = [normal_velocity - of_wall[0], tangential_velocity - of_wall[1]];
+            self.force::<M>(memory, contact.gap, mass, slip);
             let impulse = Impulse {
                 normal: h * memory.normal_force,
                 tangential: h * memory.tangential_force,
@@ -155,7 +157,7 @@ impl Elements {
             sum.tangential += impulse.tangential;
             totals.add(contact, impulse);
             let reduced = [impulse.normal / mass, impulse.tangential / mass];
-            pushes.push((mass, reduced));
+            pushes.push((mass, reduced, of_wall));
             let normal = M::Kinematics::normal(contact.normal.to_array());
             if j < bodies.len() {
                 let (mut one, mut other) = (bodies[i], bodies[j]);

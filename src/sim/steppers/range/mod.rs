@@ -193,6 +193,7 @@ fn try_step<M: Model>(
         measures.residual = worst(measures.residual, of_shocks.residual);
         measures.normal_work += of_shocks.normal_work;
         measures.tangential_work += of_shocks.tangential_work;
+        measures.wall_work += of_shocks.wall_work;
         outcome.gravity_work -= of_gravity;
     }
     separation::separate::<M>(stage.state);

@@ -106,12 +106,14 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
 /// The contacts in the order of the rows, with the forces of the step before for so long (s).
 fn soft_contacts<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<SoftContact> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
+    let fixed = problem.fixed_rows().len();
     let soft = |((number, row), &index): ((usize, &Row<M::Kinematics>), &u32)| {
         let memory = contacts.memories()[index as usize];
         let per_mass = warm_secs / row.effective_mass;
         SoftContact {
             gap: contacts.contacts()[index as usize].gap,
             wall_speed: problem.wall_speed(number),
+            surface_speed: if number < fixed { row.surface_speed() } else { 0.0 },
             capture_speed: 0.0,
             impulse: [per_mass * memory.normal_force, per_mass * memory.tangential_force],
             total: [0.0; 2],
@@ -149,6 +151,7 @@ fn end_substep<K: Kinematics>(
         contact.total[0] += contact.impulse[0];
         contact.total[1] += contact.impulse[1];
         works.add(row.effective_mass, contact.impulse, start, end);
+        works.add_of_wall(row.effective_mass, contact.impulse, contact.wall_velocity());
     }
 }
 
@@ -166,6 +169,7 @@ fn restitute<K: Kinematics>(
         let (push, before, after) = ([missing, 0.0], normal_velocity, normal_velocity + missing);
         contact.total[0] += missing;
         works.add(row.effective_mass, push, [before, 0.0], [after, 0.0]);
+        works.add_of_wall(row.effective_mass, push, contact.wall_velocity());
         push
     });
 }
@@ -188,7 +192,7 @@ fn update<K: Kinematics>(
     for (row, contact) in pair_rows.iter().zip(of_pairs) {
         let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
         let impulse = change(row, contact, K::relative_velocity(row.normal, &i, &j));
-        K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+        K::push_pair(&mut i, &mut j, row.normal, impulse, row.share());
         bodies[row.i as usize] = i;
         bodies[row.j as usize] = j;
     }

@@ -30,12 +30,21 @@ pub(super) struct SoftContact {
     pub gap: f64,
     /// How fast its wall comes, m/s.
     pub wall_speed: f64,
+    /// How fast its surface goes along the tangent, m/s.
+    pub surface_speed: f64,
     /// Bond·g·h where it is cohesive in this substep, else 0, m/s.
     pub capture_speed: f64,
     /// (λ_n, λ_t) of this substep, m/s.
     pub impulse: [f64; 2],
     /// (λ_n, λ_t) of the step so far, m/s.
     pub total: [f64; 2],
+}
+
+impl SoftContact {
+    /// (V_n, V_t) of its wall, m/s.
+    pub(super) fn wall_velocity(&self) -> [f64; 2] {
+        [self.wall_speed, self.surface_speed]
+    }
 }
 
 /// What all contacts of a step share.
@@ -102,7 +111,8 @@ impl Softness {
         if M::FRICTION {
             let bound = self.bound::<M>(shifted, contact.capture_speed);
             let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
-            contact.impulse[1] = law::coulomb(before[1] - part * tangential_velocity, bound);
+            let slip = tangential_velocity - contact.surface_speed;
+            contact.impulse[1] = law::coulomb(before[1] - part * slip, bound);
         }
         [contact.impulse[0] - before[0], contact.impulse[1] - before[1]]
     }

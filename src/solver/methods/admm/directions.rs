@@ -140,7 +140,8 @@ impl<const D: usize> Directions<D> {
             if M::FRICTION {
                 let softness = compliance * M::Kinematics::TANGENTIAL_COMPLIANCE;
                 let bound = M::friction_bound(friction, shifted, capture_speed);
-                let moved = law::coulomb(row.tangential_impulse - tangential / softness, bound);
+                let slip = if is_pair { tangential } else { tangential - row.surface_speed() };
+                let moved = law::coulomb(row.tangential_impulse - slip / softness, bound);
                 let change = softness * (moved - row.tangential_impulse);
                 row.tangential_impulse = moved;
                 let before = std::mem::replace(&mut target[1], tangential + change);

@@ -40,7 +40,7 @@ fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M::Kinemati
             i: i as u32,
             j: j as u32,
             normal: M::Kinematics::normal(normal),
-            share,
+            of_other: if is_fixed { random.random_range(-0.1..0.1) } else { share },
             restitution_velocity: random.random_range(0.0..0.3),
             shifted_impulse: random.random_range(0.0..1.0),
             tangential_impulse: 0.0,

@@ -23,7 +23,7 @@ pub(super) fn assemble<M: Model, const D: usize>(
     }
     guesses.clear();
     for row in &problem.fixed_rows {
-        let velocity = M::Kinematics::velocity(row.normal, &problem.bodies[row.i as usize]);
+        let velocity = row.velocity(&problem.bodies[row.i as usize]);
         let guess = guess::<M>(problem, row, velocity);
         guesses.push(guess);
         let gradients = M::Kinematics::gradients(row.normal);

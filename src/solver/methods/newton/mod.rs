@@ -202,7 +202,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                 M::Kinematics::gradients(row.normal);
             let body_i = &bodies[row.i as usize];
             let [mut normal_velocity, mut tangential_velocity] = if number < fixed_count {
-                M::Kinematics::velocity(row.normal, body_i)
+                row.velocity(body_i)
             } else {
                 M::Kinematics::relative_velocity(row.normal, body_i, &bodies[row.j as usize])
             };

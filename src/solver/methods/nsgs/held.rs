@@ -110,7 +110,7 @@ fn solve_single<M: Model, H: Held, const MEASURE: bool>(
     change: &mut Change,
 ) {
     let i = &mut bodies[row.i as usize];
-    let velocity = M::Kinematics::velocity(row.normal, i);
+    let velocity = row.velocity(i);
     let impulse = update::<M, H>(law, (row, held), velocity);
     M::Kinematics::push_single(i, row.normal, impulse);
     change.add::<M, MEASURE>(row.effective_mass, impulse);
@@ -127,7 +127,7 @@ fn solve_pair<M: Model, H: Held, const MEASURE: bool>(
     let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
     let velocity = M::Kinematics::relative_velocity(row.normal, &i, &j);
     let impulse = update::<M, H>(law, (row, held), velocity);
-    M::Kinematics::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+    M::Kinematics::push_pair(&mut i, &mut j, row.normal, impulse, row.share());
     bodies[row.i as usize] = i;
     bodies[row.j as usize] = j;
     change.add::<M, MEASURE>(row.effective_mass, impulse);

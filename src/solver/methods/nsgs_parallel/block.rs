@@ -39,7 +39,7 @@ impl Slot {
 pub(super) struct Block {
     i: [u32; LANES],
     j: [u32; LANES],
-    share: [f64; LANES],
+    of_other: [f64; LANES],
     normal: [[f64; LANES]; 2],
     shifted_impulse: [f64; LANES],
     tangential_impulse: [f64; LANES],
@@ -53,7 +53,7 @@ impl Block {
         let mut block = Self {
             i: [0; LANES],
             j: [0; LANES],
-            share: [0.0; LANES],
+            of_other: [0.0; LANES],
             normal: [[0.0; LANES]; 2],
             shifted_impulse: [0.0; LANES],
             tangential_impulse: [0.0; LANES],
@@ -62,7 +62,7 @@ impl Block {
         };
         for (lane, row) in rows.iter().enumerate() {
             [block.i[lane], block.j[lane]] = slots(row);
-            block.share[lane] = row.share;
+            block.of_other[lane] = row.of_other;
             [block.normal[0][lane], block.normal[1][lane]] = K::components(row.normal);
             block.shifted_impulse[lane] = row.shifted_impulse;
             block.tangential_impulse[lane] = row.tangential_impulse;
@@ -97,7 +97,7 @@ impl Block {
         let [x, y] = self.normal;
         Local {
             normal: K::normal([f64x4::simd_from(simd, x), f64x4::simd_from(simd, y)]),
-            share: f64x4::simd_from(simd, self.share),
+            of_other: f64x4::simd_from(simd, self.of_other),
             restitution_velocity: f64x4::simd_from(simd, self.restitution_velocity),
             effective_mass: f64x4::simd_from(simd, self.effective_mass),
         }
@@ -194,7 +194,7 @@ pub(super) fn squared_error<S: Simd, M: Model>(
         let local = block.local::<M::Kinematics, S>(simd);
         let i = gather::<S, M>(simd, slots, block.i);
         let velocity = if at < singles {
-            M::Kinematics::velocity(local.normal, &i)
+            local.velocity(&i)
         } else {
             let j = gather::<S, M>(simd, slots, block.j);
             M::Kinematics::relative_velocity(local.normal, &i, &j)

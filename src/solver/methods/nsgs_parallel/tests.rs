@@ -34,7 +34,7 @@ fn problem<M: Model>(seed: u64, bodies: usize, contacts: u32) -> StepProblem<M::
                 1 => normal,
                 _ => [angle.cos(), angle.sin()],
             }),
-            share: random.random_range(0.1..0.9),
+            of_other: random.random_range(0.1..0.9),
             restitution_velocity: random.random_range(-0.5..0.5),
             shifted_impulse: random.random_range(0.0..1.0),
             tangential_impulse: if M::FRICTION { random.random_range(-0.1..0.1) } else { 0.0 },
@@ -44,7 +44,7 @@ fn problem<M: Model>(seed: u64, bodies: usize, contacts: u32) -> StepProblem<M::
             0 => &mut problem.fixed_rows,
             _ => &mut problem.pair_rows,
         };
-        rows.push(Row { share: if contact % 8 == 0 { 1.0 } else { row.share }, ..row });
+        rows.push(row);
     }
     problem.sort_by_colours();
     problem.form_velocities();
@@ -119,6 +119,7 @@ fn where_nothing_would_move_the_residual_is_none_or_infinite() {
             (row.restitution_velocity, row.shifted_impulse) = (0.0, error);
             row.tangential_impulse = 0.0;
         }
+        problem.fixed_rows.iter_mut().for_each(|row| row.of_other = 0.0);
         problem.form_velocities();
         assert_eq!(residual::<Full>(&problem), expected);
         let mut memory = BlockMemory::default();

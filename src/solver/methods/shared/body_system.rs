@@ -85,9 +85,12 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
             [root * (normal + row.restitution_velocity), tangential]
         };
         velocities.clear();
-        velocities.extend(fixed_rows.iter().zip(fixed_roots).map(|(row, &root)| {
-            scaled(row, root, M::Kinematics::velocity(row.normal, &bodies[row.i as usize]))
-        }));
+        velocities.extend(
+            fixed_rows
+                .iter()
+                .zip(fixed_roots)
+                .map(|(row, &root)| scaled(row, root, row.velocity(&bodies[row.i as usize]))),
+        );
         velocities.extend(pair_rows.iter().zip(pair_roots).map(|(row, &root)| {
             let (i, j) = (&bodies[row.i as usize], &bodies[row.j as usize]);
             scaled(row, root, M::Kinematics::relative_velocity(row.normal, i, j))
@@ -138,7 +141,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
         }
         for row in pair_rows {
             let (i, j) = (weights[row.i as usize], weights[row.j as usize]);
-            weights.push(1.0 / (row.share * i + (1.0 - row.share) * j));
+            weights.push(1.0 / (row.share() * i + (1.0 - row.share()) * j));
         }
         weights.drain(..count);
     }

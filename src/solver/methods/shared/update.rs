@@ -17,16 +17,25 @@ pub(crate) type Body<M, T> = <<M as Model>::Kinematics as Kinematics>::Body<T>;
 #[derive(Clone, Copy)]
 pub(crate) struct Local<K: Kinematics, T: Lanes> {
     pub normal: K::Normal<T>,
-    pub share: T,
+    pub of_other: T,
     pub restitution_velocity: T,
     pub effective_mass: T,
+}
+
+impl<K: Kinematics, T: Lanes> Local<K, T> {
+    /// (v_n, v_t) of grains i against fixed bodies, as [`Row::velocity`] has it, m/s.
+    #[inline(always)]
+    pub(crate) fn velocity(&self, i: &K::Body<T>) -> [T; 2] {
+        let [normal, tangential] = K::velocity(self.normal, i);
+        [normal, tangential - self.of_other]
+    }
 }
 
 /// A row's [`Local`], and its (σ, λ_t).
 #[inline(always)]
 fn parts<K: Kinematics>(row: &mut Row<K>) -> (Local<K, f64>, [&mut f64; 2]) {
-    let Row { normal, share, restitution_velocity, effective_mass, .. } = *row;
-    let local = Local { normal, share, restitution_velocity, effective_mass };
+    let Row { normal, of_other, restitution_velocity, effective_mass, .. } = *row;
+    let local = Local { normal, of_other, restitution_velocity, effective_mass };
     (local, [&mut row.shifted_impulse, &mut row.tangential_impulse])
 }
 
@@ -75,7 +84,7 @@ impl Law {
         i: &mut Body<M, T>,
         change: &mut Change<T>,
     ) {
-        let velocity = M::Kinematics::velocity(local.normal, i);
+        let velocity = local.velocity(i);
         let impulse = self.update::<M, T>((local, impulse), velocity);
         M::Kinematics::push_single(i, local.normal, impulse);
         change.add::<M, MEASURE>(local.effective_mass, impulse);
@@ -92,7 +101,7 @@ impl Law {
     ) {
         let velocity = M::Kinematics::relative_velocity(local.normal, i, j);
         let impulse = self.update::<M, T>((local, impulse), velocity);
-        M::Kinematics::push_pair(i, j, local.normal, impulse, local.share);
+        M::Kinematics::push_pair(i, j, local.normal, impulse, local.of_other);
         change.add::<M, MEASURE>(local.effective_mass, impulse);
     }
 

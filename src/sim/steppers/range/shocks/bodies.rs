@@ -171,6 +171,7 @@ impl Passed {
         all.residual = worst(all.residual, measures.residual);
         all.normal_work += measures.normal_work;
         all.tangential_work += measures.tangential_work;
+        all.wall_work += measures.wall_work;
     }
 }
 

@@ -65,7 +65,7 @@ impl Shocks {
         let falls = pair.acceleration != 0.0;
         let acceleration = if falls { self.fall::<K>(i) / time_step_secs } else { DVec2::ZERO };
         let of_other = j.map_or_else(
-            || (DVec2::ZERO, problem.wall_speed(number) * pair.normal),
+            || (DVec2::ZERO, problem.shape_velocity(number, pair.normal)),
             |j| (offset(j), velocity(j)),
         );
         let (offset, velocity) = (offset(i) - of_other.0, velocity(i) - of_other.1);

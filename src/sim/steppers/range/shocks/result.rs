@@ -51,10 +51,12 @@ impl Shocks {
             };
             moved = true;
             let capture = self.capture_left(problem, around, number);
-            let wall_speed = problem.wall_speed(number);
+            let wall_speed = match normal {
+                Some(normal) => problem.turn_row(number, normal),
+                None => problem.wall_speed(number),
+            };
             let row = problem.row_at_mut(number);
             row.restitution_velocity = allowed.max(0.0) - wall_speed;
-            row.normal = normal.map_or(row.normal, |normal| K::normal(normal.to_array()));
             if let Some([before, after]) = capture {
                 row.shifted_impulse = (row.shifted_impulse - before + after).max(0.0);
                 problem.captures[number] = after;
@@ -149,9 +151,10 @@ impl Shocks {
             let [impulse, _] = problem.reduced_impulse(number, row);
             let Pair { normal, struck_at, .. } = self.pairs[number];
             let way = -struck_at * impulse * normal;
-            self.bodies[i].rest_of_way += row.share * way;
+            let share = if j.is_some() { row.share() } else { 1.0 };
+            self.bodies[i].rest_of_way += share * way;
             if let Some(j) = j {
-                self.bodies[j].rest_of_way -= (1.0 - row.share) * way;
+                self.bodies[j].rest_of_way -= (1.0 - share) * way;
             }
         }
     }

@@ -92,12 +92,14 @@ impl Shocks {
         (number, mut row): (usize, Row<K>),
     ) -> Row<K> {
         let numbers = around.numbers;
-        let wall_speed = problem.wall_speed(number);
+        let mut wall_speed = problem.wall_speed(number);
         let (i, j) = grains(problem, number, &row);
         let pair = &mut self.pairs[number];
         let (mut gained, mut closing) = (0.0, pair.speed);
         if let (true, Some(normal)) = (pair.is_next, pair.meets) {
-            row.normal = K::normal(normal.to_array());
+            wall_speed = problem.turn_row(number, normal);
+            let Row { normal: of_row, of_other, .. } = *problem.row_at(number);
+            (row.normal, row.of_other) = (of_row, of_other);
             let before = &problem.before;
             let [speed, _] = j.map_or_else(
                 || K::velocity(row.normal, &before[i]),
@@ -112,7 +114,6 @@ impl Shocks {
             let stored = around.stretch(problem, number) * problem.capture_speed;
             let squared = (pair.speed + gained).powi(2) + 2.0 * stored / numbers.time_step_secs;
             closing = -squared.sqrt();
-            problem.row_at_mut(number).normal = row.normal;
         }
         pair.gained = gained;
         self.fastest = self.fastest.max(-closing);
@@ -141,7 +142,9 @@ impl Shocks {
         } else {
             solve_together::<M>(part, memory, settings, self.least)
         };
-        let Measures { residual, normal_work, tangential_work, .. } = measure::<M>(part);
+        let Measures { residual, normal_work, mut tangential_work, .. } = measure::<M>(part);
+        let [wall_work, of_surfaces] = problem.surface_works_in(part);
+        tangential_work += of_surfaces;
         // Against the scale of the step, as all of it is.
         let residual = residual * (settings.tolerance * scale(part) / self.least).min(1.0);
         if alone && settings.stop == StopTest::Residual {
@@ -149,7 +152,7 @@ impl Shocks {
             report.converged = residual <= settings.tolerance;
         }
         let mut measures =
-            Measures { residual, normal_work, tangential_work, ..Measures::default() };
+            Measures { residual, normal_work, tangential_work, wall_work, ..Measures::default() };
         for ((_, row), &number) in part.rows().zip(&part.contact_of_row) {
             let pair = &mut self.pairs[number as usize];
             pair.impulse += row.shifted_impulse;

@@ -1,0 +1,40 @@
+//! Experiments of granular physics: grains among bodies that move.
+
+mod drum;
+mod vibrated;
+
+pub(crate) use drum::drum;
+pub(crate) use vibrated::vibrated;
+
+use glam::DVec2;
+
+use super::pile::tone_in_layers;
+use super::stability::{DIAMETER, dry};
+use super::{Scene, View};
+use crate::solver::Method;
+use crate::world::Grain;
+
+/// The golden mean less 1: its multiples are spread evenly over an interval, however many there are.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// A scene whose grains fall from where they are put, with diameters spread evenly over [0.8 d, 1.2 d]. Places are in
+/// diameters, more than 1.2 apart.
+fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
+    let grain = |(index, place): (usize, DVec2)| {
+        let part = (GOLDEN * index as f64).fract();
+        Grain::at_rest(DIAMETER * place, 0.5 * DIAMETER * (0.8 + 0.4 * part))
+    };
+    let mut grains: Vec<Grain> = places.enumerate().map(grain).collect();
+    tone_in_layers(&mut grains, DIAMETER);
+    let mut scene = dry(name, grains);
+    scene.parameters.restitution = 0.3;
+    scene.parameters.restitution_threshold = 2.0;
+    scene.parameters.time_step_secs = 5e-4;
+    scene.solver.method = Method::Auto;
+    scene
+}
+
+/// What pictures show, given in diameters.
+fn view(min: DVec2, max: DVec2) -> Option<View> {
+    Some(View { min: DIAMETER * min, max: DIAMETER * max })
+}

@@ -1,0 +1,250 @@
+//! How bodies go that no grain moves: their place over time, and the speed of a surface that goes round them.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::carry::{Carry, RigidVelocity};
+
+/// Boundaries and fixed discs that move together.
+///
+/// Its state is in itself: as it goes, `elapsed_secs` grows, and what is left to go shrinks.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Motion {
+    /// The boundaries, by their numbers from 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub boundaries: Vec<usize>,
+    /// The fixed discs, by their numbers from 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fixed_discs: Vec<usize>,
+    /// Where they go. Without it they stay where they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub course: Option<MotionCourse>,
+    /// How fast a surface goes round them that leaves their shape as it is, as the belt of a conveyor does, m/s:
+    /// positive along the outward normal turned by +90°, which is anticlockwise round a disc or a polygon.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub surface_speed: f64,
+    /// How long they have been going, s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub elapsed_secs: f64,
+}
+
+/// Where bodies go over time, from the places at which they are listed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum MotionCourse {
+    /// Straight on.
+    Straight {
+        /// Along which vector; its length means nothing.
+        direction: DVec2,
+        /// m/s along it.
+        speed: f64,
+        /// How far they have still to go, m; without end where none is given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        travel: Option<f64>,
+    },
+    /// Round a pivot.
+    Rotation {
+        /// m.
+        pivot: DVec2,
+        /// rad/s, positive anticlockwise.
+        rate: f64,
+        /// By how much they have still to turn, rad; without end where none is given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        travel: Option<f64>,
+    },
+    /// To and fro: amplitude · (sin(2π·frequency·t + phase) − sin(phase)).
+    Sine {
+        /// Furthest from the middle, m.
+        amplitude: DVec2,
+        /// Hz.
+        frequency_hz: f64,
+        /// rad.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        phase: f64,
+    },
+    /// To and fro round a pivot, by an angle that is such a sine.
+    Swing {
+        /// m.
+        pivot: DVec2,
+        /// Furthest from the middle, rad.
+        amplitude: f64,
+        /// Hz.
+        frequency_hz: f64,
+        /// rad.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        phase: f64,
+    },
+    /// Through places at times, evenly from one to the next; before the first and after the last they stay.
+    Table {
+        /// Rising, s.
+        times_secs: Vec<f64>,
+        /// One a time, m: how they lie then against how they lie at the others.
+        offsets: Vec<DVec2>,
+    },
+    /// Through angles at times, likewise, round a pivot.
+    AngleTable {
+        /// m.
+        pivot: DVec2,
+        /// Rising, s.
+        times_secs: Vec<f64>,
+        /// One a time, rad.
+        angles: Vec<f64>,
+    },
+}
+
+pub(super) fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+impl Motion {
+    /// How they go in the next `secs`.
+    pub(crate) fn velocity_in(&self, secs: f64) -> RigidVelocity {
+        let course = self.course.as_ref();
+        course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
+    }
+
+    /// A vector along which they go, if they go straight on in such a step; of any length.
+    pub(crate) fn direction(&self, velocity: &RigidVelocity) -> Option<DVec2> {
+        match &self.course {
+            Some(MotionCourse::Straight { direction, .. }) => Some(*direction),
+            Some(MotionCourse::Sine { amplitude, .. }) => Some(*amplitude),
+            _ => (velocity.spin == 0.0).then_some(velocity.velocity),
+        }
+    }
+
+    /// Takes note that they have gone on for `secs`, by `carry`.
+    pub(crate) fn advance(&mut self, secs: f64, carry: &Carry) {
+        self.elapsed_secs += secs;
+        let (left, gone) = match &mut self.course {
+            Some(MotionCourse::Straight { travel: Some(travel), .. }) => {
+                (travel, carry.by.length())
+            }
+            Some(MotionCourse::Rotation { travel: Some(travel), .. }) => {
+                (travel, carry.angle.abs())
+            }
+            _ => return,
+        };
+        *left = (*left - gone).max(0.0);
+    }
+}
+
+impl MotionCourse {
+    /// The mean velocity from `elapsed` on, for `secs`.
+    fn velocity_in(&self, elapsed: f64, secs: f64) -> RigidVelocity {
+        let times = [elapsed, elapsed + secs];
+        match self {
+            Self::Straight { direction, speed, travel } => {
+                let speed = within(*speed, *travel, secs);
+                RigidVelocity::straight(speed * direction.normalize_or_zero())
+            }
+            Self::Rotation { pivot, rate, travel } => {
+                RigidVelocity::round(*pivot, within(*rate, *travel, secs))
+            }
+            Self::Sine { amplitude, frequency_hz, phase } => {
+                RigidVelocity::straight(sine_rate(*frequency_hz, *phase, times, secs) * *amplitude)
+            }
+            Self::Swing { pivot, amplitude, frequency_hz, phase } => {
+                let rate = sine_rate(*frequency_hz, *phase, times, secs);
+                RigidVelocity::round(*pivot, rate * amplitude)
+            }
+            Self::Table { times_secs, offsets } => {
+                let [from, to] = times.map(|time| at_time(times_secs, offsets, time));
+                RigidVelocity::straight((to - from) / secs)
+            }
+            Self::AngleTable { pivot, times_secs, angles } => {
+                let [from, to] = times.map(|time| at_time(times_secs, angles, time));
+                RigidVelocity::round(*pivot, (to - from) / secs)
+            }
+        }
+    }
+}
+
+/// A speed, or what of it comes to the end of a way within `secs`. Units go with those of the way.
+pub(super) fn within(speed: f64, left: Option<f64>, secs: f64) -> f64 {
+    left.map_or(speed, |left| speed.signum() * speed.abs().min(left / secs))
+}
+
+/// The mean rate of sin(2πft + φ) between two times, 1/s.
+fn sine_rate(frequency_hz: f64, phase: f64, times: [f64; 2], secs: f64) -> f64 {
+    let [from, to] = times.map(|time| (TAU * frequency_hz * time + phase).sin());
+    (to - from) / secs
+}
+
+/// The value of a table at a time: even between its rows, and beyond them that of the nearest. The times
+/// rise, and there is at least one.
+pub(super) fn at_time<T>(times_secs: &[f64], values: &[T], time: f64) -> T
+where
+    T: Copy + std::ops::Add<Output = T> + std::ops::Sub<Output = T>,
+    f64: std::ops::Mul<T, Output = T>,
+{
+    let next = times_secs.partition_point(|&row| row <= time);
+    let (Some(before), true) = (next.checked_sub(1), next < times_secs.len()) else {
+        return values[next.min(values.len() - 1)];
+    };
+    let part = (time - times_secs[before]) / (times_secs[next] - times_secs[before]);
+    values[before] + part * (values[next] - values[before])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_even_between_its_rows_and_stays_beyond_them() {
+        let (times, values) = ([1.0, 2.0, 4.0], [10.0, 20.0, 0.0]);
+        for (time, value) in [
+            (0.0, 10.0),
+            (1.0, 10.0),
+            (1.5, 15.0),
+            (2.0, 20.0),
+            (3.0, 10.0),
+            (4.0, 0.0),
+            (9.0, 0.0),
+        ] {
+            assert_eq!(at_time(&times, &values, time), value, "at {time} s");
+        }
+        assert_eq!(at_time(&[1.0], &[7.0], 0.0), 7.0);
+        assert_eq!(at_time(&[1.0], &[7.0], 2.0), 7.0);
+    }
+
+    /// Whatever the steps, the way adds up to the course's own.
+    #[test]
+    fn steps_add_up_to_the_course() {
+        let pivot = DVec2::new(1.0, -2.0);
+        let table = vec![0.0, 0.1, 0.35];
+        let courses = [
+            MotionCourse::Straight {
+                direction: DVec2::new(0.0, 3.0),
+                speed: -2.0,
+                travel: Some(0.5),
+            },
+            MotionCourse::Sine { amplitude: DVec2::new(0.1, 0.2), frequency_hz: 7.0, phase: 0.4 },
+            MotionCourse::Table {
+                times_secs: table.clone(),
+                offsets: vec![DVec2::X, DVec2::ZERO, DVec2::new(5.0, 4.0)],
+            },
+            MotionCourse::Rotation { pivot, rate: 3.0, travel: Some(0.7) },
+            MotionCourse::Swing { pivot, amplitude: 0.3, frequency_hz: 7.0, phase: 0.4 },
+            MotionCourse::AngleTable { pivot, times_secs: table, angles: vec![1.0, 0.0, 2.5] },
+        ];
+        let sine = (TAU * 7.0 * 0.6 + 0.4).sin() - 0.4f64.sin();
+        let straight = [DVec2::new(0.0, -0.5), sine * DVec2::new(0.1, 0.2), DVec2::new(4.0, 4.0)];
+        let angles = [0.7, 0.3 * sine, 1.5];
+        for (index, course) in courses.into_iter().enumerate() {
+            let mut motion = Motion { course: Some(course), ..Motion::default() };
+            let (mut way, mut angle) = (DVec2::ZERO, 0.0);
+            for secs in [0.013; 40].into_iter().chain([0.08]) {
+                let carry = motion.velocity_in(secs).carry(secs);
+                (way, angle) = (way + carry.by, angle + carry.angle);
+                motion.advance(secs, &carry);
+            }
+            let expected = straight.get(index).copied().unwrap_or_default();
+            assert!(way.distance(expected) < 1e-12, "{motion:?}: {way}");
+            let expected = index.checked_sub(3).map_or(0.0, |index| angles[index]);
+            assert!((angle - expected).abs() < 1e-12, "{motion:?}: {angle}");
+        }
+    }
+}

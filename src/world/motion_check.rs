@@ -1,0 +1,149 @@
+//! Whether the motions of a scene are such as bodies can have.
+
+use glam::DVec2;
+
+use super::{Boundary, Motion, MotionCourse};
+use crate::error::{Error, Result};
+
+/// Checks motions against the boundaries, the number of fixed discs, and the number of axes that they are for.
+///
+/// # Errors
+/// Names the first motion, or body of one, that does not fit.
+pub(crate) fn check_motions(
+    motions: &[Motion],
+    boundaries: &[Boundary],
+    fixed_discs: usize,
+    axes: u8,
+) -> Result<()> {
+    let mut moved_by = [vec![None; boundaries.len()], vec![None; fixed_discs]];
+    for (index, motion) in motions.iter().enumerate() {
+        let field = format!("motions[{index}]");
+        let lists = [("boundaries", &motion.boundaries), ("fixed_discs", &motion.fixed_discs)];
+        if lists.iter().all(|(_, list)| list.is_empty()) {
+            return Err(Error::value(field, "of no body", "of a boundary or a fixed disc"));
+        }
+        for ((name, list), moved_by) in lists.into_iter().zip(&mut moved_by) {
+            for &body in list {
+                let field = format!("{field}.{name}");
+                let count = moved_by.len();
+                let Some(earlier) = moved_by.get_mut(body) else {
+                    let allowed = format!("below {count}, the number of {name}");
+                    return Err(Error::value(field, body, allowed));
+                };
+                if let Some(earlier) = earlier.replace(index) {
+                    let found = format!("{body}, which motions[{earlier}] moves");
+                    return Err(Error::value(field, found, "a body that is named once"));
+                }
+                if name == "boundaries" && matches!(boundaries[body], Boundary::Piston { .. }) {
+                    let found = format!("{body}, a piston");
+                    return Err(Error::value(field, found, "a shape that does not move by itself"));
+                }
+            }
+        }
+        check_numbers(motion, &field)?;
+        if axes == 1 && !stays_on_line(motion) {
+            let allowed = "along the x axis where physics.axes is 1";
+            return Err(Error::value(field, "off the x axis", allowed));
+        }
+    }
+    Ok(())
+}
+
+fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
+    let finite = |name: &str, value: f64| match value.is_finite() {
+        true => Ok(()),
+        false => Err(Error::value(format!("{field}.{name}"), value, "finite")),
+    };
+    let finite_point = |name: &str, value: DVec2| match value.is_finite() {
+        true => Ok(()),
+        false => Err(Error::value(format!("{field}.{name}"), value, "finite")),
+    };
+    let least = |name: &str, value: f64| match value >= 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(Error::value(format!("{field}.{name}"), value, "a finite number ≥ 0")),
+    };
+    finite("surface_speed", motion.surface_speed)?;
+    least("elapsed_secs", motion.elapsed_secs)?;
+    match &motion.course {
+        None => Ok(()),
+        Some(MotionCourse::Straight { direction, speed, travel }) => {
+            let length = direction.length();
+            if !(length > 0.0 && length.is_finite()) {
+                let field = format!("{field}.course.direction");
+                return Err(Error::value(field, direction, "finite and not 0"));
+            }
+            finite("course.speed", *speed)?;
+            least("course.travel", travel.unwrap_or(0.0))
+        }
+        Some(MotionCourse::Rotation { pivot, rate, travel }) => {
+            finite_point("course.pivot", *pivot)?;
+            finite("course.rate", *rate)?;
+            least("course.travel", travel.unwrap_or(0.0))
+        }
+        Some(MotionCourse::Sine { amplitude, frequency_hz, phase }) => {
+            finite_point("course.amplitude", *amplitude)?;
+            least("course.frequency_hz", *frequency_hz)?;
+            finite("course.phase", *phase)
+        }
+        Some(MotionCourse::Swing { pivot, amplitude, frequency_hz, phase }) => {
+            finite_point("course.pivot", *pivot)?;
+            finite("course.amplitude", *amplitude)?;
+            least("course.frequency_hz", *frequency_hz)?;
+            finite("course.phase", *phase)
+        }
+        Some(MotionCourse::Table { times_secs, offsets }) => {
+            let finite = offsets.iter().map(|offset| offset.is_finite());
+            check_table(&format!("{field}.course"), times_secs, ("offsets", finite))
+        }
+        Some(MotionCourse::AngleTable { pivot, times_secs, angles }) => {
+            finite_point("course.pivot", *pivot)?;
+            let finite = angles.iter().map(|angle| angle.is_finite());
+            check_table(&format!("{field}.course"), times_secs, ("angles", finite))
+        }
+    }
+}
+
+/// Checks the times of a table, and its values, of which it is known whether each is finite.
+///
+/// # Errors
+/// Names the first time or value that does not fit.
+pub(super) fn check_table(
+    field: &str,
+    times_secs: &[f64],
+    (name, values): (&str, impl ExactSizeIterator<Item = bool>),
+) -> Result<()> {
+    if times_secs.is_empty() || times_secs.len() != values.len() {
+        let found = format!("{} values at {} times", values.len(), times_secs.len());
+        return Err(Error::value(format!("{field}.{name}"), found, "one at each of some times"));
+    }
+    for (index, time) in times_secs.iter().enumerate() {
+        let rises = index == 0 || *time > times_secs[index - 1];
+        if !(time.is_finite() && rises) {
+            let field = format!("{field}.times_secs[{index}]");
+            return Err(Error::value(field, time, "finite, and above the time before it"));
+        }
+    }
+    for (index, finite) in values.enumerate() {
+        if !finite {
+            return Err(Error::value(format!("{field}.{name}[{index}]"), "not finite", "finite"));
+        }
+    }
+    Ok(())
+}
+
+fn stays_on_line(motion: &Motion) -> bool {
+    let stays = match &motion.course {
+        None => true,
+        Some(MotionCourse::Straight { direction, .. }) => direction.y == 0.0,
+        Some(MotionCourse::Sine { amplitude, .. }) => amplitude.y == 0.0,
+        Some(MotionCourse::Table { offsets, .. }) => {
+            offsets.iter().all(|offset| offset.y == offsets[0].y)
+        }
+        Some(
+            MotionCourse::Rotation { .. }
+            | MotionCourse::Swing { .. }
+            | MotionCourse::AngleTable { .. },
+        ) => false,
+    };
+    stays && motion.surface_speed == 0.0
+}

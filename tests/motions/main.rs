@@ -1,0 +1,44 @@
+//! Bodies that move by themselves, and gravity that turns: what their surfaces do to grains, that nothing depends on who moves, and that
+//! energy, momentum, restart and mirror know of it.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod balance;
+mod belts;
+mod gravity;
+mod refusals;
+mod turning;
+mod views;
+
+use glam::DVec2;
+use slump::scene::{Scene, scene_to_toml};
+use slump::world::{Boundary, Motion, MotionCourse};
+
+/// Boundaries that go this way.
+fn goes(boundaries: &[usize], course: MotionCourse) -> Motion {
+    Motion { boundaries: boundaries.to_vec(), course: Some(course), ..Motion::default() }
+}
+
+/// Boundaries with a belt.
+fn belt(boundaries: &[usize], surface_speed: f64) -> Motion {
+    Motion { boundaries: boundaries.to_vec(), surface_speed, ..Motion::default() }
+}
+
+/// Straight on, without end.
+fn straight(velocity: DVec2) -> MotionCourse {
+    MotionCourse::Straight { direction: velocity, speed: velocity.length(), travel: None }
+}
+
+/// The level y = 0.
+fn level() -> Boundary {
+    Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }
+}
+
+/// The scene as its own file says it.
+fn through_a_file(scene: &Scene) -> Scene {
+    let text = scene_to_toml(scene).expect("TOML");
+    let read: Scene = toml::from_str(&text).expect("a scene");
+    assert_eq!(read, *scene, "{text}");
+    read
+}
