@@ -71,7 +71,7 @@ impl Alarm {
             AlarmKind::GrainLost => "a grain has gone through a wall or left the world",
             AlarmKind::SweepLimit => "100 steps in a row were not solved to their tolerance",
             AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
-            AlarmKind::BreakUnseen => "bonds break faster than a step can be cut into",
+            AlarmKind::BreakUnseen => "bonds break faster than the substeps of a step can follow",
         };
         let Self { step, time_secs, .. } = self;
         let advice = self.advice(settings);

@@ -2,7 +2,8 @@
 
 use super::table::Table;
 use super::verdict::Claim;
-use crate::study::chart::Sheet;
+use crate::study::chart::{Point, Sheet};
+use crate::study::statistics::mean;
 
 /// A finished figure.
 pub(super) struct Figure {
@@ -14,4 +15,12 @@ pub(super) struct Figure {
     pub claims: Vec<Claim>,
     /// The numbers behind them, where the chart shows too few.
     pub table: Option<Table>,
+}
+
+/// The mean of some slumps on a chart.
+pub(super) fn slump_point(x: f64, slumps: &[f64]) -> Point {
+    let told = mean(slumps);
+    // Two states tell next to nothing of their spread.
+    let interval = (told.count > 2).then_some((told.low.max(0.0), told.high.min(0.7)));
+    Point { x, y: told.mean, interval }
 }

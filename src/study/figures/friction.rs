@@ -1,7 +1,7 @@
 //! Whether a pile slumps under a model of friction as it does under Coulomb's law, from the same states at the
 //! same Bond and Δt, by the number of grains.
 
-use super::paired::{Paired, widest};
+use super::paired::{Paired, columns, widest};
 use super::table::Table;
 use super::verdict::Claim;
 use super::workshop::Rows;
@@ -81,19 +81,7 @@ fn claim(Size { model, runs }: &Size<'_>) -> Claim {
 
 /// The numbers behind the claims.
 fn table(sizes: &[Size<'_>]) -> Table {
-    let columns = [
-        "model",
-        "grains",
-        "bond",
-        "dt",
-        "states",
-        "slump_coulomb",
-        "difference",
-        "standard_error",
-        "low",
-        "high",
-        "p",
-    ];
+    let columns = columns(&["model", "grains", "bond", "dt"], "slump_coulomb");
     let mut rows = Vec::new();
     for size in sizes {
         for one in size.runs.comparisons() {
@@ -103,7 +91,7 @@ fn table(sizes: &[Size<'_>]) -> Table {
             rows.push(row);
         }
     }
-    Table { name: "friction-differences", columns: columns.to_vec(), rows }
+    Table { name: "friction-differences", columns, rows }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! report of what holds. One file a figure, listed in `registry`.
 
 mod agreement;
+mod cohesion;
 mod cradle_map;
 mod fig2;
 mod fig5;

@@ -25,6 +25,12 @@ pub(super) struct Comparison {
 }
 
 impl Comparison {
+    fn of((bond, step): (f64, f64), pairs: &[(Option<u64>, f64, f64)]) -> Self {
+        let slumps: Vec<f64> = pairs.iter().map(|(_, reference, _)| *reference).collect();
+        let differences: Vec<f64> = pairs.iter().map(|(_, one, other)| other - one).collect();
+        Self { bond, step, slump: mean(&slumps), difference: mean(&differences) }
+    }
+
     /// p-value of no difference.
     fn p(&self) -> f64 {
         (2.0 * self.difference.p_above(0.0).min(self.difference.p_below(0.0))).min(1.0)
@@ -46,14 +52,19 @@ impl Comparison {
         Point { x, y: mean, interval: (count > 2).then_some((low, high)) }
     }
 
-    /// Its numbers in a table: states, slump of the reference, difference, standard error, ends of the interval,
-    /// p-value.
+    /// Its numbers in a table, under the last of [`columns`].
     pub(super) fn cells(&self) -> impl Iterator<Item = String> {
         let Mean { mean, standard_error, low, high, count, .. } = self.difference;
         let numbers = [self.slump.mean, mean, standard_error, low, high, self.p()];
         let written = numbers.map(|value| format!("{value:.4}"));
         std::iter::once(count.to_string()).chain(written)
     }
+}
+
+/// The columns of a table that tells of comparisons with `reference` after columns of its own.
+pub(super) fn columns(own: &[&'static str], reference: &'static str) -> Vec<&'static str> {
+    let told = ["states", reference, "difference", "standard_error", "low", "high", "p"];
+    [own, &told].concat()
 }
 
 /// How far any of the intervals goes from 0, of those that end; 0.05 at least.
@@ -75,13 +86,7 @@ impl Paired<'_> {
             let Config { parameters, .. } = config;
             parameters.bond == Some(bond) && parameters.time_step_secs == Some(step)
         };
-        let (one, other) = (self.reference.such_that(at), self.other.such_that(at));
-        let with = |seed| other.0.iter().find(move |(config, _)| config.origin.seed == seed);
-        let pair = |(config, outcome): &(&Config, &Outcome)| {
-            let seed = config.origin.seed;
-            Some((seed, outcome.slump, with(seed)?.1.slump))
-        };
-        one.0.iter().filter_map(pair).collect()
+        pairs(&self.reference.such_that(at), &self.other.such_that(at))
     }
 
     /// Every Δt with every Bond.
@@ -93,24 +98,8 @@ impl Paired<'_> {
 
     /// Every Bond at every Δt.
     pub(super) fn comparisons(&self) -> Vec<Comparison> {
-        let compared = |(bond, step)| {
-            let pairs = self.pairs(bond, step);
-            let slumps: Vec<f64> = pairs.iter().map(|(_, reference, _)| *reference).collect();
-            let differences: Vec<f64> = pairs.iter().map(|(_, one, other)| other - one).collect();
-            Comparison { bond, step, slump: mean(&slumps), difference: mean(&differences) }
-        };
+        let compared = |(bond, step)| Comparison::of((bond, step), &self.pairs(bond, step));
         self.places().into_iter().map(compared).collect()
-    }
-
-    /// The mean difference over all Bonds and Δt, a value a state.
-    fn of_all(&self) -> Mean {
-        let mut of_states: BTreeMap<Option<u64>, Vec<f64>> = BTreeMap::new();
-        for (bond, step) in self.places() {
-            for (seed, one, other) in self.pairs(bond, step) {
-                of_states.entry(seed).or_default().push(other - one);
-            }
-        }
-        mean(&of_states.values().map(|differences| mean(differences).mean).collect::<Vec<_>>())
     }
 
     fn margin(&self) -> f64 {
@@ -118,42 +107,88 @@ impl Paired<'_> {
         found.map_or(0.0, |(_, margin)| *margin)
     }
 
-    /// That piles slump alike `how`, and whether they do. With many comparisons some differ by chance, so
-    /// p-values are multiplied by their number (Bonferroni).
+    /// That piles slump alike `how`, and whether they do.
     pub(super) fn claim(&self, how: &str) -> Claim {
-        let (all, pooled, margin) = (self.comparisons(), self.of_all(), self.margin());
-        let outside: Vec<_> = all
-            .iter()
-            .filter(|one| one.differs())
-            .map(|one| {
-                format!("Bond {} at {:e} s ({:+.3})", one.bond, one.step, one.difference.mean)
-            })
-            .collect();
-        let count = all.len();
-        let p = (all.iter().map(Comparison::p).fold(1.0, f64::min) * count as f64).min(1.0);
-        let by_chance = 100.0 * (1.0 - 0.95f64.powi(count as i32));
-        let farthest = all.iter().map(Comparison::reach).fold(0.0, f64::max);
-        let measured = format!(
-            "{} of {count} differences have a 95 % interval without 0{}{}, where without any effect at least one \
-             has in {by_chance:.0} % of such studies; any difference: {}; mean over all {:+.4} ± {:.4}; the \
-             intervals reach to ±{farthest:.3}; {} states",
-            outside.len(),
-            if outside.is_empty() { "" } else { ": " },
-            outside.join(", "),
-            p_value(p),
-            pooled.mean,
-            pooled.standard_error,
-            self.other.seeds().len(),
-        );
-        let verdict = match (p < SIGNIFICANT, farthest <= margin) {
-            (true, _) => Verdict::Fails,
-            (false, true) => Verdict::Holds,
-            (false, false) => Verdict::Open,
-        };
         let said = format!(
-            "Beyond the paper: {} grains slump {how}, within {margin} at every Bond and Δt",
-            self.grains
+            "Beyond the paper: {} grains slump {how}, within {} at every Bond and Δt",
+            self.grains,
+            self.margin()
         );
-        Claim::new(said, measured.replace('-', "−"), verdict)
+        let named = |(bond, step)| Place {
+            name: format!("Bond {bond} at {step:e} s"),
+            at: (bond, step),
+            pairs: self.pairs(bond, step),
+        };
+        claim(said, &self.places().into_iter().map(named).collect::<Vec<_>>(), self.margin())
     }
+}
+
+/// States that were stepped in two ways: seed, slump of the reference, that of the other.
+type Pairs = Vec<(Option<u64>, f64, f64)>;
+
+/// The states that ended in both ways.
+pub(super) fn pairs(reference: &Rows<'_>, other: &Rows<'_>) -> Pairs {
+    let with = |seed| other.0.iter().find(move |(config, _)| config.origin.seed == seed);
+    let pair = |(config, outcome): &(&Config, &Outcome)| {
+        let seed = config.origin.seed;
+        Some((seed, outcome.slump, with(seed)?.1.slump))
+    };
+    reference.0.iter().filter_map(pair).collect()
+}
+
+/// Where two ways are compared.
+pub(super) struct Place {
+    /// In a sentence.
+    pub name: String,
+    /// Bond and Δt (s).
+    pub at: (f64, f64),
+    pub pairs: Pairs,
+}
+
+impl Place {
+    /// What its pairs say.
+    pub(super) fn comparison(&self) -> Comparison {
+        Comparison::of(self.at, &self.pairs)
+    }
+}
+
+/// What is said of differences that are to be within a margin everywhere. With many comparisons some differ by
+/// chance, so p-values are multiplied by their number (Bonferroni).
+pub(super) fn claim(said: String, places: &[Place], margin: f64) -> Claim {
+    let all: Vec<_> = places.iter().map(Place::comparison).collect();
+    let outside: Vec<_> = places
+        .iter()
+        .zip(&all)
+        .filter(|(_, one)| one.differs())
+        .map(|(place, one)| format!("{} ({:+.3})", place.name, one.difference.mean))
+        .collect();
+    // A value a state: its mean difference over all places.
+    let mut of_states: BTreeMap<Option<u64>, Vec<f64>> = BTreeMap::new();
+    for (seed, one, other) in places.iter().flat_map(|place| &place.pairs) {
+        of_states.entry(*seed).or_default().push(other - one);
+    }
+    let of_states: Vec<_> = of_states.values().map(|some| mean(some).mean).collect();
+    let pooled = mean(&of_states);
+    let count = all.len();
+    let p = (all.iter().map(Comparison::p).fold(1.0, f64::min) * count as f64).min(1.0);
+    let by_chance = 100.0 * (1.0 - 0.95f64.powi(count as i32));
+    let farthest = all.iter().map(Comparison::reach).fold(0.0, f64::max);
+    let measured = format!(
+        "{} of {count} differences have a 95 % interval without 0{}{}, where without any effect at least one has \
+         in {by_chance:.0} % of such studies; any difference: {}; mean over all {:+.4} ± {:.4}; the intervals \
+         reach to ±{farthest:.3}; {} states",
+        outside.len(),
+        if outside.is_empty() { "" } else { ": " },
+        outside.join(", "),
+        p_value(p),
+        pooled.mean,
+        pooled.standard_error,
+        of_states.len(),
+    );
+    let verdict = match (p < SIGNIFICANT, farthest <= margin) {
+        (true, _) => Verdict::Fails,
+        (false, true) => Verdict::Holds,
+        (false, false) => Verdict::Open,
+    };
+    Claim::new(said, measured.replace('-', "−"), verdict)
 }

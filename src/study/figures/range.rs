@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use super::agreement::{self, slumps};
+use super::figure::slump_point;
 use super::workshop::Rows;
 use super::{Claim, Figure, Workshop};
 use crate::error::Result;
@@ -65,13 +66,6 @@ fn ticks(values: &[f64], from: f64, to: f64) -> Vec<(f64, String)> {
     on_axis.map(written).collect()
 }
 
-fn point(x: f64, slumps: &[f64]) -> Point {
-    let told = mean(slumps);
-    // Two states tell next to nothing of their spread.
-    let interval = (told.count > 2).then_some((told.low.max(0.0), told.high.min(0.7)));
-    Point { x, y: told.mean, interval }
-}
-
 fn against_step(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Chart {
     let x = Axis::log("Δt (s)", 0.8 * steps[0], 1.3 * steps[steps.len() - 1]);
     let x = Axis { ticks: ticks(&[2e-4, 1e-3, 5e-3], steps[0], steps[steps.len() - 1]), ..x };
@@ -79,7 +73,7 @@ fn against_step(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Chart {
     let bonds = rows.values(|config| config.parameters.bond);
     let shown = bonds.into_iter().filter(|bond| SHOWN_BONDS.contains(bond));
     for (index, bond) in shown.enumerate() {
-        let means = steps.iter().map(|&step| point(step, &slumps(rows, bond, step)));
+        let means = steps.iter().map(|&step| slump_point(step, &slumps(rows, bond, step)));
         let colour = PALETTE[index % PALETTE.len()];
         let curve =
             Layer::curve(format!("Bond {bond}"), means.collect(), colour, Look::LineAndDots);
@@ -95,7 +89,7 @@ fn against_bond(rows: &Rows<'_>, steps: &[f64]) -> Chart {
     let y = Axis::linear("slump Δy_G", 0.0, 0.7);
     let mut chart = Chart::new("Law range, every Δt", x, y);
     for (index, &step) in steps.iter().enumerate() {
-        let means = bonds.iter().map(|&bond| point(bond, &slumps(rows, bond, step)));
+        let means = bonds.iter().map(|&bond| slump_point(bond, &slumps(rows, bond, step)));
         let colour = PALETTE[index % PALETTE.len()];
         let name = format!("Δt {step:e} s").replace("e-", "e−");
         let curve = Layer::curve(name, means.collect(), colour, Look::LineAndDots);

@@ -3,7 +3,8 @@
 use super::figure::Figure;
 use super::workshop::Workshop;
 use super::{
-    cradle_map, fig2, fig5, fig6, fig8, friction, pile_map, pile_series, range, tolerance, two_body,
+    cohesion, cradle_map, fig2, fig5, fig6, fig8, friction, pile_map, pile_series, range,
+    tolerance, two_body,
 };
 use crate::error::Result;
 
@@ -18,7 +19,7 @@ pub(super) struct FigureInfo {
 }
 
 /// All figures that are charts, in the order of the report.
-pub(super) const FIGURES: [FigureInfo; 15] = [
+pub(super) const FIGURES: [FigureInfo; 16] = [
     FigureInfo { name: "fig2", studies: &[], make: fig2::make },
     FigureInfo { name: "two-body", studies: &[], make: two_body::make },
     FigureInfo { name: "fig5a", studies: &["pile"], make: fig5::slump },
@@ -36,6 +37,7 @@ pub(super) const FIGURES: [FigureInfo; 15] = [
         make: pile_series::tolerance,
     },
     FigureInfo { name: "range", studies: &["range"], make: range::make },
+    FigureInfo { name: "cohesion", studies: &["cohesion"], make: cohesion::make },
     FigureInfo { name: "friction", studies: &["friction"], make: friction::make },
     FigureInfo { name: "tolerance", studies: &["tolerance"], make: tolerance::make },
 ];

@@ -16,7 +16,7 @@ const SNAPSHOTS: &str = "snapshots";
 /// Every figure, but for [`APART`].
 const ALL: &str = "all";
 /// What is not of the paper and takes hours: asked for by name alone.
-const APART: [&str; 3] = ["range", "friction", "tolerance"];
+const APART: [&str; 4] = ["range", "cohesion", "friction", "tolerance"];
 
 /// The names that [`reproduce`] knows.
 pub(crate) fn figure_names() -> Vec<&'static str> {

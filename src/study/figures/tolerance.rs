@@ -1,7 +1,7 @@
 //! How well a step must be solved: the slump of piles whose steps get so many sweeps, reach such a residual of
 //! Coulomb's law, or are certified under bounds of friction taken anew so often, by the number of grains.
 
-use super::paired::{Paired, widest};
+use super::paired::{Paired, columns, widest};
 use super::table::Table;
 use super::workshop::Rows;
 use super::{Figure, Workshop};
@@ -179,20 +179,7 @@ fn chart(size: &Size<'_>) -> Chart {
 
 /// The numbers behind the claims.
 fn table(sizes: &[Size<'_>]) -> Table {
-    let columns = [
-        "grains",
-        "effort",
-        "bond",
-        "dt",
-        "unsolved",
-        "states",
-        "slump_reference",
-        "difference",
-        "standard_error",
-        "low",
-        "high",
-        "p",
-    ];
+    let columns = columns(&["grains", "effort", "bond", "dt", "unsolved"], "slump_reference");
     let mut rows = Vec::new();
     for size in sizes {
         for (_, effort) in size.others() {
@@ -211,7 +198,7 @@ fn table(sizes: &[Size<'_>]) -> Table {
             }
         }
     }
-    Table { name: "tolerance-differences", columns: columns.to_vec(), rows }
+    Table { name: "tolerance-differences", columns, rows }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::study::table::alarms_of;
 use crate::study::{Outcome, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
 /// The studies that are shipped.
-const STUDIES: [(&str, &str); 10] = [
+const STUDIES: [(&str, &str); 11] = [
     ("pile", include_str!("../../../assets/studies/pile.toml")),
     ("cradle", include_str!("../../../assets/studies/cradle.toml")),
     ("cradle-share", include_str!("../../../assets/studies/cradle-share.toml")),
@@ -20,6 +20,7 @@ const STUDIES: [(&str, &str); 10] = [
     ("pile-size", include_str!("../../../assets/studies/pile-size.toml")),
     ("pile-tolerance", include_str!("../../../assets/studies/pile-tolerance.toml")),
     ("range", include_str!("../../../assets/studies/range.toml")),
+    ("cohesion", include_str!("../../../assets/studies/cohesion.toml")),
     ("friction", include_str!("../../../assets/studies/friction.toml")),
     ("tolerance", include_str!("../../../assets/studies/tolerance.toml")),
 ];
