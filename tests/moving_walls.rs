@@ -2,13 +2,14 @@
 
 mod common;
 
-use common::{LINE, assert_close, every_way, parameters, scene, start, take_steps};
+use common::{
+    LINE, assert_close, at_rest_and_falling, every_way, parameters, scene, start, take_steps,
+};
 use glam::DVec2;
 use slump::scene::Scene;
 use slump::scene::stability::logs;
 use slump::sim::{AlarmKind, Simulation};
 use slump::sim::{Remedies, Stepper};
-use slump::solver::StopTest;
 use slump::world::{Boundary, Grain, Gravity, Physics};
 
 const RADIUS: f64 = 0.05;
@@ -71,24 +72,6 @@ fn two_views(scene: &Scene) -> [Scene; 2] {
     })
 }
 
-/// Logs at rest, and beside them a spinning disc that falls on the floor, one that has to be pushed out
-/// of it, and one whose bond to it is stretched and holds. None touches another: where friction leaves
-/// more than one solution, rounding would choose.
-fn on_the_floor() -> Scene {
-    let mut scene = logs(1.0);
-    let aside = |x: f64, y: f64| Grain::at_rest(scene.mean_diameter * DVec2::new(x, y), 0.005);
-    let falling = Grain { angular_velocity: 30.0, ..aside(-5.0, 1.6) };
-    let stretching = Grain { velocity: DVec2::new(0.0, 0.05), ..aside(5.0, 0.4999) };
-    let overlapping = aside(-10.0, 0.45);
-    scene.grains.extend([falling, overlapping, stretching]);
-    scene.parameters.restitution = 0.5;
-    scene.parameters.bond = 2.0;
-    scene.solver.stop = StopTest::Residual;
-    scene.solver.tolerance = 1e-11;
-    scene.solver.max_sweeps = 20_000;
-    scene
-}
-
 /// Longest distance of a grain from where the other view has it in any step, in d.
 fn difference_of_views(scene: &Scene) -> f64 {
     let [mut still, mut rising] = two_views(scene).map(|scene| start(&scene));
@@ -108,7 +91,7 @@ fn difference_of_views(scene: &Scene) -> f64 {
 
 #[test]
 fn nothing_depends_on_whether_the_floor_rises_or_the_onlooker_sinks() {
-    let mut scene = on_the_floor();
+    let mut scene = at_rest_and_falling();
     let mut differences = Vec::new();
     for (stepper, method) in every_way() {
         (scene.stepper, scene.solver.method) = (stepper, method);

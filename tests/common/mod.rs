@@ -9,6 +9,7 @@ pub mod schemes;
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use slump::scene::stability::logs;
 use slump::scene::{Scene, rough_base};
 use slump::sim::{Remedies, Simulation, Stepper};
 use slump::solver::{METHODS, Method, Ordering, SolverSettings, StopTest};
@@ -179,6 +180,24 @@ pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters)
         fixed_discs: rough_base(columns as f64 + 2.0, diameter),
         ..scene(Physics::FULL, DVec2::new(0.0, -G), parameters, grains)
     }
+}
+
+/// Logs at rest, and beside them a spinning disc that falls on the floor, one that has to be pushed out
+/// of it, and one whose bond to it is stretched and holds. None touches another: where friction leaves
+/// more than one solution, rounding would choose.
+pub fn at_rest_and_falling() -> Scene {
+    let mut scene = logs(1.0);
+    let aside = |x: f64, y: f64| Grain::at_rest(scene.mean_diameter * DVec2::new(x, y), 0.005);
+    let falling = Grain { angular_velocity: 30.0, ..aside(-5.0, 1.6) };
+    let stretching = Grain { velocity: DVec2::new(0.0, 0.05), ..aside(5.0, 0.4999) };
+    let overlapping = aside(-10.0, 0.45);
+    scene.grains.extend([falling, overlapping, stretching]);
+    scene.parameters.restitution = 0.5;
+    scene.parameters.bond = 2.0;
+    scene.solver.stop = StopTest::Residual;
+    scene.solver.tolerance = 1e-11;
+    scene.solver.max_sweeps = 20_000;
+    scene
 }
 
 /// A fixed disc.

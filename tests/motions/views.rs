@@ -1,26 +1,22 @@
 //! Nothing depends on whether bodies go past an onlooker or the onlooker past them; on whether a wall is called a
 //! piston; on left and right.
 
-use super::common::{assert_close, every_way, fixed, parameters, pressed_pile, scene, start};
+use super::common::{
+    assert_close, at_rest_and_falling, every_way, fixed, parameters, pressed_pile, scene, start,
+};
 use super::{belt, goes, level, straight};
 use glam::DVec2;
 use slump::scene::Scene;
-use slump::scene::stability::logs;
 use slump::sim::{Remedies, Simulation, Stepper};
-use slump::solver::{Method, StopTest};
+use slump::solver::Method;
 use slump::world::{Boundary, Disc, Grain, Gravity, Motion, MotionCourse, Physics};
 
 const VELOCITY: DVec2 = DVec2::new(0.25, 0.15);
 
-/// Logs at rest on one kind of floor, and beside them a spinning disc that falls, one that overlaps, and one whose
-/// bond is stretched and holds. None touches another.
+/// What rests, falls, overlaps and is bonded on one kind of floor.
 fn on_a_floor(shape: usize) -> Scene {
-    let mut scene = logs(1.0);
-    let aside = |x: f64, y: f64| Grain::at_rest(scene.mean_diameter * DVec2::new(x, y), 0.005);
-    let falling = Grain { angular_velocity: 30.0, velocity: 0.02 * DVec2::X, ..aside(-5.0, 1.6) };
-    let stretching = Grain { velocity: DVec2::new(0.0, 0.05), ..aside(5.0, 0.4999) };
-    let overlapping = aside(-10.0, 0.45);
-    scene.grains.extend([falling, overlapping, stretching]);
+    let mut scene = at_rest_and_falling();
+    scene.grains[3].velocity = 0.02 * DVec2::X;
     let far = 1.0;
     let at = |x: f64, y: f64| DVec2::new(x, y);
     let corners = vec![at(-far, -far), at(far, -far), at(far, 0.0), at(-far, 0.0)];
@@ -37,11 +33,6 @@ fn on_a_floor(shape: usize) -> Scene {
         let below = |grain: &Grain| fixed(at(grain.position.x, -0.02), 0.02);
         scene.fixed_discs = scene.grains.iter().map(below).collect::<Vec<Disc>>();
     }
-    scene.parameters.restitution = 0.5;
-    scene.parameters.bond = 2.0;
-    scene.solver.stop = StopTest::Residual;
-    scene.solver.tolerance = 1e-11;
-    scene.solver.max_sweeps = 20_000;
     scene
 }
 
