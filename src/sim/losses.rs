@@ -146,10 +146,8 @@ impl Losses {
 
 impl Edges {
     fn of(world: &World, features: &[Feature]) -> Self {
-        // Where walls go, or down goes elsewhere, there is no telling where the world ends.
-        if world.gravity_turn.is_some()
-            || world.motions.iter().any(|motion| motion.course.is_some())
-        {
+        // Where walls go, there is no telling where the world ends.
+        if world.motions.iter().any(|motion| motion.course.is_some()) {
             return Self::default();
         }
         let discs = world.fixed_discs.iter().map(|disc| disc.position);
@@ -170,8 +168,11 @@ impl Edges {
         let max = all().fold(DVec2::NEG_INFINITY, DVec2::max);
         let side = (max - min).max_element() + world.mean_diameter;
         let down = match world.gravity {
-            Gravity::Uniform { acceleration } => acceleration.normalize_or_zero(),
-            Gravity::Attraction { .. } => DVec2::ZERO,
+            // What turns has no bottom.
+            Gravity::Uniform { acceleration } if world.gravity_turn.is_none() => {
+                acceleration.normalize_or_zero()
+            }
+            Gravity::Uniform { .. } | Gravity::Attraction { .. } => DVec2::ZERO,
         };
         let lowest = all().map(|place| place.dot(down)).fold(f64::NEG_INFINITY, f64::max);
         Self {

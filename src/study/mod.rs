@@ -26,9 +26,10 @@ mod table;
 pub(crate) use course::series_path;
 pub(crate) use figures::{figure_names, reproduce};
 pub(crate) use outcome::{Outcome, Status};
+#[cfg(feature = "window")]
+pub(crate) use paper::PILE_SOLVER;
 pub(crate) use paper::{
-    FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PILE_SOLVER, PaperRun,
-    paper_runs,
+    FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
 };
 pub use plan::{SeriesSettings, Study};
 pub use planned_run::PlannedRun;

@@ -173,7 +173,9 @@ fn a_dropped_run_is_opened_and_a_damaged_one_is_told_of_as_restart_does() {
     };
     drop(&mut robot, &path);
     assert_eq!(robot.steps(), 7);
-    assert_eq!(robot.state().preferences.scene, Config::of_scene("cradle"));
+    let settings = robot.world().controls.settings;
+    let opens_it_again = Config::of_scene("cradle").with_settings(&settings);
+    assert_eq!(robot.state().preferences.scene, opens_it_again);
 
     let mut bytes = std::fs::read(&path).expect("a file");
     let middle = bytes.len() / 2;
