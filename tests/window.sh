@@ -5,6 +5,8 @@
 #
 #   tests/window.sh [FOLDER]        screenshots go to FOLDER (default target/window)
 #
+# screenshots/window.png is its window-tour-end.png.
+#
 # Needs a release build (cargo build --release), and of Debian: xvfb xdotool imagemagick python3,
 # mesa-vulkan-drivers libvulkan1 (or libegl1 libgl1-mesa-dri), and the X11 client libraries that
 # winit loads: libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0.
@@ -157,6 +159,7 @@ wait_for "the layout of the last time" "abs(s['controls']['scene'][3] - $without
 wait_for "the tour" "s['station'] == 1 and s['worlds'] == 2"
 xdotool mousemove $(at "Plots" 0.5) click 1
 xdotool search --name Slump windowfocus
+xdotool mousemove $(at "scene" 0.5)
 sleep 1
 import -window root "$shots/window-tour-start.png"
 xdotool key space
