@@ -76,6 +76,7 @@ fn packed(kind: &str, count: usize) -> World {
         boundaries: Vec::new(),
         motions: Vec::new(),
         gravity_turn: None,
+        periodic: None,
         gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
     }
 }

@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! cargo bench --bench window
+//! cargo bench --bench window -- others     # what the world in front loses to other piles alone
 //! ```
 
 mod common;
@@ -23,6 +24,9 @@ const COUNTED: Duration = Duration::from_secs(4);
 const STEPS: u64 = 1500;
 /// Repeats, of which the fastest counts.
 const REPEATS: usize = 3;
+/// Steps of the pile that other piles are computed beside, at 1e-3 s, and how often.
+const COLLAPSE: u64 = 900;
+const TURNS: usize = 10;
 /// Changes of the time step whose latency is measured.
 const CHANGES: usize = 40;
 
@@ -36,7 +40,8 @@ struct Window {
 impl Window {
     fn open(simulation: Simulation) -> Self {
         let live = Live::spawn(LiveOptions::default()).expect("a thread");
-        let preferences = Preferences { full_speed: true, ..Preferences::default() };
+        let preferences =
+            Preferences { full_speed: true, other_piles: false, ..Preferences::default() };
         let mut state = AppState::new(live, Config::default(), preferences);
         state.live.send(load(simulation));
         state.live.send(Command::SetPace(Pace::Max));
@@ -86,6 +91,7 @@ fn load(simulation: Simulation) -> Command {
             duration_secs: f64::INFINITY,
             held_by,
             view,
+            slumps: true,
             worlds: Vec::new(),
         })
     }))
@@ -102,9 +108,47 @@ fn main() {
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }
+    if std::env::args().any(|argument| argument == "others") {
+        return beside_other_piles();
+    }
     frames();
     steps();
     latency();
+    beside_other_piles();
+}
+
+/// What the world in front loses to other piles that idle cores compute: the pile's collapse, in turns with and
+/// without them. Nothing is drawn meanwhile.
+fn beside_other_piles() {
+    let cache = tempfile::tempdir().expect("a folder");
+    let mut least = [f64::INFINITY; 2];
+    for turn in 0..2 * TURNS {
+        let beside = turn % 2 == 1;
+        let live = Live::spawn(LiveOptions::default()).expect("a thread");
+        let preferences =
+            Preferences { full_speed: true, other_piles: beside, ..Preferences::default() };
+        let mut state = AppState::new(live, Config::default(), preferences);
+        state.other_piles.keep_in(cache.path().join(turn.to_string()));
+        let context = egui::Context::default();
+        theme::install(&context);
+        while state.frame.worlds.is_empty() || beside && state.other_piles.threads() == 0 {
+            let _ = context.run_ui(egui::RawInput::default(), |root| ui(root, &mut state));
+        }
+        std::thread::sleep(Duration::from_millis(300));
+        state.live.send(Command::Play);
+        let newest = |state: &mut AppState| {
+            let worlds = &state.live.latest().worlds;
+            worlds.first().map_or(0, |world| world.snapshot.observables.step)
+        };
+        let begun = Instant::now();
+        while newest(&mut state) < COLLAPSE {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        least[turn % 2] = least[turn % 2].min(begun.elapsed().as_secs_f64());
+    }
+    let [alone, with] = least.map(|secs| COLLAPSE as f64 / secs);
+    let loss = 100.0 * (1.0 - with / alone);
+    println!("in front: {alone:.0} steps/s alone, {with:.0} beside other piles, {loss:.1} % less");
 }
 
 fn frames() {

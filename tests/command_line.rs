@@ -152,6 +152,34 @@ fn frames_observables_manifest_and_animation_of_a_scene() {
     let bytes = std::fs::read(&gif).expect("an animation");
     assert_eq!(&bytes[..6], b"GIF89a");
     assert_eq!(bytes.last(), Some(&0x3b), "the animation has its end");
+    let has = |text: &[u8]| bytes.windows(text.len()).any(|part| part == text);
+    assert!(has(b"Software: slump "), "the animation says what it is");
+}
+
+#[test]
+fn a_frame_carries_the_command_that_draws_it_bit_for_bit() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    slump()
+        .args(["--headless", "--scene", "cradle", "--dt", "1e-3", "--duration", "0.2"])
+        .args(["--fps", "20", "--size", "320x90", "--show", "forces", "--colour", "speed"])
+        .args(["--renderer", "cpu", "--frames"])
+        .arg(&out)
+        .assert()
+        .success();
+    let frame = out.join("frame_00003.png");
+    let file = std::io::BufReader::new(std::fs::File::open(&frame).expect("a picture"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a picture");
+    reader.finish().expect("a whole picture");
+    let texts = &reader.info().uncompressed_latin1_text;
+    let told = texts.iter().find(|text| text.keyword == "Command line").expect("a command");
+    let words = shlex::split(&told.text).expect("words");
+    assert!(words.contains(&"0.15".to_owned()), "{words:?}");
+    let again =
+        slump().current_dir(folder.path()).args(&words[1..]).args(["--renderer", "cpu"]).assert();
+    again.success();
+    let bytes = |path: &Path| std::fs::read(path).expect("a picture");
+    assert!(bytes(&folder.path().join("frames/frame_00000.png")) == bytes(&frame));
 }
 
 #[test]

@@ -72,6 +72,16 @@ impl SceneCamera {
         Camera { centre: self.centre, metres_per_pixel }
     }
 
+    /// What is in the middle, m.
+    pub fn centre(&self) -> DVec2 {
+        self.centre
+    }
+
+    /// Has a place (m) in the middle, at the present scale.
+    pub(crate) fn look_at(&mut self, place: DVec2) {
+        (self.framed, self.centre) = (false, place);
+    }
+
     /// Moves the scene with the mouse; y down, points.
     pub(crate) fn pan(&mut self, moved: egui::Vec2) {
         self.framed = false;

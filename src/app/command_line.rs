@@ -1,49 +1,67 @@
-//! The command line that computes what a world shows.
+//! The command line that computes what a world shows, and what files of the window say of themselves.
 
 use super::state::AppState;
-use crate::scene::Config;
-use crate::setting::Value;
-use crate::sim::Settings;
+use crate::output::Texts;
+use crate::scene::{Config, Provenance, asked_time_secs, joined, words_up_to};
+
+/// What is said of a run that no command line makes.
+const CHANGED: &str = "settings changed, or a grain was pulled, on the way: the command line and the settings are those \
+                       of the moment that is shown, and make another run";
 
 impl AppState {
     /// The command line that computes the selected world from its start with the present settings, without a
     /// window and to the last digit; none where its scene is no longer there. Changes on the way and hands that
     /// pulled are not in it.
     pub fn command_line(&self) -> Option<String> {
-        let settings = self.wanted.get(self.selected)?.settings;
-        let origin = self.config.origin.clone();
-        let unchanged = Config { origin, ..Config::default() };
-        let mut words = vec!["slump".to_owned(), "--headless".to_owned()];
-        words.extend(origin_words(&unchanged));
-        let before = unchanged.without_settling().ok()?.settings();
-        for about in Settings::about() {
-            let value = settings.get(about.name);
-            if let Some(value) = value.filter(|_| value != before.get(about.name)) {
-                words.extend([format!("--{}", about.name), said(value)]);
+        let run = self.provenance(self.selected, self.config.clone())?;
+        let command = ["slump".to_owned(), "--headless".to_owned()];
+        Some(joined(&[&command[..], &run.words].concat()))
+    }
+
+    /// What a world is made of; nothing where its scene is no longer there.
+    fn provenance(&self, world: usize, config: Config) -> Option<Provenance> {
+        let settings = self.wanted.get(world)?.settings;
+        let scene = self.frame.start.as_ref()?.name.clone();
+        Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
+    }
+
+    /// What a file says of itself that shows these worlds; of a moment, or of all their steps.
+    pub(crate) fn texts_of(&self, worlds: &[usize], is_of_a_moment: bool) -> Texts {
+        if let [world] = *worlds {
+            return self.texts_of_world(world, is_of_a_moment);
+        }
+        let mut texts = Texts::default();
+        for &world in worlds {
+            for (keyword, text) in self.texts_of_world(world, is_of_a_moment).iter().skip(1) {
+                texts.add(format!("World {}: {keyword}", world + 1), text);
             }
         }
-        shlex::try_join(words.iter().map(String::as_str)).ok()
+        texts
     }
-}
 
-/// What says where a scene comes from.
-fn origin_words(config: &Config) -> Vec<String> {
-    // A name that is no text is refused where it is read.
-    let Ok(serde_json::Value::Object(fields)) = serde_json::to_value(&config.origin) else {
-        return Vec::new();
-    };
-    let said = |value: serde_json::Value| match value {
-        serde_json::Value::String(text) => text,
-        other => other.to_string(),
-    };
-    fields.into_iter().flat_map(|(name, value)| [format!("--{name}"), said(value)]).collect()
-}
-
-fn said(value: Value) -> String {
-    match value {
-        Value::Number(number) => number.to_string(),
-        Value::Count(count) => count.to_string(),
-        Value::Switch(on) => on.to_string(),
-        Value::Word(word) => word.to_owned(),
+    fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
+        // How long it was to run says nothing of what it has come to.
+        let mut config = self.config.clone();
+        config.origin.duration = None;
+        let run = self.provenance(world, config);
+        let (Some(run), Some(shown)) = (run, self.frame.worlds.get(world)) else {
+            return Texts::default();
+        };
+        let time_secs = asked_time_secs(shown.snapshot.observables.time_secs);
+        let mut texts = if is_of_a_moment {
+            run.texts(Some(time_secs), &words_up_to(time_secs))
+        } else {
+            let duration_secs = asked_time_secs(shown.recorded_secs);
+            run.texts(None, &["--duration".to_owned(), duration_secs.to_string()])
+        };
+        if !shown.is_even {
+            texts.add("Changes", CHANGED);
+        }
+        if shown.recorded_from_secs > 0.0 {
+            let from_secs = shown.recorded_from_secs;
+            texts
+                .add("Begun", format!("from a saved run at t = {from_secs} s, not from the start"));
+        }
+        texts
     }
 }

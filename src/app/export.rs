@@ -5,50 +5,80 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::error::{Error, Result};
-use crate::output::{check_writable, write_file, write_png};
-use crate::render::{Camera, Renderer, RendererChoice, Style, draw_scene};
+use image::RgbaImage;
+
+use crate::output::{Texts, check_writable, write_file, write_png};
+use crate::render::{Camera, Panel, Renderer, RendererChoice, Style, draw_scene, draw_worlds};
 use crate::scene::SavedState;
 use crate::sim::live::Curve;
-use crate::sim::{Observables, Snapshot};
+use crate::sim::{Observables, Settings, Snapshot};
+use crate::world::Parameters;
 
+use super::number::written;
 use super::plot_picture::{PlotPicture, PlotPrinter};
 use super::taken::TakenRun;
 
 /// A file to be written.
 pub(crate) enum Export {
-    /// A picture of a scene.
-    Scene {
-        /// The moment.
-        snapshot: Arc<Snapshot>,
-        /// How it is drawn.
-        style: Style,
-        /// What it shows.
-        camera: Camera,
-        /// Pixels.
-        size: [u32; 2],
-    },
-    /// The observables of all worlds as a table.
-    Curves(Vec<Curve>),
+    /// A picture of the worlds.
+    Scene(Box<ScenePicture>),
+    /// The observables of all worlds as a table, and beside it what they are of.
+    Curves(Vec<Curve>, Texts),
     /// A picture of the plots.
-    Plots(Box<PlotPicture>),
+    Plots(Box<PlotPicture>, Texts),
     /// A run that is on its way, to be gone on with.
     State(Receiver<TakenRun>),
+}
+
+/// A picture of the worlds, as they are seen side by side.
+pub(crate) struct ScenePicture {
+    /// Moment, title and note of each.
+    pub worlds: Vec<(Arc<Snapshot>, String, String)>,
+    /// How many stand in a row.
+    pub columns: usize,
+    /// How they are drawn.
+    pub style: Style,
+    /// What of one is seen.
+    pub camera: Camera,
+    /// Pixels of the whole.
+    pub size: [u32; 2],
+    /// What the file says of itself.
+    pub texts: Texts,
+}
+
+impl ScenePicture {
+    fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
+        let Self { worlds, columns, style, camera, size, .. } = self;
+        if let [(snapshot, ..)] = &worlds[..] {
+            return draw_scene(renderer, snapshot, style, camera, size[0], size[1]);
+        }
+        let panel = |(snapshot, title, note)| Panel { snapshot, title, note };
+        let panels: Vec<_> = worlds.iter().map(|(a, b, c)| panel((a, b, c))).collect();
+        draw_worlds(renderer, &panels, style, camera, *columns, *size)
+    }
 }
 
 /// Ending of files that runs are saved to.
 pub(crate) const STATE_ENDING: &str = "slump";
 
-/// How the names of files about a moment of a scene begin.
-pub(crate) fn stem(scene: &str, time_secs: f64) -> String {
+/// How the names of files about a moment of a scene begin, with the numbers of its world where there is one alone.
+pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String {
     let name: String = scene.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
-    format!("slump-{name}-{time_secs:.4}s")
+    let which = match settings {
+        [alone] => {
+            let Parameters { bond, time_step_secs, .. } = alone.parameters;
+            format!("bond{}-dt{}", written(bond), written(time_step_secs))
+        }
+        all => format!("{}worlds", all.len()),
+    };
+    format!("slump-{name}-{which}-{time_secs:.4}s")
 }
 
 impl Export {
     fn ending(&self) -> &'static str {
         match self {
-            Self::Curves(_) => "csv",
-            Self::Scene { .. } | Self::Plots(_) => "png",
+            Self::Curves(..) => "csv",
+            Self::Scene(_) | Self::Plots(..) => "png",
             Self::State(_) => STATE_ENDING,
         }
     }
@@ -128,22 +158,25 @@ fn write(
     check_writable("folder", &job.folder)?;
     let path = free_path(&job.folder, &job.stem, job.export.ending());
     match &job.export {
-        Export::Scene { snapshot, style, camera, size: [width, height] } => {
+        Export::Scene(picture) => {
             let renderer = match renderer {
                 Some(renderer) => renderer,
                 none => none.insert(Renderer::new(RendererChoice::Auto)?),
             };
-            let image = draw_scene(renderer, snapshot, style, camera, *width, *height)?;
-            write_png(&path, &image)?;
+            write_png(&path, &picture.draw(renderer)?, &picture.texts)?;
         }
-        Export::Curves(curves) => write_curves(&path, curves)?,
-        Export::Plots(picture) => {
+        Export::Curves(curves, texts) => {
+            // Beside the table: lines of another kind in it would be data to those who read it.
+            write_file(&path.with_extension("csv.txt"), texts.lines().as_bytes())?;
+            write_curves(&path, curves)?;
+        }
+        Export::Plots(picture, texts) => {
             let printer = match printer {
                 Some(printer) => printer,
                 none => none.insert(PlotPrinter::new()?),
             };
             let image = printer.print(picture)?;
-            write_png(&path, &image)?;
+            write_png(&path, &image, texts)?;
         }
         Export::State(run) => return write_state(&job.folder, run),
     }
@@ -159,7 +192,8 @@ fn write_state(folder: &Path, run: &Receiver<TakenRun>) -> Result<PathBuf> {
         let allowed = "an earlier one: drag the timeline back";
         return Err(Error::value("state", "no longer finite", allowed));
     }
-    let stem = stem(&opened.scene.name, taken.simulation.time_secs());
+    let settings = [*taken.simulation.settings()];
+    let stem = stem(&opened.scene.name, &settings, taken.simulation.time_secs());
     let path = free_path(folder, &stem, STATE_ENDING);
     SavedState::new(opened.scene.clone(), taken.simulation, taken.tally).save(&path)?;
     Ok(path)
@@ -233,6 +267,13 @@ mod tests {
         std::io::Read::read_to_string(&mut reader, &mut seen).unwrap();
         assert_eq!(seen, "before", "whoever reads the old file goes on reading it");
         assert!(std::fs::read_to_string(&path).unwrap().starts_with("world,step"));
+    }
+
+    #[test]
+    fn names_say_scene_numbers_and_time() {
+        let settings = Settings::default().with_bond(20.0).over(1e-4);
+        assert_eq!(stem("a b.toml", &[settings], 0.25), "slump-a-b-toml-bond20-dt1e-4-0.2500s");
+        assert_eq!(stem("pile", &[settings; 3], 1.0), "slump-pile-3worlds-1.0000s");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
-use super::panels::scene;
+use super::panels::picture;
 use super::state::AppState;
 
 /// Acts on the keys of this frame.
@@ -42,7 +42,7 @@ pub(super) fn act(context: &Context, state: &mut AppState) {
         state.camera.frame_scene();
     }
     if pressed(Key::S) {
-        scene::save_picture(context, state);
+        picture::save_picture(context, state);
     }
     if pressed(Key::H) {
         state.help = !state.help;

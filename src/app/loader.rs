@@ -10,7 +10,7 @@ use super::tour::Station;
 use crate::scene::{Config, SavedState, Scene};
 use crate::sim::Tally;
 use crate::sim::live::{Loader, Progress, Start};
-use crate::world::Boundary;
+use crate::world::{Boundary, Gravity};
 
 /// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
 const ORDERS_OF_SETTLING: f64 = 3.5;
@@ -73,6 +73,7 @@ fn start_of_run(state: SavedState, last: &LastOpened) -> Start {
         duration_secs: scene.duration_secs,
         held_by: Vec::new(),
         view: [view.min, view.max],
+        slumps: slumps(&scene),
         worlds: Vec::new(),
     };
     let config = Config::of_scene(&scene.name);
@@ -89,8 +90,21 @@ fn start(scene: &Scene) -> crate::error::Result<Start> {
         duration_secs: scene.duration_secs,
         held_by: walls(scene),
         view: [view.min, view.max],
+        slumps: slumps(scene),
         worlds: Vec::new(),
     })
+}
+
+/// Whether grains lie on level ground that stays, and may spread: of others Δy_G, which goes by heights above y = 0,
+/// says nothing.
+fn slumps(scene: &Scene) -> bool {
+    let is_down = |gravity: &Gravity| matches!(gravity, Gravity::Uniform { acceleration } if acceleration.x == 0.0 && acceleration.y < 0.0);
+    let is_level = |boundary: &Boundary| matches!(boundary, Boundary::HalfSpace { normal, .. } if normal.x == 0.0 && normal.y > 0.0);
+    scene.physics.axes == 2
+        && is_down(&scene.gravity)
+        && scene.gravity_turn.is_none()
+        && scene.motions.is_empty()
+        && scene.boundaries.iter().all(is_level)
 }
 
 /// The walls of a pile that has not been released: a pile is at rest and needs none, but without
@@ -107,4 +121,22 @@ fn walls(scene: &Scene) -> Vec<Boundary> {
     let height = WALL_HEIGHTS * tops.fold(0.0, f64::max);
     let wall = |x: f64| Boundary::Segment { from: DVec2::new(x, 0.0), to: DVec2::new(x, height) };
     vec![wall(reach(-1.0)), wall(reach(1.0))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::built_in;
+
+    #[test]
+    fn slump_tells_of_piles_and_heaps_and_of_nothing_that_falls_or_is_pushed() {
+        let told = |name: &str| slumps(&built_in(name).unwrap());
+        assert!(told("pile"));
+        for name in ["cradle", "moving-walls", "drum", "vibrated", "thin-wall", "newtons-cradle"] {
+            assert!(!told(name), "{name}");
+        }
+        let hourglass =
+            Config::of_scene("assets/scenes/hourglass.toml").without_settling().unwrap();
+        assert!(!slumps(&hourglass));
+    }
 }

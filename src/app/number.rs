@@ -73,7 +73,7 @@ impl Number<'_> {
         if edited.is_some() {
             self.forget_draft(ui);
         }
-        self.show_refusal(ui);
+        self.show_refusal(ui, &response);
         Edited { value: edited.filter(|edited| *edited != value), slider: response }
     }
 
@@ -150,10 +150,20 @@ impl Number<'_> {
         None
     }
 
-    fn show_refusal(&self, ui: &mut Ui) {
+    /// Over what is below: a line of its own would push that down under the mouse.
+    fn show_refusal(&self, ui: &Ui, slider: &Response) {
         if let Some(Draft { refusal: Some(refusal), .. }) = self.draft(ui) {
             let colour = theme::warning(ui.visuals().dark_mode);
-            ui.label(RichText::new(refusal).small().color(colour));
+            egui::Area::new(self.draft_id(ui).with("refusal"))
+                .order(egui::Order::Foreground)
+                .interactable(false)
+                .fixed_pos(slider.rect.left_bottom())
+                .show(ui.ctx(), |ui| {
+                    egui::Frame::popup(ui.style()).show(ui, |ui| {
+                        ui.set_max_width(slider.rect.width() - 12.0);
+                        ui.label(RichText::new(refusal).small().color(colour));
+                    });
+                });
         }
     }
 }

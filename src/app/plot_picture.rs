@@ -6,6 +6,7 @@ use super::canvas::Canvas;
 use super::fill::fill;
 use super::plots::{PlotData, draw};
 use super::theme;
+use super::world_curve::WorldCurve;
 use crate::error::Result;
 
 /// Pixels of a picture a point: words stay readable in print.
@@ -71,8 +72,9 @@ fn legend(ui: &mut egui::Ui, data: &PlotData) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        for (name, colour, _) in &data.worlds {
-            ui.label(egui::RichText::new(format!("■ {name}")).color(*colour));
+        for WorldCurve { name, colour, .. } in &data.worlds {
+            ui.label(egui::RichText::new("■").color(*colour));
+            ui.label(name);
         }
     });
 }

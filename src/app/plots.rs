@@ -2,15 +2,24 @@
 
 use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine,
+    AxisHints, FilledArea, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints,
+    PlotUi, VLine,
 };
 
+use super::chosen_plot::ChosenPlot;
+use super::world_curve::WorldCurve;
 use crate::render::numbers::{decimal, si_prefix, ticks};
 use crate::sim::live::Curve;
 use crate::sim::{Beside, Observables, Quantity};
 
 /// Least width of a plot, points: below it fewer are shown in a row.
 const LEAST_WIDTH: f32 = 150.0;
+/// Least height of a vertical axis, as a part of its largest value.
+const LEAST_SPAN: f64 = 1e-3;
+/// The quantity that other piles are told of.
+const OTHERS: &str = "slump";
+/// How strong the colour of an interval is.
+const BAND: f32 = 0.22;
 /// Intervals of time for which a long curve shows its least and its largest value.
 const BUCKETS: usize = 300;
 
@@ -21,12 +30,14 @@ const BESIDE: [LineStyle; 2] =
 /// Everything that plots are drawn from.
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {
-    /// Name, colour and rows of each world.
-    pub worlds: Vec<(String, Color32, Curve)>,
+    /// The worlds.
+    pub worlds: Vec<WorldCurve>,
     /// Rows of the run before, behind the others.
     pub ghosts: Vec<Curve>,
     /// The plots.
     pub quantities: Vec<&'static Quantity<Observables>>,
+    /// What is plotted against what besides.
+    pub chosen: ChosenPlot,
     /// The moment that is shown, s.
     pub now_secs: f64,
     /// Plots reach at least to here, s.
@@ -37,7 +48,8 @@ pub(crate) struct PlotData {
 pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     // Plots that left room would shrink their panel, frame by frame.
     ui.set_min_size(ui.available_size());
-    let count = data.quantities.len();
+    let title = data.chosen.title().filter(|_| data.chosen.on);
+    let count = data.quantities.len() + usize::from(title.is_some());
     if count == 0 || data.worlds.is_empty() {
         ui.weak("Choose what to plot.");
         return None;
@@ -54,12 +66,21 @@ pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
         (ui.available_height() - spacing.y * (rows - 1) as f32) / rows as f32,
     );
     let mut clicked = None;
-    for row in data.quantities.chunks(columns) {
+    let mut all: Vec<Option<_>> = data.quantities.iter().map(Some).collect();
+    all.extend(title.is_some().then_some(None));
+    for row in all.chunks(columns) {
         ui.horizontal(|ui| {
-            for quantity in row {
+            for cell in row {
                 ui.allocate_ui(size, |ui| {
                     ui.set_min_width(size.x);
-                    ui.vertical(|ui| clicked = clicked.or(plot(ui, data, quantity)));
+                    ui.vertical(|ui| match (cell, &title) {
+                        (Some(quantity), _) => clicked = clicked.or(plot(ui, data, quantity)),
+                        (None, Some(title)) => {
+                            ui.add(Label::new(RichText::new(title).small()).truncate());
+                            data.chosen.draw(ui, &data.worlds, data.now_secs);
+                        }
+                        (None, None) => {}
+                    });
                 });
             }
         });
@@ -72,6 +93,7 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     ui.add(Label::new(RichText::new(title).small()).truncate());
     let log = quantity.logarithmic;
     let group = egui::Id::unique("time");
+    let [least, most] = least_span(data, quantity, factor);
     let response = Plot::new(("plot", quantity.name))
         .height((ui.available_height() - 2.0).max(40.0))
         // Half of the last label lies right of the plot.
@@ -86,6 +108,8 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
         .include_x(0.0)
         .include_x(data.until_secs)
+        .include_y(least)
+        .include_y(most)
         .x_grid_spacer(|grid| round_marks(grid, 4, 0.0))
         .y_grid_spacer(move |grid| round_marks(grid, 4, if log { 1.0 } else { 0.0 }))
         .custom_x_axes(vec![axis(AxisHints::new_x(), false, " s")])
@@ -99,7 +123,10 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
                 let grey = Color32::from_gray(128).gamma_multiply(0.6);
                 plot.line(Line::new("the run before", values).color(grey).width(1.2));
             }
-            for (name, colour, curve) in &data.worlds {
+            if quantity.name == OTHERS {
+                data.worlds.iter().for_each(|world| band(plot, world));
+            }
+            for WorldCurve { name, colour, curve, .. } in &data.worlds {
                 let line = |name: String, value: &dyn Fn(&Observables) -> f64| {
                     Line::new(name, points(curve, |row| value(row) / factor)).color(*colour)
                 };
@@ -113,6 +140,37 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
             plot.pointer_coordinate()
         });
     response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
+}
+
+/// The mean of a world's other piles as a dashed line, and its 95 % interval.
+fn band(plot: &mut PlotUi<'_>, world: &WorldCurve) {
+    let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else { return };
+    let name = format!("{}: mean of {} other piles, 95 %", world.name, band.count);
+    // Of two piles the interval is so wide that nothing else would be seen.
+    if band.count > 2 {
+        let area = FilledArea::new(name.clone(), &band.times_secs, &band.lows, &band.highs);
+        plot.add(area.fill_color(world.colour.gamma_multiply(BAND)));
+    }
+    let points = band.times_secs.iter().zip(&band.means).map(|(&time, &mean)| [time, mean]);
+    let mean = Line::new(name, points.collect::<PlotPoints<'_>>());
+    let style = LineStyle::Dashed { length: 4.0 };
+    plot.line(mean.color(world.colour.gamma_multiply(0.75)).style(style).width(1.0));
+}
+
+/// What a vertical axis shows at least: around values that hardly differ, more than the digits of their rounding.
+fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) -> [f64; 2] {
+    let value = |row: &Observables| (quantity.value)(row);
+    let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
+    let rows = data.worlds.iter().flat_map(|world| world.curve.rows());
+    let values = rows.map(|row| scaled(value(row))).filter(|value| value.is_finite());
+    let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    });
+    let [low, high] = if ends[0] > ends[1] { [0.0, 0.0] } else { ends };
+    let most = low.abs().max(high.abs());
+    let least = if quantity.logarithmic { 1.0 } else { LEAST_SPAN * most };
+    let room = (0.5 * (least - (high - low))).max(0.0);
+    [low - room, high + room]
 }
 
 /// What a curve has to show beside a quantity.
@@ -134,13 +192,14 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
             let others = others.clone().filter_map(|(_, value)| value(row));
             others.fold((quantity.value)(row), f64::max)
         };
-        let rows = data.worlds.iter().flat_map(|(.., curve)| curve.rows());
+        let curves = data.worlds.iter().map(|world| &world.curve).chain(&data.ghosts);
+        let rows = curves.flat_map(Curve::rows);
         let prefix;
         (prefix, factor) = si_prefix(rows.map(largest).fold(0.0, f64::max));
         title = format!("{title} ({prefix}{})", quantity.unit);
     }
     let has_more = |curve: &Curve| beside(curve, quantity).next().is_some();
-    if data.worlds.iter().any(|(.., curve)| has_more(curve)) {
+    if data.worlds.iter().any(|world| has_more(&world.curve)) {
         let styles = ["dashed", "dotted"].iter().zip(quantity.beside);
         let said: Vec<_> = styles.map(|(style, (name, _))| format!("{style}: {name}")).collect();
         title = format!("{title}; {}", said.join(", "));

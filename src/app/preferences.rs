@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::chosen_plot::ChosenPlot;
 use super::data_choices::DataChoices;
 use super::tour::Tour;
 use crate::error::Result;
@@ -25,10 +26,18 @@ pub struct Preferences {
     pub sidebar: bool,
     /// Whether the run before shows behind the present one.
     pub ghost: bool,
+    /// Whether idle cores compute the mean over other piles.
+    pub other_piles: bool,
     /// Whether the plots are open.
     pub plots: bool,
     /// The quantities that are plotted, by their names.
     pub quantities: Vec<String>,
+    /// What is plotted against what besides.
+    pub chosen_plot: ChosenPlot,
+    /// The histogram that shows, by its name in files.
+    pub histogram: String,
+    /// Whether an arrow says where gravity points.
+    pub gravity: bool,
     /// Size of the window, points; none before the first.
     pub window_points: Option<[f64; 2]>,
     /// Simulated time per time on the wall.
@@ -54,8 +63,12 @@ impl Default for Preferences {
             style: Style::default(),
             sidebar: true,
             ghost: true,
+            other_piles: true,
             plots: true,
             quantities: QUANTITIES.iter().map(|quantity| quantity.name.to_owned()).collect(),
+            chosen_plot: ChosenPlot::default(),
+            histogram: "normal_force".into(),
+            gravity: false,
             window_points: None,
             speed: 0.2,
             full_speed: false,

@@ -12,8 +12,11 @@ use super::data_export::DataExport;
 use super::export::{Export, Exporter, STATE_ENDING};
 use super::loader::{loader, loader_of_file, loader_of_run};
 use super::notice::Notice;
+use super::other_piles::OtherPiles;
 use super::preferences::Preferences;
 use super::scene_legend::LegendCache;
+use super::spread::Spread;
+use super::step_race::StepRace;
 use super::taken::{LastOpened, TakenRun};
 use crate::scene::{Config, SavedState};
 use crate::sim::Settings;
@@ -58,6 +61,14 @@ pub struct AppState {
     pub(crate) exporter: Exporter,
     /// What is being done about data and saved runs.
     pub(crate) data: DataDesk,
+    /// What the present settings make of other piles.
+    pub other_piles: OtherPiles,
+    /// How forces and the like are distributed.
+    pub(crate) spread: Spread,
+    /// Whether the view goes with the pinned grain.
+    pub(crate) follows: bool,
+    /// How methods solve the step that was shown.
+    pub(crate) race: Option<StepRace>,
     /// Where controls lie, points: for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
     /// Set where the window is to open its graphics device anew.
@@ -94,6 +105,10 @@ impl AppState {
             help: false,
             exporter: Exporter::default(),
             data: DataDesk::default(),
+            other_piles: OtherPiles::new(),
+            race: None,
+            spread: Spread::default(),
+            follows: false,
             controls: BTreeMap::new(),
             restart_graphics: false,
             legend: LegendCache::default(),
@@ -155,6 +170,7 @@ impl AppState {
             self.camera.frame_scene();
             self.pinned = None;
             self.data.stretch = None;
+            self.race = None;
             if let Some(opened) = self.last_opened.get() {
                 self.config.clone_from(&opened.config);
             }
@@ -182,7 +198,9 @@ impl AppState {
     fn note_exports(&mut self) {
         match self.exporter.take_outcome() {
             Some(Ok(path)) => {
-                self.say(format!("Saved {}", path.display()), false);
+                // Where the program was started is not where its user looks.
+                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+                self.say(format!("Saved {}", whole.display()), false);
                 self.note_saved_run(&path);
             }
             Some(Err(error)) => self.say(error.to_string(), true),
@@ -213,6 +231,11 @@ impl AppState {
         self.frame.worlds.get(self.selected)
     }
 
+    /// Whether what is open is a heap, of which slump tells.
+    pub(crate) fn slumps(&self) -> bool {
+        self.frame.start.as_ref().is_some_and(|start| start.slumps)
+    }
+
     /// Whether worlds are compared.
     pub(crate) fn compares(&self) -> bool {
         self.frame.worlds.len() > 1
@@ -223,36 +246,6 @@ impl AppState {
         if let Some(wanted) = self.wanted.get_mut(world) {
             wanted.settings = settings;
             self.live.send(Command::Change(world, settings));
-        }
-    }
-
-    /// Releases, plays or pauses.
-    pub(crate) fn toggle_play(&mut self) {
-        let command = if self.frame.playing { Command::Pause } else { Command::Play };
-        self.live.send(command);
-    }
-
-    /// Takes one step and pauses.
-    pub fn step(&mut self) {
-        self.live.send(Command::Step);
-    }
-
-    /// Goes one step back in the recording.
-    pub(crate) fn step_back(&mut self) {
-        let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
-        let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
-        self.live.send(Command::Seek(time_secs.max(0.0)));
-    }
-
-    /// Back to the start, with the present settings.
-    pub(crate) fn reset(&mut self) {
-        self.live.send(Command::Reset);
-    }
-
-    /// Back to the run that the present one has taken the place of last.
-    pub(crate) fn undo(&mut self) {
-        if let Some(last) = self.frame.past.last() {
-            self.live.send(Command::Return(last.number));
         }
     }
 
@@ -272,8 +265,9 @@ impl AppState {
     }
 
     /// Forgets what lives in an egui context: it is about to be replaced.
-    pub(crate) fn forget_textures(&mut self) {
+    pub(crate) fn forget_context(&mut self) {
         self.legend.forget();
+        self.other_piles.stop();
     }
 
     /// Notes where a control lies.

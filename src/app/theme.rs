@@ -30,6 +30,11 @@ pub(crate) fn accent(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x4d, 0xa3, 0xd9) } else { Color32::from_rgb(0x00, 0x6c, 0xa8) }
 }
 
+/// Words on the accent.
+pub(crate) fn on_accent(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(0x12, 0x15, 0x1a) } else { Color32::WHITE }
+}
+
 /// What went wrong.
 pub(crate) fn warning(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0xf0, 0x8a, 0x4a) } else { Color32::from_rgb(0xb8, 0x46, 0x00) }
@@ -114,4 +119,74 @@ fn fonts() -> FontDefinitions {
     fonts.families.insert(FontFamily::Proportional, family("figures"));
     fonts.families.insert(bold(), family(BOLD));
     fonts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance (WCAG 2.2).
+    fn luminance(colour: Color32) -> f64 {
+        let [red, green, blue] = [colour.r(), colour.g(), colour.b()].map(|channel| {
+            let part = f64::from(channel) / 255.0;
+            if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+        });
+        0.2126 * red + 0.7152 * green + 0.0722 * blue
+    }
+
+    fn contrast(one: Color32, other: Color32) -> f64 {
+        let [one, other] = [luminance(one), luminance(other)];
+        (one.max(other) + 0.05) / (one.min(other) + 0.05)
+    }
+
+    /// A colour that may let the ground through.
+    fn over(colour: Color32, ground: Color32) -> Color32 {
+        ground.blend(colour)
+    }
+
+    #[test]
+    fn contrast_is_that_of_the_guidelines() {
+        assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
+        // The example of the guidelines: #777777 on white is just below 4.5.
+        let grey = contrast(Color32::from_gray(0x77), Color32::WHITE);
+        assert!((4.47..4.49).contains(&grey), "{grey}");
+    }
+
+    #[test]
+    fn words_can_be_read_on_every_ground() {
+        /// Level AA of words of any size.
+        const LEAST: f64 = 4.5;
+        let context = egui::Context::default();
+        install(&context);
+        for theme in [egui::Theme::Light, egui::Theme::Dark] {
+            let dark = theme == egui::Theme::Dark;
+            let visuals = context.style_of(theme).visuals.clone();
+            let panel = visuals.panel_fill;
+            let selection = over(visuals.selection.bg_fill, panel);
+            let mut pairs = vec![
+                ("on the accent", on_accent(dark), accent(dark)),
+                ("selected", visuals.selection.stroke.color, selection),
+            ];
+            for ground in [panel, visuals.window_fill, visuals.extreme_bg_color] {
+                pairs.extend([
+                    ("text", visuals.text_color(), ground),
+                    ("strong text", visuals.strong_text_color(), ground),
+                    ("weak text", visuals.weak_text_color(), ground),
+                    ("accent", accent(dark), ground),
+                    ("warning", warning(dark), ground),
+                    ("good", good(dark), ground),
+                    ("link", visuals.hyperlink_color, ground),
+                ]);
+            }
+            let widgets = &visuals.widgets;
+            for widget in [&widgets.inactive, &widgets.hovered, &widgets.active, &widgets.open] {
+                let ground = over(widget.weak_bg_fill, panel);
+                pairs.push(("button", widget.fg_stroke.color, ground));
+            }
+            for (what, words, ground) in pairs {
+                let contrast = contrast(over(words, ground), ground);
+                assert!(contrast >= LEAST, "{theme:?}, {what}: {contrast:.2}");
+            }
+        }
+    }
 }

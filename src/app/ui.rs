@@ -19,6 +19,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     if context.options(|options| options.theme_preference) != state.preferences.theme {
         context.set_theme(state.preferences.theme);
     }
+    state.follow_other_piles(&context);
     drop::take_files(&context, state);
     keys::act(&context, state);
 

@@ -9,6 +9,7 @@ mod run;
 mod scene;
 mod stability;
 mod sweep;
+mod validate;
 
 use std::process::ExitCode;
 
@@ -47,6 +48,8 @@ enum Command {
     Chart(chart::ChartCommand),
     /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
     Stability(stability::StabilityCommand),
+    /// Hold Slump against published experiments: quantity, interval, verdict and cost, for a choice of methods
+    Validate(validate::ValidateCommand),
     /// Print a scene, with the changes asked for, as a scene file
     // By far the largest of them.
     Scene(Box<scene::SceneCommand>),
@@ -93,6 +96,7 @@ fn run(cli: Cli) -> Result<()> {
         Some(Command::Reproduce(command)) => command.run(),
         Some(Command::Chart(command)) => command.run(),
         Some(Command::Stability(command)) => command.run(),
+        Some(Command::Validate(command)) => command.run(),
         Some(Command::Scene(command)) => command.run(),
         None => cli.run.run(),
     }

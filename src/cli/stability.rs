@@ -66,8 +66,11 @@ impl StabilityCommand {
             progress.finish();
             sheets.extend(found?);
         }
+        let quick = if self.quick { " --quick" } else { "" };
+        let scenes: String = self.scenes.iter().map(|name| format!(" {name}")).collect();
+        let command = format!("slump stability{quick}{scenes} --out stability");
         for (name, sheet) in &sheets {
-            write_file(&folder.join(format!("{name}.png")), &png(sheet)?)?;
+            write_file(&folder.join(format!("{name}.png")), &png(sheet, &command)?)?;
             write_file(&folder.join(format!("{name}.svg")), svg(sheet)?.as_bytes())?;
             if name != "table" {
                 write_file(&folder.join(format!("{name}.csv")), &sheet.to_csv()?)?;

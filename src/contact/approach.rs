@@ -22,22 +22,21 @@ pub(super) fn approach<const AXES: usize>(
             (disc.position, disc.radius)
         }
         Other::Feature(feature) => {
-            let found = candidates.features()[feature].distance(position);
+            let found = candidates.distance(world, feature, position);
             return found.map(|(normal, distance)| (normal, distance - radius));
         }
     };
-    Some(disc_gap::<AXES>(position, centre, radius + other_radius))
+    let offset = world.shortest(position - centre);
+    Some(disc_gap::<AXES>(offset, radius + other_radius))
 }
 
-/// Normal (from j to i) and gap of two discs. Centres that coincide are told apart along x, so that
+/// Normal (from j to i) and gap of two discs, i being off j by `offset`. Centres that coincide are told apart along x, so that
 /// the step stays finite.
 #[inline(always)]
-fn disc_gap<const AXES: usize>(i: DVec2, j: DVec2, radii: f64) -> (DVec2, f64) {
+fn disc_gap<const AXES: usize>(offset: DVec2, radii: f64) -> (DVec2, f64) {
     if AXES == 1 {
-        let offset = i.x - j.x;
-        return (DVec2::new(1f64.copysign(offset), 0.0), offset.abs() - radii);
+        return (DVec2::new(1f64.copysign(offset.x), 0.0), offset.x.abs() - radii);
     }
-    let offset = i - j;
     let distance = offset.length();
     let normal = if distance > 0.0 { offset / distance } else { DVec2::X };
     (normal, distance - radii)

@@ -36,6 +36,13 @@ impl BroadPhase {
         Self { radii_differ, ..Self::default() }
     }
 
+    /// Has the next search begin anew, of another number of discs.
+    pub(crate) fn forget_discs(&mut self) {
+        if matches!(self.kind, Kind::Tree(_)) {
+            self.kind = Kind::default();
+        }
+    }
+
     /// Calls `found` once with every pair of discs that are nearer to each other than their extents
     /// together: radii with skins, m. And with some others.
     pub(crate) fn pairs<const AXES: usize>(

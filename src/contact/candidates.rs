@@ -7,6 +7,7 @@
 //! number of discs, whatever their sizes. Candidates are sorted by (i, other): the order of contacts
 //! depends on positions and numbering alone, not on when the list was built.
 
+mod images;
 mod saved;
 
 use glam::DVec2;
@@ -93,6 +94,21 @@ impl Candidates {
         })
     }
 
+    /// Unit normal of a feature towards `centre` and distance from it (m), as [`Feature::distance`] has them, or those
+    /// of its nearest image where borders are periodic.
+    #[inline]
+    pub(crate) fn distance(
+        &self,
+        world: &World,
+        feature: usize,
+        centre: DVec2,
+    ) -> Option<(DVec2, f64)> {
+        match world.periodic {
+            None => self.features[feature].distance(centre),
+            Some(periodic) => images::distance(&self.features[feature], periodic, centre),
+        }
+    }
+
     /// The boundaries' features.
     pub(crate) fn features(&self) -> &[Feature] {
         &self.features
@@ -162,7 +178,7 @@ impl Candidates {
                 .iter()
                 .all(|&skin| self.way_of_discs + way_of_others <= skin)
             && grains.take(positions.len()).all(|(at, ((&now, &then), &skin))| {
-                distance::<AXES>(now, then) + way_of_grain(at) <= skin
+                length::<AXES>(world.shortest(now - then)) + way_of_grain(at) <= skin
             });
         if !still_good {
             self.set_skins(positions.len(), way_of_grain, way_of_others);
@@ -194,14 +210,19 @@ impl Candidates {
             let (first, second) = (i.min(j) as usize, i.max(j) as usize);
             // Fixed discs come last: a pair whose first is one moves nothing.
             if first < grain_count
-                && distance::<AXES>(centres[first], centres[second])
+                && length::<AXES>(world.shortest(centres[first] - centres[second]))
                     < extent(first) + extent(second)
             {
                 pairs.push((first as u32, second as u32));
             }
         };
         let extents = (0..self.radii.len()).map(extent);
-        self.broad_phase.pairs::<AXES>(centres, extents, keep);
+        match world.periodic {
+            None => self.broad_phase.pairs::<AXES>(centres, extents, keep),
+            Some(periodic) => {
+                images::pairs::<AXES>(&mut self.broad_phase, periodic, (centres, extents), keep);
+            }
+        }
         self.sort_pairs(grain_count);
         self.add_features(world);
     }
@@ -241,7 +262,7 @@ impl Candidates {
         let numbering = Numbering::of(world);
         let within_reach = |index: usize, feature: &Feature| {
             let reach = grains.radii[index] + self.skins[index] + self.skin_of_features;
-            feature.distance_to_any_point(grains.positions[index]) < reach
+            images::distance_to_any_point(feature, world, grains.positions[index]) < reach
         };
         // The pairs are no longer needed: their memory takes the longer list.
         self.pairs.clear();
@@ -259,10 +280,10 @@ impl Candidates {
     }
 }
 
-/// Distance between two points: along x alone where the scene has one axis.
+/// Length of a way: along x alone where the scene has one axis.
 #[inline(always)]
-fn distance<const AXES: usize>(from: DVec2, to: DVec2) -> f64 {
-    if AXES == 1 { (from.x - to.x).abs() } else { from.distance(to) }
+fn length<const AXES: usize>(way: DVec2) -> f64 {
+    if AXES == 1 { way.x.abs() } else { way.length() }
 }
 
 #[cfg(test)]

@@ -30,13 +30,20 @@ pub(crate) fn check_distances(world: &World) -> Result<()> {
     let fixed = world.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
     let discs: Vec<(DVec2, f64)> =
         grains.positions.iter().copied().zip(grains.radii.iter().copied()).chain(fixed).collect();
-    let Some((one, other)) = first_too_close(&discs, grains.len()) else { return Ok(()) };
+    let mut found = first_too_close(&discs, grains.len());
+    if let (None, Some(periodic)) = (found, world.periodic) {
+        // Two that meet across the border are next to each other half a period on.
+        let half = DVec2::new(0.5 * periodic.width(), 0.0);
+        let shifted = discs.iter().map(|&(place, radius)| (periodic.wrap(place + half), radius));
+        found = first_too_close(&shifted.collect::<Vec<_>>(), grains.len());
+    }
+    let Some((one, other)) = found else { return Ok(()) };
     let name = |index: usize| match index.checked_sub(grains.len()) {
         Some(fixed) => format!("fixed_discs[{fixed}]"),
         None => format!("grains[{index}]"),
     };
     let ((place, radius), (place_of_other, radius_of_other)) = (discs[one], discs[other]);
-    let distance = place.distance(place_of_other);
+    let distance = world.shortest(place - place_of_other).length();
     let found = format!("{place} m, {distance} m from that of {}", name(other));
     let least = LEAST_DISTANCE_IN_RADII * radius.min(radius_of_other);
     let allowed = format!("at least {least} m from it, half the smaller radius");

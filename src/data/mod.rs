@@ -29,6 +29,8 @@ mod vtk;
 mod writer;
 
 pub use claim::Claim;
+#[cfg(feature = "window")]
+pub(crate) use columns::Observed;
 pub use format::{About, Frame};
 pub use formats::FormatName;
 pub use reading::{RecordedGrains, grains_of, parse_grains, read_grains};

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::data::{Claim, DataSettings, FormatName, Recording, Times};
 use crate::error::{Error, Result};
+use crate::output::counted;
 use crate::scene::Scene;
 use crate::sim::Simulation;
 
@@ -112,5 +113,5 @@ impl RecordingPlan {
 
 /// Where a finished recording is, and how many frames it has, in words.
 pub(crate) fn told(folder: &Path, frames: u64) -> String {
-    format!("{frames} frames of data in {}", folder.display())
+    format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }

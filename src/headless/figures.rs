@@ -11,10 +11,11 @@ use rayon::prelude::*;
 
 use super::folder::{Earlier, RunFolder};
 use super::manifest::{Ended, Manifest, Moment, PictureEntry, RunEntry};
+use super::provenance::texts_of_panel;
 use super::table::ObservablesTable;
 use super::telling::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
 use crate::error::Result;
-use crate::output::{Progress, caught_signal, note_line, print_line, write_png};
+use crate::output::{Progress, Texts, caught_signal, counted, note_line, print_line, write_png};
 use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::View;
 use crate::sim::{Observables, Snapshot};
@@ -68,7 +69,8 @@ pub(super) fn draw(folder: &Path, earlier: Earlier, renderer: RendererChoice) ->
     };
     let written = press.write_manifest();
     drawn.and(written)?;
-    print_line(format_args!("{} pictures in {}", press.manifest.pictures.len(), folder.display()));
+    let count = counted(press.manifest.pictures.len() as u64, "picture");
+    print_line(format_args!("{count} in {}", folder.display()));
     Ok(())
 }
 
@@ -149,7 +151,7 @@ impl Press<'_> {
              Greys mark layers two diameters high. At t = 0 the walls go.",
             outcome.run.scene.grains.len()
         );
-        self.write("fig3.png", &figure.draw()?, vec![moment(outcome, 0)])
+        self.write_figure("fig3.png", &figure.draw()?, vec![moment(outcome, 0)])
     }
 
     fn fig4(&mut self, outcomes: &[Outcome]) -> Result<()> {
@@ -186,7 +188,7 @@ impl Press<'_> {
             "The pile at t = {} s, from one initial state; Δy_{{G}} is the slump.",
             outcome.run.scene.duration_secs
         );
-        self.write("fig4.png", &figure.draw()?, moments)
+        self.write_figure("fig4.png", &figure.draw()?, moments)
     }
 
     fn fig7(&mut self, outcomes: &[Outcome]) -> Result<()> {
@@ -209,7 +211,7 @@ impl Press<'_> {
             "Three discs drawn towards the dot: k (dark grey) falls on the bonded pair \
                           of i (white) and j (light grey; does not feel the attraction)."
                 .into();
-        self.write("fig7.png", &figure.draw()?, moments)
+        self.write_figure("fig7.png", &figure.draw()?, moments)
     }
 
     /// Draws one panel `width` pixels wide and as high as its view asks, and writes it by itself.
@@ -227,12 +229,26 @@ impl Press<'_> {
         let camera: Camera = Style::default().camera(min, max, width, height);
         let snapshot = &outcome.snapshots[number];
         let image = draw_scene(self.renderer, snapshot, style, &camera, width, height)?;
-        self.write(&format!("{name}.png"), &image, vec![moment(outcome, number)])?;
+        let texts = texts_of_panel(&outcome.run.scene, snapshot)?;
+        self.write(&format!("{name}.png"), &image, vec![moment(outcome, number)], &texts)?;
         Ok(image)
     }
 
-    fn write(&mut self, file: &str, image: &RgbaImage, shows: Vec<Moment>) -> Result<()> {
-        write_png(&self.folder.join(file), image)?;
+    /// Writes a figure, all of which one command draws.
+    fn write_figure(&mut self, file: &str, image: &RgbaImage, shows: Vec<Moment>) -> Result<()> {
+        let mut texts = Texts::default();
+        texts.add("Command line", "slump --headless --frames figures");
+        self.write(file, image, shows, &texts)
+    }
+
+    fn write(
+        &mut self,
+        file: &str,
+        image: &RgbaImage,
+        shows: Vec<Moment>,
+        texts: &Texts,
+    ) -> Result<()> {
+        write_png(&self.folder.join(file), image, texts)?;
         let entry = PictureEntry { file: file.to_owned(), shows };
         self.manifest.add(entry, &self.folder.join("manifest.json"))
     }

@@ -66,7 +66,8 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions, earlier: Earlier)
     }
     let start = |plan: RecordingPlan| plan.start(&scene, &simulation, &picture_times_secs);
     let recording = recording.map(start).transpose()?;
-    let mut studio = Studio::open(options, renderer, (&scene, steps), marks, checkpoints)?;
+    let of_run = (&scene, steps, options.provenance(config, &scene)?);
+    let mut studio = Studio::open(options, renderer, of_run, marks, checkpoints)?;
     studio.record_in(recording);
     let run = OnItsWay { simulation, tally, next_picture };
     let recorded = go_on_with(run, &times_secs, until_secs, &mut studio);

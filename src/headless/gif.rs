@@ -4,14 +4,15 @@ use std::fs::File;
 use std::io::{Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame, RgbaImage};
+use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Extension, Frame, Repeat};
+use image::RgbaImage;
 
+use super::manifest::PictureEntry;
 use crate::error::{Error, Result};
-use crate::output::Draft;
+use crate::output::{Draft, Texts};
 
-/// Time that each picture is shown, ms: 25 pictures a second, which viewers keep up with.
-const PICTURE_MS: u32 = 40;
+/// Time that each picture is shown, in hundredths of a second: 25 pictures a second, which viewers keep up with.
+const PICTURE_CENTISECS: u16 = 4;
 /// The encoder's own scale from 1 (slowest, best colours) to 30.
 const ENCODER_SPEED: i32 = 10;
 
@@ -19,7 +20,7 @@ const ENCODER_SPEED: i32 = 10;
 pub(super) struct Animation {
     path: PathBuf,
     /// Two handles of one file: the encoder keeps the one that it writes to.
-    encoder: GifEncoder<File>,
+    encoder: Option<Encoder<File>>,
     draft: Draft,
     pictures: usize,
     /// Length of the pictures that are in the file, bytes; none where it has no lengths.
@@ -31,22 +32,36 @@ impl Animation {
     ///
     /// # Errors
     /// Names the file and what the system says.
-    pub(super) fn start(path: &Path) -> Result<Self> {
-        let refuse = |error: &dyn std::fmt::Display| Error::file(path, error);
-        let mut draft = Draft::start(path)?;
-        let handle = draft.file().try_clone().map_err(|error| refuse(&error))?;
-        let mut encoder = GifEncoder::new_with_speed(handle, ENCODER_SPEED);
-        encoder.set_repeat(Repeat::Infinite).map_err(|error| refuse(&error))?;
-        Ok(Self { path: path.to_owned(), encoder, draft, pictures: 0, whole: None })
+    fn start(path: &Path) -> Result<Self> {
+        let draft = Draft::start(path)?;
+        Ok(Self { path: path.to_owned(), encoder: None, draft, pictures: 0, whole: None })
     }
 
-    /// Adds a picture.
+    /// Starts one that begins with pictures of a folder.
+    ///
+    /// # Errors
+    /// As [`Animation::start`] and [`Animation::add`], and where a picture is no longer there.
+    pub(super) fn start_with(
+        path: &Path,
+        folder: Option<&Path>,
+        pictures: &[PictureEntry],
+        texts: &Texts,
+    ) -> Result<Self> {
+        let mut animation = Self::start(path)?;
+        for PictureEntry { file, .. } in pictures {
+            let path = folder.unwrap_or(Path::new("")).join(file);
+            let image = image::open(&path).map_err(|error| Error::file(&path, error))?;
+            animation.add(image.into_rgba8(), texts)?;
+        }
+        Ok(animation)
+    }
+
+    /// Adds a picture. The first comes after what the animation says of itself, a comment.
     ///
     /// # Errors
     /// Names the file and what the encoder says; the pictures before stay.
-    pub(super) fn add(&mut self, image: RgbaImage) -> Result<()> {
-        let delay = Delay::from_numer_denom_ms(PICTURE_MS, 1);
-        let added = self.encoder.encode_frame(Frame::from_parts(image, 0, 0, delay));
+    pub(super) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
+        let added = self.encode(image, texts);
         let file = self.draft.file();
         match (added, self.whole) {
             (Ok(()), _) => {
@@ -64,6 +79,30 @@ impl Animation {
         .map_err(|error| Error::file(&self.path, error))
     }
 
+    fn encode(
+        &mut self,
+        mut image: RgbaImage,
+        texts: &Texts,
+    ) -> std::result::Result<(), EncodingError> {
+        let side = |pixels: u32| u16::try_from(pixels).map_err(|_| too_large());
+        let (width, height) = (side(image.width())?, side(image.height())?);
+        let encoder = match &mut self.encoder {
+            Some(encoder) => encoder,
+            none => {
+                let mut encoder = Encoder::new(self.draft.file().try_clone()?, width, height, &[])?;
+                encoder.set_repeat(Repeat::Infinite)?;
+                let lines = texts.lines();
+                // A block of a comment holds no more than 255 bytes.
+                let blocks: Vec<&[u8]> = lines.as_bytes().chunks(255).collect();
+                encoder.write_raw_extension(AnyExtension(Extension::Comment as u8), &blocks)?;
+                none.insert(encoder)
+            }
+        };
+        let mut frame = Frame::from_rgba_speed(width, height, &mut image, ENCODER_SPEED);
+        (frame.delay, frame.dispose) = (PICTURE_CENTISECS, DisposalMethod::Background);
+        encoder.write_frame(&frame)
+    }
+
     /// Ends the animation and gives it its name. Whether there is one: none has no picture.
     ///
     /// # Errors
@@ -76,4 +115,9 @@ impl Animation {
         }
         self.draft.finish(true).map(|()| true)
     }
+}
+
+fn too_large() -> EncodingError {
+    std::io::Error::new(std::io::ErrorKind::InvalidInput, "a side has more than 65,535 pixels")
+        .into()
 }

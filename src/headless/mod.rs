@@ -10,6 +10,7 @@ mod gif;
 mod kept;
 mod manifest;
 mod options;
+mod provenance;
 mod saving;
 mod studio;
 mod table;

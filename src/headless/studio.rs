@@ -17,9 +17,9 @@ use super::telling::{
 };
 use crate::data::Recording;
 use crate::error::{Error, Result};
-use crate::output::{Progress, Signal, caught_signal, print_line, write_png};
+use crate::output::{Progress, Signal, Texts, caught_signal, counted, print_line, write_png};
 use crate::render::{Camera, Renderer, Style, draw_scene};
-use crate::scene::{SavedState, Scene, View};
+use crate::scene::{Provenance, SavedState, Scene, View, asked_time_secs};
 use crate::sim::{Observables, Simulation, Snapshot, Tally};
 use crate::study::{Recorded, Recorder};
 
@@ -41,6 +41,7 @@ pub(super) struct Studio<'a> {
     kept: Option<KeptStates>,
     recording: Option<Recording>,
     manifest: Manifest,
+    provenance: Provenance,
     checkpoints: Option<Checkpoints>,
     /// Where the run begins, and where it has come to.
     marks: Marks,
@@ -51,7 +52,7 @@ impl<'a> Studio<'a> {
     pub(super) fn open(
         options: &'a HeadlessOptions,
         renderer: Renderer,
-        (scene, end): (&'a Scene, u64),
+        (scene, end, provenance): (&'a Scene, u64, Provenance),
         marks: Marks,
         checkpoints: Option<Checkpoints>,
     ) -> Result<Self> {
@@ -79,12 +80,16 @@ impl<'a> Studio<'a> {
             animation: options
                 .gif
                 .as_deref()
-                .map(|gif| animation(gif, folder, &marks))
+                .map(|gif| {
+                    let told = options.texts_of_animation(&provenance, scene.duration_secs, &style);
+                    Animation::start_with(gif, folder, &marks.pictures, &told)
+                })
                 .transpose()?,
             kept: KeptStates::asked_for(options, &style, &marks, checkpoints.is_some())?,
             style,
             recording: None,
             manifest,
+            provenance,
             renderer,
             checkpoints,
             marks,
@@ -206,15 +211,25 @@ impl<'a> Studio<'a> {
         )?;
         if let Some(folder) = &self.options.frames {
             let file = format!("frame_{number:05}.png");
-            write_png(&folder.join(&file), &image)?;
+            write_png(&folder.join(&file), &image, &self.texts(snapshot))?;
             let moment = Moment { run: RUN.to_owned(), observables: snapshot.observables };
             let entry = PictureEntry { file, shows: vec![moment] };
             self.manifest.add(entry, &folder.join("manifest.json"))?;
         }
         match &mut self.animation {
-            Some(animation) => animation.add(image),
+            Some(animation) => {
+                let duration_secs = self.scene.duration_secs;
+                let told =
+                    self.options.texts_of_animation(&self.provenance, duration_secs, &self.style);
+                animation.add(image, &told)
+            }
             None => Ok(()),
         }
+    }
+
+    fn texts(&self, snapshot: &Snapshot) -> Texts {
+        let time_secs = asked_time_secs(snapshot.observables.time_secs);
+        self.options.texts_of_frame(&self.provenance, time_secs, &self.style)
     }
 
     fn write_manifest(&self) -> Result<()> {
@@ -232,8 +247,8 @@ impl<'a> Studio<'a> {
             checkpoints.remove()?;
         }
         if let Some(folder) = &self.options.frames {
-            let count = self.manifest.pictures.len();
-            print_line(format_args!("{count} pictures in {}", folder.display()));
+            let count = counted(self.manifest.pictures.len() as u64, "picture");
+            print_line(format_args!("{count} in {}", folder.display()));
         }
         if let (true, Some(path)) = (animation?, &self.options.gif) {
             print_line(path.display());
@@ -268,15 +283,4 @@ impl Recorder for Studio<'_> {
         self.marks.next_picture = number + 1;
         Ok(())
     }
-}
-
-/// An animation that begins with the pictures that are there.
-fn animation(path: &Path, folder: Option<&Path>, marks: &Marks) -> Result<Animation> {
-    let mut animation = Animation::start(path)?;
-    for PictureEntry { file, .. } in &marks.pictures {
-        let path = folder.unwrap_or(Path::new("")).join(file);
-        let image = image::open(&path).map_err(|error| Error::file(&path, error))?;
-        animation.add(image.into_rgba8())?;
-    }
-    Ok(animation)
 }

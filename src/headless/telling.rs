@@ -6,7 +6,7 @@ use crate::error::{Error, legible};
 use crate::output::{Signal, caught_signal, note_line};
 use crate::scene::Scene;
 use crate::sim::{Alarm, AlarmKind, Observables, Simulation, Tally};
-use crate::solver::{Method, picked};
+use crate::solver::Method;
 
 /// Whether a run goes on: until a signal comes.
 pub(super) fn go_on() -> ControlFlow<()> {
@@ -57,7 +57,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
 pub(super) fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
     if scene.solver.method == Method::Auto {
         let contacts = simulation.contacts().contacts().len();
-        let name = picked(&scene.solver, contacts).name();
+        let name = simulation.picked_method().name();
         note_line(format_args!("auto took {name} for {contacts} contacts"));
     }
 }

@@ -63,6 +63,10 @@ impl ProblemVisitor for Dump<'_> {
         problem: &mut StepProblem<M::Kinematics>,
         _: &ContactList,
     ) -> Result<ProblemFile> {
+        if problem.is_driven() {
+            let allowed = "left out: files hold problems of grains alone";
+            return Err(Error::value("motions.drive", "given", allowed));
+        }
         let Assembled { matrix, free_velocities } = Assembled::of(problem)?;
         let grains = self.grains;
         let rows = || problem.fixed_rows.iter().chain(&problem.pair_rows);

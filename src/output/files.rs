@@ -4,8 +4,6 @@ use std::fs::File;
 use std::io::ErrorKind::NotFound;
 use std::path::Path;
 
-use image::{ImageFormat, RgbaImage};
-
 use super::draft::Draft;
 use super::target::{Target, folder_of};
 use crate::error::{Error, Result};
@@ -56,18 +54,6 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut draft = Draft::start(path)?;
     draft.write(bytes)?;
     draft.finish(true)
-}
-
-/// Writes a picture as PNG. It is not worth waiting for the disk: it can be drawn again.
-///
-/// # Errors
-/// Names the file and what the system says.
-pub(crate) fn write_png(path: &Path, image: &RgbaImage) -> Result<()> {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut bytes, ImageFormat::Png).map_err(|error| Error::file(path, error))?;
-    let mut draft = Draft::start(path)?;
-    draft.write(bytes.get_ref())?;
-    draft.finish(false)
 }
 
 /// An empty file that is there from the start, for what is to be kept as it comes.

@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
 use super::lines::note_line;
 use crate::error::escaped;
@@ -18,9 +18,13 @@ impl Progress {
     /// Starts work of `length` units of any kind. `what` stands in front of the bar.
     pub(crate) fn new(what: &str, length: u64) -> Self {
         let bar = if std::io::stderr().is_terminal() {
-            let template = "{prefix} {wide_bar} {percent:>3} %  {eta} left";
+            let template = "{prefix} {wide_bar} {percent:>3} %  {left}";
             let style = ProgressStyle::with_template(template)
-                .unwrap_or_else(|_| ProgressStyle::default_bar());
+                .unwrap_or_else(|_| ProgressStyle::default_bar())
+                .with_key("left", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+                    // What cannot be written on a terminal is no reason to end.
+                    let _ = out.write_str(&left(state.pos(), state.eta()));
+                });
             let bar = ProgressBar::new(length).with_style(style).with_prefix(escaped(what));
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
@@ -56,6 +60,15 @@ impl Progress {
     }
 }
 
+/// How long work will take yet, in words; nothing where no part is done, from which one could tell.
+fn left(done: u64, estimate: Duration) -> String {
+    match done {
+        0 => String::new(),
+        _ if estimate < Duration::from_secs(1) => "less than a second left".into(),
+        _ => format!("{} left", HumanDuration(estimate)),
+    }
+}
+
 /// More steps than this are told of before they begin: they take minutes of the smallest scene.
 const MANY_STEPS: u64 = 100_000_000;
 
@@ -63,5 +76,18 @@ const MANY_STEPS: u64 = 100_000_000;
 pub(crate) fn warn_of_steps(steps: u64) {
     if steps > MANY_STEPS {
         note_line(format_args!("slump: this asks for {steps} steps, which take long"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_said_of_the_time_left_before_anything_is_done() {
+        let said = |done, secs| left(done, Duration::from_secs_f64(secs));
+        assert_eq!(said(0, 0.0), "");
+        assert_eq!(said(1, 0.2), "less than a second left");
+        assert_eq!(said(1, 30.0), "30 seconds left");
     }
 }

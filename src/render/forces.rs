@@ -47,6 +47,7 @@ pub(super) fn force_links(
         return Vec::new();
     }
     let full = full_half_width_px(snapshot.surroundings.mean_diameter, camera);
+    let periodic = snapshot.surroundings.periodic;
     let reach = DVec2::new(f64::from(width), f64::from(height)) / 2.0 + f64::from(full) + 1.0;
     let mut shown: Vec<_> = snapshot
         .contacts
@@ -57,8 +58,14 @@ pub(super) fn force_links(
     shown.sort_by(|(_, a), (_, b)| a.total_cmp(b));
     shown
         .into_iter()
-        .filter_map(|(contact, part)| {
-            let ends = [camera.offset_px(contact.from), camera.offset_px(contact.to)];
+        .flat_map(|(contact, part)| {
+            // One that reaches over a periodic border shows on both sides.
+            let reach = [contact.from.x.min(contact.to.x), contact.from.x.max(contact.to.x)];
+            let images = periodic.into_iter().flat_map(move |periodic| periodic.images(reach));
+            std::iter::once(DVec2::ZERO).chain(images).map(move |by| (contact, part, by))
+        })
+        .filter_map(|(contact, part, by)| {
+            let ends = [camera.offset_px(contact.from + by), camera.offset_px(contact.to + by)];
             let [start, end] = clip(ends[0], ends[1], reach)?;
             Some(LinkInstance {
                 start: start.as_vec2().into(),

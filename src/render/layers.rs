@@ -3,16 +3,18 @@
 use glam::DVec2;
 
 use super::arrows::velocity_links;
+use super::borders::border_links;
 use super::boundaries::boundary_links;
 use super::colour_scale::ColourScale;
 use super::font::TextStyle;
 use super::forces::force_links;
 use super::scale_bar::ScaleBar;
-use super::{Camera, Colour, DiscInstance, Palette, Picture, Style};
+use super::{Camera, Colour, DiscInstance, LinkInstance, Palette, Picture, Style};
 use crate::sim::{GrainView, Snapshot};
+use crate::world::{Disc, Periodic};
 
-/// How far grains fade towards the ground beneath force chains.
-const FADING: f32 = 0.62;
+/// How far the borders of a cell fade towards the ground.
+const BORDER_FADING: f32 = 0.4;
 /// Radius of the centre of attraction, as a part of the label's font size.
 const CENTRE_RADIUS_EM: f32 = 0.28;
 
@@ -27,10 +29,12 @@ pub(crate) fn scene_picture(
 ) -> Picture {
     let palette = style.theme.palette();
     let surroundings = &snapshot.surroundings;
-    let view = View { style, palette: &palette, camera, width, height };
+    let periodic = surroundings.periodic;
+    let view = View { style, palette: &palette, camera, width, height, periodic };
     let mut picture = Picture::new(palette.ground);
     let text_px = style.text_px(width, height);
 
+    picture.push_links(view.borders(text_px));
     let boundaries = &surroundings.boundaries;
     picture.push_links(boundary_links(
         boundaries,
@@ -41,16 +45,12 @@ pub(crate) fn scene_picture(
         palette.boundary,
     ));
     let fixed = surroundings.fixed_discs.iter();
-    picture.push_discs(
-        fixed
-            .filter_map(|disc| view.disc(disc.position, disc.radius, 0.0, palette.fixed))
-            .collect(),
-    );
+    picture.push_discs(fixed.flat_map(|disc| view.fixed(disc)).collect());
     let scale = ColourScale::new(style, snapshot);
     let mean_diameter = surroundings.mean_diameter;
     let grains = snapshot.grains.iter();
     picture.push_discs(
-        grains.filter_map(|grain| view.grain(grain, scale.colour(grain, mean_diameter))).collect(),
+        grains.flat_map(|grain| view.grain(grain, scale.colour(grain, mean_diameter))).collect(),
     );
     if style.show_forces {
         picture.push_links(force_links(snapshot, style, &palette, camera, width, height));
@@ -85,15 +85,43 @@ struct View<'a> {
     camera: &'a Camera,
     width: u32,
     height: u32,
+    periodic: Option<Periodic>,
 }
 
 impl View<'_> {
-    fn grain(&self, grain: &GrainView, colour: Colour) -> Option<DiscInstance> {
-        let mut disc = self.disc(grain.position, grain.radius, grain.angle, colour)?;
-        if self.style.angles {
-            disc.mark_half_width = (0.04 * disc.radius).clamp(0.3, 1.25);
-        }
-        Some(disc)
+    /// The borders of the cell, where there is one.
+    fn borders(&self, text_px: f32) -> Vec<LinkInstance> {
+        let colour = self.palette.boundary.mix(self.palette.ground, BORDER_FADING);
+        let size = [self.width, self.height];
+        let links = |periodic| border_links(periodic, self.camera, size, text_px, colour);
+        self.periodic.map(links).unwrap_or_default()
+    }
+
+    /// A fixed disc, with its images that reach into the cell.
+    fn fixed(&self, disc: &Disc) -> impl Iterator<Item = DiscInstance> {
+        let radius = disc.radius;
+        let images = self.images(disc.position, radius);
+        images.filter_map(move |place| self.disc(place, radius, 0.0, self.palette.fixed))
+    }
+
+    /// A grain, with its images that reach into the cell.
+    fn grain(&self, grain: &GrainView, colour: Colour) -> impl Iterator<Item = DiscInstance> {
+        let (radius, angle) = (grain.radius, grain.angle);
+        let images = self.images(grain.position, radius);
+        images.filter_map(move |place| {
+            let mut disc = self.disc(place, radius, angle, colour)?;
+            if self.style.angles {
+                disc.mark_half_width = (0.04 * disc.radius).clamp(0.3, 1.25);
+            }
+            Some(disc)
+        })
+    }
+
+    /// Where a disc is to be drawn: at its place, and a period on where it reaches over a border.
+    fn images(&self, position: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
+        let reach = [position.x - radius, position.x + radius];
+        let images = self.periodic.into_iter().flat_map(move |periodic| periodic.images(reach));
+        std::iter::once(DVec2::ZERO).chain(images).map(move |by| position + by)
     }
 
     /// A disc of the world, or none if it lies outside the picture.
@@ -109,10 +137,7 @@ impl View<'_> {
         let reach = DVec2::new(f64::from(self.width), f64::from(self.height)) / 2.0;
         // Written so that a position that is not a number is left out.
         let shows = offset.abs().cmplt(reach + f64::from(radius) + 1.0).all();
-        let fade = |colour: Colour| {
-            let faded = if self.style.show_forces { FADING } else { 0.0 };
-            colour.mix(self.palette.ground, faded)
-        };
+        let fade = |colour: Colour| colour.mix(self.palette.ground, self.style.fading());
         let outline_width = if self.style.outlines { (0.1 * radius).clamp(0.25, 1.5) } else { 0.0 };
         shows.then(|| DiscInstance {
             centre: offset.as_vec2().into(),

@@ -19,6 +19,8 @@ use crate::sim::Snapshot;
 pub(crate) struct Legend {
     /// The colours of the grains.
     pub scale: ColourScale,
+    /// How far the grains have faded towards the ground, 0 … 1.
+    pub fading: f32,
     /// The |N| (N) at full width and half that width (px), where forces are drawn.
     pub forces: Option<(f64, f32)>,
     /// The speed (m/s) of an arrow, and its length (px), where velocities are drawn.
@@ -39,6 +41,7 @@ impl Legend {
         let arrow = || (speed_reference(style, snapshot), camera.pixels(full_length(snapshot)));
         Self {
             scale: ColourScale::new(style, snapshot),
+            fading: style.fading(),
             forces: style.show_forces.then(forces),
             velocities: style.show_velocities.then(arrow),
             palette: style.theme.palette(),
@@ -69,6 +72,11 @@ impl Legend {
         (sizes * self.text_px).round() as i64
     }
 
+    /// A colour as grains show it.
+    fn faded(&self, colour: Colour) -> Colour {
+        colour.mix(self.palette.ground, self.fading)
+    }
+
     fn text(&self) -> TextStyle {
         TextStyle::new(self.text_px, self.palette.ink)
     }
@@ -82,7 +90,7 @@ impl Legend {
         }
         for row in 0..rows {
             let part = 1.0 - (row as f64 + 0.5) / rows as f64;
-            fill(strip, left, right, top + row, top + row + 1, map_colour(part));
+            fill(strip, left, right, top + row, top + row + 1, self.faded(map_colour(part)));
         }
         let ScaleRange { low, high, title, factor } = self.range();
         let most = (rows / self.em(2.0)).clamp(2, 6) as usize;
@@ -115,7 +123,7 @@ impl Legend {
         let mut widest = 0;
         for contacts in 0..=MOST_CONTACTS {
             let y = start + i64::from(MOST_CONTACTS - contacts) * pitch;
-            fill(strip, left, right, y, y + pitch, contact_colour(contacts));
+            fill(strip, left, right, y, y + pitch, self.faded(contact_colour(contacts)));
             let least = if contacts == MOST_CONTACTS { "≥ " } else { "" };
             let label = TextBlock::new(&format!("{least}{contacts}"), &self.text());
             widest = widest.max(i64::from(label.width()));

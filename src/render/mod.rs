@@ -12,6 +12,7 @@ mod align;
 mod arrows;
 #[cfg(feature = "gpu")]
 mod backend;
+mod borders;
 mod boundaries;
 mod camera;
 mod colour;
@@ -44,6 +45,7 @@ mod scene_tests;
 mod shade;
 mod style;
 mod text;
+mod worlds_image;
 
 #[cfg(feature = "window")]
 pub(crate) use arrows::speed_reference;
@@ -72,3 +74,4 @@ pub(crate) use scale_bar::ScaleBar;
 pub use scene_image::draw_scene;
 pub(crate) use style::Palette;
 pub use style::{ColourBy, Style, Theme};
+pub use worlds_image::{Panel, draw_worlds, panel_size};

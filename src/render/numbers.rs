@@ -39,10 +39,23 @@ pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     ((first..=last).map(|index| index as f64 * step).collect(), step)
 }
 
-/// A number with as many decimals as tell multiples of `step` apart, and a true minus sign.
+/// Decimals of numbers that are not written as powers of ten.
+const MOST_DECIMALS: f64 = 6.0;
+
+/// A number with as many decimals as tell multiples of `step` apart, as a power of ten where those are many, and
+/// a true minus sign.
 pub(crate) fn decimal(value: f64, step: f64) -> String {
-    let decimals = (-(step.abs().log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
-    let text = format!("{value:.decimals$}");
+    let places = -(step.abs().log10() + 1e-9).floor();
+    let text = if places > MOST_DECIMALS && value == 0.0 {
+        "0".to_owned()
+    } else if places > MOST_DECIMALS {
+        // As many digits as lie between the number and the step.
+        let digits = (value.abs().log10().floor() + places).clamp(0.0, 15.0) as usize;
+        format!("{value:.digits$e}").replace("e-", "e−")
+    } else {
+        let decimals = places.clamp(0.0, MOST_DECIMALS) as usize;
+        format!("{value:.decimals$}")
+    };
     match text.strip_prefix('-') {
         // A negative number that rounds to zero is zero.
         Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),
@@ -52,10 +65,11 @@ pub(crate) fn decimal(value: f64, step: f64) -> String {
 }
 
 /// The prefix with which numbers up to `largest` of a unit are written, and the factor it stands
-/// for. No prefix between 0.1 and 10 000.
+/// for. No prefix between 0.1 and 10 000, nor below 0.001 of the smallest: such numbers are written as powers of
+/// ten.
 pub(crate) fn si_prefix(largest: f64) -> (&'static str, f64) {
     let largest = largest.abs();
-    if largest == 0.0 || !largest.is_finite() || (0.1..1e4).contains(&largest) {
+    if largest < 1e-15 || !largest.is_finite() || (0.1..1e4).contains(&largest) {
         return ("", 1.0);
     }
     [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9)]
@@ -129,6 +143,11 @@ mod tests {
         assert_eq!(decimal(-1e-18, 0.1), "0.0");
         assert_eq!(decimal(1500.0, 500.0), "1500");
         assert_eq!(decimal(0.025, 0.005), "0.025");
+        // What has as many zeros as digits fit is written as a power of ten.
+        assert_eq!(decimal(2e-10, 1e-10), "2e−10");
+        assert_eq!(decimal(-2.5e-8, 5e-9), "−2.5e−8");
+        assert_eq!(decimal(0.0, 1e-10), "0");
+        assert_ne!(decimal(10.0, 1e-11), decimal(10.0 + 1e-11, 1e-11));
     }
 
     #[test]
@@ -145,5 +164,6 @@ mod tests {
         assert_eq!(si_prefix(3e-7), ("n", 1e-9));
         assert_eq!(si_prefix(2e4), ("k", 1e3));
         assert_eq!(si_prefix(0.0), ("", 1.0));
+        assert_eq!(si_prefix(3e-22), ("", 1.0));
     }
 }

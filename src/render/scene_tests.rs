@@ -8,7 +8,7 @@ use super::colour_scale::{ColourScale, map_colour};
 use super::layers::scene_picture;
 use super::*;
 use crate::sim::{ContactView, GrainView, Observables, Snapshot, Surroundings};
-use crate::world::{Boundary, Disc};
+use crate::world::{Boundary, Disc, Periodic};
 
 /// Four grains in a row and three contacts, `at` m from the origin.
 fn row_of_grains(at: DVec2) -> Snapshot {
@@ -42,6 +42,7 @@ fn row_of_grains(at: DVec2) -> Snapshot {
             fixed_discs: vec![Disc { position: at - DVec2::Y, radius: 0.5 }],
             boundaries: vec![Boundary::HalfSpace { point: at - 1.5 * DVec2::Y, normal: DVec2::Y }],
             centre_of_attraction: Some(at),
+            periodic: None,
             mean_diameter: 1.0,
             gravity_magnitude: 9.8,
         }),
@@ -142,4 +143,35 @@ fn a_legend_changes_no_pixel_of_the_scene() {
     let bare = Style { legend: false, ..style };
     let scene = draw_scene(&mut renderer, &snapshot, &bare, &camera, 600 - strip, 400).unwrap();
     assert!(scene.enumerate_pixels().all(|(x, y, pixel)| whole.get_pixel(x, y) == pixel));
+}
+
+#[test]
+fn what_straddles_a_periodic_border_is_drawn_on_both_sides() {
+    let mut snapshot = row_of_grains(DVec2::ZERO);
+    let style = Style { show_forces: true, scale_bar: false, ..Style::default() };
+    let camera = Camera { centre: DVec2::new(1.5, 0.0), metres_per_pixel: 0.02 };
+    let drawn = |snapshot: &Snapshot| {
+        let picture = scene_picture(snapshot, &style, &camera, 400, 300);
+        let discs = picture.batches.iter().map(|batch| match batch {
+            Batch::Discs(discs) => discs.len(),
+            Batch::Links(_) => 0,
+        });
+        let forces = [style.theme.palette().push, style.theme.palette().pull];
+        let chains = links(&picture).iter().filter(|link| forces.contains(&link.colour)).count();
+        (discs.sum::<usize>(), chains)
+    };
+    let alone = drawn(&snapshot);
+    // Grains are at 0, 1, 2 and 3, links between the first three.
+    Arc::make_mut(&mut snapshot.surroundings).periodic = Some(Periodic { x: [0.8, 4.2] });
+    let (discs, chains) = drawn(&snapshot);
+    // Beyond the left border are the first two grains, the fixed disc and the first link.
+    assert_eq!((discs, chains), (alone.0 + 3, alone.1 + 1));
+    let borders = scene_picture(&snapshot, &style, &camera, 400, 300);
+    let upright = |link: &&LinkInstance| link.start[0] == link.end[0];
+    let columns: Vec<f32> =
+        links(&borders).iter().filter(upright).map(|dash| dash.start[0]).collect();
+    for x in [0.8, 4.2] {
+        let column = ((x - 1.5) / 0.02) as f32;
+        assert!(columns.iter().filter(|at| (**at - column).abs() < 0.01).count() > 5, "{x}");
+    }
 }

@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::camera::Margins;
 use super::{Camera, Colour};
 
+/// How far grains fade towards the ground beneath force chains.
+const FADING: f32 = 0.62;
 /// Height kept free below the scene for the scale bar, in font sizes.
 const SCALE_BAR_EM: f64 = 1.6;
 
@@ -150,6 +152,11 @@ impl Style {
         // 16 px at 800 × 500; larger pictures are read from further away, but not in proportion.
         let side = f64::from(width).min(1.6 * f64::from(height));
         (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
+    }
+
+    /// How far grains fade towards the ground, 0 … 1: beneath force chains they must.
+    pub(crate) fn fading(&self) -> f32 {
+        if self.show_forces { FADING } else { 0.0 }
     }
 
     /// Whether the colours, links or arrows of this style need a legend, and one is wanted.

@@ -44,6 +44,7 @@ pub fn collision() -> Scene {
         boundaries: Vec::new(),
         motions: Vec::new(),
         gravity_turn: None,
+        periodic: None,
         fixed_discs: vec![Disc { position: DVec2::ZERO, radius }],
         grains: vec![Grain::at_rest(DVec2::new(2.0 * DIAMETER, 0.0), radius)],
     }

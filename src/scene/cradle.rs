@@ -66,6 +66,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
         boundaries: Vec::new(),
         motions: Vec::new(),
         gravity_turn: None,
+        periodic: None,
         fixed_discs: Vec::new(),
         grains: vec![i, j, k],
     }

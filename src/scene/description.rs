@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::sim::{Remedies, Settings, Simulation, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{
-    Boundary, Disc, Grain, Grains, Gravity, GravityTurn, Motion, Parameters, Physics,
+    Boundary, Disc, Grain, Grains, Gravity, GravityTurn, Motion, Parameters, Periodic, Physics,
     TurningGravity, World, check_motions,
 };
 
@@ -39,6 +39,9 @@ pub struct Scene {
     /// How it turns, if it does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_turn: Option<GravityTurn>,
+    /// Left and right borders that are one line, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<Periodic>,
     /// The way to step, with its contact law.
     #[serde(default)]
     pub stepper: Stepper,
@@ -206,8 +209,19 @@ impl Scene {
         if self.physics.axes == 1 {
             self.validate_line()?;
         }
-        check_motions(&self.motions, &self.boundaries, self.fixed_discs.len(), self.physics.axes)?;
-        Ok(())
+        self.validate_motions()
+    }
+
+    /// Bodies that move and borders that wrap.
+    fn validate_motions(&self) -> Result<()> {
+        let bodies = (&*self.boundaries, self.fixed_discs.len());
+        check_motions(&self.motions, bodies, self.physics.axes, self.periodic)?;
+        self.settings().check_drives(&self.motions)?;
+        let Some(periodic) = self.periodic else { return Ok(()) };
+        let radii = self.grains.iter().map(|grain| grain.radius);
+        let radii = radii.chain(self.fixed_discs.iter().map(|disc| disc.radius));
+        let lengths = [radii.fold(0.0, f64::max), self.mean_diameter];
+        periodic.check((&self.boundaries, &self.motions), &self.gravity, lengths)
     }
 
     /// A scene on a line must lie on the line.
@@ -242,9 +256,17 @@ impl Scene {
             min = min.min(grain.position - grain.radius);
             max = max.max(grain.position + grain.radius);
         }
+        if let Some(periodic) = self.periodic {
+            let room = 0.5 * self.mean_diameter;
+            (min.x, max.x) = (periodic.x[0] - room, periodic.x[1] + room);
+            return self.with_fixed_discs_beside(View { min, max });
+        }
         let room = DVec2::new(if self.physics.axes == 1 { 0.0 } else { max.y - min.y }, 0.0);
-        (min, max) = (min - room, max + room);
-        // Of what never moves, the part beside the grains.
+        self.with_fixed_discs_beside(View { min: min - room, max: max + room })
+    }
+
+    /// A view of the grains and, of what never moves, the part beside them.
+    fn with_fixed_discs_beside(&self, View { mut min, mut max }: View) -> View {
         for disc in &self.fixed_discs {
             if (min.x..max.x).contains(&disc.position.x) {
                 min.y = min.y.min(disc.position.y - disc.radius);
@@ -267,6 +289,7 @@ impl Scene {
             motions: self.motions.clone(),
             gravity: self.gravity,
             gravity_turn: TurningGravity::of(self.gravity, self.gravity_turn.as_ref()),
+            periodic: self.periodic,
             mean_diameter: self.mean_diameter,
         };
         Simulation::new(world, self.physics, self.settings(), self.gap_tolerance)

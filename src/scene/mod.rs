@@ -3,6 +3,7 @@
 
 mod about;
 mod collision;
+mod command_line;
 mod config;
 mod config_file;
 mod config_options;
@@ -11,7 +12,7 @@ mod cradle;
 mod csv_states;
 mod deposition;
 mod description;
-mod experiments;
+pub(crate) mod experiments;
 mod file;
 mod origin;
 mod pile;
@@ -21,6 +22,9 @@ mod saved_state;
 pub mod stability;
 
 pub use collision::collision;
+#[cfg(feature = "window")]
+pub(crate) use command_line::joined;
+pub(crate) use command_line::{Provenance, asked_time_secs, words_of, words_up_to};
 pub use config::{Config, Ground};
 pub(crate) use config_options::parser_of;
 pub use cradle::{cradle, cradle_from};

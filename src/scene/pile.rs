@@ -75,6 +75,7 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Sc
         boundaries: Vec::new(),
         motions: Vec::new(),
         gravity_turn: None,
+        periodic: None,
         fixed_discs: rough_base(base_width, DIAMETER),
         grains,
     })

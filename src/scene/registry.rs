@@ -42,7 +42,7 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 25] = [
+pub const SCENES: [SceneInfo; 29] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
@@ -68,10 +68,34 @@ pub const SCENES: [SceneInfo; 25] = [
         make: || Ok(experiments::drum()),
     },
     SceneInfo {
+        name: "shear",
+        group: SceneGroup::Experiments,
+        summary: "228 grains between rough plates in a periodic cell: one is drawn along under a pressure",
+        make: || Ok(experiments::shear()),
+    },
+    SceneInfo {
         name: "vibrated",
         group: SceneGroup::Experiments,
         summary: "120 grains and a large one in a box that is shaken with 3 g",
         make: || Ok(experiments::vibrated()),
+    },
+    SceneInfo {
+        name: "collapse",
+        group: SceneGroup::Experiments,
+        summary: "400 grains between two gates over a rough floor: the gates go and the column spreads",
+        make: || Ok(experiments::collapse()),
+    },
+    SceneInfo {
+        name: "silo",
+        group: SceneGroup::Experiments,
+        summary: "450 grains flow out of a silo with a flat bottom and an orifice of seven diameters",
+        make: || Ok(experiments::silo()),
+    },
+    SceneInfo {
+        name: "incline",
+        group: SceneGroup::Experiments,
+        summary: "300 grains in a box that is tilted until they flow",
+        make: || Ok(experiments::incline()),
     },
     SceneInfo {
         name: "column",

@@ -78,6 +78,18 @@ impl Alarm {
         legible(&format!("{what} (step {step}, t = {time_secs:.4} s): {advice}"))
     }
 
+    /// What is wrong with a state that no step has led to yet.
+    pub(crate) fn of_start(observables: &Observables) -> Option<Self> {
+        let Observables { step, time_secs, max_overlap, .. } = *observables;
+        let overlaps = step == 0 && max_overlap > LARGEST_OVERLAP;
+        overlaps.then_some(Self {
+            kind: AlarmKind::Overlap,
+            step,
+            time_secs,
+            longest_time_step_secs: None,
+        })
+    }
+
     /// The change that is most likely to help.
     fn advice(&self, settings: &Settings) -> String {
         let Settings { stepper, parameters, solver, .. } = settings;
@@ -91,6 +103,9 @@ impl Alarm {
                     "try more than {} substeps, or 0 for as many as are stable",
                     parameters.substeps
                 )
+            }
+            AlarmKind::Overlap if self.step == 0 => {
+                "it begins so; the remedy push-out takes overlap away".into()
             }
             AlarmKind::NotFinite
             | AlarmKind::GrainLost

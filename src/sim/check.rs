@@ -8,8 +8,8 @@ use super::steppers::stepper::Stepper;
 use crate::contact::{Reach, check_distances};
 use crate::error::{Error, Result};
 use crate::setting::Group;
-use crate::solver::FrictionModel;
-use crate::world::{FrictionCone, World};
+use crate::solver::{FrictionModel, METHODS};
+use crate::world::{FrictionCone, Motion, World};
 
 /// The diameter that lengths are measured in is at most this many radii of the largest grain: the
 /// skin goes with it, and all that lie within the skin are candidates.
@@ -85,6 +85,37 @@ impl Settings {
                  cohere; tresca takes both"
             );
             return Err(Error::value("cone", cone, allowed));
+        }
+        Ok(())
+    }
+
+    /// Whether there is a way to move walls that a force drives, if any of the motions is one.
+    ///
+    /// # Errors
+    /// Names the setting that knows of no such walls.
+    pub(crate) fn check_drives(&self, motions: &[Motion]) -> Result<()> {
+        if motions.iter().all(|motion| motion.drive.is_none()) {
+            return Ok(());
+        }
+        let refuse = |field: &str, found: String, takers: Vec<&str>| {
+            let allowed = format!("{} where a motion has a drive", takers.join(" or "));
+            Err(Error::value(field, found, allowed))
+        };
+        if !self.stepper.info().takes_drives {
+            let takers = Stepper::ALL.iter().filter(|stepper| stepper.info().takes_drives);
+            let takers = takers.map(|stepper| stepper.name()).collect();
+            return refuse("stepper", self.stepper.to_string(), takers);
+        }
+        if self.stepper.uses_method() && !self.solver.method.info().takes_drives {
+            let takers = METHODS.iter().filter(|info| info.takes_drives).map(|info| info.name);
+            return refuse("solver", self.solver.method.to_string(), takers.collect());
+        }
+        let model = self.solver.friction_model;
+        if model != FrictionModel::Coulomb {
+            return refuse("friction-model", model.to_string(), vec!["coulomb"]);
+        }
+        if self.remedies.sequential_impacts {
+            return refuse("sequential-impacts", "given".into(), vec!["left out"]);
         }
         Ok(())
     }

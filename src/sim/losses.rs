@@ -92,15 +92,21 @@ impl Losses {
         let deep = -LOST_DEPTH * world.mean_diameter;
         for (index, &to) in world.grains.positions.iter().enumerate() {
             let way = WAY_IN_RADII * world.grains.radii[index];
-            let from = self.from[index];
+            let here = self.from[index];
+            let from = world.periodic.map_or(here, |periodic| periodic.near(here, to));
             let is_long = from.distance_squared(to) > way * way;
             if !(is_long || look_at_all) || self.lost[index] {
                 continue;
             }
             let frames = self.frames.iter().map(Some).chain(std::iter::repeat(None));
-            let fates = features.iter().zip(frames).map(|(feature, before)| {
-                let from = before.map_or(from, |before| carried(from, *before, frame(feature)));
-                (fate(feature, from, to, deep), from)
+            // A way across a periodic border is seen from either side.
+            let seen_from_there = (here != from).then(|| (here, to + (here - from)));
+            let ways = move || seen_from_there.into_iter().chain([(from, to)]);
+            let fates = features.iter().zip(frames).flat_map(|(feature, before)| {
+                ways().map(move |(from, to)| {
+                    let from = before.map_or(from, |before| carried(from, *before, frame(feature)));
+                    (fate(feature, from, to, deep), from)
+                })
             });
             let (fate, carried_from) =
                 fates.max_by_key(|(fate, _)| *fate).unwrap_or((Fate::There, from));
@@ -147,7 +153,7 @@ impl Losses {
 impl Edges {
     fn of(world: &World, features: &[Feature]) -> Self {
         // Where walls go, there is no telling where the world ends.
-        if world.motions.iter().any(|motion| motion.course.is_some()) {
+        if world.motions.iter().any(|motion| motion.course.is_some() || motion.drive.is_some()) {
             return Self::default();
         }
         let discs = world.fixed_discs.iter().map(|disc| disc.position);

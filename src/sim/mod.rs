@@ -2,6 +2,7 @@
 
 mod alarm;
 mod check;
+mod elasticity;
 pub mod live;
 mod losses;
 mod moment;
@@ -22,6 +23,8 @@ mod visits;
 mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
+pub use elasticity::SweepElasticity;
+pub(crate) use elasticity::diffusion_of_sweep;
 pub use moment::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 pub use observables::{Beside, Observables, QUANTITIES, Quantity};
 pub use pull::Pull;

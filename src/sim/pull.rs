@@ -33,7 +33,7 @@ impl Pull {
         };
         let frequency = (STIFFNESS * g / world.mean_diameter).sqrt();
         let (position, velocity) = (grains.positions[index], grains.velocities[index]);
-        let stretch = self.target - position - time_step_secs * velocity;
+        let stretch = world.shortest(self.target - position) - time_step_secs * velocity;
         let acceleration = frequency * frequency * stretch - 2.0 * frequency * velocity;
         let turn = frequency * time_step_secs;
         time_step_secs * acceleration / (1.0 + 2.0 * turn + turn * turn)

@@ -90,6 +90,12 @@ impl Settings {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
+    /// The same with another Bond number.
+    pub fn with_bond(mut self, bond: f64) -> Self {
+        self.parameters.bond = bond;
+        self
+    }
+
     /// The same with another Δt, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { parameters: self.parameters.over(time_step_secs), ..self }

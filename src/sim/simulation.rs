@@ -47,7 +47,7 @@ impl Simulation {
     /// # Errors
     /// Names the first field that is outside its range, or that does not go with the others.
     pub fn new(
-        world: World,
+        mut world: World,
         physics: Physics,
         settings: Settings,
         gap_tolerance: f64,
@@ -55,6 +55,8 @@ impl Simulation {
         physics.validate()?;
         settings.validate()?;
         world.validate(physics)?;
+        settings.check_drives(&world.motions)?;
+        world.wrap();
         let candidates = Candidates::new(&world, reach_in(&world, gap_tolerance)?)?;
         let surroundings = Arc::new(Surroundings::of(&world));
         let mut simulation = Self {
@@ -141,6 +143,7 @@ impl Simulation {
         state.contacts.begin_step(observables.step + 1);
         let step = Step { state, settings, pieces, advance, observables, initial_heights };
         slots.visit(parts, step);
+        self.state.world.wrap();
     }
 
     fn look(&mut self) -> Result<&Observables> {
@@ -213,6 +216,7 @@ impl Simulation {
     /// Names the first one outside its range, or that does not go with the others, and changes none.
     pub fn change(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
+        settings.check_drives(&self.state.world.motions)?;
         if settings.parameters.time_step_secs != self.settings.parameters.time_step_secs {
             self.steady = Steady::since(&self.observables);
         }

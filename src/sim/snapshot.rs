@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::observables::Observables;
-use crate::world::{Boundary, Disc, Gravity, World};
+use crate::world::{Boundary, Disc, Gravity, Periodic, World};
 
 /// One moment of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -32,6 +32,9 @@ pub struct Surroundings {
     pub boundaries: Vec<Boundary>,
     /// The centre of attraction, where the scene has one, m.
     pub centre_of_attraction: Option<DVec2>,
+    /// Borders that wrap, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<Periodic>,
     /// The diameter d that lengths are measured in, m.
     pub mean_diameter: f64,
     /// The scene's g, m/s².
@@ -48,6 +51,7 @@ impl Surroundings {
                 Gravity::Attraction { centre, .. } => Some(centre),
                 Gravity::Uniform { .. } => None,
             },
+            periodic: world.periodic,
             mean_diameter: world.mean_diameter,
             gravity_magnitude: world.gravity.magnitude(),
         }

@@ -30,6 +30,9 @@ pub struct Tally {
     /// Largest overlap of any contact in any step, in units of d.
     #[serde(with = "number")]
     pub max_overlap: f64,
+    /// Mean over the steps of the number of contacts.
+    #[serde(with = "number", default)]
+    pub mean_contacts: f64,
 }
 
 impl Tally {
@@ -43,5 +46,6 @@ impl Tally {
         self.largest_residual = worst(self.largest_residual, step.residual);
         self.mean_overlap += (step.mean_overlap - self.mean_overlap) / self.steps as f64;
         self.max_overlap = worst(self.max_overlap, step.max_overlap);
+        self.mean_contacts += (f64::from(step.contacts) - self.mean_contacts) / self.steps as f64;
     }
 }

@@ -65,15 +65,16 @@ impl Simulation {
         Arc::new(Surroundings::of(&self.state.world))
     }
 
-    /// Centre of another disc, or the nearest point of another shape, m.
+    /// Centre of another disc, or the nearest point of another shape, m: of the nearest image of either.
     fn far_end(&self, grain: usize, other: Other) -> DVec2 {
         let State { world, candidates, .. } = &self.state;
+        let centre = world.grains.positions[grain];
+        let near = |place| world.periodic.map_or(place, |periodic| periodic.near(place, centre));
         match other {
-            Other::Grain(index) => world.grains.positions[index],
-            Other::FixedDisc(index) => world.fixed_discs[index].position,
+            Other::Grain(index) => near(world.grains.positions[index]),
+            Other::FixedDisc(index) => near(world.fixed_discs[index].position),
             Other::Feature(index) => {
-                let centre = world.grains.positions[grain];
-                let nearest = candidates.features()[index].distance(centre);
+                let nearest = candidates.distance(world, index, centre);
                 nearest.map_or(centre, |(normal, distance)| centre - distance * normal)
             }
         }

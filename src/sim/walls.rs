@@ -1,13 +1,14 @@
 //! Bodies that move by themselves (`world::motion`, and pistons).
 //!
 //! In a step each has one rigid velocity: the mean of its course over Δt, or in its last step what is left of its
-//! way over Δt. The contacts see it where they touch (`solver::problem::surfaces`), and with the grains the body is
+//! way over Δt. One that a force drives begins with the speed that it has, and its step says with which it goes on
+//! (`solver::problem::driven`). The contacts see it where they touch (`solver::problem::surfaces`), and with the grains the body is
 //! carried by it.
 
 use glam::DVec2;
 
 use crate::contact::{Candidates, Contact, Numbering, Other};
-use crate::solver::Surface;
+use crate::solver::{DrivenBy, DrivenWall, Surface};
 use crate::world::{Boundary, Carry, RigidVelocity, World};
 
 /// No wall.
@@ -31,6 +32,17 @@ struct Wall {
     velocity: RigidVelocity,
     /// Along the tangent besides, m/s.
     surface_speed: f64,
+    driver: Option<Driver>,
+}
+
+/// What a force drives of a wall.
+#[derive(Clone, Copy, Debug)]
+struct Driver {
+    /// Its number among all of them.
+    number: u32,
+    axis: DVec2,
+    /// The velocity that the wall has besides, m/s.
+    course: DVec2,
 }
 
 /// What says how a wall goes.
@@ -48,14 +60,24 @@ impl Walls {
         self.moving.clear();
         let by_themselves = world.boundaries.iter().enumerate().filter_map(|(index, boundary)| {
             let velocity = boundary.velocity_in(time_step_secs)?;
-            Some(Wall { mover: Mover::Boundary(index), velocity, surface_speed: 0.0 })
+            let mover = Mover::Boundary(index);
+            Some(Wall { mover, velocity, surface_speed: 0.0, driver: None })
         });
-        let by_motions = world.motions.iter().enumerate().map(|(index, motion)| Wall {
-            mover: Mover::Motion(index),
-            velocity: motion.velocity_in(time_step_secs),
-            surface_speed: motion.surface_speed,
+        let mut number = 0;
+        let by_motions = world.motions.iter().enumerate().map(|(index, motion)| {
+            let mut velocity = motion.velocity_in(time_step_secs);
+            let driver = motion.drive.as_ref().map(|drive| {
+                let driver = Driver { number, axis: drive.axis(), course: velocity.velocity };
+                number += 1;
+                velocity.velocity += drive.speed * driver.axis;
+                driver
+            });
+            let surface_speed = motion.surface_speed;
+            Wall { mover: Mover::Motion(index), velocity, surface_speed, driver }
         });
-        let moves = |wall: &Wall| wall.velocity.moves() || wall.surface_speed != 0.0;
+        let moves = |wall: &Wall| {
+            wall.velocity.moves() || wall.surface_speed != 0.0 || wall.driver.is_some()
+        };
         self.moving.extend(by_themselves.chain(by_motions).filter(moves));
         if !self.moving.is_empty() {
             self.find_bodies(world, candidates);
@@ -139,7 +161,41 @@ impl Walls {
         let (grain, grains) = (contact.grain as usize, &world.grains);
         let place = grains.positions[grain] - (grains.radii[grain] + contact.gap) * contact.normal;
         let velocity = wall.velocity.at(place);
-        Some(Surface { velocity, round: wall.surface_speed, is_half_space, is_pushed })
+        let driven = wall.driver.map(|Driver { number, axis, .. }| {
+            let along_tangent = if is_pushed { 0.0 } else { axis.dot(contact.normal.perp()) };
+            DrivenBy { wall: number, along: [axis.dot(contact.normal), along_tangent] }
+        });
+        Some(Surface { velocity, round: wall.surface_speed, is_half_space, is_pushed, driven })
+    }
+
+    /// The walls that a force drives, as they begin a step of that length.
+    pub(crate) fn driven<'a>(
+        &'a self,
+        world: &'a World,
+        time_step_secs: f64,
+    ) -> impl Iterator<Item = DrivenWall> + 'a {
+        self.moving.iter().filter_map(move |wall| {
+            let Mover::Motion(motion) = wall.mover else { return None };
+            let drive = world.motions[motion].drive.as_ref()?;
+            let response = 1.0 / (drive.mass + time_step_secs * drive.damping);
+            let push = time_step_secs * drive.force_in(world.periodic);
+            let free = response * (drive.mass * drive.speed + push);
+            Some(DrivenWall { motion, response, before: drive.speed, free, now: drive.speed })
+        })
+    }
+
+    /// Has the walls that a force drives go on as a step has found.
+    pub(crate) fn take_driven(&mut self, world: &mut World, driven: &[DrivenWall]) {
+        for found in driven {
+            let Some(drive) = &mut world.motions[found.motion].drive else { continue };
+            drive.speed = found.now;
+            for wall in &mut self.moving {
+                let is_it = matches!(wall.mover, Mover::Motion(motion) if motion == found.motion);
+                if let (true, Some(Driver { axis, course, .. })) = (is_it, wall.driver) {
+                    wall.velocity.velocity = course + found.now * axis;
+                }
+            }
+        }
     }
 
     /// How fast the surface of the other body of a contact goes along n and t, m/s.
@@ -171,12 +227,11 @@ impl Walls {
                 disc.position = now;
             }
         }
-        let mut walls = self.moving.iter().zip(&carries).peekable();
         for (index, motion) in motions.iter_mut().enumerate() {
             let is_it = |wall: &Wall| matches!(wall.mover, Mover::Motion(moved) if moved == index);
-            while walls.next_if(|(wall, _)| matches!(wall.mover, Mover::Boundary(_))).is_some() {}
-            let carry = walls.next_if(|(wall, _)| is_it(wall)).map(|(_, carry)| *carry);
-            motion.advance(secs, &carry.unwrap_or_else(|| RigidVelocity::NONE.carry(secs)));
+            let wall = self.moving.iter().find(|wall| is_it(wall));
+            let velocity = wall.map_or(RigidVelocity::NONE, |wall| wall.velocity);
+            motion.advance(secs, &velocity.carry(secs));
         }
         candidates.follow(world, |boundary| of(&self.of_boundary, boundary), longest);
     }

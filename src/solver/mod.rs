@@ -27,12 +27,13 @@ pub use methods::{
 pub use ordering::Ordering;
 pub use problem::prepare::{Approach, ProblemNumbers};
 pub(crate) use problem::worst;
+pub(crate) use problem::{
+    DrivenBy, DrivenWall, ModelParts, ModelVisitor, Surface, for_each_row, measure,
+    relative_velocities,
+};
 pub use problem::{
     Kinematics, Line, LineBody, Measures, Model, Motion, Plane, PlaneBody, Row, SpinningPlane,
     StepModel, StepProblem, residual,
-};
-pub(crate) use problem::{
-    ModelParts, ModelVisitor, Surface, for_each_row, measure, relative_velocities,
 };
 pub use settings::{SolverChanges, SolverSettings, StopTest};
 pub(crate) use slots::{Slot, SlotVisitor, Slots, visit_model};

@@ -8,6 +8,7 @@ mod collection;
 mod course;
 mod figures;
 mod journal;
+mod machine;
 mod outcome;
 mod paper;
 mod performance;
@@ -22,6 +23,7 @@ mod states;
 mod statistics;
 mod sweep;
 mod table;
+mod validate;
 
 pub(crate) use course::series_path;
 pub(crate) use figures::{figure_names, reproduce};
@@ -36,5 +38,10 @@ pub use planned_run::PlannedRun;
 pub use run::{OnItsWay, Recorded, Recorder, go_on, record};
 pub(crate) use shard::Shard;
 pub(crate) use speed::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
+#[cfg(feature = "window")]
+pub(crate) use states::settled_pile;
+#[cfg(feature = "window")]
+pub(crate) use statistics::mean;
 pub(crate) use sweep::{SweepOptions, merge, sweep};
 pub(crate) use table::RunsTable;
+pub(crate) use validate::{ValidateOptions, experiment_names, validate};

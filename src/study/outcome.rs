@@ -39,6 +39,9 @@ pub(crate) struct Outcome {
     /// Largest overlap of any contact in any step, in diameters.
     #[serde(with = "number")]
     pub max_overlap: f64,
+    /// Mean over the steps of the number of contacts.
+    #[serde(with = "number", default)]
+    pub mean_contacts: f64,
     /// Gap between the first two grains at the end, in diameters; 0 where there is one grain.
     #[serde(with = "number")]
     pub first_gap: f64,
@@ -71,6 +74,7 @@ impl Outcome {
             slump,
             mean_overlap: 0.0,
             max_overlap: 0.0,
+            mean_contacts: 0.0,
             first_gap: 0.0,
             unconverged_steps: 0,
             stalled_steps: 0,
@@ -131,13 +135,19 @@ pub(crate) fn run_to_end(
         }
         RunEnding::Done | RunEnding::Stopped => Status::Done,
     };
-    Ok(Outcome {
+    Ok(outcome_of(status, &tally, &simulation))
+}
+
+/// What a run that has ended so comes to.
+fn outcome_of(status: Status, tally: &Tally, simulation: &Simulation) -> Outcome {
+    Outcome {
         status,
         steps: tally.steps,
         slump: simulation.observables().slump,
         mean_overlap: tally.mean_overlap,
         max_overlap: tally.max_overlap,
-        first_gap: first_gap(&simulation),
+        mean_contacts: tally.mean_contacts,
+        first_gap: first_gap(simulation),
         unconverged_steps: tally.unconverged_steps,
         stalled_steps: tally.stalled_steps,
         fallback_steps: tally.fallback_steps,
@@ -145,7 +155,7 @@ pub(crate) fn run_to_end(
         largest_residual: tally.largest_residual,
         lost_grains: simulation.observables().lost_grains,
         alarms: simulation.alarms().iter().map(|alarm| alarm.kind).collect(),
-    })
+    }
 }
 
 fn first_gap(simulation: &Simulation) -> f64 {

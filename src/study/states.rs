@@ -8,7 +8,9 @@ use rayon::prelude::*;
 use super::record;
 use crate::error::{Error, Result};
 use crate::output::{Progress, check_writable, note_line, write_file};
-use crate::scene::{Config, Deposition, NewPile, Scene, parse_discs, settle, write_discs};
+use crate::scene::{
+    Config, Deposition, NewPile, Scene, Settling, parse_discs, settle, write_discs,
+};
 use crate::world::Grain;
 
 /// Settled grains by the pile they come from.
@@ -46,17 +48,7 @@ impl States {
             .into_iter()
             .par_bridge()
             .map(|(name, pile)| {
-                let path = folder.join(format!("{name}.csv"));
-                // A state reads back bit for bit, so that it does not matter which way it came.
-                let grains = match kept(&path)? {
-                    Some(grains) => grains,
-                    None => {
-                        let grains = settle(&pile, |_| true)?;
-                        let text = write_discs(&grains, "An initial state; metres.");
-                        write_file(&path, record::sealed_text(&text).as_bytes())?;
-                        grains
-                    }
-                };
+                let grains = settled_pile(&folder, &pile, |_| true)?;
                 progress.advance(cost(&pile));
                 Ok((name, grains))
             })
@@ -72,6 +64,26 @@ impl States {
             None => config.scene(|_| true),
         }
     }
+}
+
+/// The settled grains of a pile: those that are kept in `folder`, or new ones, which are then kept there. A state
+/// reads back bit for bit, so that it does not matter which way it came.
+///
+/// # Errors
+/// As [`settle`], and where the folder cannot be read or written.
+pub(crate) fn settled_pile(
+    folder: &Path,
+    pile: &NewPile,
+    progress: impl FnMut(Settling) -> bool,
+) -> Result<Vec<Grain>> {
+    let path = folder.join(format!("{}.csv", name(pile)));
+    if let Some(grains) = kept(&path)? {
+        return Ok(grains);
+    }
+    let grains = settle(pile, progress)?;
+    let text = write_discs(&grains, "An initial state; metres.");
+    write_file(&path, record::sealed_text(&text).as_bytes())?;
+    Ok(grains)
 }
 
 /// The grains that a file holds; nothing where it is not there, or damaged, which is told of.

@@ -7,7 +7,7 @@ const CONFIDENCE: f64 = 0.95;
 
 /// A mean with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Mean {
+pub(crate) struct Mean {
     /// The mean.
     pub mean: f64,
     /// Lower end of the interval.
@@ -22,7 +22,7 @@ pub(super) struct Mean {
 
 /// Mean of independent values with Student's interval. With fewer than two values the interval is
 /// all numbers.
-pub(super) fn mean(values: &[f64]) -> Mean {
+pub(crate) fn mean(values: &[f64]) -> Mean {
     let count = values.len();
     let mean = values.iter().sum::<f64>() / count.max(1) as f64;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();

@@ -3,7 +3,8 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::motion::{at_time, is_zero};
+use super::drive::is_zero;
+use super::motion::at_time;
 use super::motion_check::check_table;
 use super::{Gravity, Physics};
 use crate::error::{Error, Result};

@@ -2,16 +2,20 @@
 
 mod boundary;
 mod carry;
+mod drive;
 mod grains;
 mod gravity;
 mod gravity_turn;
 mod motion;
 mod motion_check;
 mod parameters;
+mod periodic;
+mod periodic_check;
 mod physics;
 
 pub use boundary::{Boundary, Disc, Edge};
 pub(crate) use carry::{Carry, RigidVelocity};
+pub use drive::Drive;
 pub use grains::{Grain, Grains};
 pub use gravity::Gravity;
 pub use gravity_turn::{GravityTurn, TurnCourse, TurningGravity};
@@ -19,8 +23,10 @@ pub use motion::{Motion, MotionCourse};
 pub(crate) use motion_check::check_motions;
 pub(crate) use parameters::MAX_SUBSTEPS;
 pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};
+pub use periodic::Periodic;
 pub use physics::Physics;
 
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
@@ -42,12 +48,15 @@ pub struct World {
     pub gravity: Gravity,
     /// How it turns, if it does: then `gravity` is what it is in the last step.
     pub gravity_turn: Option<TurningGravity>,
+    /// Borders that wrap, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<Periodic>,
     /// The diameter d that lengths are measured in, m.
     pub mean_diameter: f64,
 }
 
 impl World {
-    /// Checks its grains and motions, and how its gravity turns.
+    /// Checks its grains and motions, how its gravity turns, and its borders.
     ///
     /// # Errors
     /// Names the first of them that does not fit.
@@ -56,11 +65,36 @@ impl World {
         if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
             turn.check(&self.gravity, physics)?;
         }
-        check_motions(&self.motions, &self.boundaries, self.fixed_discs.len(), physics.axes)
+        let bodies = (&*self.boundaries, self.fixed_discs.len());
+        check_motions(&self.motions, bodies, physics.axes, self.periodic)?;
+        let Some(periodic) = self.periodic else { return Ok(()) };
+        let fixed = self.fixed_discs.iter().map(|disc| disc.radius);
+        let largest_radius = self.grains.radii.iter().copied().chain(fixed).fold(0.0, f64::max);
+        let lengths = [largest_radius, self.mean_diameter];
+        periodic.check((&self.boundaries, &self.motions), &self.gravity, lengths)
     }
 
     /// Whether anything can move that no grain moves.
     pub fn has_motion(&self) -> bool {
         !self.motions.is_empty() || self.boundaries.iter().any(Boundary::moves_by_itself)
+    }
+
+    /// The shortest way between two places that are apart by `offset`, m: across periodic borders where there are
+    /// any.
+    #[inline(always)]
+    pub(crate) fn shortest(&self, offset: DVec2) -> DVec2 {
+        match self.periodic {
+            None => offset,
+            Some(periodic) => periodic.shortest(offset),
+        }
+    }
+
+    /// Brings all discs back into the cell, where there is one.
+    pub(crate) fn wrap(&mut self) {
+        let Some(periodic) = self.periodic else { return };
+        let fixed = self.fixed_discs.iter_mut().map(|disc| &mut disc.position);
+        for place in self.grains.positions.iter_mut().chain(fixed) {
+            *place = periodic.wrap(*place);
+        }
     }
 }

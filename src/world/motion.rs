@@ -6,6 +6,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::carry::{Carry, RigidVelocity};
+use super::drive::{Drive, is_zero};
 
 /// Boundaries and fixed discs that move together.
 ///
@@ -22,6 +23,9 @@ pub struct Motion {
     /// Where they go. Without it they stay where they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub course: Option<MotionCourse>,
+    /// What force moves them besides, if one does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive: Option<Drive>,
     /// How fast a surface goes round them that leaves their shape as it is, as the belt of a conveyor does, m/s:
     /// positive along the outward normal turned by +90°, which is anticlockwise round a disc or a polygon.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -95,12 +99,8 @@ pub enum MotionCourse {
     },
 }
 
-pub(super) fn is_zero(number: &f64) -> bool {
-    *number == 0.0
-}
-
 impl Motion {
-    /// How they go in the next `secs`.
+    /// How they go in the next `secs` by their course.
     pub(crate) fn velocity_in(&self, secs: f64) -> RigidVelocity {
         let course = self.course.as_ref();
         course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
@@ -108,10 +108,39 @@ impl Motion {
 
     /// A vector along which they go, if they go straight on in such a step; of any length.
     pub(crate) fn direction(&self, velocity: &RigidVelocity) -> Option<DVec2> {
-        match &self.course {
-            Some(MotionCourse::Straight { direction, .. }) => Some(*direction),
-            Some(MotionCourse::Sine { amplitude, .. }) => Some(*amplitude),
+        match (&self.course, &self.drive) {
+            (None, Some(drive)) => Some(drive.direction),
+            (Some(MotionCourse::Straight { direction, .. }), None) => Some(*direction),
+            (Some(MotionCourse::Sine { amplitude, .. }), None) => Some(*amplitude),
+            // What goes across its drive rubs, even while it stands still.
+            (Some(_), Some(_)) => None,
             _ => (velocity.spin == 0.0).then_some(velocity.velocity),
+        }
+    }
+
+    /// Whether they turn round a pivot.
+    pub(super) fn turns(&self) -> bool {
+        use MotionCourse::{AngleTable, Rotation, Swing};
+        matches!(&self.course, Some(Rotation { .. } | Swing { .. } | AngleTable { .. }))
+    }
+
+    /// Whether a course along a line leads them along x.
+    pub(super) fn goes_along_x(&self) -> bool {
+        if self.drive.as_ref().is_some_and(|drive| drive.direction.x != 0.0) {
+            return true;
+        }
+        match &self.course {
+            Some(MotionCourse::Straight { direction, .. }) => direction.x != 0.0,
+            Some(MotionCourse::Sine { amplitude, .. }) => amplitude.x != 0.0,
+            Some(MotionCourse::Table { offsets, .. }) => {
+                offsets.iter().any(|offset| offset.x != offsets[0].x)
+            }
+            Some(
+                MotionCourse::Rotation { .. }
+                | MotionCourse::Swing { .. }
+                | MotionCourse::AngleTable { .. },
+            )
+            | None => false,
         }
     }
 

@@ -2,18 +2,19 @@
 
 use glam::DVec2;
 
-use super::{Boundary, Motion, MotionCourse};
+use super::{Boundary, Motion, MotionCourse, Periodic};
 use crate::error::{Error, Result};
 
-/// Checks motions against the boundaries, the number of fixed discs, and the number of axes that they are for.
+/// Checks motions against the boundaries, the number of fixed discs, the number of axes and the borders that they are
+/// for.
 ///
 /// # Errors
 /// Names the first motion, or body of one, that does not fit.
 pub(crate) fn check_motions(
     motions: &[Motion],
-    boundaries: &[Boundary],
-    fixed_discs: usize,
+    (boundaries, fixed_discs): (&[Boundary], usize),
     axes: u8,
+    periodic: Option<Periodic>,
 ) -> Result<()> {
     let mut moved_by = [vec![None; boundaries.len()], vec![None; fixed_discs]];
     for (index, motion) in motions.iter().enumerate() {
@@ -41,10 +42,33 @@ pub(crate) fn check_motions(
             }
         }
         check_numbers(motion, &field)?;
+        check_drive(motion, &field, periodic)?;
         if axes == 1 && !stays_on_line(motion) {
             let allowed = "along the x axis where physics.axes is 1";
             return Err(Error::value(field, "off the x axis", allowed));
         }
+    }
+    Ok(())
+}
+
+/// Whether what drives a motion goes with its course.
+fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Result<()> {
+    /// Cosine of two directions that are perpendicular but for rounding.
+    const PERPENDICULAR: f64 = 1e-9;
+    let Some(drive) = &motion.drive else { return Ok(()) };
+    drive.check(&format!("{field}.drive"), periodic)?;
+    let along = match &motion.course {
+        None => return Ok(()),
+        Some(MotionCourse::Straight { direction, travel: None, .. }) => *direction,
+        Some(MotionCourse::Sine { amplitude, .. }) => *amplitude,
+        Some(_) => {
+            let allowed = "straight without a travel, or a sine, where a force drives the motion";
+            return Err(Error::value(format!("{field}.course"), "of another kind", allowed));
+        }
+    };
+    if along.dot(drive.axis()).abs() > PERPENDICULAR * along.length() {
+        let allowed = "across the direction of the drive, along which the force alone moves it";
+        return Err(Error::value(format!("{field}.course"), format!("along {along}"), allowed));
     }
     Ok(())
 }
@@ -145,5 +169,6 @@ fn stays_on_line(motion: &Motion) -> bool {
             | MotionCourse::AngleTable { .. },
         ) => false,
     };
-    stays && motion.surface_speed == 0.0
+    let is_driven_off = motion.drive.as_ref().is_some_and(|drive| drive.direction.y != 0.0);
+    stays && motion.surface_speed == 0.0 && !is_driven_off
 }

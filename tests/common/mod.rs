@@ -104,6 +104,7 @@ pub fn scene(
         boundaries: Vec::new(),
         motions: Vec::new(),
         gravity_turn: None,
+        periodic: None,
         fixed_discs: Vec::new(),
         grains,
     }

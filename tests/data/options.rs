@@ -38,7 +38,10 @@ fn frames_are_at_the_times_of_the_pictures_or_at_their_own() {
         assert!(output.status.success(), "{}", said(&output));
         assert_eq!(frames(folder.path()), expected, "{more:?}");
         let told = String::from_utf8(output.stdout).expect("UTF-8");
-        let expected = format!("{} frames of data in {}\n", expected.len(), text(folder.path()));
+        let expected = match expected.len() {
+            1 => format!("1 frame of data in {}\n", text(folder.path())),
+            count => format!("{count} frames of data in {}\n", text(folder.path())),
+        };
         assert_eq!(told, expected);
     }
 }

@@ -51,6 +51,7 @@ pub fn moment(step: u64) -> Moment {
         fixed_discs: vec![Disc { position: DVec2::new(0.0, -1.0), radius: 0.75 }],
         boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }],
         centre_of_attraction: None,
+        periodic: None,
         mean_diameter: 1.0,
         gravity_magnitude: 9.8,
     };

@@ -6,8 +6,8 @@ use slump::scene::{Scene, built_in, read_scene, scene_to_toml};
 use slump::sim::{Remedies, Stepper};
 use slump::solver::{Fallback, FrictionModel, METHODS, Ordering, SolverSettings, StopTest};
 use slump::world::{
-    Boundary, Disc, FrictionCone, Grain, Gravity, GravityTurn, Motion, MotionCourse, Parameters,
-    Physics, TurnCourse,
+    Boundary, Disc, Drive, FrictionCone, Grain, Gravity, GravityTurn, Motion, MotionCourse,
+    Parameters, Periodic, Physics, TurnCourse,
 };
 
 use super::Target;
@@ -136,7 +136,28 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
         let course = TurnCourse::Rate { rate: number(u, [-100.0, 100.0])? };
         scene.gravity_turn = Some(GravityTurn { course, elapsed_secs: 0.0 });
     }
+    if u.ratio(1, 8)? {
+        let width = ratio(u, [0.5 * size, 4.0 * size])?;
+        scene.periodic = Some(Periodic { x: [-0.5 * width, 0.5 * width] });
+    }
+    if u.ratio(1, 8)? && !scene.boundaries.is_empty() && scene.motions.is_empty() {
+        scene.motions = vec![driven(u, size)?];
+    }
     Ok(scene)
+}
+
+/// The first boundary, under a force.
+fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
+    let drive = Drive {
+        direction: point(u, size)?,
+        force: Some(number(u, [-1e3, 1e3])?),
+        pressure: None,
+        width: None,
+        mass: ratio(u, [1e-6, 1e3])?,
+        damping: *u.choose(&[0.0, 0.0, 1.0])?,
+        speed: number(u, [-1.0, 1.0])?,
+    };
+    Ok(Motion { boundaries: vec![0], drive: Some(drive), ..Motion::default() })
 }
 
 /// All fixed bodies that can move, on any course.
@@ -161,6 +182,7 @@ fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> 
         boundaries: (0..scene.boundaries.len()).filter(is_free).collect(),
         fixed_discs: (0..scene.fixed_discs.len()).collect(),
         course: Some(course),
+        drive: None,
         surface_speed: *u.choose(&[0.0, 0.0, 2.0])?,
         elapsed_secs: *u.choose(&[0.0, 0.0, 1.0])?,
     })

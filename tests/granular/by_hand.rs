@@ -35,6 +35,7 @@ pub fn discs(grains: Vec<GrainState>) -> Moment {
             fixed_discs: Vec::new(),
             boundaries: Vec::new(),
             centre_of_attraction: None,
+            periodic: None,
             mean_diameter,
             gravity_magnitude: 9.8,
         }),
@@ -49,6 +50,7 @@ pub fn among(mut moment: Moment, boundaries: Vec<Boundary>, fixed_discs: Vec<Dis
         fixed_discs,
         boundaries,
         centre_of_attraction,
+        periodic: None,
         mean_diameter,
         gravity_magnitude,
     });

@@ -95,6 +95,7 @@ fn mapped(
             .collect(),
         boundaries: moment.surroundings.boundaries.iter().map(boundary).collect(),
         centre_of_attraction,
+        periodic: None,
         mean_diameter,
         gravity_magnitude,
     });

@@ -6,8 +6,13 @@ mod common;
 
 mod balance;
 mod belts;
+mod borders;
+mod driven;
+mod driven_on_springs;
 mod gravity;
+mod periodic;
 mod refusals;
+mod refused_drives;
 mod turning;
 mod views;
 

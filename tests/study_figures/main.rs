@@ -3,13 +3,15 @@
 //! After a wanted change of how charts look, look at the new one and bless it:
 //! `SLUMP_BLESS=1 cargo test --release --test study_figures`.
 
+mod validation;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use slump::study::chart::{Axis, Cell, Chart, Layer, Look, PALETTE, Point, Sheet, png, svg};
 
 /// Figures that take no more than a few seconds.
-const FAST: [&str; 5] = ["fig2", "two-body", "fig8", "fig8-strip", "cradle-map"];
+const FAST: [&str; 6] = ["fig2", "two-body", "fig8", "fig8-strip", "cradle-choices", "cradle-map"];
 /// Share of pixels that may differ between two processors' roundings.
 const MOST_DIFFERENT: f64 = 0.002;
 
@@ -41,6 +43,10 @@ fn figures_are_the_same_bit_for_bit_from_every_run() {
         assert!(report.contains(&format!("## {figure}\n")), "{figure} in {report}");
     }
     assert!(!report.contains("NaN"), "{report}");
+    // The paper's claims, each with how often its test would say so by chance and with what it hangs on.
+    for claim in report.split("\n* ").skip(1).filter(|claim| claim.starts_with(['§', 'F'])) {
+        assert!(claim.contains("\n  By chance: ") && claim.contains("\n  Hangs on: "), "{claim}");
+    }
 }
 
 #[test]
@@ -106,7 +112,7 @@ fn a_chart_of_stored_points_looks_as_it_did() {
     let written = String::from_utf8(sheet.to_csv().expect("CSV")).expect("UTF-8");
     let read = std::fs::read_to_string(stored("chart.csv")).expect("the stored points");
     assert_eq!(written, read);
-    let bytes = png(&sheet).expect("a picture");
+    let bytes = png(&sheet, "slump reproduce").expect("a picture");
     let golden = stored("chart.png");
     if std::env::var_os("SLUMP_BLESS").is_some() {
         std::fs::write(&golden, &bytes).expect("the golden picture");

@@ -2,7 +2,7 @@
 
 use egui_kittest::kittest::Queryable;
 use slump::scene::{Config, SCENES, SceneGroup};
-use slump::sim::Stepper;
+use slump::sim::{AlarmKind, Stepper};
 use slump::solver::{Fallback, Method, SolverChanges, StopTest};
 
 use crate::robot::Robot;
@@ -13,15 +13,43 @@ fn scene(name: &str) -> Config {
 
 #[test]
 fn an_alarm_stands_in_the_status_bar_until_the_run_is_reset() {
-    let mut robot = Robot::open(scene("overlap"));
+    let mut robot = Robot::open(scene("thin-wall"));
     assert!(robot.world().alarms.is_empty() && !robot.state().controls.contains_key("alarm"));
-    robot.click("Step");
-    assert_eq!(robot.world().alarms.len(), 1);
-    assert!(robot.world().alarms[0].contains("try a time step below"));
+    for _ in 0..40 {
+        robot.state_mut().step();
+    }
+    robot.settle();
+    let lost = robot.world().alarms.iter().find(|alarm| alarm.kind == AlarmKind::GrainLost);
+    assert!(lost.expect("an alarm").text.contains("try a time step below"));
     robot.harness.step();
     assert!(robot.state().controls.contains_key("alarm"), "the status bar shows it");
     robot.key(egui::Key::R);
     assert!(robot.world().alarms.is_empty());
+}
+
+#[test]
+fn a_state_that_begins_in_alarm_says_so_before_the_first_step() {
+    let mut robot = Robot::open(scene("overlap"));
+    robot.harness.step();
+    let said = &robot.world().alarms;
+    assert!(said.len() == 1 && said[0].text.contains("push-out"), "{said:?}");
+    assert!(robot.state().controls.contains_key("alarm"), "the status bar shows it");
+    robot.click("Step");
+    assert_eq!(robot.world().alarms.len(), 1);
+}
+
+#[test]
+fn an_alarm_advises_on_the_settings_that_it_was_raised_under() {
+    let mut robot = Robot::open(scene("overlap"));
+    let before = robot.world().controls.settings;
+    robot.click("Step");
+    let mut settings = before;
+    settings.parameters.time_step_secs *= 0.1;
+    robot.state_mut().change(0, settings);
+    robot.settle();
+    let alarm = robot.world().alarms[0].clone();
+    let asked = format!("below {} s", before.parameters.time_step_secs);
+    assert!(alarm.is_earlier && alarm.text.contains(&asked), "{alarm:?}");
 }
 
 #[test]
@@ -36,7 +64,7 @@ fn a_break_that_is_not_seen_is_told_of_with_the_time_step_that_sees_it() {
         robot.click("Step");
     }
     let said = &robot.world().alarms;
-    assert!(said.iter().any(|alarm| alarm.contains("at most 4.5e-4 s")), "{said:?}");
+    assert!(said.iter().any(|alarm| alarm.text.contains("at most 4.5e-4 s")), "{said:?}");
 }
 
 #[test]

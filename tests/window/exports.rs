@@ -171,5 +171,5 @@ fn a_run_that_has_not_begun_is_one_frame() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut robot = open(pile(), folder.path(), &[FormatName::Csv]);
     let told = export(&mut robot);
-    assert!(told.starts_with("1 frames of data in"), "{told}");
+    assert!(told.starts_with("1 frame of data in"), "{told}");
 }

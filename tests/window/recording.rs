@@ -153,6 +153,7 @@ fn little_memory_is_enough_to_get_anywhere() {
             duration_secs: 1.0,
             held_by: Vec::new(),
             view: [glam::DVec2::ZERO, glam::DVec2::ONE],
+            slumps: true,
             worlds: Vec::new(),
         })
     })));

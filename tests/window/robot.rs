@@ -34,6 +34,8 @@ impl Robot {
         renderer: fn(HarnessBuilder<AppState>) -> HarnessBuilder<AppState>,
     ) -> Self {
         let live = Live::spawn(LiveOptions::default()).unwrap();
+        // What other piles do is seen by those tests that ask for them.
+        let preferences = Preferences { other_piles: false, ..preferences };
         let state = AppState::new(live, config, preferences);
         let window = Harness::builder()
             .with_size(Vec2::new(1000.0, 700.0))

@@ -78,7 +78,8 @@ fn the_window_saves_what_save_writes() {
         let mut robot = open(config, folder.path());
         take_steps(&mut robot, 40);
         let found = saved(&mut robot);
-        let name = format!("slump-{scene}-0.0400s.slump");
+        let bond = robot.world().controls.settings.parameters.bond;
+        let name = format!("slump-{scene}-bond{bond}-dt1e-3-0.0400s.slump");
         assert_eq!(found.file_name().and_then(|name| name.to_str()), Some(&*name));
 
         let written = folder.path().join("headless.slump");

@@ -8,6 +8,7 @@ use crate::app::method_box::method_box;
 use crate::app::number::written;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::setting::Value;
 use crate::sim::live::{Command, Controls};
 use crate::sim::{Settings, Stepper};
 use crate::solver::{Fallback, FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
@@ -79,31 +80,28 @@ const LINE_UPS: [LineUp; 7] = [
         hint: "Bond 20 and 100 × Δt 1e-4, 1e-3 and 2e-3 s, each step solved as for the figure.",
         worlds: |base| {
             let base = Settings { solver: FIGURES.settings, ..stepped(base, Stepper::Moreau) };
-            let of_bond = |bond| FIG4_TIME_STEPS_SECS.map(|secs| with(base, bond, secs));
+            let of_bond = |bond| FIG4_TIME_STEPS_SECS.map(|secs| base.with_bond(bond).over(secs));
             FIG4_BONDS.into_iter().flat_map(of_bond).collect()
         },
     },
     LineUp {
         name: "Six Δt",
         hint: "This Bond with the six time steps of the paper.",
-        worlds: |base| PAPER_TIME_STEPS.map(|secs| with(base, base.parameters.bond, secs)).into(),
+        worlds: |base| PAPER_TIME_STEPS.map(|secs| base.over(secs)).into(),
     },
     LineUp {
         name: "Two laws",
         hint: "Bond 20 at Δt 1e-4, 1e-3 and 5e-3 s, under the laws moreau and range.",
         worlds: |base| {
-            let of_law = |law| [1e-4, 1e-3, 5e-3].map(|secs| stepped(with(base, 20.0, secs), law));
+            let of_law =
+                |law| [1e-4, 1e-3, 5e-3].map(|secs| stepped(base.with_bond(20.0).over(secs), law));
             [Stepper::Moreau, Stepper::Range].into_iter().flat_map(of_law).collect()
         },
     },
     LineUp {
         name: "Four Bonds",
         hint: "This Δt with Bond 0, 20, 50 and 100.",
-        worlds: |base| {
-            [0.0, 20.0, 50.0, 100.0]
-                .map(|bond| with(base, bond, base.parameters.time_step_secs))
-                .into()
-        },
+        worlds: |base| [0.0, 20.0, 50.0, 100.0].map(|bond| base.with_bond(bond)).into(),
     },
     LineUp {
         name: "Methods",
@@ -140,11 +138,6 @@ const LINE_UPS: [LineUp; 7] = [
     },
 ];
 
-fn with(mut base: Settings, bond: f64, time_step_secs: f64) -> Settings {
-    base.parameters.bond = bond;
-    base.over(time_step_secs)
-}
-
 /// With another stepper, and with nothing that it does not take.
 fn stepped(base: Settings, stepper: Stepper) -> Settings {
     let mut settings = Settings { stepper, ..base };
@@ -172,31 +165,47 @@ fn presets(ui: &mut Ui, state: &mut AppState) {
 fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {
+        // Names are words on the panel's ground; the colour alone would not always be readable.
         let colour = theme::world_colour(index, ui.visuals().dark_mode);
-        let text = format!("■ {}", title(state, index));
-        let name = RichText::new(text).color(colour);
-        let selected = state.selected == index;
-        let select = ui
-            .selectable_label(selected, name)
-            .on_hover_text("Physics and Solver are about this world.");
-        if select.clicked() {
-            state.selected = index;
-        }
+        ui.label(RichText::new("■").color(colour));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             removed = ui.small_button("✖").on_hover_text("Remove this world.").clicked();
-            if METHODS.len() > 1 {
-                let before = state.wanted[index].settings;
-                let mut settings = before;
-                if before.stepper.uses_method() {
-                    method_box(ui, ("method of world", index), &mut settings.solver);
+            let name = numbered(state, index);
+            let left = egui::Layout::left_to_right(egui::Align::Center);
+            ui.with_layout(left, |ui| {
+                let chosen = Button::selectable(state.selected == index, name.as_str());
+                let hint = format!("{name}\nPhysics and Solver are about this world.");
+                if ui.add(chosen.truncate()).on_hover_text(hint).clicked() {
+                    state.selected = index;
                 }
-                if settings != before {
-                    state.change(index, settings);
-                }
-            }
+            });
         });
     });
+    let before = state.wanted[index].settings;
+    if METHODS.len() > 1 && before.stepper.uses_method() && state.selected == index {
+        let mut settings = before;
+        ui.horizontal(|ui| {
+            ui.add_space(18.0);
+            ui.label("Method").on_hover_text("How the impulses of a step are found.");
+            method_box(ui, ("method of world", index), &mut settings.solver);
+        });
+        if settings != before {
+            state.change(index, settings);
+        }
+    }
     removed
+}
+
+/// The slump of a world, where that tells anything.
+pub(super) fn slump(state: &AppState, index: usize) -> String {
+    let slump = state.frame.worlds.get(index).map(|world| world.snapshot.observables.slump);
+    let told = slump.filter(|_| state.slumps());
+    told.map_or_else(String::new, |slump| format!("Δy {slump:.3}"))
+}
+
+/// What tells a world from the others, with the number by which headings call it.
+pub(super) fn numbered(state: &AppState, index: usize) -> String {
+    format!("{}: {}", index + 1, title(state, index))
 }
 
 /// What tells a world from the others.
@@ -204,27 +213,69 @@ pub(crate) fn title(state: &AppState, index: usize) -> String {
     title_among(&state.wanted, index)
 }
 
-/// What tells one of such worlds from the others.
+/// Settings whose differences follow from those of others.
+const FOLLOWING: [&str; 3] = ["stop", "tolerance", "fallback"];
+
+/// What tells one of such worlds from the others: each setting in which any of them differ, or Bond and Δt.
 pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
     let Some(&Controls { settings, .. }) = worlds.get(index) else {
         return String::new();
     };
-    let Settings { stepper, parameters, solver, .. } = settings;
-    let differ =
-        |other: &dyn Fn(&Settings) -> bool| worlds.iter().any(|wanted| other(&wanted.settings));
-    let methods_differ = differ(&|other| other.solver.method != solver.method);
-    let method = if methods_differ { format!(", {}", solver.method) } else { String::new() };
-    let models_differ = differ(&|other| {
-        let of = |solver: &SolverSettings| (solver.friction_model, solver.model_solves);
-        of(&other.solver) != of(&solver)
-    });
-    let model = match (models_differ, solver.model_solves) {
-        (false, _) => String::new(),
-        (true, 1) => format!(", {}", solver.friction_model),
-        (true, solves) => format!(", {} × {solves}", solver.friction_model),
+    let any_differs = |name: &&str| {
+        worlds.iter().any(|one| one.settings.get(name) != worlds[0].settings.get(name))
     };
-    let steppers_differ = differ(&|other| other.stepper != stepper);
-    let stepper = if steppers_differ { format!("{stepper}, ") } else { String::new() };
-    let step = written(parameters.time_step_secs);
-    format!("{stepper}Bond {}, Δt {step} s{method}{model}", written(parameters.bond))
+    let names = || Settings::about().map(|about| about.name).filter(any_differs);
+    let telling: Vec<&str> = names().filter(|name| !FOLLOWING.contains(name)).collect();
+    let told: Vec<&str> = match (telling.is_empty(), names().next()) {
+        (false, _) => telling,
+        (true, Some(_)) => names().collect(),
+        (true, None) => vec!["bond", "dt"],
+    };
+    let said: Vec<String> = told.into_iter().filter_map(|name| said(&settings, name)).collect();
+    said.join(", ")
+}
+
+/// A setting in a title.
+fn said(settings: &Settings, name: &str) -> Option<String> {
+    Some(match (name, settings.get(name)?) {
+        ("bond", Value::Number(bond)) => format!("Bond {}", written(bond)),
+        ("dt", Value::Number(secs)) => format!("Δt {} s", written(secs)),
+        ("stepper" | "solver" | "friction-model", Value::Word(word)) => word.to_owned(),
+        ("model-solves", Value::Count(count)) => format!("{count} solves"),
+        ("max-sweeps", Value::Count(count)) => format!("{count} sweeps"),
+        (_, Value::Number(number)) => format!("{name} {}", written(number)),
+        (_, Value::Count(count)) => format!("{name} {count}"),
+        (_, Value::Switch(on)) => format!("{} {name}", if on { "with" } else { "without" }),
+        (_, Value::Word(word)) => format!("{name} {word}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn titles(all: &[Settings]) -> Vec<String> {
+        let controls: Vec<_> =
+            all.iter().map(|&settings| Controls { settings, pull: None }).collect();
+        (0..all.len()).map(|index| title_among(&controls, index)).collect()
+    }
+
+    #[test]
+    fn titles_say_what_differs_and_are_never_alike_where_anything_does() {
+        let base = Settings::default().with_bond(20.0).over(1e-3);
+        assert_eq!(titles(&[base, base]), ["Bond 20, Δt 1e-3 s"; 2]);
+        assert_eq!(titles(&[base, base.over(5e-3)]), ["Δt 1e-3 s", "Δt 5e-3 s"]);
+        let range = stepped(base, Stepper::Range);
+        assert_eq!(titles(&[base, range.over(1e-4)]), ["moreau, Δt 1e-3 s", "range, Δt 1e-4 s"]);
+        let mut cone = base;
+        cone.parameters.cone = FrictionCone::Compressive;
+        assert_eq!(titles(&[base, cone]), ["cone shifted", "cone compressive"]);
+        for LineUp { name, worlds, .. } in &LINE_UPS {
+            let mut all = titles(&worlds(base));
+            let count = all.len();
+            all.sort();
+            all.dedup();
+            assert_eq!(all.len(), count, "{name}: {all:?}");
+        }
+    }
 }

@@ -5,6 +5,7 @@ use egui::{RichText, Ui};
 
 use crate::app::state::AppState;
 use crate::render::numbers::si_prefix;
+use crate::sim::Snapshot;
 use crate::sim::live::WorldFrame;
 
 /// Its heading, where a grain is pinned.
@@ -19,9 +20,12 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     describe(ui, world, pinned.grain);
     ui.add_space(4.0);
     contacts(ui, world, pinned.grain);
-    if ui.button("Unpin").clicked() {
-        state.pinned = None;
-    }
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut state.follows, "Follow").on_hover_text("The view goes with the grain.");
+        if ui.button("Unpin").clicked() {
+            state.pinned = None;
+        }
+    });
 }
 
 /// The state of a grain, as a small table.
@@ -47,6 +51,19 @@ pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
         row("force Σ|N|", si(grain.force, "N"));
         row("contacts", grain.coordination.to_string());
     });
+}
+
+/// The grains that a grain is in contact with.
+pub(super) fn partners(snapshot: &Snapshot, index: usize) -> impl Iterator<Item = usize> {
+    let number = index as u32;
+    snapshot.contacts.iter().filter_map(move |contact| {
+        let other = contact.other_grain?;
+        match (contact.grain == number, other == number) {
+            (true, _) => Some(other as usize),
+            (_, true) => Some(contact.grain as usize),
+            _ => None,
+        }
+    })
 }
 
 fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {

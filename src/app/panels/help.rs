@@ -26,43 +26,56 @@ const MOUSE: [(&str, &str); 6] = [
     ("drag a grain", "pull it with a spring"),
 ];
 
+/// Height of what is around the text, points.
+const FRAME: f32 = 70.0;
+
 /// Shows the overlay where it is wanted.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     if !state.help {
         return;
     }
+    let AppState { help, restart_graphics: restart, .. } = state;
     egui::Window::new("Help")
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .collapsible(false)
         .resizable(false)
-        .open(&mut state.help)
+        .open(help)
         .show(ui.ctx(), |ui| {
             ui.set_max_width(440.0);
-            ui.label(
-                "A pile of cohesive grains, computed by Contact Dynamics. The time step Δt is no mere \
+            // On a low window the end is within reach, too.
+            let room = ui.ctx().content_rect().height() - FRAME;
+            egui::ScrollArea::vertical().max_height(room).show(ui, |ui| contents(ui, restart));
+        });
+}
+
+fn contents(ui: &mut Ui, restart_graphics: &mut bool) {
+    ui.label(
+        "A pile of cohesive grains, computed by Contact Dynamics. The time step Δt is no mere \
                  matter of accuracy: cohesion cancels an opening speed of Bond·g·Δt in every step, \
                  so that a larger Δt makes a stronger pile. Set Δt, release the walls, reset, and \
                  try another.",
-            );
-            ui.add_space(8.0);
-            for (title, rows) in [("Keys", &KEYS[..]), ("Mouse", &MOUSE[..])] {
-                ui.heading(title);
-                egui::Grid::new(title).num_columns(2).spacing([18.0, 3.0]).show(ui, |ui| {
-                    for (what, does) in rows {
-                        ui.label(RichText::new(*what).strong());
-                        ui.label(*does);
-                        ui.end_row();
-                    }
-                });
-                ui.add_space(6.0);
+    );
+    ui.add_space(8.0);
+    for (title, rows) in [("Keys", &KEYS[..]), ("Mouse", &MOUSE[..])] {
+        ui.heading(title);
+        egui::Grid::new(title).num_columns(2).spacing([18.0, 3.0]).show(ui, |ui| {
+            for (what, does) in rows {
+                ui.label(RichText::new(*what).strong());
+                ui.label(*does);
+                ui.end_row();
             }
-            ui.label("Double-click a slider to reset it. Type any value into its field. Drop a scene (TOML), discs (CSV) or a saved run (.slump) on the window to open them.");
-            ui.add_space(6.0);
-            ui.horizontal(|ui| {
-                let restart = ui.button("Restart graphics");
-                if restart.on_hover_text("Open the graphics device anew; the run goes on (Ctrl Shift G).").clicked() {
-                    state.restart_graphics = true;
-                }
-            });
         });
+        ui.add_space(6.0);
+    }
+    ui.label("Double-click a slider to reset it. Type any value into its field. Drop a scene (TOML), discs (CSV) or a saved run (.slump) on the window to open them.");
+    ui.add_space(6.0);
+    ui.horizontal(|ui| {
+        let restart = ui.button("Restart graphics");
+        if restart
+            .on_hover_text("Open the graphics device anew; the run goes on (Ctrl Shift G).")
+            .clicked()
+        {
+            *restart_graphics = true;
+        }
+    });
 }

@@ -5,15 +5,18 @@
 pub(super) mod compare;
 mod data;
 mod grain;
+mod gravity;
 pub(super) mod help;
 mod past;
 mod physics;
+pub(super) mod picture;
 pub(super) mod plots;
 mod run;
 pub(super) mod scene;
 mod see;
 mod solver;
 mod speed;
+mod spread;
 pub(super) mod status;
 pub(super) mod tour;
 pub(super) mod transport;
@@ -40,6 +43,12 @@ pub(super) const SECTIONS: &[Section] = &[
     Section { id: "grain", title: grain::title, open: true, show: grain::show },
     Section { id: "run", title: |_| Some("Run".into()), open: true, show: run::show },
     Section { id: "see", title: |_| Some("See".into()), open: false, show: see::show },
+    Section {
+        id: "spread",
+        title: |_| Some("Distributions".into()),
+        open: false,
+        show: spread::show,
+    },
     Section { id: "data", title: title_of_data, open: false, show: data::show },
     Section { id: "compare", title: |_| Some("Compare".into()), open: false, show: compare::show },
     Section { id: "solver", title: |_| Some("Solver".into()), open: false, show: solver::show },
@@ -62,7 +71,8 @@ fn title_of_data(state: &AppState) -> Option<String> {
 /// The title of a panel that is about the selected world.
 fn of_one_world(title: &str, state: &AppState) -> String {
     match state.compares() {
-        true => format!("{title} of {}", compare::title(state, state.selected)),
+        // A name would make the panel as wide as it is long.
+        true => format!("{title} of world {}", state.selected + 1),
         false => title.into(),
     }
 }

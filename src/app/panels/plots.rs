@@ -7,6 +7,7 @@ use crate::app::plot_picture::PlotPicture;
 use crate::app::plots::{PlotData, draw};
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::app::world_curve::WorldCurve;
 use crate::sim::live::Command;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 
@@ -24,15 +25,18 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
     let worlds = state.frame.worlds.iter().enumerate();
     PlotData {
         worlds: worlds
-            .map(|(index, world)| {
-                let name = super::compare::title(state, index);
-                (name, theme::world_colour(index, dark), world.curve.clone())
+            .map(|(index, world)| WorldCurve {
+                name: super::compare::title(state, index),
+                colour: theme::world_colour(index, dark),
+                curve: world.curve.clone(),
+                others: state.other_piles.told(index).map(|told| told.band),
             })
             .collect(),
         ghosts: super::past::ghost(state).map_or_else(Vec::new, |run| {
             run.worlds.iter().map(|world| world.curve.clone()).collect()
         }),
         quantities: QUANTITIES.iter().filter(|quantity| is_shown(state, quantity)).collect(),
+        chosen: state.preferences.chosen_plot.clone(),
         now_secs: state.frame.time_secs(),
         // An empty plot is as wide as a short run; a long one is seen as a whole.
         until_secs: 0.2 * state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs),
@@ -40,13 +44,22 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
 }
 
 fn is_shown(state: &AppState, quantity: &Quantity<Observables>) -> bool {
-    state.preferences.quantities.iter().any(|name| name == quantity.name)
+    means_something(state, quantity)
+        && state.preferences.quantities.iter().any(|name| name == quantity.name)
+}
+
+/// Whether a quantity says anything of what is open.
+fn means_something(state: &AppState, quantity: &Quantity<Observables>) -> bool {
+    quantity.name != "slump" || state.slumps()
 }
 
 fn header(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Plots").heading());
         for quantity in QUANTITIES {
+            if !means_something(state, quantity) {
+                continue;
+            }
             let mut shown = is_shown(state, quantity);
             if ui.toggle_value(&mut shown, quantity.name).changed() {
                 let chosen = &mut state.preferences.quantities;
@@ -54,25 +67,53 @@ fn header(ui: &mut Ui, state: &mut AppState) {
                 chosen.extend(shown.then(|| quantity.name.to_owned()));
             }
         }
+        let chosen = &mut state.preferences.chosen_plot;
+        ui.toggle_value(&mut chosen.on, "y over x")
+            .on_hover_text("Any quantity that steps measure against any other.");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let stem = format!("{}-curves", super::scene::file_stem(state));
+            let stem = format!("{}-curves", super::picture::file_stem(state));
             let folder = state.preferences.folder.clone();
+            let all: Vec<usize> = (0..state.frame.worlds.len()).collect();
             if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
                 let data = data(ui, state);
                 let size = state.preferences.picture_size;
                 let picture = PlotPicture { data, size, dark: ui.visuals().dark_mode };
-                let export = Export::Plots(Box::new(picture));
+                let export = Export::Plots(Box::new(picture), state.texts_of(&all, false));
                 state.exporter.submit(ui.ctx(), export, &folder, &stem);
             }
-            if ui.button("CSV").on_hover_text("Save all observables of all worlds.").clicked() {
+            if ui.button("CSV").on_hover_text("Save all observables of all worlds; a text beside the table says what they are of.").clicked() {
                 let curves = state.frame.worlds.iter().map(|world| world.curve.clone()).collect();
-                state.exporter.submit(ui.ctx(), Export::Curves(curves), &folder, &stem);
+                let export = Export::Curves(curves, state.texts_of(&all, false));
+                state.exporter.submit(ui.ctx(), export, &folder, &stem);
             }
             if state.frame.worlds.iter().any(|world| world.curve.stride() > 1) {
                 let stride = state.frame.worlds.iter().map(|world| world.curve.stride()).max();
                 let text = format!("every {}th step", stride.unwrap_or(1));
                 ui.label(RichText::new(text).small().weak());
             }
+            // In the room that is left between both ends.
+            let between = egui::Layout::left_to_right(egui::Align::Center);
+            ui.with_layout(between, |ui| others(ui, state));
         });
     });
+    let chosen = &mut state.preferences.chosen_plot;
+    if chosen.on {
+        ui.horizontal(|ui| chosen.choose(ui));
+    }
+}
+
+/// The switch of the other piles, and what they say beside the selected world.
+fn others(ui: &mut Ui, state: &mut AppState) {
+    if !state.has_other_piles() {
+        return;
+    }
+    ui.separator();
+    let mut shown = state.preferences.other_piles;
+    let hint = state.about_other_piles();
+    let switch = ui.toggle_value(&mut shown, "other piles").on_hover_text(&hint);
+    state.note_control("other piles", switch.rect);
+    state.preferences.other_piles = shown;
+    if let Some(text) = state.beside_other_piles(state.selected) {
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
+    }
 }

@@ -166,7 +166,11 @@ fn speed(ui: &mut Ui, state: &mut AppState) {
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             ui.toggle_value(&mut state.preferences.full_speed, "max")
                 .on_hover_text("As fast as the machine computes.");
-            ui.label(RichText::new(format!("{:.2}×", state.preferences.speed)).monospace());
+            let text = match state.preferences.full_speed {
+                true => "      ".to_owned(),
+                false => format!("{:.2}×", state.preferences.speed),
+            };
+            ui.label(RichText::new(text).monospace());
             ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(40.0);
             let slider = Slider::new(&mut state.preferences.speed, SPEEDS[0]..=SPEEDS[1])
                 .logarithmic(true)

@@ -3,8 +3,7 @@
 use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui};
 use glam::DVec2;
 
-use super::past;
-use crate::app::export::{Export, stem};
+use super::{gravity, past};
 use crate::app::fill::fill;
 use crate::app::scene_callback::scene_callback;
 use crate::app::state::{AppState, GrainRef};
@@ -55,7 +54,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// The style of the preferences in the window's theme, with one range for all worlds.
-fn shared_style(state: &AppState, dark: bool) -> Style {
+pub(super) fn shared_style(state: &AppState, dark: bool) -> Style {
     let theme = if dark { crate::render::Theme::Dark } else { crate::render::Theme::Light };
     let mut style = Style { theme, ..state.preferences.style.clone() };
     if state.compares() {
@@ -72,12 +71,17 @@ fn shared_style(state: &AppState, dark: bool) -> Style {
     style
 }
 
+/// How many of `count` worlds stand in a row.
+pub(super) fn columns(count: usize) -> usize {
+    if count == 4 { 2 } else { count.min(3) }
+}
+
 /// The rectangles of `count` worlds: rows of up to three.
 fn cells(area: Rect, count: usize) -> Vec<Rect> {
     if count <= 1 {
         return vec![area];
     }
-    let columns = if count == 4 { 2 } else { count.min(3) };
+    let columns = columns(count);
     let rows = count.div_ceil(columns);
     let across = (area.width() - GAP * (columns - 1) as f32) / columns as f32;
     let down = (area.height() - GAP * (rows - 1) as f32) / rows as f32;
@@ -89,7 +93,7 @@ fn cells(area: Rect, count: usize) -> Vec<Rect> {
     (0..count).map(cell).collect()
 }
 
-fn view(state: &AppState) -> [DVec2; 2] {
+pub(super) fn view(state: &AppState) -> [DVec2; 2] {
     state.frame.start.as_ref().map_or([DVec2::ZERO, DVec2::ONE], |start| start.view)
 }
 
@@ -104,6 +108,7 @@ fn world(
 ) {
     let pixels_per_point = f64::from(ui.ctx().pixels_per_point());
     let camera = state.camera.camera(view(state), style, size, pixels_per_point);
+    follow(state, index);
     let response = ui.interact(cell, ui.scope_id().with(("world", index)), Sense::click_and_drag());
     let frame = state.frame.worlds[index].clone();
     let place = Place { index, cell, camera, pixels_per_point, frame: &frame };
@@ -116,9 +121,19 @@ fn world(
     ui.painter().with_clip_rect(cell).add(scene_callback(index, cell, picture));
     place.ghost(ui, state);
     place.words(ui, state, style, size);
+    gravity::paint(ui, state, index, cell);
     place.marks(ui, state, &response);
     if index == state.selected {
         state.note_control("scene", cell);
+    }
+}
+
+/// Has the view go with the pinned grain, where that is asked for.
+fn follow(state: &mut AppState, world: usize) {
+    let pinned = state.pinned.filter(|pinned| state.follows && pinned.world == world);
+    if let Some(GrainRef { world, grain }) = pinned {
+        let place = state.frame.worlds[world].snapshot.grains[grain].position;
+        state.camera.look_at(place);
     }
 }
 
@@ -217,11 +232,16 @@ impl Place<'_> {
             let colour = theme::world_colour(self.index, dark);
             let at = self.cell.min + egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
             painter.circle_filled(at + egui::vec2(4.0, 0.0), 4.5, colour);
-            let title = super::compare::title(state, self.index);
+            let title = super::compare::numbered(state, self.index);
             let ink = theme::color32(palette.ink);
             let font = FontId::proportional(13.0);
             painter.text(at + egui::vec2(14.0, 0.0), Align2::LEFT_CENTER, title, font, ink);
-            let slump = format!("Δy {:.3}", self.frame.snapshot.observables.slump);
+            if let Some(others) = state.others_in_short(self.index) {
+                let below = at + egui::vec2(14.0, 16.0);
+                let font = FontId::proportional(11.0);
+                painter.text(below, Align2::LEFT_CENTER, others, font, ink);
+            }
+            let slump = super::compare::slump(state, self.index);
             let at = self.cell.right_bottom() - egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
             painter.text(at, Align2::RIGHT_CENTER, slump, FontId::monospace(12.0), ink);
             let selected = self.index == state.selected;
@@ -248,6 +268,9 @@ impl Place<'_> {
         };
         let grains = &self.frame.snapshot.grains;
         if let Some(pinned) = state.pinned.filter(|pinned| pinned.world == self.index) {
+            for partner in super::grain::partners(&self.frame.snapshot, pinned.grain) {
+                ring(&grains[partner], 1.5, accent);
+            }
             ring(&grains[pinned.grain], 3.0, accent);
         }
         if let Some(grabbed) = state.grabbed.filter(|grabbed| grabbed.world == self.index) {
@@ -268,26 +291,4 @@ impl Place<'_> {
                 .on_hover_ui_at_pointer(|ui| super::grain::describe(ui, self.frame, hovered.grain));
         }
     }
-}
-
-/// Saves the selected world as it is seen, in the size of the preferences.
-pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
-    let dark = context.theme() == egui::Theme::Dark;
-    let style = shared_style(state, dark);
-    let Some(world) = state.world() else { return };
-    let size = state.preferences.picture_size;
-    let window = state.controls.get("scene").map_or(DVec2::splat(500.0), |rect| {
-        DVec2::new(f64::from(rect.width()), f64::from(rect.height()))
-    });
-    let camera = state.camera.for_picture(view(state), &style, size, window);
-    let stem = file_stem(state);
-    let export = Export::Scene { snapshot: world.snapshot.clone(), style, camera, size };
-    let folder = state.preferences.folder.clone();
-    state.exporter.submit(context, export, &folder, &stem);
-}
-
-/// How the names of saved files begin.
-pub(crate) fn file_stem(state: &AppState) -> String {
-    let name = state.frame.start.as_ref().map_or("scene", |start| start.name.as_str());
-    stem(name, state.frame.time_secs())
 }

@@ -43,6 +43,10 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         ui.checkbox(&mut style.scale_bar, "Scale bar").on_hover_text("A bar of round length.");
         ui.checkbox(&mut style.legend, "Legend").on_hover_text("What colours and links mean.");
         ui.end_row();
+        ui.checkbox(&mut state.preferences.gravity, "Gravity").on_hover_text(
+            "An arrow where gravity points; it shows by itself where that is not straight down.",
+        );
+        ui.end_row();
     });
     ui.horizontal(|ui| {
         for (preference, name) in [
@@ -69,9 +73,9 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
             ui.add(value).labelled_by(label.id);
         }
         ui.label(RichText::new("px").weak());
-        let save = ui.button("Save PNG").on_hover_text("The scene as it is seen here (S).");
+        let save = ui.button("Save PNG").on_hover_text("What is seen here, with all worlds that are compared (S). The file says which command makes it.");
         if save.clicked() {
-            super::scene::save_picture(ui.ctx(), state);
+            super::picture::save_picture(ui.ctx(), state);
         }
     });
     folder(ui, state);
@@ -86,7 +90,10 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
 /// Where all files go that the window writes.
 pub(super) fn folder(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
-        let label = ui.label("Folder").on_hover_text("Where saved files go.");
+        let whole = std::path::absolute(&state.preferences.folder);
+        let whole = whole.unwrap_or_else(|_| state.preferences.folder.clone());
+        let hint = format!("Where saved files go: {}", whole.display());
+        let label = ui.label("Folder").on_hover_text(hint);
         let mut folder = state.preferences.folder.display().to_string();
         let edit = egui::TextEdit::singleline(&mut folder).desired_width(f32::INFINITY);
         if ui.add(edit).labelled_by(label.id).changed() {

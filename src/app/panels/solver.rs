@@ -11,7 +11,7 @@ use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
 use crate::sim::live::WorldFrame;
 use crate::sim::{Observables, REMEDIES, Remedies, Settings};
-use crate::solver::{Method, SolverSettings, StopTest, picked};
+use crate::solver::{Method, SolverSettings, StopTest};
 
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -143,7 +143,7 @@ fn readings(ui: &mut Ui, state: &AppState) {
         reading(ui, "residual", value, hint);
         ui.end_row();
         if settings.solver.method == Method::Auto {
-            let taken = picked(&settings.solver, last.contacts as usize).name();
+            let taken = world.picked_method.name();
             reading(ui, "method", taken.to_owned(), "What auto took for the last step.");
             ui.end_row();
         }
@@ -161,6 +161,15 @@ fn readings(ui: &mut Ui, state: &AppState) {
             let hint = "Substeps up to this length are surely stable; a little longer, and \
                         crowded grains blow up.";
             reading(ui, "critical", format!("{critical_secs:.1e} s"), hint);
+            ui.end_row();
+        }
+        if let Some(elastic) = world.sweep_elasticity {
+            let reach = format!("{:.2}", elastic.spreading_length / elastic.height);
+            let hint = "How far a force spreads in the sweeps of a step, √N d, in heights of the pile: below 1 the \
+                        pile is an elastic body to what lies farther.";
+            reading(ui, "reach", reach, hint);
+            let hint = "Its spurious stiffness, κ = q m N/Δt².";
+            reading(ui, "stiffness", format!("{:.1e} N/m", elastic.stiffness), hint);
             ui.end_row();
         }
     });

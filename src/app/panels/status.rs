@@ -2,9 +2,12 @@
 
 use egui::{Align, Label, Layout, RichText, Ui};
 
+use crate::app::effort::FAST;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::sim::live::WorldFrame;
+use crate::sim::AlarmKind;
+use crate::sim::live::{WorldAlarm, WorldFrame};
+use crate::solver::SolverSettings;
 
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -95,15 +98,25 @@ fn messages(ui: &mut Ui, state: &mut AppState) {
     }
 }
 
-/// The newest alarm of the selected world, or of any other, with its number where worlds are compared.
+/// The newest alarm of the selected world, or of any other, with its title where worlds are compared; one of the
+/// present settings before those of earlier ones.
 fn alarm(state: &AppState) -> Option<String> {
     let newest = |index: usize| {
-        let alarm = state.frame.worlds.get(index)?.alarms.last()?;
+        let world = state.frame.worlds.get(index)?;
+        let is_news = |alarm: &&WorldAlarm| !is_asked_for(alarm, &world.controls.settings.solver);
+        let alarms = || world.alarms.iter().filter(is_news).rev();
+        let alarm = alarms().find(|alarm| !alarm.is_earlier).or_else(|| alarms().next())?;
         Some(if state.compares() {
-            format!("{}: {alarm}", super::compare::title(state, index))
+            format!("{}: {}", super::compare::title(state, index), alarm.text)
         } else {
-            alarm.to_string()
+            alarm.text.to_string()
         })
     };
     newest(state.selected).or_else(|| (0..state.frame.worlds.len()).find_map(newest))
+}
+
+/// Whether an alarm says what was chosen with open eyes: so many sweeps a step, solved or not. How many steps were
+/// not solved is told beside it in any case.
+fn is_asked_for(alarm: &WorldAlarm, solver: &SolverSettings) -> bool {
+    alarm.kind == AlarmKind::SweepLimit && *solver == FAST.settings
 }

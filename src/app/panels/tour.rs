@@ -11,7 +11,8 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let at = state.preferences.tour.at;
     let Some(Station { title, watch, .. }) = STATIONS.get(at) else { return };
     ui.horizontal(|ui| {
-        let accent = theme::accent(ui.visuals().dark_mode);
+        let dark = ui.visuals().dark_mode;
+        let accent = theme::accent(dark);
         let count = format!("{} of {}", at + 1, STATIONS.len());
         ui.label(RichText::new(count).color(accent));
         ui.label(RichText::new(*title).heading());
@@ -26,7 +27,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
             }
             let last = at + 1 == STATIONS.len();
             let next =
-                Button::new(RichText::new("Next ▶").color(egui::Color32::WHITE)).fill(accent);
+                Button::new(RichText::new("Next ▶").color(theme::on_accent(dark))).fill(accent);
             let next = ui.add_enabled(!last, next).on_hover_text("The next station");
             state.note_control("next station", next.rect);
             if next.clicked() {

@@ -23,11 +23,12 @@ pub(crate) fn release_button(ui: &mut Ui, state: &mut AppState) {
     } else {
         ("▶  Play on", "Let time pass again, from the moment that is shown (space)")
     };
-    let accent = theme::accent(ui.visuals().dark_mode);
+    let dark = ui.visuals().dark_mode;
+    let accent = theme::accent(dark);
     let (fill, ink) = if frame.playing {
         (ui.visuals().widgets.inactive.weak_bg_fill, ui.visuals().text_color())
     } else {
-        (accent, egui::Color32::WHITE)
+        (accent, theme::on_accent(dark))
     };
     let text = RichText::new(text).size(16.0).color(ink).family(theme::bold());
     let button = Button::new(text).fill(fill).min_size(egui::vec2(ui.available_width(), 38.0));

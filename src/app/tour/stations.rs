@@ -1,4 +1,4 @@
-//! The stations. What their sentences say is checked by `tests/tour.rs`, which computes them.
+//! The stations. What their sentences say is checked by `tests/window/tour.rs`, which computes them.
 
 use super::station::Station;
 use crate::sim::{Settings, Stepper};
@@ -16,13 +16,8 @@ const PILE: Station = Station {
     panel: None,
 };
 
-fn with(mut base: Settings, bond: f64, time_step_secs: f64) -> Settings {
-    base.parameters.bond = bond;
-    base.over(time_step_secs)
-}
-
 fn two_time_steps(base: Settings, bond: f64) -> Vec<Settings> {
-    [1e-4, 5e-3].map(|secs| with(base, bond, secs)).into()
+    [1e-4, 5e-3].map(|secs| base.with_bond(bond).over(secs)).into()
 }
 
 /// That many sweeps of Gauss-Seidel a step, solved or not.
@@ -63,7 +58,7 @@ pub const STATIONS: [Station; 9] = [
         watch: "Bond 20, Δt = 5e-3 s: 5 sweeps a step, 40 sweeps, and solved to 1e-6. Only a solved step shows what \
                 the law says; the sweeps not taken look like weaker glue. See the residual.",
         worlds: |base| {
-            let base = with(base, 20.0, 5e-3);
+            let base = base.with_bond(20.0).over(5e-3);
             vec![sweeps(base, 5), sweeps(base, 40), base]
         },
         plots: &["slump", "residual"],
@@ -85,7 +80,7 @@ pub const STATIONS: [Station; 9] = [
         watch: "Bond 100, Δt = 1e-4 s. On the left friction is bounded by μ(N + C₀), cohesion included; on the right by \
                 μ max(N, 0): there the strong pile slumps. The paper can be read both ways.",
         worlds: |base| {
-            let base = with(base, 100.0, 1e-4);
+            let base = base.with_bond(100.0).over(1e-4);
             let in_cone = |cone| {
                 let mut settings = base;
                 settings.parameters.cone = cone;
@@ -111,9 +106,9 @@ pub const STATIONS: [Station; 9] = [
     },
     Station {
         title: "Speed against accuracy",
-        watch: "Start the pile, stop it while it slumps, and open Speed and accuracy: each method solves the step that \
-                is shown, and its error is drawn over its time.",
-        worlds: |base| vec![with(base, 20.0, 1e-3)],
+        watch: "Start the pile, stop it while it slumps, and press Measure this step under Speed and accuracy: each \
+                method solves the step that is shown, and its residual is drawn over its time.",
+        worlds: |base| vec![base.with_bond(20.0).over(1e-3)],
         plots: &["slump", "residual"],
         panel: Some("speed"),
         ..PILE

@@ -29,6 +29,10 @@ struct State<'a> {
     /// Parameters of the next step, as the solver's thread has them.
     parameters: Option<Parameters>,
     worlds: usize,
+    /// Other piles of the selected world that have come to their end.
+    other_piles: usize,
+    /// Threads that compute them.
+    other_threads: usize,
     /// The station of the tour, from 1; 0 where it is not being taken.
     station: usize,
     steps_per_sec: f64,
@@ -63,6 +67,8 @@ impl StateFile {
             slump: last.slump,
             parameters: world.map(|world| world.controls.settings.parameters),
             worlds: state.frame.worlds.len(),
+            other_piles: state.other_piles.told(state.selected).map_or(0, |told| told.band.count),
+            other_threads: state.other_piles.threads(),
             station: if state.touring { state.preferences.tour.at + 1 } else { 0 },
             steps_per_sec: state.frame.steps_per_sec,
             devices,

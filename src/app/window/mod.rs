@@ -166,7 +166,7 @@ impl App {
         }
         let memory = self.context.memory(Clone::clone);
         self.context = context(&self.proxy, memory);
-        self.state.forget_textures();
+        self.state.forget_context();
         match Surface::new(events, &window, self.renderer) {
             Ok(surface) => {
                 let input = self.input(&window, &surface);

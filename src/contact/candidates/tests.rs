@@ -15,6 +15,7 @@ fn rows(count: usize, radii: &[f64], mean_diameter: f64) -> World {
         boundaries: Vec::new(),
         motions: Vec::new(),
         gravity_turn: None,
+        periodic: None,
         gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
         mean_diameter,
     }

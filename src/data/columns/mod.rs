@@ -11,6 +11,8 @@ use contacts::empty_contacts;
 pub(super) use frames::{FrameRow, frames};
 pub(super) use grains::{FIXED, GRAIN, KINDS, LOST, empty_grains, grains};
 pub(super) use measured::{histograms, measures};
+#[cfg(feature = "window")]
+pub(crate) use steps::Observed;
 pub(super) use steps::steps;
 
 use super::table::Table;

@@ -102,6 +102,53 @@ const COLUMNS: &[Declared<Observables>] = &[
     }),
 ];
 
+/// Something that each step measures, as tables call it.
+#[cfg(feature = "window")]
+pub(crate) struct Observed(&'static Declared<Observables>);
+
+#[cfg(feature = "window")]
+impl Observed {
+    /// All of them.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        COLUMNS.iter().map(Self)
+    }
+
+    /// The one of that name.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::all().find(|observed| observed.0.name == name)
+    }
+
+    /// Its name in tables.
+    pub(crate) fn name(&self) -> &'static str {
+        self.0.name
+    }
+
+    /// Name and unit.
+    pub(crate) fn title(&self) -> String {
+        let name = self.0.name.replace('_', " ");
+        match self.0.unit {
+            "" | "1" => name,
+            unit => format!("{name} ({unit})"),
+        }
+    }
+
+    /// What it is, in a few words.
+    pub(crate) fn about(&self) -> &'static str {
+        self.0.about
+    }
+
+    /// Its value in a row that has it; 1 and 0 stand for what is so and what is not.
+    pub(crate) fn of(&self, row: &Observables) -> Option<f64> {
+        match self.0.value {
+            Value::Number(of) => Some(of(row)),
+            Value::SomeNumber(of) => of(row),
+            Value::Count(of) => Some(of(row) as f64),
+            Value::Flag(of) => of(row).map(|is_so| u8::from(is_so).into()),
+            Value::Word(..) | Value::Name(_) => None,
+        }
+    }
+}
+
 /// A row a step.
 pub(in crate::data) fn steps(rows: &[Observables]) -> Table {
     table("steps", COLUMNS, rows, &[])

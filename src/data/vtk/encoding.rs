@@ -73,9 +73,13 @@ pub(super) fn moment_of(path: &Path) -> Result<(u64, f64)> {
 /// leads to.
 fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     let from = moment.grains[contact.grain as usize].position;
+    let periodic = moment.surroundings.periodic;
+    let near = |place| periodic.map_or(place, |periodic| periodic.near(place, from));
     let to = match contact.other {
-        OtherBody::Grain(number) => moment.grains[number as usize].position,
-        OtherBody::FixedDisc(number) => moment.surroundings.fixed_discs[number as usize].position,
+        OtherBody::Grain(number) => near(moment.grains[number as usize].position),
+        OtherBody::FixedDisc(number) => {
+            near(moment.surroundings.fixed_discs[number as usize].position)
+        }
         OtherBody::Boundary(_) => from - contact.branch,
     };
     [from, to]

@@ -6,7 +6,7 @@
 //! disc lies in its cell but for overlaps. Where radii are equal, both are the same. Fixed discs have cells, too, which
 //! are no grain's.
 //!
-//! *Walls* cut cells: see `walls`.
+//! *Walls* cut cells: see `walls`. *Across periodic borders* the images of discs and walls cut cells as they do themselves.
 //!
 //! *How far.* A point belongs to the packing if its power to the nearest grain is below 3r̄², r̄ the mean radius: in a
 //! pore between grains of that radius which is just large enough for one more, the middle is the first point that does
@@ -14,6 +14,7 @@
 //! grains are packed. Its area counts up to that border and inside of the box around all grains, so that a packing with
 //! straight sides and no hole has just its box, whether there are walls at its sides or not.
 
+mod images;
 mod polygon;
 mod site;
 mod walls;
@@ -28,6 +29,7 @@ use self::walls::Walls;
 use super::network::Network;
 use crate::contact::BroadPhase;
 use crate::sim::{GrainState, Surroundings};
+use crate::world::Periodic;
 
 /// The border of the packing: the largest power to the nearest grain, in squares of the mean radius. Smaller: loose
 /// packings have open cells inside; larger: more of the air above a free surface counts.
@@ -51,18 +53,20 @@ pub(super) struct Cells {
     pub solid_fraction: f64,
 }
 
-/// Corners of the upright box around all grains.
+/// Corners of the upright box around all grains, without end across periodic borders.
 #[derive(Clone, Copy)]
 struct Bounds {
     low: DVec2,
     high: DVec2,
+    periodic: Option<Periodic>,
 }
 
 impl Cells {
     pub(super) fn of(network: &Network, surroundings: &Surroundings) -> Self {
-        let (indices, sites) = sites(network, surroundings);
+        let (indices, mut sites) = sites(network, surroundings);
+        let bounds = Bounds::around(&sites[..indices.len()], surroundings.periodic);
+        images::append(&mut sites, surroundings.periodic);
         let grains = &sites[..indices.len()];
-        let bounds = Bounds::around(grains);
         let walls = Walls::of(&surroundings.boundaries);
         let neighbours = Neighbours::of(&sites, grains.len());
         let mut cells = Self::without_any(network.grains.len());
@@ -73,7 +77,9 @@ impl Cells {
             cuts.extend(
                 neighbours.of_site(place).iter().map(|&other| cut(&sites, place, other as usize)),
             );
-            walls.cut(site, &mut cuts);
+            for image in images::of(site, surroundings.periodic) {
+                walls.cut(&image, &mut cuts);
+            }
             cell.fill(site.reach, &mut cuts);
             let disc_area = PI * site.radius * site.radius;
             let is_closed = cell.is_closed(site.reach);
@@ -181,22 +187,28 @@ impl Neighbours {
 }
 
 impl Bounds {
-    fn around(sites: &[Site]) -> Self {
-        let nothing = Self { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY };
-        sites.iter().fold(nothing, |bounds, site| Self {
-            low: bounds.low.min(site.position - site.radius),
-            high: bounds.high.max(site.position + site.radius),
-        })
+    fn around(sites: &[Site], periodic: Option<Periodic>) -> Self {
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for site in sites {
+            low = low.min(site.position - site.radius);
+            high = high.max(site.position + site.radius);
+        }
+        Self { low, high, periodic }
     }
 
     fn area(&self) -> f64 {
         let size = self.high - self.low;
-        if size.x < 0.0 { f64::NAN } else { size.x * size.y }
+        let width = self.periodic.map_or(size.x, Periodic::width);
+        if size.y < 0.0 { f64::NAN } else { width * size.y }
     }
 
     /// Its sides, seen from a point inside.
     fn cuts(&self, centre: DVec2) -> [Cut; 4] {
-        let (above, below) = (self.high - centre, centre - self.low);
+        let (mut above, mut below) = (self.high - centre, centre - self.low);
+        if let Some(periodic) = self.periodic {
+            // Farther than any cell reaches.
+            (above.x, below.x) = (2.0 * periodic.width(), 2.0 * periodic.width());
+        }
         [
             Cut { offset: above.x, direction: DVec2::X },
             Cut { offset: above.y, direction: DVec2::Y },

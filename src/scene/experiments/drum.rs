@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::{of_loose_grains, view};
+use super::{SPACING, of_loose_grains, view};
 use crate::scene::Scene;
 use crate::scene::stability::DIAMETER;
 use crate::world::{Boundary, Disc, Motion, MotionCourse};
@@ -16,8 +16,6 @@ const RADIUS: f64 = 12.0;
 const SIDES: usize = 72;
 /// Ω, rad/s: Ω²R/g is 0.05, at which grains roll down a steady slope.
 const RATE: f64 = 2.0;
-/// Distance of grains at the start, in diameters.
-const SPACING: f64 = 1.22;
 
 /// 150 grains in a drum.
 pub(crate) fn drum() -> Scene {

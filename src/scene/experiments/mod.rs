@@ -1,9 +1,17 @@
 //! Experiments of granular physics: grains among bodies that move.
 
+mod collapse;
 mod drum;
+mod incline;
+mod shear;
+mod silo;
 mod vibrated;
 
+pub(crate) use collapse::{collapse, collapse_of, half_width};
 pub(crate) use drum::drum;
+pub(crate) use incline::{LEVEL_SECS, RATE, incline};
+pub(crate) use shear::shear;
+pub(crate) use silo::{WIDTH as SILO_WIDTH, silo, silo_of};
 pub(crate) use vibrated::vibrated;
 
 use glam::DVec2;
@@ -16,6 +24,9 @@ use crate::world::Grain;
 
 /// The golden mean less 1: its multiples are spread evenly over an interval, however many there are.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Distance of grains on a lattice, in diameters.
+const SPACING: f64 = 1.22;
 
 /// A scene whose grains fall from where they are put, with diameters spread evenly over [0.8 d, 1.2 d]. Places are in
 /// diameters, more than 1.2 apart.
@@ -32,6 +43,16 @@ fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     scene.parameters.time_step_secs = 5e-4;
     scene.solver.method = Method::Auto;
     scene
+}
+
+/// Places of so many grains, row by row from a height on, as many side by side as a width has room for, in diameters.
+fn lattice(grains: usize, width: f64, lowest: f64) -> impl Iterator<Item = DVec2> {
+    let columns = (width / SPACING).floor().max(1.0) as usize;
+    let first = -0.5 * SPACING * (columns - 1) as f64;
+    (0..grains).map(move |index| {
+        let (row, column) = ((index / columns) as f64, (index % columns) as f64);
+        DVec2::new(first + SPACING * column, lowest + SPACING * row)
+    })
 }
 
 /// What pictures show, given in diameters.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::{of_loose_grains, view};
+use super::{SPACING, of_loose_grains, view};
 use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, GRAVITY};
 use crate::world::{Boundary, Grain, Motion, MotionCourse};
@@ -18,8 +18,6 @@ const LARGE: f64 = 1.5;
 const FREQUENCY_HZ: f64 = 10.0;
 /// Largest acceleration of the box, in g: above 1 all that lies in it is thrown up.
 const ACCELERATION: f64 = 3.0;
-/// Distance of grains at the start, in diameters.
-const SPACING: f64 = 1.22;
 
 /// 120 grains and a large one in a box.
 pub(crate) fn vibrated() -> Scene {

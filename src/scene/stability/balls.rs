@@ -20,6 +20,8 @@ pub fn balls(count: usize) -> Scene {
     scene.gravity = Gravity::Uniform { acceleration: DVec2::ZERO };
     scene.parameters.restitution = 1.0;
     let width = count as f64 + 6.0;
+    // A little later the last ball leaves the view.
+    scene.duration_secs = (count as f64 + 1.0) / SPEED * (DIAMETER / GRAVITY).sqrt();
     scene.view = Some(View {
         min: DIAMETER * DVec2::new(-2.5, -2.0),
         max: DIAMETER * DVec2::new(width, 2.0),

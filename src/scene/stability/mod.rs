@@ -49,9 +49,9 @@ use crate::solver::SolverSettings;
 use crate::world::{Boundary, Grain, Gravity, Parameters, Physics};
 
 /// d of all these scenes, m.
-pub(super) const DIAMETER: f64 = 0.01;
+pub(crate) const DIAMETER: f64 = 0.01;
 /// g, m/s².
-pub(super) const GRAVITY: f64 = 9.8;
+pub(crate) const GRAVITY: f64 = 9.8;
 /// Overlap of discs that touch at the start, in diameters: more than a well solved step opens them
 /// by, and far less than any measure.
 const TOUCH: f64 = 1e-6;
@@ -59,7 +59,7 @@ const TOUCH: f64 = 1e-6;
 const TIME_STEP_SECS: f64 = 1e-3;
 
 /// Grains under gravity, without cohesion and restitution.
-pub(super) fn dry(name: &str, grains: Vec<Grain>) -> Scene {
+pub(crate) fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     Scene {
         name: name.into(),
         mean_diameter: DIAMETER,
@@ -84,6 +84,7 @@ pub(super) fn dry(name: &str, grains: Vec<Grain>) -> Scene {
         boundaries: Vec::new(),
         motions: Vec::new(),
         gravity_turn: None,
+        periodic: None,
         fixed_discs: Vec::new(),
         grains,
     }

@@ -21,9 +21,11 @@ pub fn thin_wall(travel: f64, phase: f64) -> Scene {
     let wall = DIAMETER * WALL_DISTANCE;
     scene.boundaries =
         vec![Boundary::Segment { from: DVec2::new(wall, -wall), to: DVec2::new(wall, wall) }];
+    // A little later a disc that is through leaves the view.
+    scene.duration_secs = 2.5 * WALL_DISTANCE / travel * scene.parameters.time_step_secs;
     scene.view = Some(View {
         min: DIAMETER * DVec2::new(-5.0, -10.0),
-        max: DIAMETER * DVec2::new(WALL_DISTANCE + 15.0, 10.0),
+        max: DIAMETER * DVec2::new(WALL_DISTANCE + 35.0, 10.0),
     });
     scene
 }

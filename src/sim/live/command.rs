@@ -24,6 +24,8 @@ pub struct Start {
     pub held_by: Vec<Boundary>,
     /// Lower left and upper right corner of what pictures show, m.
     pub view: [DVec2; 2],
+    /// Whether it is one of a heap on level ground, of which slump tells.
+    pub slumps: bool,
     /// The settings of the worlds that are side by side at first; none for one world with those of the simulation.
     pub worlds: Vec<Settings>,
 }

@@ -6,7 +6,8 @@ use glam::DVec2;
 
 use super::{Controls, Curve, PastRun, Progress};
 use crate::error::Error;
-use crate::sim::{FractureWork, Settings, Snapshot};
+use crate::sim::{AlarmKind, FractureWork, Settings, Snapshot, SweepElasticity};
+use crate::solver::Method;
 use crate::world::Physics;
 
 /// The newest moment of a live run.
@@ -53,6 +54,8 @@ pub struct StartInfo {
     pub held: bool,
     /// Lower left and upper right corner of what pictures show, m.
     pub view: [DVec2; 2],
+    /// Whether it is one of a heap on level ground, of which slump tells.
+    pub slumps: bool,
     /// The physics that the scene computes.
     pub physics: Physics,
     /// The settings that the scene states.
@@ -66,8 +69,12 @@ pub struct WorldFrame {
     pub snapshot: Arc<Snapshot>,
     /// How its next step is taken.
     pub controls: Controls,
+    /// Gravity where it is the same everywhere, m/s².
+    pub gravity: Option<DVec2>,
     /// The observables of the whole recording.
     pub curve: Curve,
+    /// Whether all that is recorded was computed with the settings of the next step, and pulled by no hand.
+    pub is_even: bool,
     /// Simulated time that the recording starts at, s.
     pub recorded_from_secs: f64,
     /// Simulated time of the last recorded step, s.
@@ -78,18 +85,33 @@ pub struct WorldFrame {
     pub fallback_steps: u64,
     /// Mean time that a step takes lately, ms.
     pub step_ms: f64,
+    /// The method that solves it, also where `auto` picks it.
+    pub picked_method: Method,
     /// Substeps of its next step.
     pub substeps: u32,
     /// The longest substep that is surely stable, s, where the method has one.
     pub critical_time_step_secs: Option<f64>,
     /// How long two grains of the mean mass that meet push each other, s, where contacts are springs.
     pub contact_time_secs: Option<f64>,
+    /// What the sweeps of its last step make of the pile, where steps are swept.
+    pub sweep_elasticity: Option<SweepElasticity>,
     /// What it takes to break a bond slowly, where the law says so.
     pub fracture_work: Option<FractureWork>,
     /// What went wrong up to this moment, and what is most likely to help.
-    pub alarms: Vec<Arc<str>>,
+    pub alarms: Vec<WorldAlarm>,
     /// Why the run cannot go on from here.
     pub failure: Option<Arc<str>>,
+}
+
+/// Something that went wrong in a world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorldAlarm {
+    /// In which way.
+    pub kind: AlarmKind,
+    /// What happened, since when, and what would have helped under the settings of that step.
+    pub text: Arc<str>,
+    /// Whether those are no longer the settings.
+    pub is_earlier: bool,
 }
 
 impl Frame {

@@ -61,6 +61,7 @@ impl Engine {
             duration_secs: start.duration_secs,
             held: !start.held_by.is_empty(),
             view: start.view,
+            slumps: start.slumps,
             physics: start.simulation.physics(),
             settings,
         }));

@@ -22,7 +22,7 @@ mod worlds;
 
 pub use command::{Command, Loader, Pace, Progress, Start, Taken, Taker};
 pub use curve::Curve;
-pub use frame::{Frame, StartInfo, WorldFrame};
+pub use frame::{Frame, StartInfo, WorldAlarm, WorldFrame};
 pub use handle::Live;
 pub use options::LiveOptions;
 pub use past::{PastRun, PastWorld};

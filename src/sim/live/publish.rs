@@ -5,13 +5,25 @@ use std::time::Instant;
 
 use super::engine::Engine;
 use super::track::Track;
-use super::{Controls, Frame, WorldFrame};
-use crate::sim::{AlarmKind, Simulation, Snapshot};
+use super::{Controls, Frame, WorldAlarm, WorldFrame};
+use crate::sim::{Alarm, AlarmKind, Snapshot};
+use crate::world::Gravity;
 
-/// The sentences of a simulation's alarms, but for the one that ends it: that is a failure.
-fn alarms(simulation: &Simulation) -> Vec<Arc<str>> {
-    let alarms = simulation.alarms().iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite);
-    alarms.map(|alarm| alarm.message(simulation.settings()).into()).collect()
+/// The alarms of a world, but for the one that ends it: that is a failure. Each advises on the settings that it was
+/// raised under.
+fn alarms(track: &Track) -> Vec<WorldAlarm> {
+    let simulation = &track.simulation;
+    let at_start = Alarm::of_start(simulation.observables());
+    let alarms = simulation.alarms().iter().copied().chain(at_start);
+    let told = alarms.filter(|alarm| alarm.kind != AlarmKind::NotFinite).map(|alarm| {
+        let now = *simulation.settings();
+        let then = track.recording.settings_of_step(alarm.step).unwrap_or(now);
+        let text = alarm.message(&then);
+        let is_earlier = then != now;
+        let text = if is_earlier { format!("under earlier settings: {text}") } else { text };
+        WorldAlarm { kind: alarm.kind, text: text.into(), is_earlier }
+    });
+    told.collect()
 }
 
 impl Engine {
@@ -47,20 +59,28 @@ impl Engine {
         {
             snapshot.surroundings = Arc::clone(held);
         }
+        let sweeps = f64::from(snapshot.observables.sweeps);
         WorldFrame {
             snapshot: Arc::new(snapshot),
             controls: Controls::of(&track.simulation),
+            gravity: match track.simulation.world().gravity {
+                Gravity::Uniform { acceleration } => Some(acceleration),
+                Gravity::Attraction { .. } => None,
+            },
             curve: track.curve.clone(),
+            is_even: track.recording.is_all_with(track.simulation.settings()),
             recorded_from_secs: track.recording.start().time_secs(),
             recorded_secs: track.recording.end_secs(),
             unconverged_steps: track.tally.unconverged_steps,
             fallback_steps: track.tally.fallback_steps,
             step_ms: 1e3 * track.step_secs,
             substeps: track.simulation.substeps(),
+            picked_method: track.simulation.picked_method(),
             critical_time_step_secs: track.simulation.critical_time_step_secs(),
             contact_time_secs: track.simulation.contact_time_secs(),
+            sweep_elasticity: track.simulation.sweep_elasticity(sweeps),
             fracture_work: track.simulation.fracture_work(),
-            alarms: alarms(&track.simulation),
+            alarms: alarms(track),
             failure: track.failure.clone(),
         }
     }

@@ -144,6 +144,12 @@ impl Recording {
         self.end_step > self.start().observables().step
     }
 
+    /// Whether every recorded step was taken with these settings, and pulled by no hand.
+    pub(crate) fn is_all_with(&self, settings: &Settings) -> bool {
+        let all_along = Controls { settings: *settings, pull: None };
+        self.changes.iter().all(|change| change.controls == all_along)
+    }
+
     /// Whether the next step of a simulation is a recorded one. A hand that is there now and was not then, or
     /// another one, makes a difference; one that is not there does not, as it went when that moment was sought.
     pub(crate) fn replays(&self, simulation: &Simulation) -> bool {
@@ -195,6 +201,11 @@ impl Recording {
             let _ = simulation.change(settings);
             simulation.set_pull(pull);
         }
+    }
+
+    /// The settings that a recorded step was taken with.
+    pub(crate) fn settings_of_step(&self, step: u64) -> Option<Settings> {
+        Some(self.controls_after(step.checked_sub(1)?)?.settings)
     }
 
     /// The controls of the step that follows `step`; none before anything was recorded.

@@ -30,7 +30,8 @@ pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
     let mut travel = state.fastest_in(time_step_secs) * time_step_secs
         + world.gravity.magnitude() * time_step_secs * time_step_secs;
     if let Some(pull) = state.pull {
-        travel += world.grains.positions[pull.grain as usize].distance(pull.target);
+        let position = world.grains.positions[pull.grain as usize];
+        travel += world.shortest(pull.target - position).length();
     }
     (travel / longest).ceil().clamp(1.0, MOST_PIECES) as u32
 }

@@ -3,12 +3,20 @@
 use super::Simulation;
 use crate::sim::Settings;
 use crate::sim::steppers::FractureWork;
+use crate::solver::{Method, picked};
 
 impl Simulation {
     /// Substeps of the next step: 1 where its problem is solved as a whole.
     pub fn substeps(&self) -> u32 {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)
+    }
+
+    /// The method that solves a problem as large as that of the last step: that of the settings, or the one that
+    /// `auto` picks.
+    pub fn picked_method(&self) -> Method {
+        let is_driven = self.state.world.motions.iter().any(|motion| motion.drive.is_some());
+        picked(&self.settings.solver, self.state.contacts.contacts().len(), is_driven)
     }
 
     /// The longest substep, s, with which the springs of the next step are surely stable; none

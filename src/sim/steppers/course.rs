@@ -110,6 +110,11 @@ impl Works {
         self.tangential += 0.5 * mass * impulse[1] * (start[1] + end[1]);
     }
 
+    /// Counts what a driven wall did besides, J: its speed changed within the substep.
+    pub(super) fn add_of_driven_wall(&mut self, work: f64) {
+        self.wall += work;
+    }
+
     /// Counts what of it a wall did that goes with (V_n, V_t), m/s.
     pub(super) fn add_of_wall(&mut self, mass: f64, impulse: [f64; 2], velocity: [f64; 2]) {
         self.wall += mass * (impulse[0] * velocity[0] + impulse[1] * velocity[1]);

@@ -16,6 +16,8 @@ pub struct StepperInfo {
     pub settings: &'static [&'static str],
     /// Observables that it has beside those that all have.
     pub observables: &'static [&'static str],
+    /// Whether it moves walls that a force drives.
+    pub takes_drives: bool,
     /// Refuses numbers that do not go with it.
     pub check: fn(&Parameters) -> Result<()>,
     /// Substeps of a step; 1 where its problem is solved as a whole.
@@ -35,6 +37,7 @@ impl StepperInfo {
         source: "",
         settings: &[],
         observables: &[],
+        takes_drives: false,
         check: |_| Ok(()),
         substeps: |_, _, _| 1,
         critical_time_step_secs: |_, _, _| None,

@@ -84,6 +84,7 @@ impl<'a, M: Model> Stage<'a, M> {
             ProblemNumbers { time_step_secs, friction: parameters.friction, capture_speed };
         problem.prepare::<M>(world, contacts, numbers, &settings.solver, rebound);
         if walls.any_move() {
+            problem.driven.walls.extend(walls.driven(world, time_step_secs));
             problem.drive::<M>(contacts, rebound, |contact| walls.surface(world, contact));
         }
         if let Some(push) = push {
@@ -102,6 +103,7 @@ impl<'a, M: Model> Stage<'a, M> {
         let Self { state, problem, .. } = self;
         let measures = measure::<M>(problem);
         problem.store_impulses(&mut state.contacts);
+        state.walls.take_driven(&mut state.world, &problem.driven.walls);
         let mut gravity_work = 0.0;
         for (index, body) in problem.bodies.iter().enumerate() {
             M::Kinematics::store(body, &mut state.world, index);

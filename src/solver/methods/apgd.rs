@@ -39,6 +39,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
     order: MethodOrder::AllAtOnce,
     takes_models: false,
+    takes_drives: true,
 };
 
 /// L after a step that was too long, over the curvature that it met: a little more than needed, or

@@ -23,6 +23,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "the charts of speed against accuracy",
     order: MethodOrder::OfSettings,
     takes_models: false,
+    takes_drives: true,
 };
 
 /// Up to so many contacts Newton's method is taken. At 270 contacts it wins by far, at 1,000 by a
@@ -42,20 +43,20 @@ pub(super) fn solve<M: Model>(
     memory: &mut AutoMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    match pick(settings.stop, problem.contact_of_row.len()) {
+    match pick(settings.stop, problem.contact_of_row.len(), problem.is_driven()) {
         Pick::Nsgs => nsgs::solve::<M>(problem, &mut (), settings),
         Pick::Newton => newton::solve::<M>(problem, &mut memory.newton, settings),
         Pick::Nncg => nncg::solve::<M>(problem, &mut memory.nncg, settings),
     }
 }
 
-/// The method that solves a problem of so many contacts: that of the settings, unless they leave it
-/// to `auto`.
-pub(crate) fn picked(settings: &SolverSettings, contacts: usize) -> Method {
+/// The method that solves a problem of so many contacts, with walls that a force drives or without: that of the
+/// settings, unless they leave it to `auto`.
+pub(crate) fn picked(settings: &SolverSettings, contacts: usize, is_driven: bool) -> Method {
     if settings.method != Method::Auto {
         return settings.method;
     }
-    match pick(settings.stop, contacts) {
+    match pick(settings.stop, contacts, is_driven) {
         Pick::Nsgs => Method::Nsgs,
         Pick::Newton => Method::Newton,
         Pick::Nncg => Method::Nncg,
@@ -69,10 +70,11 @@ enum Pick {
     Nncg,
 }
 
-fn pick(stop: StopTest, contacts: usize) -> Pick {
+fn pick(stop: StopTest, contacts: usize, is_driven: bool) -> Pick {
     match stop {
         StopTest::ImpulsePerMass => Pick::Nsgs,
-        _ if contacts <= CONTACTS_FOR_NEWTON => Pick::Newton,
+        // Newton's method knows of no walls that a force drives.
+        _ if contacts <= CONTACTS_FOR_NEWTON && !is_driven => Pick::Newton,
         _ => Pick::Nncg,
     }
 }
@@ -84,11 +86,12 @@ mod tests {
     #[test]
     fn auto_picks_by_size_and_stop_and_nothing_else_is_changed() {
         let auto = SolverSettings { method: Method::Auto, ..SolverSettings::default() };
-        assert_eq!(picked(&auto, 270), Method::Newton);
-        assert_eq!(picked(&auto, 5_000), Method::Nncg);
+        assert_eq!(picked(&auto, 270, false), Method::Newton);
+        assert_eq!(picked(&auto, 270, true), Method::Nncg);
+        assert_eq!(picked(&auto, 5_000, false), Method::Nncg);
         let of_a_sweep = SolverSettings { stop: StopTest::ImpulsePerMass, ..auto };
-        assert_eq!(picked(&of_a_sweep, 2), Method::Nsgs);
+        assert_eq!(picked(&of_a_sweep, 2, false), Method::Nsgs);
         let said = SolverSettings { method: Method::Jacobi, ..auto };
-        assert_eq!(picked(&said, 270), Method::Jacobi);
+        assert_eq!(picked(&said, 270, false), Method::Jacobi);
     }
 }

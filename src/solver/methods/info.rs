@@ -20,6 +20,8 @@ pub struct MethodInfo {
     pub order: MethodOrder,
     /// Whether it solves the models of friction beside Coulomb's law.
     pub takes_models: bool,
+    /// Whether it solves for walls that a force drives.
+    pub takes_drives: bool,
 }
 
 /// In which order a method takes the contacts.

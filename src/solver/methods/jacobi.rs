@@ -31,6 +31,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
     order: MethodOrder::AllAtOnce,
     takes_models: false,
+    takes_drives: true,
 };
 
 /// Solves a prepared problem.

@@ -156,7 +156,9 @@ pub fn solve<M: Model>(
         problem.forget_bounds();
     }
     let report = solve_by_method::<M>(problem, memory, settings);
-    if report.converged || !M::FRICTION || !settings.falls_back() {
+    // What solves bounds of friction knows of no walls that a force drives.
+    let falls_back = M::FRICTION && settings.falls_back() && !problem.is_driven();
+    if report.converged || !falls_back {
         return report;
     }
     interior_point::fall_back::<M>(problem, &mut memory.interior_point, report)

@@ -29,6 +29,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "M. Silcowitz, S. Niebe, K. Erleben, non-smooth non-linear conjugate gradients (2010)",
     order: MethodOrder::OfSettings,
     takes_models: false,
+    takes_drives: true,
 };
 
 /// Solves a prepared problem.

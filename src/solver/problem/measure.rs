@@ -69,8 +69,8 @@ impl Measures {
 /// formed in m/s and weighted by m_n.
 pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
     let mut sums = Sums::default();
-    for_each_row::<M::Kinematics>(problem, |_, row, motion| {
-        sums.add_error::<M>(problem, row, &motion)
+    for_each_row::<M::Kinematics>(problem, |number, row, motion| {
+        sums.add_error::<M>(problem, (number, row), &motion)
     });
     sums.residual::<M>(problem)
 }
@@ -137,7 +137,7 @@ pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measure
     let mut sums = Sums::default();
     let mut measures = Measures::default();
     for_each_row::<M::Kinematics>(problem, |number, row, motion| {
-        sums.add_error::<M>(problem, row, &motion);
+        sums.add_error::<M>(problem, (number, row), &motion);
         let [normal, tangential] = problem.reduced_impulse(number, row);
         let half_mass = 0.5 * row.effective_mass;
         measures.compressive_contacts += u32::from(normal > 0.0);
@@ -201,12 +201,13 @@ impl Sums {
     fn add_error<M: Model>(
         &mut self,
         problem: &StepProblem<M::Kinematics>,
-        row: &Row<M::Kinematics>,
+        (number, row): (usize, &Row<M::Kinematics>),
         motion: &Motion,
     ) {
+        let now = problem.own_part(number, row, motion.now).unwrap_or(motion.now);
         let numbers = [problem.friction, problem.capture_speed];
         let impulse = [row.shifted_impulse, row.tangential_impulse];
-        let errors = errors::<M, f64>(numbers, impulse, row.restitution_velocity, motion.now);
+        let errors = errors::<M, f64>(numbers, impulse, row.restitution_velocity, now);
         self.add::<M>(row, errors, motion);
     }
 

@@ -1,5 +1,7 @@
 //! The problem of one step: its data, how it is set up, and what judges its solution.
 
+mod driven;
+mod driven_walls;
 mod duality;
 mod groups;
 mod held;
@@ -14,6 +16,7 @@ mod surface;
 mod surfaces;
 mod tiles;
 
+pub(crate) use self::driven::{DrivenBy, DrivenRow, DrivenWall};
 pub(crate) use self::held::{Bound, Held, LawNumbers, Opening};
 pub use self::kinematics::Kinematics;
 pub use self::kinematics::line::{Line, LineBody};

@@ -27,6 +27,8 @@ pub(crate) fn for_each_row<K: Kinematics>(
     for (number, row) in problem.fixed_rows.iter().enumerate() {
         let of = |bodies: &[K::Body<f64>]| row.velocity(&bodies[row.i as usize]);
         let (now, before, free) = (of(&problem.bodies), of(&problem.before), of(&problem.free));
+        // Without contacts a driven wall would go otherwise, too.
+        let free = problem.free_part(number, row, free).unwrap_or(free);
         visit(number, row, Motion { now, before, free });
     }
     for (number, row) in (problem.fixed_rows.len()..).zip(&problem.pair_rows) {

@@ -48,6 +48,7 @@ impl<K: Kinematics> StepProblem<K> {
         self.captures.clear();
         self.wall_speeds.clear();
         self.surfaces.clear();
+        self.driven.clear();
         self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
         self.masses.clone_from(&grains.masses);
         self.place_bodies(world, numbers.time_step_secs);

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::driven::Driven;
 use super::groups::Groups;
 use super::kinematics::Kinematics;
 use super::model::Model;
@@ -91,6 +92,8 @@ pub struct StepProblem<K: Kinematics> {
     pub(crate) wall_speeds: Vec<f64>,
     /// How the surface behind each of these goes, if it moves.
     pub(super) surfaces: Vec<Option<Surface>>,
+    /// Walls that a force drives.
+    pub(crate) driven: Driven,
     /// What is asked of friction.
     pub(crate) friction_model: FrictionModel,
     /// What the model holds row by row as the step begins, m/s (`problem::held`); empty under Coulomb's law.
@@ -121,6 +124,7 @@ impl<K: Kinematics> Default for StepProblem<K> {
             captures: Vec::new(),
             wall_speeds: Vec::new(),
             surfaces: Vec::new(),
+            driven: Driven::default(),
             friction_model: FrictionModel::Coulomb,
             held_at_start: Vec::new(),
             held: Vec::new(),
@@ -176,6 +180,9 @@ impl<K: Kinematics> StepProblem<K> {
             K::push_pair(&mut i, &mut j, row.normal, impulse, row.share());
             self.bodies[row.i as usize] = i;
             self.bodies[row.j as usize] = j;
+        }
+        if self.is_driven() {
+            self.form_wall_velocities();
         }
     }
 

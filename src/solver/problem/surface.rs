@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use super::driven::DrivenBy;
+
 /// How the surface of a fixed body goes where a contact touches it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
@@ -13,9 +15,17 @@ pub(crate) struct Surface {
     pub is_half_space: bool,
     /// Whether the shape goes along its normal and no other way.
     pub is_pushed: bool,
+    /// What drives the shape, if a force does.
+    pub driven: Option<DrivenBy>,
 }
 
 impl Surface {
+    /// The same where nothing rubs.
+    pub(super) fn smooth(self) -> Self {
+        let smooth = |by: DrivenBy| DrivenBy { along: [by.along[0], 0.0], ..by };
+        Self { is_pushed: true, round: 0.0, driven: self.driven.map(smooth), ..self }
+    }
+
     /// How fast it goes along n and t, m/s.
     #[inline]
     pub(crate) fn along(&self, normal: DVec2) -> [f64; 2] {

@@ -30,13 +30,13 @@ impl<K: Kinematics> StepProblem<K> {
         rebound: impl Fn(Approach) -> f64,
         surface: impl Fn(&Contact) -> Option<Surface>,
     ) {
-        let Self { fixed_rows, before, contact_of_row, wall_speeds, surfaces, .. } = self;
+        let Self { fixed_rows, before, contact_of_row, wall_speeds, surfaces, driven, .. } = self;
         for (row, &index) in fixed_rows.iter_mut().zip(&*contact_of_row) {
             let contact = &contacts.contacts()[index as usize];
             // What does not rub does not mind what slides.
             let surface = surface(contact).map(|surface| match M::FRICTION {
                 true => surface,
-                false => Surface { is_pushed: true, round: 0.0, ..surface },
+                false => surface.smooth(),
             });
             let [speed, slide] = surface.map_or([0.0; 2], |surface| surface.along(contact.normal));
             row.of_other = slide;
@@ -45,7 +45,12 @@ impl<K: Kinematics> StepProblem<K> {
             let approach = Approach { velocity: velocity - speed, gap: contact.gap, in_touch };
             row.restitution_velocity = rebound(approach) - speed;
             wall_speeds.push(speed);
+            let added = [row.restitution_velocity, row.of_other];
+            driven.add(surface.and_then(|surface| surface.driven), speed, added);
             surfaces.push(surface);
+        }
+        if self.is_driven() {
+            self.form_velocities();
         }
         // Of the models that hold something, one holds what a slip has made.
         if self.friction_model == FrictionModel::Desaxce {
@@ -73,9 +78,11 @@ impl<K: Kinematics> StepProblem<K> {
 
     /// How fast the surfaces behind all rows go along t, m/s: 0 between grains; none where no surface moves.
     pub(crate) fn surface_speeds(&self) -> Vec<f64> {
-        let rows = self.rows().filter(|_| self.has_moving_walls());
-        let fixed = self.fixed_rows.len();
-        rows.map(|(at, row)| if at < fixed { row.surface_speed() } else { 0.0 }).collect()
+        if !self.has_moving_walls() {
+            return Vec::new();
+        }
+        let of_fixed = self.fixed_rows.iter().map(Row::surface_speed);
+        of_fixed.chain(self.pair_rows.iter().map(|_| 0.0)).collect()
     }
 
     /// Whether any surface may move.
@@ -94,7 +101,10 @@ impl<K: Kinematics> StepProblem<K> {
     /// The work, J, that moving surfaces do by the rows' impulses; and the part of it along the tangents, which the
     /// rows' own velocities, being relative, leave out.
     pub(crate) fn surface_works(&self) -> [f64; 2] {
-        self.surface_works_of(self, |number| number)
+        let [whole, along_tangents] = self.surface_works_of(self, |number| number);
+        // Rows tell of driven walls as they go at the end.
+        let surplus = if self.is_driven() { self.surplus_of_driven_walls() } else { 0.0 };
+        [whole - surplus, along_tangents]
     }
 
     /// The same of a part of this problem's rows, whose row k is row `contact_of_row()[k]` here.

@@ -98,6 +98,7 @@ mod tests {
             boundaries: Vec::new(),
             motions: Vec::new(),
             gravity_turn: None,
+            periodic: None,
             gravity: Gravity::Uniform { acceleration: -9.8 * DVec2::Y },
             mean_diameter: 1.0,
         }

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use image::{ImageFormat, RgbImage};
+use image::RgbImage;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::register_font;
@@ -11,6 +11,7 @@ use super::places::Places;
 use super::sheet::{CAPTION_LINE, LEGEND};
 use super::{Cell, Chart, Corner, Layer, Look, Rgb, Sheet};
 use crate::error::{Error, Result};
+use crate::output::{Texts, png_of_rgb};
 
 /// Sizes of words, pixels.
 const TITLE: u32 = 27;
@@ -25,20 +26,19 @@ const FONT: &str = "sans-serif";
 /// A pair of axes with what is drawn on them.
 type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<Places, Places>>;
 
-/// The sheet as PNG.
+/// The sheet as PNG, which says of itself which command draws it.
 ///
 /// # Errors
 /// Where plotters or the encoder fails.
-pub fn png(sheet: &Sheet) -> Result<Vec<u8>> {
+pub fn png(sheet: &Sheet, command: &str) -> Result<Vec<u8>> {
     let (width, height) = sheet.size;
     let mut pixels = vec![0; 3 * width as usize * height as usize];
     draw(sheet, BitMapBackend::with_buffer(&mut pixels, sheet.size).into_drawing_area())?;
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    RgbImage::from_raw(width, height, pixels)
-        .ok_or_else(|| failed("the picture has another size"))?
-        .write_to(&mut bytes, ImageFormat::Png)
-        .map_err(failed)?;
-    Ok(bytes.into_inner())
+    let image = RgbImage::from_raw(width, height, pixels)
+        .ok_or_else(|| failed("the picture has another size"))?;
+    let mut texts = Texts::default();
+    texts.add("Command line", command);
+    png_of_rgb(&image, &texts)
 }
 
 /// The sheet as SVG.

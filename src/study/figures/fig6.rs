@@ -2,7 +2,9 @@
 
 use rand::{RngExt, SeedableRng};
 
-use super::verdict::Verdict;
+use super::chance::{self, Alike};
+use super::verdict::{SIGNIFICANT, Verdict};
+use super::workshop::Rows;
 use super::{Claim, Figure, Workshop};
 use crate::error::Result;
 use crate::scene::{Config, paper_pile};
@@ -11,6 +13,8 @@ use crate::study::statistics::{mean, p_value, slope, turning_point};
 
 /// Resamplings of the initial states for the interval of the turning point.
 const RESAMPLINGS: usize = 400;
+/// As many for each of many shuffles.
+const FEWER_RESAMPLINGS: usize = 20;
 
 /// The cohesive time of a run.
 pub(super) fn cohesive_time(config: &Config, unit_secs: f64) -> f64 {
@@ -26,7 +30,8 @@ pub(super) fn unit_secs() -> Result<f64> {
 
 pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     let unit_secs = unit_secs()?;
-    let rows = workshop.rows("pile")?.such_that(|config| config.parameters.bond > Some(0.0));
+    let cohesive = workshop.rows("pile")?.such_that(|config| config.parameters.bond > Some(0.0));
+    let rows = cohesive.ensemble();
     let mut chart = Chart::new(
         "Fig. 6: slump against cohesive time",
         Axis::log("Bond·Δt/√(d/g)", 0.06, 32.0),
@@ -55,69 +60,107 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         ));
     }
 
-    let states: Vec<Vec<(f64, f64)>> = rows
-        .seeds()
-        .into_iter()
-        .map(|seed| {
-            let of_seed = rows.such_that(|config| config.origin.seed == Some(seed));
+    let groups = groups(&rows, unit_secs);
+    let count = rows.seeds().len();
+    let turn = turning(&joined(&groups, count), RESAMPLINGS);
+    let Turn { place, low, high } = turn;
+    let mut sheet = Sheet::of(chart);
+    sheet.caption = vec![format!(
+        "Means over {count} initial states with 95 % intervals (Bond 0 has no cohesive time). A broken line \
+         bends at {place:.2} ({low:.2} … {high:.2})."
+    )];
+    sheet.caption.extend(workshop.note());
+    let claims = vec![regimes(&groups, count), guess(&groups, count, turn)];
+    Ok(Figure { name: "fig6", sheet, claims, table: None })
+}
+
+/// Slumps by log₁₀ of the cohesive time, a group a state and Bond, the states one after the other.
+fn groups(rows: &Rows<'_>, unit_secs: f64) -> Vec<Alike> {
+    let mut all = Vec::new();
+    for seed in rows.seeds() {
+        for bond in rows.values(|config| config.parameters.bond) {
+            let here = rows.such_that(|config| {
+                config.origin.seed == Some(seed) && config.parameters.bond == Some(bond)
+            });
             let place = |(config, outcome): &(&Config, &crate::study::Outcome)| {
                 (cohesive_time(config, unit_secs).log10(), outcome.slump)
             };
-            of_seed.0.iter().map(place).collect()
-        })
-        .collect();
-    let (found, low, high) = turning(&states);
-    let guess = Claim::new(
-        "Fig. 6: two regimes part at a cohesive time of 1",
-        format!(
-            "the best broken line through all runs bends at {found:.2}; {low:.2} … {high:.2} in 95 % of \
-             {RESAMPLINGS} resamplings of the initial states"
-        ),
-        Verdict::of_interval(1.0, low, high),
-    );
-    let mut sheet = Sheet::of(chart);
-    sheet.caption = vec![format!(
-        "Means over {} initial states with 95 % intervals (Bond 0 has no cohesive time). A broken line \
-         bends at {found:.2} ({low:.2} … {high:.2}).",
-        states.len()
-    )];
-    sheet.caption.extend(workshop.note());
-    Ok(Figure { name: "fig6", sheet, claims: vec![regimes(&states), guess], table: None })
+            all.push(here.0.iter().map(place).collect());
+        }
+    }
+    all
 }
 
-/// Whether the slump falls and rises, over (log₁₀ of the cohesive time, slump) of each initial state.
-fn regimes(states: &[Vec<(f64, f64)>]) -> Claim {
-    let side = |below: bool| {
-        let of_state = |state: &Vec<(f64, f64)>| {
+/// The groups of each of `count` states in one.
+fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
+    groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
+}
+
+/// That two regimes part at 1.
+fn guess(groups: &[Alike], count: usize, turn: Turn) -> Claim {
+    let verdict = |turn: Turn| Verdict::of_interval(1.0, turn.low, turn.high);
+    let holds = |groups: &[Alike]| {
+        verdict(turning(&joined(groups, count), FEWER_RESAMPLINGS)) == Verdict::Holds
+    };
+    Claim::new(
+        "Fig. 6: two regimes part at a cohesive time of 1",
+        format!(
+            "the best broken line through all runs bends at {:.2}; {:.2} … {:.2} in 95 % of {RESAMPLINGS} resamplings \
+             of the initial states",
+            turn.place, turn.low, turn.high
+        ),
+        verdict(turn),
+    )
+    .by_chance(chance::told(chance::share(groups, |_| 0.0, holds)))
+    .hanging_on("the shifted cone; three Bonds drawn as one curve; a broken line as the shape of the curve")
+}
+
+/// Whether the slump falls and rises.
+fn regimes(groups: &[Alike], count: usize) -> Claim {
+    let side = |groups: &[Alike], below: bool| {
+        let of_state = |state: &Alike| {
             let points: Vec<_> =
                 state.iter().copied().filter(|(x, _)| (*x < 0.0) == below).collect();
             slope(&points)
         };
-        mean(&states.iter().map(of_state).collect::<Vec<_>>())
+        mean(&joined(groups, count).iter().map(of_state).collect::<Vec<_>>())
     };
-    let (below, above) = (side(true), side(false));
+    let p_of =
+        |groups: &[Alike]| side(groups, true).p_below(0.0).max(side(groups, false).p_above(0.0));
+    let (below, above) = (side(groups, true), side(groups, false));
     let told = |name: &str, mean: &crate::study::statistics::Mean| {
         format!("slope per decade {name} {:+.3} ({:+.3} … {:+.3})", mean.mean, mean.low, mean.high)
     };
-    let p = below.p_below(0.0).max(above.p_above(0.0));
+    let p = p_of(groups);
     Claim::new(
         "Fig. 6: below a cohesive time of 1 the slump falls with it, above it rises",
         format!("{}, {}; both: {}", told("below", &below), told("above", &above), p_value(p))
             .replace('-', "−"),
         Verdict::of(p, below.p_above(0.0).min(above.p_below(0.0))),
     )
+    .by_chance(chance::told(chance::share(groups, |_| 0.0, |groups| p_of(groups) < SIGNIFICANT)))
+    .hanging_on(
+        "the shifted cone; 1 as the border; and on Bonds together: below 1 there is more of Bond 20, above of Bond 100",
+    )
 }
 
 /// Where the slump turns, with the interval in which it does so for resampled initial states.
-fn turning(states: &[Vec<(f64, f64)>]) -> (f64, f64, f64) {
+#[derive(Clone, Copy)]
+struct Turn {
+    place: f64,
+    low: f64,
+    high: f64,
+}
+
+fn turning(states: &[Alike], resamplings: usize) -> Turn {
     let candidates: Vec<f64> = (-20..=24).map(|k| 0.05 * f64::from(k)).collect();
-    let at = |sample: &[&Vec<(f64, f64)>]| {
+    let at = |sample: &[&Alike]| {
         let all: Vec<_> = sample.iter().flat_map(|state| state.iter().copied()).collect();
         turning_point(&all, &candidates).map(|place| 10f64.powf(place))
     };
     let all: Vec<_> = states.iter().collect();
     let mut random = rand_pcg::Pcg64::seed_from_u64(0);
-    let mut turns: Vec<f64> = (0..RESAMPLINGS)
+    let mut turns: Vec<f64> = (0..resamplings)
         .filter_map(|_| {
             let sample: Vec<_> =
                 (0..all.len()).map(|_| all[random.random_range(0..all.len())]).collect();
@@ -129,5 +172,5 @@ fn turning(states: &[Vec<(f64, f64)>]) -> (f64, f64, f64) {
         let index = (share * turns.len().saturating_sub(1) as f64).round() as usize;
         turns.get(index).copied().unwrap_or(f64::NAN)
     };
-    (at(&all).unwrap_or(f64::NAN), quantile(0.025), quantile(0.975))
+    Turn { place: at(&all).unwrap_or(f64::NAN), low: quantile(0.025), high: quantile(0.975) }
 }

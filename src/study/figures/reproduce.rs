@@ -16,7 +16,7 @@ const SNAPSHOTS: &str = "snapshots";
 /// Every figure, but for [`APART`].
 const ALL: &str = "all";
 /// What is not of the paper and takes hours: asked for by name alone.
-const APART: [&str; 4] = ["range", "cohesion", "friction", "tolerance"];
+const APART: [&str; 6] = ["range", "range-regimes", "dry", "cohesion", "friction", "tolerance"];
 
 /// The names that [`reproduce`] knows.
 pub(crate) fn figure_names() -> Vec<&'static str> {
@@ -55,7 +55,9 @@ pub(crate) fn reproduce(
         }
         let mut figure = (info.make)(&workshop)?;
         workshop.qualify(info.studies, &mut figure.claims);
-        write(&figure, folder)?;
+        let quick = if quick { " --quick" } else { "" };
+        let command = format!("slump reproduce {} --out figures{quick}", info.name);
+        write(&figure, folder, &command)?;
         note_line(format_args!("{}: {:.0} s", info.name, begun.elapsed().as_secs_f64()));
         report.add(info, &figure);
     }
@@ -69,10 +71,10 @@ pub(crate) fn reproduce(
     Ok(())
 }
 
-fn write(figure: &Figure, folder: &Path) -> Result<()> {
+fn write(figure: &Figure, folder: &Path, command: &str) -> Result<()> {
     let path = |ending: &str| folder.join(format!("{}.{ending}", figure.name));
     write_file(&path("csv"), &figure.sheet.to_csv()?)?;
-    write_file(&path("png"), &chart::png(&figure.sheet)?)?;
+    write_file(&path("png"), &chart::png(&figure.sheet, command)?)?;
     if let Some(table) = &figure.table {
         write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
     }
@@ -92,7 +94,9 @@ impl Report {
         }
         text.push_str(
             "p-values are one-sided unless they say otherwise; a claim holds below 0.05, and does not \
-             hold where its contrary is below 0.05. Intervals hold the true value in 95 % of samples.\n\n\
+             hold where its contrary is below 0.05. Intervals hold the true value in 95 % of samples. *By chance* says how often \
+             the same test says that a claim holds where Δt has no effect, by shuffling Δt among the runs of each initial \
+             state; *hangs on* names the choices that were free.\n\n\
              Alarms that runs raised are counted with each claim. Piles overlap by more than 5 % of a \
              diameter somewhere by nature, most of all at large Δt; a claim on runs that lost grains, or had no \
              finite end, is not decided.\n",
@@ -104,13 +108,13 @@ impl Report {
         // Writing to a string cannot fail.
         let _ = write!(self.text, "\n## {0}\n\n![{0}]({0}.png)\n\n", figure.name);
         for claim in &figure.claims {
-            let _ = writeln!(
-                self.text,
-                "* {}.\n  Measured: {}.\n  **{}**",
-                claim.said,
-                claim.measured,
-                claim.verdict.words()
-            );
+            let _ = writeln!(self.text, "* {}.\n  Measured: {}.", claim.said, claim.measured);
+            for (what, told) in [("By chance", &claim.by_chance), ("Hangs on", &claim.hangs_on)] {
+                if !told.is_empty() {
+                    let _ = writeln!(self.text, "  {what}: {told}.");
+                }
+            }
+            let _ = writeln!(self.text, "  **{}**", claim.verdict.words());
             print_line(format_args!("{}: {} [{}]", info.name, claim.said, claim.verdict.words()));
             print_line(format_args!("    {}", claim.measured));
         }

@@ -16,7 +16,7 @@ impl Table {
     ///
     /// # Errors
     /// Where a row has not a cell a column.
-    pub(super) fn to_csv(&self) -> Result<Vec<u8>> {
+    pub(in crate::study) fn to_csv(&self) -> Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let refuse = |error: csv::Error| Error::file(self.name, error);
         writer.write_record(&self.columns).map_err(refuse)?;
@@ -27,7 +27,7 @@ impl Table {
     }
 
     /// The table as Markdown.
-    pub(super) fn to_markdown(&self) -> String {
+    pub(in crate::study) fn to_markdown(&self) -> String {
         let line = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
         let words: Vec<String> = self.columns.iter().map(|name| name.replace('_', " ")).collect();
         let mut text = line(&words.iter().map(String::as_str).collect::<Vec<_>>());

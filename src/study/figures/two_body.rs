@@ -98,6 +98,8 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
             SPEEDS.len() as u32 * POINTS
         ),
         (worst < 1e-12).into(),
-    );
+    )
+    .by_chance("nothing is drawn at random: the steps are exact")
+    .hanging_on("no choice: the three cases follow from the law");
     Ok(Figure { name: "two-body", sheet, claims: vec![claim], table: None })
 }

@@ -64,6 +64,10 @@ pub(super) struct Claim {
     pub measured: String,
     /// Whether it holds.
     pub verdict: Verdict,
+    /// How often the test would say that it holds with nothing behind it; empty where nothing is drawn at random.
+    pub by_chance: String,
+    /// The free choices that the verdict hangs on; empty where there are none but those of all runs of the figure.
+    pub hangs_on: String,
 }
 
 impl Claim {
@@ -73,6 +77,17 @@ impl Claim {
         measured: impl Into<String>,
         verdict: Verdict,
     ) -> Self {
-        Self { said: said.into(), measured: measured.into(), verdict }
+        let [by_chance, hangs_on] = [String::new(), String::new()];
+        Self { said: said.into(), measured: measured.into(), verdict, by_chance, hangs_on }
+    }
+
+    /// The same with how often its test would say so with nothing behind it.
+    pub(super) fn by_chance(self, by_chance: impl Into<String>) -> Self {
+        Self { by_chance: by_chance.into(), ..self }
+    }
+
+    /// The same with the free choices that it hangs on.
+    pub(super) fn hanging_on(self, hangs_on: impl Into<String>) -> Self {
+        Self { hangs_on: hangs_on.into(), ..self }
     }
 }

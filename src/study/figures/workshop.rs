@@ -6,20 +6,26 @@ use std::path::{Path, PathBuf};
 
 use super::verdict::{Claim, Verdict};
 use crate::error::{Error, Result};
-use crate::scene::Config;
+use crate::scene::{Config, NewPile};
 use crate::study::table::alarms_of;
 use crate::study::{Outcome, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
 /// The studies that are shipped.
-const STUDIES: [(&str, &str); 11] = [
+const STUDIES: [(&str, &str); 17] = [
     ("pile", include_str!("../../../assets/studies/pile.toml")),
+    ("pile-compressive", include_str!("../../../assets/studies/pile-compressive.toml")),
+    ("pile-choices", include_str!("../../../assets/studies/pile-choices.toml")),
     ("cradle", include_str!("../../../assets/studies/cradle.toml")),
+    ("cradle-courses", include_str!("../../../assets/studies/cradle-courses.toml")),
+    ("cradle-choices", include_str!("../../../assets/studies/cradle-choices.toml")),
     ("cradle-share", include_str!("../../../assets/studies/cradle-share.toml")),
     ("cradle-map", include_str!("../../../assets/studies/cradle-map.toml")),
     ("pile-map", include_str!("../../../assets/studies/pile-map.toml")),
     ("pile-size", include_str!("../../../assets/studies/pile-size.toml")),
     ("pile-tolerance", include_str!("../../../assets/studies/pile-tolerance.toml")),
     ("range", include_str!("../../../assets/studies/range.toml")),
+    ("range-regimes", include_str!("../../../assets/studies/range-regimes.toml")),
+    ("dry", include_str!("../../../assets/studies/dry.toml")),
     ("cohesion", include_str!("../../../assets/studies/cohesion.toml")),
     ("friction", include_str!("../../../assets/studies/friction.toml")),
     ("tolerance", include_str!("../../../assets/studies/tolerance.toml")),
@@ -136,6 +142,11 @@ impl<'a> Rows<'a> {
     /// Those that a condition picks.
     pub(super) fn such_that(&self, holds: impl Fn(&Config) -> bool) -> Self {
         Self(self.0.iter().copied().filter(|(config, _)| holds(config)).collect())
+    }
+
+    /// Those of initial states that were not chosen for what they show.
+    pub(super) fn ensemble(&self) -> Self {
+        self.such_that(|config| config.origin.seed != Some(NewPile::default().seed))
     }
 
     /// The different values of a number, rising.

@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::machine::Machine;
 use crate::error::Result;
-use crate::output::{check_writable, note_line};
 use crate::study::chart::Sheet;
-use crate::study::journal::{self, Journal};
+use crate::study::journal::Journal;
+use crate::study::machine::Machine;
 
 /// A finished chart.
 pub(super) struct Part {
@@ -41,16 +40,7 @@ impl Bench {
         &self,
         name: &str,
     ) -> Result<(Journal, Vec<T>)> {
-        let pass = if self.quick { "quick" } else { "full" };
-        let folder = self.folder.join("measured").join(&self.machine.fingerprint).join(pass);
-        check_writable("out", &folder)?;
-        // Opening cuts off a half line, so it comes first.
-        let journal = Journal::open(&folder, name)?;
-        let done: Vec<T> = journal::read(&journal::path_of(&folder, name))?;
-        if !done.is_empty() {
-            note_line(format_args!("{name}: {} measurements were there", done.len()));
-        }
-        Ok((journal, done))
+        self.machine.journal(&self.folder, self.quick, name)
     }
 
     /// Lines below a chart: what it shows, then where it was measured.

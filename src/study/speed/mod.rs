@@ -8,7 +8,6 @@
 mod bench;
 mod entrants;
 mod look;
-mod machine;
 mod models;
 mod peers;
 mod race;
@@ -22,8 +21,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use self::bench::{Bench, Part};
-use self::machine::Machine;
 use super::chart::{png, svg};
+use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, note_line, print_line, print_text, write_file};
 
@@ -55,6 +54,17 @@ pub(crate) struct ChartOptions {
     pub only: Vec<ChartPart>,
     /// Folder of tables of other engines' runs (`benches/peers`); none are drawn where it is missing.
     pub peers: PathBuf,
+}
+
+impl ChartOptions {
+    /// The command that charts this, with a folder of one's own.
+    fn command(&self) -> String {
+        let only = self.only.iter().filter_map(clap::ValueEnum::to_possible_value);
+        let only: String = only.map(|part| format!(" --only {}", part.get_name())).collect();
+        let switch = |on: bool, word: &str| if on { format!(" --{word}") } else { String::new() };
+        let switches = switch(self.quick, "quick") + &switch(self.large, "large");
+        format!("slump chart{only}{switches} --out chart")
+    }
 }
 
 /// Measures and draws into a folder.
@@ -97,7 +107,7 @@ pub(crate) fn chart_speed(options: &ChartOptions) -> Result<()> {
         for Part { name, sheet, report: told, tables } in make(&bench)? {
             let path = |ending: &str| options.out.join(format!("{name}.{ending}"));
             write_file(&path("csv"), &sheet.to_csv()?)?;
-            write_file(&path("png"), &png(&sheet)?)?;
+            write_file(&path("png"), &png(&sheet, &options.command())?)?;
             write_file(&path("svg"), svg(&sheet)?.as_bytes())?;
             for (table, text) in tables {
                 write_file(&options.out.join(format!("{table}.csv")), text.as_bytes())?;

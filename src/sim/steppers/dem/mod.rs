@@ -7,6 +7,7 @@
 //! Spring and dashpot together never pull: N ≥ −C₀, as everywhere here, and the cone is that of the
 //! contact laws. Where friction slides, ξ is shortened to what gives T at the bound.
 
+mod driven;
 mod spring_dashpot;
 
 pub use spring_dashpot::SpringDashpot;
@@ -27,6 +28,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
     settings: &["bond", "dt", "rho", "mu", "cone", "stiffness", "damping-ratio", "substeps"],
+    takes_drives: true,
     substeps,
     critical_time_step_secs: |world, physics, parameters| {
         Some(critical_time_step_secs(world, physics, parameters))
@@ -73,9 +75,11 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
             course.works.add_of_wall(mass, impulse, of_wall);
         }
         course.add_gravity_work(bodies, &stage.state.world.grains.masses);
+        driven::drive(stage, course.substep_secs, &pushes, &mut course.works);
         course.place(stage);
     });
     stage.problem.set_impulses(&totals.impulses);
+    driven::tell(stage);
     course.end_step(stage, substeps)
 }
 

@@ -32,6 +32,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
         "model-solves",
         "fallback",
     ],
+    takes_drives: true,
     ..StepperInfo::WHOLE
 };
 

@@ -5,7 +5,7 @@
 //!
 //! * A step is long against the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile whose
 //!   bonds are not is stepped at full length. Where the step before was cut and bonds were restless to
-//!   its end, the next one is cut without being tried. Where sixteen substeps are too long for a break, the
+//!   its end, or bonded pairs circle fast (`range::turning`), the next one is cut without being tried. Where sixteen substeps are too long for a break, the
 //!   step says so, and which one would not be (`sim::alarm`).
 //! * Grains go far. A contact's normal is that of the beginning of the step, so the constraint
 //!   v_n + gap/Δt ≥ 0 bars a grain from passing another one that it would have missed: without cohesion,
@@ -15,6 +15,7 @@ mod bonds;
 mod numbers;
 mod separation;
 mod shocks;
+mod turning;
 
 pub(in crate::sim) use bonds::Memory;
 
@@ -23,6 +24,7 @@ use self::shocks::Passed;
 use super::StepperInfo;
 use super::mean_pair::MeanPair;
 use crate::contact::LookAhead;
+use crate::contact::law::cohesion_force;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
 use crate::error::Error;
 use crate::sim::settings::Settings;
@@ -97,6 +99,8 @@ fn travel(world: &World, fastest: f64, time_step_secs: f64) -> f64 {
 /// How a step is cut.
 struct Cut {
     substeps: u32,
+    /// Whether bonded pairs circle so fast that it cannot be taken as a whole.
+    circling: bool,
     /// Whether it is tried as a whole first.
     whole_first: bool,
     /// The longest step (s) in whose substeps a break is seen, where this one is longer.
@@ -114,11 +118,14 @@ impl Cut {
         let of_travel = (travel / (MOST_TRAVEL * world.mean_diameter)).ceil();
         let bond_time = bond_time_secs(parameters.bond, world.gravity.magnitude(), distance);
         let of_bonds = (whole / (SUBSTEP_IN_BOND_TIMES * bond_time)).ceil();
+        let pull = cohesion_force(parameters.bond, 1.0, world.gravity.magnitude());
+        let circling = of_bonds > 1.0 && turning::looks_like_a_shock(state, whole, pull, distance);
         let substeps = of_travel.max(of_bonds).clamp(1.0, MOST_SUBSTEPS) as u32;
         let longest_secs = MOST_SUBSTEPS * SUBSTEP_IN_BOND_TIMES * bond_time;
         Self {
             substeps,
-            whole_first: substeps == 1 || (of_travel <= 1.0 && !restless),
+            circling,
+            whole_first: substeps == 1 || (of_travel <= 1.0 && !restless && !circling),
             longest_step_secs: (of_bonds > MOST_SUBSTEPS).then_some(longest_secs),
         }
     }
@@ -132,7 +139,8 @@ pub(super) fn advance<M: Model>(
 ) -> Outcome {
     prepare(stage, settings);
     let restless = std::mem::take(&mut memory.restless);
-    let Cut { substeps, whole_first, longest_step_secs } = Cut::of(stage.state, settings, restless);
+    let Cut { substeps, circling, whole_first, longest_step_secs } =
+        Cut::of(stage.state, settings, restless);
     let mut outcome = Outcome { bonds: Some(BondEnergies::default()), ..Outcome::nothing_yet() };
     if whole_first {
         match try_step(stage, settings, memory, substeps == 1) {
@@ -147,7 +155,7 @@ pub(super) fn advance<M: Model>(
             outcome.add(piece);
         }
     });
-    if memory.restless {
+    if circling || memory.restless {
         memory.longest_step_secs = longest_step_secs.or(memory.longest_step_secs);
     }
     outcome

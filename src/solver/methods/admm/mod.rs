@@ -38,6 +38,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "S. Boyd and others (2011); for contact V. Acary, M. Bremond, O. Huber (2018)",
     order: MethodOrder::AllAtOnce,
     takes_models: false,
+    takes_drives: false,
 };
 
 /// ε at first.

@@ -61,6 +61,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "S. Mehrotra, On the implementation of a primal-dual interior point method (1992)",
     order: MethodOrder::OfSettings,
     takes_models: true,
+    takes_drives: false,
 };
 
 /// Sweeps before the first factorisation: many steps of a pile at rest need no more.

@@ -51,6 +51,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)",
     order: MethodOrder::OfSettings,
     takes_models: false,
+    takes_drives: false,
 };
 
 /// Compliance of the first step.

@@ -4,6 +4,7 @@
 //! For solid discs the local Delassus block is diagonal (W_nt = 0), so a contact's solution is two
 //! scalar projections (`shared::update`).
 
+mod driven;
 mod held;
 mod settled;
 
@@ -15,10 +16,10 @@ use super::info::{COULOMB, MethodInfo, MethodOrder};
 use super::method::Method;
 use super::report::SolveReport;
 use super::shared::iterate::{is_tested, sweep_until_settled};
-use super::shared::update::{Body, Change, Law};
+use super::shared::update::{Change, Law};
 use crate::solver::friction_model::FrictionModel;
 use crate::solver::ordering::Ordering;
-use crate::solver::problem::{Bound, Model, Opening, Row, StepProblem, residual};
+use crate::solver::problem::{Bound, Model, Opening, StepProblem, residual};
 use crate::solver::settings::{SolverSettings, StopTest};
 
 /// What there is to know of it.
@@ -30,6 +31,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "M. Jean, The non-smooth contact dynamics method (1999)",
     order: MethodOrder::OfSettings,
     takes_models: true,
+    takes_drives: true,
 };
 
 /// Solves a prepared problem by sweeps, under the model of friction that it was prepared for.
@@ -110,6 +112,9 @@ pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M::Kinemat
 fn directed_sweep<M: Model, const MEASURE: bool, const BACKWARD: bool>(
     problem: &mut StepProblem<M::Kinematics>,
 ) -> Change {
+    if problem.is_driven() {
+        return driven::pass::<M, MEASURE, BACKWARD>(problem);
+    }
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx") {
         // SAFETY: the processor has just been asked.
@@ -137,7 +142,7 @@ fn pass<M: Model, const MEASURE: bool, const BACKWARD: bool>(
     let mut change = Change::default();
     if BACKWARD {
         for row in pair_rows.iter_mut().rev() {
-            solve_pair::<M, MEASURE>(&law, row, bodies, &mut change);
+            law.solve_pair_among::<M, MEASURE>(row, bodies, &mut change);
         }
         for row in fixed_rows.iter_mut().rev() {
             law.solve_single_row::<M, MEASURE>(row, &mut bodies[row.i as usize], &mut change);
@@ -148,21 +153,7 @@ fn pass<M: Model, const MEASURE: bool, const BACKWARD: bool>(
         law.solve_single_row::<M, MEASURE>(row, &mut bodies[row.i as usize], &mut change);
     }
     for row in pair_rows {
-        solve_pair::<M, MEASURE>(&law, row, bodies, &mut change);
+        law.solve_pair_among::<M, MEASURE>(row, bodies, &mut change);
     }
     change
-}
-
-/// Solves a contact between two of the bodies.
-#[inline(always)]
-fn solve_pair<M: Model, const MEASURE: bool>(
-    law: &Law,
-    row: &mut Row<M::Kinematics>,
-    bodies: &mut [Body<M, f64>],
-    change: &mut Change,
-) {
-    let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
-    law.solve_pair_row::<M, MEASURE>(row, &mut i, &mut j, change);
-    bodies[row.i as usize] = i;
-    bodies[row.j as usize] = j;
 }

@@ -34,6 +34,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     source: "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
     order: MethodOrder::Always(Ordering::Coloured),
     takes_models: false,
+    takes_drives: false,
 };
 
 /// Blocks from which on threads are woken, once a sweep: some 130 µs of work, several times what waking costs.

@@ -122,7 +122,9 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     /// moved each on its own, answer at least as much as the body does: A ⪯ D⁻¹. For the contact's
     /// own diagonal, 1/m_i becomes k_i/m_i, and with g_i = m_ij/m_i
     ///
-    /// > 1/d = k_i g_i + k_j (1 − g_i), against a fixed body k_i.
+    /// > 1/d = k_i g_i + k_j (1 − g_i), against a fixed body k_i,
+    ///
+    /// and k_i + k κ(b_n² + b_t² m_t/m_n) against a wall with k contacts that is driven (`problem::driven`).
     fn splitting(&self, weights: &mut Vec<f64>) {
         let StepProblem { bodies, fixed_rows, pair_rows, .. } = &*self.problem;
         // Counts come first in the same memory, one a body.
@@ -136,8 +138,18 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
             weights[row.i as usize] += 1.0;
             weights[row.j as usize] += 1.0;
         }
-        for row in fixed_rows {
-            weights.push(1.0 / weights[row.i as usize]);
+        match self.problem.is_driven() {
+            false => {
+                for row in fixed_rows {
+                    weights.push(1.0 / weights[row.i as usize]);
+                }
+            }
+            true => {
+                let walls = self.problem.wall_compliances();
+                for (row, of_wall) in fixed_rows.iter().zip(walls) {
+                    weights.push(1.0 / (weights[row.i as usize] + of_wall.unwrap_or(0.0)));
+                }
+            }
         }
         for row in pair_rows {
             let (i, j) = (weights[row.i as usize], weights[row.j as usize]);

@@ -51,6 +51,11 @@ impl Law {
         Self { friction: problem.friction, capture_speed: problem.capture_speed }
     }
 
+    /// The largest |λ_t| that a shifted normal impulse allows, m/s.
+    pub(crate) fn friction_bound<M: Model>(&self, shifted_impulse: f64) -> f64 {
+        M::friction_bound(self.friction, shifted_impulse, self.capture_speed)
+    }
+
     /// Solves the contact of a row: of grain i with a fixed body.
     #[inline(always)]
     pub(crate) fn solve_single_row<M: Model, const MEASURE: bool>(
@@ -74,6 +79,20 @@ impl Law {
     ) {
         let (local, impulse) = parts(row);
         self.solve_pair::<M, f64, MEASURE>((&local, impulse), i, j, change);
+    }
+
+    /// Solves the contact of a row: between two of the bodies.
+    #[inline(always)]
+    pub(crate) fn solve_pair_among<M: Model, const MEASURE: bool>(
+        &self,
+        row: &mut Row<M::Kinematics>,
+        bodies: &mut [Body<M, f64>],
+        change: &mut Change,
+    ) {
+        let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
+        self.solve_pair_row::<M, MEASURE>(row, &mut i, &mut j, change);
+        bodies[row.i as usize] = i;
+        bodies[row.j as usize] = j;
     }
 
     /// Solves contacts of grains i with fixed bodies.

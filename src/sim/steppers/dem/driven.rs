@@ -1,0 +1,44 @@
+//! Walls that a force drives, among springs: like grains they go on by the forces of the beginning of a substep.
+//!
+//! That is stable while h < 2 √(M/nk) of a wall of mass M with n contacts of stiffness k, which is surely so where M is
+//! that of as many of the lightest grains: substeps are short enough for those.
+
+use crate::sim::state::State;
+use crate::sim::steppers::course::Works;
+use crate::sim::stepping::Stage;
+use crate::solver::{DrivenWall, Model};
+
+/// Ends a substep of such walls; `pushes` are m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
+pub(super) fn drive<M: Model>(
+    stage: &mut Stage<'_, M>,
+    substep_secs: f64,
+    pushes: &[(f64, [f64; 2], [f64; 2])],
+    works: &mut Works,
+) {
+    let State { world, walls, contacts, .. } = &mut *stage.state;
+    let mut driven: Vec<DrivenWall> = walls.driven(world, substep_secs).collect();
+    if driven.is_empty() {
+        return;
+    }
+    driven.iter_mut().for_each(|wall| wall.now = wall.free);
+    let pushed = || {
+        contacts.contacts().iter().zip(pushes).filter_map(|(contact, &(mass, impulse, _))| {
+            let by = walls.surface(world, contact)?.driven?;
+            let along = by.along[0] * impulse[0] + by.along[1] * impulse[1];
+            Some((by.wall as usize, mass * along))
+        })
+    };
+    for (wall, along) in pushed() {
+        driven[wall].now -= driven[wall].response * along;
+    }
+    for (wall, along) in pushed() {
+        works.add_of_driven_wall(0.5 * along * (driven[wall].now - driven[wall].before));
+    }
+    walls.take_driven(world, &driven);
+}
+
+/// Tells the problem that the step is judged by how such walls go at its end.
+pub(super) fn tell<M: Model>(stage: &mut Stage<'_, M>) {
+    let drives = stage.state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
+    stage.problem.set_wall_velocities(drives.map(|drive| drive.speed));
+}

@@ -1,0 +1,88 @@
+//! What a time was measured on, when, and with which command; and the journals of what was measured there.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::journal::{self, Journal};
+use crate::error::{Error, Result};
+use crate::output::{check_writable, note_line};
+
+/// Where and when times were measured.
+#[derive(Clone, Debug)]
+pub(super) struct Machine {
+    /// The processor's name.
+    pub processor: String,
+    /// Cores that this program may use.
+    pub cores: usize,
+    /// UTC, year-month-day.
+    pub date: String,
+    /// The command line.
+    pub command: String,
+    /// Tells programs and processors apart: times of another one are no times of this one.
+    pub fingerprint: String,
+}
+
+impl Machine {
+    /// This one, now.
+    ///
+    /// # Errors
+    /// Where the program cannot read itself.
+    pub(super) fn this() -> Result<Self> {
+        let processor = processor();
+        let program = std::env::current_exe().map_err(|error| Error::file("slump", error))?;
+        let bytes = std::fs::read(&program).map_err(|error| Error::file(&program, error))?;
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&bytes);
+        hasher.update(processor.as_bytes());
+        let arguments = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
+        Ok(Self {
+            processor,
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),
+            command: format!("slump {arguments}"),
+            fingerprint: hasher.finalize().to_hex()[..12].to_owned(),
+        })
+    }
+
+    /// A journal for the measurements of this program on this machine, below `folder`, and what it holds. A quick
+    /// pass has its own.
+    ///
+    /// # Errors
+    /// Where it cannot be read or written.
+    pub(super) fn journal<T: Serialize + DeserializeOwned>(
+        &self,
+        folder: &Path,
+        quick: bool,
+        name: &str,
+    ) -> Result<(Journal, Vec<T>)> {
+        let pass = if quick { "quick" } else { "full" };
+        let folder = folder.join("measured").join(&self.fingerprint).join(pass);
+        check_writable("out", &folder)?;
+        // Opening cuts off a half line, so it comes first.
+        let journal = Journal::open(&folder, name)?;
+        let done: Vec<T> = journal::read(&journal::path_of(&folder, name))?;
+        if !done.is_empty() {
+            note_line(format_args!("{name}: {} measurements were there", done.len()));
+        }
+        Ok((journal, done))
+    }
+
+    /// A line for a caption.
+    pub(super) fn words(&self) -> String {
+        let Self { processor, cores, date, command, .. } = self;
+        let cores = if *cores == 1 { "1 core".into() } else { format!("{cores} cores") };
+        format!("{processor}, {cores}; {date}; {command}")
+    }
+}
+
+/// The name that Linux gives the processor, or its architecture.
+fn processor() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let named = text.lines().find_map(|line| {
+        let (key, value) = line.split_once(':')?;
+        (key.trim() == "model name").then(|| value.trim().to_owned())
+    });
+    named.filter(|name| !name.is_empty()).unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+}

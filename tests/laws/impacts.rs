@@ -1,0 +1,288 @@
+//! Shocks through touching grains, one after the other: what is known exactly, and what always holds.
+
+use crate::common::{
+    LINE, SMOOTH, assert_close, moving, parameters, random, scene, start, take_steps,
+};
+use glam::DVec2;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use rand::RngExt;
+use slump::scene::stability::{bounce, heap};
+use slump::scene::{Preset, Scene, paper_pile};
+use slump::sim::Simulation;
+use slump::world::{Boundary, Grain, Physics};
+
+const RADIUS: f64 = 0.05;
+/// Overlap of grains that touch, in diameters.
+const TOUCH: f64 = 1e-9;
+const SPEED: f64 = 2.0;
+
+/// Grains without gravity, cohesion and friction, whose shocks run one after the other.
+fn struck(physics: Physics, restitution: f64, grains: Vec<Grain>) -> Scene {
+    let mut scene = scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), grains);
+    scene.remedies.sequential_impacts = true;
+    scene
+}
+
+/// `count` touching balls along `axis` with these velocities.
+fn row_of(axis: DVec2, velocities: &[f64]) -> Vec<Grain> {
+    let ball = |(place, &velocity): (usize, &f64)| {
+        let x = place as f64 * 2.0 * RADIUS * (1.0 - TOUCH);
+        moving(x * axis, RADIUS, velocity * axis)
+    };
+    velocities.iter().enumerate().map(ball).collect()
+}
+
+fn energy(simulation: &Simulation) -> f64 {
+    let grains = &simulation.world().grains;
+    let squares = grains.velocities.iter().map(|velocity| velocity.length_squared());
+    0.5 * grains.masses.iter().zip(squares).map(|(mass, squared)| mass * squared).sum::<f64>()
+}
+
+fn momentum(simulation: &Simulation) -> DVec2 {
+    let grains = &simulation.world().grains;
+    grains.masses.iter().zip(&grains.velocities).map(|(&mass, &velocity)| mass * velocity).sum()
+}
+
+/// Velocities along `axis` after a step.
+fn after_a_step(scene: &Scene, axis: DVec2) -> Vec<f64> {
+    let mut simulation = start(scene);
+    take_steps(&mut simulation, 1);
+    simulation.world().grains.velocities.iter().map(|velocity| velocity.dot(axis)).collect()
+}
+
+#[test]
+fn as_many_balls_leave_newtons_cradle_as_have_struck_it() {
+    for (physics, axis) in [(LINE, DVec2::X), (SMOOTH, DVec2::new(0.6, 0.8))] {
+        for count in 2..=20 {
+            for strikers in 1..=3.min(count - 1) {
+                let speed = |ball: usize| if ball < strikers { SPEED } else { 0.0 };
+                let velocities: Vec<f64> = (0..count).map(speed).collect();
+                let mut scene = struck(physics, 1.0, row_of(axis, &velocities));
+                for robust in [false, true] {
+                    if robust {
+                        Preset::Robust.apply(&mut scene);
+                    }
+                    let after = after_a_step(&scene, axis);
+                    for (ball, expected) in (0..count).rev().map(speed).enumerate() {
+                        let off = (after[ball] - expected).abs();
+                        assert!(off < 1e-10, "{strikers} of {count}, ball {ball}: {after:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn balls_from_both_ends_change_places() {
+    let after = after_a_step(
+        &struck(LINE, 1.0, row_of(DVec2::X, &[SPEED, 0.0, 0.0, -0.5 * SPEED])),
+        DVec2::X,
+    );
+    for (found, expected) in after.into_iter().zip([-0.5 * SPEED, 0.0, 0.0, SPEED]) {
+        assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
+    }
+}
+
+#[test]
+fn each_ball_hands_on_the_share_that_a_pair_does() {
+    // A pair hands on (1 + ρ)/2; with these ρ nothing catches up with the last ball afterwards.
+    for (restitution, count) in [(0.95, 3), (0.9, 5), (0.99, 8)] {
+        let velocities: Vec<f64> =
+            (0..count).map(|ball| if ball == 0 { SPEED } else { 0.0 }).collect();
+        let scene = struck(LINE, restitution, row_of(DVec2::X, &velocities));
+        let after = after_a_step(&scene, DVec2::X);
+        let expected = SPEED * (0.5 * (1.0 + restitution)).powi(count - 1);
+        assert_close(after[count as usize - 1], expected, 1e-12, "the last ball");
+        assert!(after.windows(2).all(|pair| pair[1] >= pair[0] - 1e-9), "{after:?}");
+    }
+}
+
+/// Fifteen balls in a triangle about the x axis and one that strikes its apex; `order` numbers them.
+fn rack(restitution: f64, order: &[usize]) -> Scene {
+    let spacing = 2.0 * RADIUS * (1.0 - TOUCH);
+    let mut grains = vec![moving(-spacing * DVec2::X, RADIUS, SPEED * DVec2::X)];
+    for row in 0..5 {
+        for place in 0..=row {
+            let (row, place) = (f64::from(row), f64::from(place));
+            let centre = DVec2::new(0.75f64.sqrt() * row, place - 0.5 * row);
+            grains.push(Grain::at_rest(spacing * centre, RADIUS));
+        }
+    }
+    struck(SMOOTH, restitution, order.iter().map(|&ball| grains[ball].clone()).collect())
+}
+
+#[test]
+fn a_break_shot_is_symmetric_and_does_not_depend_on_the_numbering() {
+    for restitution in [1.0, 0.8] {
+        let straight: Vec<usize> = (0..16).collect();
+        let mut shuffled = straight.clone();
+        let mut random = random(3);
+        for ball in (1..16).rev() {
+            shuffled.swap(ball, random.random_range(0..=ball));
+        }
+        let run = |order: &[usize]| {
+            let mut simulation = start(&rack(restitution, order));
+            let before = energy(&simulation);
+            take_steps(&mut simulation, 1);
+            (before, energy(&simulation), simulation.world().grains.clone())
+        };
+        let (before, after, grains) = run(&straight);
+        if restitution == 1.0 {
+            assert_close(after, before, 1e-9, "energy");
+        } else {
+            assert!(after < before, "{after} of {before}");
+        }
+        let mut spread = 0f64;
+        for (place, velocity) in grains.positions.iter().zip(&grains.velocities) {
+            let mirrored = DVec2::new(place.x, -place.y);
+            let other = grains.positions.iter().position(|other| other.distance(mirrored) < 1e-6);
+            let other = grains.velocities[other.expect("a ball at the mirrored place")];
+            let off = DVec2::new(other.x, -other.y).distance(*velocity);
+            assert!(off < 1e-9 * SPEED, "{off:e} off the mirror image");
+            spread = spread.max(velocity.y);
+        }
+        assert!(spread > 0.1 * SPEED, "it breaks up: {spread}");
+        let (.., of_shuffled) = run(&shuffled);
+        for (place, &ball) in shuffled.iter().enumerate() {
+            let off = of_shuffled.velocities[place].distance(grains.velocities[ball]);
+            assert!(off < 1e-9 * SPEED, "ball {ball}: {off:e} off another numbering");
+        }
+    }
+}
+
+/// Discs of unequal size on a lattice that about touch, with velocities at random.
+fn crowd(restitution: f64, count: usize, seed: u64) -> Scene {
+    let mut random = random(seed);
+    let columns = (count as f64).sqrt().ceil() as usize;
+    let grains = (0..count)
+        .map(|index| {
+            let radius = RADIUS * random.random_range(0.8..=1.05);
+            let place = DVec2::new((index % columns) as f64, (index / columns) as f64);
+            let mut component = || SPEED * random.random_range(-1.0..=1.0);
+            moving(2.0 * RADIUS * place, radius, DVec2::new(component(), component()))
+        })
+        .collect();
+    struck(SMOOTH, restitution, grains)
+}
+
+#[test]
+fn shocks_keep_the_momentum_and_never_gain_energy() {
+    let config = Config { cases: 128, failure_persistence: None, ..Config::default() };
+    let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let mut runner = TestRunner::new_with_rng(config, random);
+    let restitution = prop_oneof![1 => Just(1.0), 1 => Just(0.0), 4 => 0.0..1.0];
+    let all = (restitution, 2usize..=40, any::<u64>());
+    let run = |(restitution, count, seed)| {
+        let mut simulation = start(&crowd(restitution, count, seed));
+        for _ in 0..5 {
+            let (energy_before, momentum_before) = (energy(&simulation), momentum(&simulation));
+            simulation.step().expect("a finite state");
+            let grown = energy(&simulation) - energy_before;
+            prop_assert!(grown <= 1e-9 * energy_before, "{grown:e} of {energy_before:e}");
+            if restitution == 1.0 {
+                prop_assert!(grown >= -1e-9 * energy_before, "{grown:e} of {energy_before:e}");
+            }
+            let off = momentum(&simulation).distance(momentum_before);
+            let scale =
+                (energy_before * simulation.world().grains.masses.iter().sum::<f64>()).sqrt();
+            prop_assert!(off <= 1e-12 * scale, "momentum off by {off:e}");
+        }
+        Ok(())
+    };
+    runner.run(&all, run).unwrap_or_else(|failure| panic!("{failure}"));
+}
+
+#[test]
+fn with_friction_and_spins_none_of_these_shocks_gains_energy() {
+    for seed in 0..60 {
+        for restitution in [0.5, 1.0] {
+            let mut scene = crowd(restitution, 36, seed);
+            let mut random = random(seed);
+            scene.physics = Physics::FULL;
+            scene.parameters.friction = 0.5;
+            scene.solver.tolerance = 1e-10;
+            for grain in &mut scene.grains {
+                grain.angular_velocity = 40.0 * random.random_range(-1.0..=1.0);
+            }
+            let mut simulation = start(&scene);
+            for _ in 0..5 {
+                let before = simulation.observables().kinetic_energy;
+                let after = *simulation.step().expect("a finite state");
+                let grown = after.kinetic_energy / before - 1.0;
+                assert!(grown < 1e-6, "seed {seed}, ρ {restitution}: {grown:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wall_that_moves_strikes_twice_and_its_work_is_no_gain_of_the_bounces() {
+    let mut scene = struck(Physics::FULL, 1.0, row_of(DVec2::X, &[0.0, 0.0]));
+    scene.parameters.friction = 0.5;
+    let point = -RADIUS * (1.0 - TOUCH) * DVec2::X;
+    scene.boundaries =
+        vec![Boundary::Piston { point, normal: DVec2::X, speed: SPEED, travel: 1.0 }];
+    // The first ball hands its 2V on to the second, and is struck once more.
+    for velocity in after_a_step(&scene, DVec2::X) {
+        assert_close(velocity, 2.0 * SPEED, 1e-9, "a ball in front of the wall");
+    }
+}
+
+/// Steps a scene with and without the remedy. The largest difference of velocities, over the largest
+/// velocity.
+fn difference(scene: &Scene, steps: usize) -> f64 {
+    let mut runs = [false, true].map(|sequential_impacts| {
+        let mut scene = scene.clone();
+        scene.remedies.sequential_impacts = sequential_impacts;
+        start(&scene)
+    });
+    let (mut off, mut largest) = (0f64, 0f64);
+    for _ in 0..steps {
+        runs.iter_mut().for_each(|run| take_steps(run, 1));
+        let [usual, sequential] = [0, 1].map(|run: usize| &runs[run].world().grains.velocities);
+        for (usual, sequential) in usual.iter().zip(sequential) {
+            off = off.max(usual.distance(*sequential));
+            largest = largest.max(usual.length());
+        }
+    }
+    off / largest
+}
+
+#[test]
+fn single_contacts_rest_and_cohesion_are_left_as_they_are() {
+    for restitution in [0.0, 0.5, 1.0] {
+        let mut scene = bounce(restitution);
+        scene.parameters.restitution_threshold = 2.0;
+        let off = difference(&scene, 400);
+        assert!(off < 1e-9, "ρ {restitution}: {off:e}");
+    }
+    let mut resting = heap(5);
+    resting.parameters.restitution = 0.5;
+    assert_eq!(difference(&resting, 50), 0.0, "nothing closes fast");
+    let mut cohesive = paper_pile().expect("the shipped state");
+    cohesive.parameters = parameters(20.0, 1e-3, 0.5, 0.5);
+    assert_eq!(difference(&cohesive, 50), 0.0, "the paper's law holds bonds through shocks");
+    cohesive.parameters.bond = 0.0;
+    assert!(difference(&cohesive, 50) > 1e-3, "without bonds there are shocks in it");
+}
+
+#[test]
+fn a_pile_whose_shocks_are_followed_closes_its_energy_budget() {
+    let mut scene = paper_pile().expect("the shipped state");
+    scene.parameters = parameters(0.0, 1e-3, 0.7, 0.5);
+    Preset::Robust.apply(&mut scene);
+    let mut simulation = start(&scene);
+    let mut shocks = 0.0;
+    for _ in 0..100 {
+        let before = simulation.observables().kinetic_energy;
+        let after = *simulation.step().expect("a finite state");
+        let works = [after.gravity_work, after.normal_work, after.tangential_work];
+        let off = (after.kinetic_energy - before - works.iter().sum::<f64>()).abs();
+        let scale = before + after.kinetic_energy + works.iter().map(|w| w.abs()).sum::<f64>();
+        assert!(off <= 1e-11 * scale, "step {}: off by {off:e}", after.step);
+        shocks += after.normal_work.min(0.0);
+    }
+    assert!(shocks < 0.0, "there were shocks");
+}

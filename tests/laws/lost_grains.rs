@@ -1,0 +1,152 @@
+//! Grains that go through walls or leave the world are counted, told of, and left out of the slump.
+
+use crate::common::{G, moving, parameters, random, scene, start};
+use glam::DVec2;
+use rand::RngExt;
+use slump::scene::Scene;
+use slump::sim::{AlarmKind, Simulation};
+use slump::world::{Boundary, Grain, Physics};
+
+const RADIUS: f64 = 0.05;
+
+fn world(gravity: f64, grains: Vec<Grain>, boundaries: Vec<Boundary>) -> Scene {
+    let parameters = parameters(0.0, 1e-2, 0.0, 0.5);
+    Scene { boundaries, ..scene(Physics::FULL, DVec2::new(0.0, -gravity), parameters, grains) }
+}
+
+fn at(x: f64, y: f64) -> DVec2 {
+    DVec2::new(x, y)
+}
+
+fn after(scene: &Scene, steps: u32) -> Simulation {
+    let mut simulation = start(scene);
+    for _ in 0..steps {
+        simulation.step().expect("a finite state");
+    }
+    simulation
+}
+
+/// How many are lost, and whether that is told of.
+#[track_caller]
+fn lost(simulation: &Simulation) -> u32 {
+    let lost = simulation.observables().lost_grains;
+    let told = simulation.alarms().iter().any(|alarm| alarm.kind == AlarmKind::GrainLost);
+    assert_eq!(told, lost > 0, "{lost} lost, {:?}", simulation.alarms());
+    lost
+}
+
+fn square(side: f64) -> Vec<DVec2> {
+    vec![at(-side, -side), at(side, -side), at(side, side), at(-side, side)]
+}
+
+#[test]
+fn a_grain_that_jumps_through_a_wall_of_any_shape_is_lost() {
+    let walls = [
+        Boundary::Segment { from: at(0.0, -1.0), to: at(0.0, 1.0) },
+        Boundary::Polyline { points: vec![at(0.1, -1.0), at(0.0, 0.0), at(0.1, 1.0)] },
+        Boundary::ConvexPolygon { points: square(0.04) },
+        Boundary::ConvexPolygon { points: square(0.2) },
+        Boundary::HalfSpace { point: at(0.0, 0.0), normal: at(-1.0, 0.0) },
+    ];
+    for wall in walls {
+        // 0.6 m a step: from one side to the other before any contact is seen.
+        let fast = moving(at(-0.3, 0.0), RADIUS, at(60.0, 0.0));
+        let simulation = after(&world(0.0, vec![fast], vec![wall.clone()]), 1);
+        assert!(simulation.world().grains.positions[0].x > 0.2, "{wall:?} held it");
+        assert_eq!(lost(&simulation), 1, "{wall:?}");
+        let slow = moving(at(-0.3, 0.0), RADIUS, at(1.0, 0.0));
+        let simulation = after(&world(0.0, vec![slow], vec![wall.clone()]), 300);
+        assert!(simulation.world().grains.positions[0].x < 0.0, "{wall:?} did not hold it");
+        assert_eq!(lost(&simulation), 0, "{wall:?}");
+    }
+}
+
+#[test]
+fn a_grain_that_goes_around_the_end_of_a_wall_is_not_lost() {
+    // It rolls over the upper end of a wall, down to the other side, and onto a floor.
+    let walls = vec![
+        Boundary::Segment { from: at(0.0, 0.0), to: at(0.0, 1.0) },
+        Boundary::Segment { from: at(-1.0, 0.0), to: at(1.0, 0.0) },
+    ];
+    let grain = moving(at(-0.004, 1.0 + RADIUS), RADIUS, at(0.1, 0.0));
+    let simulation = after(&world(G, vec![grain], walls), 200);
+    let place = simulation.world().grains.positions[0];
+    assert!(place.x > RADIUS && (0.0..1.0).contains(&place.y), "{place}");
+    assert_eq!(lost(&simulation), 0);
+}
+
+#[test]
+fn what_is_lost_is_in_neither_sum_of_the_slump() {
+    let floor = Boundary::Segment { from: at(-1.0, 0.0), to: at(1.0, 0.0) };
+    let resting = Grain::at_rest(at(-0.5, RADIUS), RADIUS);
+    let fast = moving(at(0.5, 0.3), RADIUS, at(0.0, -60.0));
+    let simulation = after(&world(G, vec![resting, fast], vec![floor]), 100);
+    let places = &simulation.world().grains.positions;
+    assert!(places[1].y < -1.0 && (places[0].y - RADIUS).abs() < 1e-3, "{places:?}");
+    assert_eq!(lost(&simulation), 1);
+    let expected = (RADIUS - places[0].y) / RADIUS;
+    assert_eq!(simulation.observables().slump, expected);
+    assert!(expected.abs() < 0.02, "with the fallen one it would be above 1: {expected}");
+}
+
+#[test]
+fn a_grain_that_falls_off_the_end_of_its_floor_is_lost_soon() {
+    let floor = Boundary::Segment { from: at(-1.0, 0.0), to: at(1.0, 0.0) };
+    let rolling = moving(at(0.9, RADIUS), RADIUS, at(1.0, 0.0));
+    let mut simulation = start(&world(G, vec![rolling], vec![floor]));
+    while simulation.world().grains.positions[0].y > -0.5 {
+        simulation.step().expect("a finite state");
+    }
+    assert_eq!(lost(&simulation), 1);
+}
+
+#[test]
+fn no_grain_leaves_a_closed_box_at_random_without_being_counted() {
+    let mut random = random(13);
+    let (mut escaped, mut held) = (0, 0);
+    for scene_number in 0..60 {
+        let corners = [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0), at(-1.0, -1.0)];
+        let walls = match scene_number % 2 {
+            0 => vec![Boundary::Polyline { points: corners.to_vec() }],
+            _ => corners
+                .windows(2)
+                .map(|ends| Boundary::Segment { from: ends[0], to: ends[1] })
+                .collect(),
+        };
+        let speed = 10f64.powf(random.random_range(-1.0..2.0));
+        let grains = (0..9)
+            .map(|k| {
+                let place = at(f64::from(k % 3) - 1.0, f64::from(k / 3) - 1.0) * 0.5;
+                let mut component = || speed * random.random_range(-1.0..1.0);
+                moving(place, RADIUS, at(component(), component()))
+            })
+            .collect();
+        let mut simulation = start(&world(G, grains, walls));
+        let mut out = [false; 9];
+        for _ in 0..50 {
+            simulation.step().expect("a finite state");
+            for (out, place) in out.iter_mut().zip(&simulation.world().grains.positions) {
+                *out |= place.abs().max_element() > 1.0 + 0.3 * RADIUS;
+            }
+        }
+        let out = out.iter().filter(|out| **out).count() as u32;
+        assert!(
+            lost(&simulation) >= out,
+            "scene {scene_number}: {out} are out, {} counted",
+            lost(&simulation)
+        );
+        if out == 0 {
+            held += 1
+        } else {
+            escaped += 1
+        }
+        if speed < 0.5 {
+            assert_eq!(
+                lost(&simulation),
+                0,
+                "scene {scene_number}: nothing is fast enough to get out"
+            );
+        }
+    }
+    assert!(escaped > 5 && held > 5, "{escaped} boxes lost grains, {held} did not");
+}

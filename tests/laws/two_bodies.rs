@@ -1,0 +1,212 @@
+//! One contact: the three cases of the paper's §2.2, and the force that pulls a contact open.
+//!
+//! With v = v^{n−1} the normal velocity at the beginning of a step, a the relative normal
+//! acceleration by external forces, c = C₀Δt/m_ij and λ = P/m_ij, the step asks (`contact::law`)
+//! 0 ≤ λ + c ⟂ u ≥ 0 with u = v^n + ρv and v^n = v + aΔt + λ. The force that gives v̄ = 0, that is
+//! u = 0, is A = −m_ij ((1 + ρ) v/Δt + a). So
+//!
+//! * A ≥ −C₀: λ = AΔt/m_ij fulfils the law with u = 0, and v^n = −ρ v, whatever a is. For A > 0 the
+//!   contact pushes (a closing pair bounces), for A < 0 it pulls (an opening pair closes again);
+//! * A < −C₀: λ = −c, and v^n = v + aΔt − C₀Δt/m_ij: the contact opens (u > 0).
+
+use crate::common::{
+    G, LINE, SMOOTH, assert_close, fixed, moving, parameters, scene, start, take_steps, tight,
+};
+use glam::DVec2;
+use slump::scene::Scene;
+use slump::sim::Simulation;
+use slump::solver::SolverSettings;
+use slump::world::{Boundary, Grain, Parameters, Physics};
+
+/// What a contact between i and another body, with normal `direction`, starts from.
+struct Case {
+    parameters: Parameters,
+    velocity: f64,
+    /// Whether gravity presses the pair together, pulls it apart, or does not act.
+    pressing: f64,
+}
+
+const RADIUS: f64 = 0.15;
+const OTHER_RADIUS: f64 = 0.1;
+/// Of a diameter: enough for a contact, too little for anything else.
+const OVERLAP: f64 = 1e-9;
+
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for bond in [0.0, 3.0, 50.0] {
+        for time_step_secs in [1e-5, 1e-3, 1e-2] {
+            for restitution in [0.0, 0.2, 1.0] {
+                for velocity in [-1.0, -1e-3, 1e-4, 0.05, 2.0] {
+                    for pressing in [-1.0, 0.0, 1.0] {
+                        let parameters = parameters(bond, time_step_secs, restitution, 0.5);
+                        cases.push(Case { parameters, velocity, pressing });
+                    }
+                }
+            }
+        }
+    }
+    cases
+}
+
+/// i touches a fixed disc from the side `direction` points to.
+fn against_fixed(case: &Case, physics: Physics, direction: DVec2) -> Scene {
+    let place = (RADIUS + OTHER_RADIUS - OVERLAP) * direction;
+    let mut grain = moving(place, RADIUS, case.velocity * direction);
+    grain.feels_gravity = case.pressing != 0.0;
+    let gravity = if case.pressing == 0.0 { -G } else { -G * case.pressing } * direction;
+    Scene {
+        fixed_discs: vec![fixed(DVec2::ZERO, OTHER_RADIUS)],
+        // One update solves one contact. More would add up roundings in P that are too small to
+        // move the bodies.
+        solver: SolverSettings { max_sweeps: 1, ..tight() },
+        ..scene(physics, gravity, case.parameters, vec![grain])
+    }
+}
+
+/// i touches j, which is free, moves along, and feels no gravity.
+fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
+    let mut scene = against_fixed(case, physics, direction);
+    let drift = 0.3 * direction;
+    let j = scene.fixed_discs.remove(0);
+    scene.grains[0].velocity += drift;
+    scene.grains.push(Grain { feels_gravity: false, ..moving(j.position, j.radius, drift) });
+    scene
+}
+
+/// Takes one step and compares v^n and P with the three cases; tells which case it was.
+fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
+    let mut simulation = start(scene);
+    simulation.step().expect("a finite state");
+    let grains = &simulation.world().grains;
+    let (mass, other) = match grains.masses[..] {
+        [i] => (i, DVec2::ZERO),
+        [i, j] => (1.0 / (1.0 / i + 1.0 / j), grains.velocities[1]),
+        _ => unreachable!("one or two grains"),
+    };
+    assert_eq!(simulation.contacts().contacts().len(), 1, "the pair was to touch");
+    let found = (grains.velocities[0] - other).dot(direction);
+    let impulse = simulation.contacts().impulses()[0];
+
+    let Parameters { bond, time_step_secs: dt, restitution, .. } = case.parameters;
+    let acceleration = -G * case.pressing;
+    let cohesion_force = bond * mass * G;
+    let force = -mass * ((1.0 + restitution) * case.velocity / dt + acceleration);
+    let (velocity, normal_force) = if force > -cohesion_force {
+        (-restitution * case.velocity, force)
+    } else {
+        (case.velocity + acceleration * dt - dt * cohesion_force / mass, -cohesion_force)
+    };
+    // Velocities are formed from terms as large as these.
+    let scale = case.velocity.abs() + 0.3 + G * dt + dt * cohesion_force / mass;
+    let off = (found - velocity).abs();
+    assert!(off <= 1e-12 * scale, "A = {force}: v^n is {found}, not {velocity}");
+    let off = (impulse.normal - dt * normal_force).abs();
+    assert!(off <= 1e-12 * mass * scale, "A = {force}: P is {}", impulse.normal);
+    assert_eq!(impulse.tangential.abs(), 0.0, "nothing slides");
+    if force > 0.0 {
+        0
+    } else if force > -cohesion_force {
+        1
+    } else {
+        2
+    }
+}
+
+#[test]
+fn one_contact_bounces_closes_again_or_opens_as_in_section_2_2() {
+    for (physics, direction) in
+        [(LINE, DVec2::X), (LINE, -DVec2::X), (SMOOTH, DVec2::new(0.6, -0.8))]
+    {
+        let mut against_fixed_seen = [0; 3];
+        let mut free_seen = [0; 3];
+        for case in cases() {
+            let scene = against_fixed(&case, physics, direction);
+            against_fixed_seen[check(&case, &scene, direction)] += 1;
+            let scene = free_pair(&case, physics, direction);
+            free_seen[check(&case, &scene, direction)] += 1;
+        }
+        for seen in [against_fixed_seen, free_seen] {
+            assert!(seen.iter().all(|&count| count > 30), "all three cases arise: {seen:?}");
+        }
+    }
+}
+
+#[test]
+fn friction_and_rotation_change_nothing_head_on() {
+    // Along an axis the tangential velocity is exactly 0.
+    for case in cases() {
+        for direction in [DVec2::Y, -DVec2::X] {
+            check(&case, &against_fixed(&case, Physics::FULL, direction), direction);
+            check(&case, &free_pair(&case, Physics::FULL, direction), direction);
+        }
+    }
+}
+
+/// Time steps over which the pull-off force must not change, s.
+const TIME_STEPS: [f64; 7] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 5e-3];
+
+/// Gravity pulls i off another body. The pull is m_ij g, C₀ is Bond·m_ij·g: the threshold is
+/// Bond = 1.
+fn pulled(bond: f64, dt: f64, physics: Physics, free: bool) -> Scene {
+    let case = Case { parameters: parameters(bond, dt, 0.2, 0.5), velocity: 0.0, pressing: -1.0 };
+    let direction = if physics.axes == 1 { DVec2::X } else { -DVec2::Y };
+    let mut scene = against_fixed(&case, physics, direction);
+    if free {
+        let j = scene.fixed_discs.remove(0);
+        scene.grains.push(Grain { feels_gravity: false, ..Grain::at_rest(j.position, j.radius) });
+    }
+    scene
+}
+
+#[test]
+fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
+    for dt in TIME_STEPS {
+        for physics in [LINE, SMOOTH, Physics::FULL] {
+            for free in [false, true] {
+                let relative = |simulation: &Simulation| {
+                    let velocities = &simulation.world().grains.velocities;
+                    velocities[0] - velocities.get(1).copied().unwrap_or_default()
+                };
+
+                let mut holding = start(&pulled(1.0 + 1e-6, dt, physics, free));
+                take_steps(&mut holding, 100);
+                assert_eq!(holding.observables().contacts, 1, "Δt {dt}: held");
+                assert!(relative(&holding).length() < 1e-12 * G * dt, "Δt {dt}: held still");
+                let mass = holding.world().grains.masses[0];
+                let share = if free { holding.world().grains.masses[1] } else { f64::INFINITY };
+                let pull = G / (1.0 / mass + 1.0 / share);
+                let impulse = holding.contacts().impulses()[0].normal;
+                assert_close(impulse / dt, -pull, 1e-11, "the force in the contact");
+
+                let mut opening = start(&pulled(1.0 - 1e-6, dt, physics, free));
+                opening.step().expect("a finite state");
+                let speed = relative(&opening).length();
+                assert_close(speed, 1e-6 * G * dt, 1e-8, "the speed it opens with");
+                // The overlap is gone after √(2·OVERLAP / 1e-6 g) at the latest.
+                let mut steps = 0.02 / dt;
+                while opening.observables().contacts > 0 && steps > 0.0 {
+                    opening.step().expect("a finite state");
+                    steps -= 1.0;
+                }
+                assert_eq!(opening.observables().contacts, 0, "Δt {dt}: opens for good");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_corner_of_a_polyline_holds_no_more_than_one_contact() {
+    for (bond, holds) in [(1.0 + 1e-6, true), (1.0 - 1e-6, false)] {
+        let mut scene = pulled(bond, 1e-3, Physics::FULL, false);
+        // The disc hangs under the corner in the middle, where two segments meet.
+        let points = vec![DVec2::new(-1.0, 0.5), DVec2::ZERO, DVec2::new(1.0, 0.3)];
+        scene.fixed_discs.clear();
+        scene.boundaries = vec![Boundary::Polyline { points }];
+        scene.grains[0].position = DVec2::new(0.0, OVERLAP - RADIUS);
+        let mut simulation = start(&scene);
+        simulation.step().expect("a finite state");
+        assert_eq!(simulation.observables().contacts, 1, "the corner is told once");
+        take_steps(&mut simulation, 50);
+        assert_eq!(simulation.observables().contacts == 1, holds, "Bond {bond}");
+    }
+}

@@ -1,0 +1,272 @@
+//! The methods against each other: one problem, one answer.
+
+use slump::contact::ContactList;
+use slump::scene::{NewPile, Scene, cradle, pile_of, settle};
+use slump::sim::{ProblemVisitor, Simulation};
+use slump::solver::{
+    Fallback, METHODS, Memory, Method, Model, Ordering, SolveReport, SolverSettings, StepProblem,
+    StopTest, residual, solve,
+};
+use slump::world::{FrictionCone, Physics};
+
+/// A small pile that has begun to fall.
+fn falling_pile(seed: u64) -> Scene {
+    let rain = NewPile { grains: 50, box_width_in_diameters: 9.0, seed, ..NewPile::default() };
+    let grains = settle(&rain, |_| true).expect("a pile at rest");
+    let mut scene = pile_of(grains, rain.box_width_in_diameters).expect("a pile");
+    scene.parameters.restitution_threshold = 2.0;
+    scene
+}
+
+fn with(scene: &Scene, method: Method, tolerance: f64) -> Simulation {
+    let stop = StopTest::Residual;
+    let solver = SolverSettings {
+        method,
+        stop,
+        tolerance,
+        max_sweeps: 200_000,
+        ..SolverSettings::default()
+    };
+    Scene { solver, ..scene.clone() }.simulation().expect("a proper scene")
+}
+
+/// Without friction the velocities of a step are unique, so a tight solve has one answer.
+#[test]
+fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
+    for (seed, rotation) in [(1, true), (2, false)] {
+        let mut scene = falling_pile(seed);
+        scene.parameters.friction = 0.0;
+        scene.parameters.bond = 5.0;
+        if !rotation {
+            scene.physics = Physics { friction: false, rotation: false, ..Physics::FULL };
+        }
+        let mut fastest = 0f64;
+        for _ in 0..12 {
+            // From one state each: a difference would grow in a pile.
+            let mut by_sweeps = with(&scene, Method::Nsgs, 1e-10);
+            assert!(by_sweeps.step().expect("a finite state").converged);
+            let orders = Ordering::ALL.iter().map(|order| (Method::Nsgs, *order));
+            let methods = METHODS.iter().map(|info| (info.method, Ordering::default()));
+            for (method, ordering) in orders.chain(methods) {
+                let tolerance = if method == Method::Jacobi { 1e-8 } else { 1e-10 };
+                let mut other = with(&scene, method, tolerance);
+                let solver = SolverSettings { ordering, ..*other.solver() };
+                other.set_solver(solver).expect("proper settings");
+                let step = *other.step().expect("a finite state");
+                assert!(step.converged, "{method:?} {ordering:?}: {}", step.residual);
+                let expected = &by_sweeps.world().grains.velocities;
+                for (a, b) in expected.iter().zip(&other.world().grains.velocities) {
+                    fastest = fastest.max(a.length());
+                    let allowed = 1e-6 * (tolerance / 1e-10) * fastest.max(1e-3);
+                    assert!((*a - *b).length() < allowed, "{method:?} {ordering:?}: {b} for {a}");
+                }
+            }
+            scene = advanced(&scene);
+        }
+        assert!(fastest > 0.01, "the pile fell, at up to {fastest} m/s");
+    }
+}
+
+/// The scene a few steps later.
+fn advanced(scene: &Scene) -> Scene {
+    let mut simulation = with(scene, Method::Nsgs, 1e-8);
+    for _ in 0..5 {
+        simulation.step().expect("a finite state");
+    }
+    let grains = &simulation.world().grains;
+    Scene { grains: (0..grains.len()).map(|index| grains.grain(index)).collect(), ..scene.clone() }
+}
+
+#[test]
+fn newton_solves_nearly_all_steps_of_a_moving_pile_in_less_than_half_the_sweeps() {
+    for (seed, cone, rotation) in [
+        (3, FrictionCone::Shifted, true),
+        (4, FrictionCone::Compressive, true),
+        (5, FrictionCone::Shifted, false),
+    ] {
+        let mut scene = falling_pile(seed);
+        scene.parameters.cone = cone;
+        scene.physics.rotation = rotation;
+        scene.parameters.bond = 10.0;
+        let run = |method| {
+            let mut simulation = with(&scene, method, 1e-8);
+            let (mut unsolved, mut sweeps) = (0, 0);
+            for _ in 0..200 {
+                let step = *simulation.step().expect("a finite state");
+                unsolved += u32::from(!step.converged);
+                sweeps += step.sweeps;
+                assert!(!step.converged || step.residual <= 1e-8 * (1.0 + 1e-6));
+            }
+            assert!(simulation.observables().kinetic_energy > 0.0);
+            (unsolved, sweeps)
+        };
+        let (unsolved, sweeps) = run(Method::Newton);
+        let (_, plain_sweeps) = run(Method::Nsgs);
+        assert!(unsolved <= 10, "{unsolved} of 200 steps unsolved ({cone:?}, rotation {rotation})");
+        assert!(2 * sweeps < plain_sweeps, "{sweeps} sweeps against {plain_sweeps}");
+    }
+}
+
+/// How a problem was solved, with its residual.
+struct Solve(SolverSettings);
+
+impl ProblemVisitor for Solve {
+    type Output = (SolveReport, f64);
+
+    fn visit<M: Model>(
+        self,
+        problem: &mut StepProblem<M::Kinematics>,
+        _: &ContactList,
+    ) -> Self::Output {
+        let report = solve::<M>(problem, &mut Memory::default(), &self.0);
+        (report, residual::<M>(problem))
+    }
+}
+
+/// How a problem is solved by the first settings, and then by the second from there.
+struct SolveTwice(SolverSettings, SolverSettings);
+
+impl ProblemVisitor for SolveTwice {
+    type Output = [SolveReport; 2];
+
+    fn visit<M: Model>(
+        self,
+        problem: &mut StepProblem<M::Kinematics>,
+        _: &ContactList,
+    ) -> Self::Output {
+        let mut memory = Memory::default();
+        [self.0, self.1].map(|settings| solve::<M>(problem, &mut memory, &settings))
+    }
+}
+
+/// Moments of moving piles of every kind of physics.
+fn moments() -> Vec<Simulation> {
+    let mut moments = Vec::new();
+    for (seed, cone, rotation, bond) in [
+        (3, FrictionCone::Shifted, true, 10.0),
+        (4, FrictionCone::Compressive, true, 10.0),
+        (5, FrictionCone::Shifted, false, 10.0),
+        (6, FrictionCone::Shifted, true, 0.0),
+    ] {
+        let mut scene = falling_pile(seed);
+        scene.parameters.cone = cone;
+        scene.physics.rotation = rotation;
+        scene.parameters.bond = bond;
+        let mut simulation = with(&scene, Method::Newton, 1e-8);
+        for step in 1..=120 {
+            simulation.step().expect("a finite state");
+            if step % 20 == 0 {
+                moments.push(simulation.clone());
+            }
+        }
+    }
+    moments
+}
+
+/// The next problem of a moment, as a method with these settings gets it.
+fn next_with(moment: &Simulation, solver: SolverSettings) -> (SolveReport, f64) {
+    let mut simulation = moment.clone();
+    simulation.set_solver(solver).expect("proper settings");
+    simulation.next_problem(Solve(solver))
+}
+
+/// The residual that a method is asked for here: Jacobi's method creeps.
+fn tight_for(method: Method) -> f64 {
+    if method == Method::Jacobi { 1e-5 } else { 1e-8 }
+}
+
+#[test]
+fn every_method_solves_nearly_all_steps_of_moving_piles() {
+    let moments = moments();
+    for info in METHODS.iter() {
+        let tolerance = tight_for(info.method);
+        let mut solved = 0;
+        for moment in &moments {
+            let solver = SolverSettings { method: info.method, tolerance, ..*moment.solver() };
+            let solver = SolverSettings { max_sweeps: 30_000, ..solver };
+            let (report, residual) = next_with(moment, solver);
+            assert_eq!(report.converged, residual <= tolerance, "{}", info.name);
+            solved += usize::from(report.converged);
+        }
+        println!("{}: {solved} of {}", info.name, moments.len());
+        assert!(10 * solved >= 8 * moments.len(), "{} solved {solved}", info.name);
+    }
+}
+
+#[test]
+fn every_method_honours_every_stopping_test_and_the_limit() {
+    let moments = moments();
+    for moment in moments.iter().step_by(5) {
+        for info in METHODS.iter() {
+            for (stop, tolerance) in [
+                (StopTest::RelativeChange, 1e-5),
+                (StopTest::ImpulsePerMass, 1e-4),
+                (StopTest::Residual, 1e-4),
+            ] {
+                let settings = SolverSettings {
+                    method: info.method,
+                    stop,
+                    tolerance,
+                    max_sweeps: 100_000,
+                    warm_start: false,
+                    ..SolverSettings::default()
+                };
+                let mut simulation = moment.clone();
+                simulation.set_solver(settings).expect("proper settings");
+                let [first, again] = simulation.next_problem(SolveTwice(settings, settings));
+                let name = format!("{} {stop:?}", info.name);
+                assert!(first.converged && again.converged, "{name}: {first:?}");
+                assert!(first.sweeps > 1, "{name}: {first:?}");
+                if stop == StopTest::Residual {
+                    let most = first.sweeps.div_ceil(4);
+                    assert!(again.sweeps <= most, "a warm start, {name}: {again:?}, {first:?}");
+                }
+                // What a step falls back on has a limit of its own.
+                let fallback = Fallback::None;
+                let hasty =
+                    SolverSettings { tolerance: 1e-14, max_sweeps: 5, fallback, ..settings };
+                let (report, residual) = next_with(moment, hasty);
+                assert!(!report.converged && report.sweeps <= 5, "{name}: {report:?}");
+                assert!(residual <= 1.0, "{name}: {residual}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_step_without_contacts_is_solved_by_every_method() {
+    let mut scene = cradle();
+    scene.grains.truncate(1);
+    for info in METHODS.iter() {
+        scene.solver.method = info.method;
+        let mut simulation = scene.simulation().expect("a proper scene");
+        let step = *simulation.step().expect("a finite state");
+        assert!(step.converged && step.sweeps == 0 && step.contacts == 0, "{}", info.name);
+    }
+}
+
+#[test]
+fn settings_from_before_there_were_orders_are_read() {
+    let json = r#"{"method":"nsgs","tolerance":1e-6,"max_sweeps":5000,"warm_start":true}"#;
+    let settings: SolverSettings = serde_json::from_str(json).expect("settings");
+    assert_eq!(settings, SolverSettings::default());
+}
+
+#[test]
+fn every_method_keeps_the_cradle_closed_where_the_exact_answer_is_closed() {
+    for info in METHODS.iter() {
+        let mut scene = cradle();
+        scene.solver.method = info.method;
+        scene.solver.tolerance = 1e-12;
+        scene.parameters.time_step_secs = 5e-4;
+        let mut simulation = scene.simulation().expect("a proper scene");
+        let mut met = false;
+        while simulation.time_secs() < scene.duration_secs {
+            met |= simulation.step().expect("a finite state").contacts == 2;
+        }
+        let positions = &simulation.world().grains.positions;
+        let gap = positions[1].x - positions[0].x - scene.mean_diameter;
+        assert!(met, "k reached the pair");
+        assert!(gap < 1e-6, "{}: the bond is open by {gap} m", info.name);
+    }
+}

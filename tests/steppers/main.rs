@@ -1,0 +1,12 @@
+//! The steppers beside the paper's: `range`, `tgs-soft` and `dem`, and what all have in common.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod range;
+mod range_bounces;
+mod range_piles;
+mod range_shocks;
+mod schemes;
+mod spring_numbers;
+mod springs;

@@ -1,0 +1,236 @@
+//! The law `range` (`contact::range`): one bond by itself against its exact motion.
+
+use crate::common::{
+    DISTANCE_IN_DIAMETERS, G, LINE, SMOOTH, assert_close, fixed, moving, range, scene, start,
+    take_steps, tight,
+};
+use glam::DVec2;
+use slump::scene::Scene;
+use slump::sim::{Simulation, Stepper};
+use slump::world::{Grain, Physics};
+
+const RADIUS: f64 = 2.5e-3;
+const BOND: f64 = 20.0;
+/// Two decades about the time that a bond takes to break, which is 0.7 ms at Bond 20.
+const TIME_STEPS: [f64; 7] = [5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
+
+/// A grain that leaves a fixed disc with a speed (m/s), under a load (m/s²) that pulls it away; C₀ is
+/// that of Bond [`BOND`] under g, whatever the load.
+fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulation {
+    let direction = DVec2::X;
+    let grain = moving(2.0 * RADIUS * direction, RADIUS, speed * direction);
+    // The norm of gravity gives C₀, so Bond is what makes it BOND·G under any load.
+    let (gravity, bond) = if load == 0.0 { (G, BOND) } else { (load, BOND * G / load.abs()) };
+    let feels_gravity = load != 0.0;
+    start(&Scene {
+        fixed_discs: vec![fixed(DVec2::ZERO, RADIUS)],
+        stepper: Stepper::Range,
+        solver: tight(),
+        ..scene(
+            physics,
+            gravity * direction,
+            range(bond, time_step_secs),
+            vec![Grain { feels_gravity, ..grain }],
+        )
+    })
+}
+
+/// v of a grain that has come as far as three bonds are long, or none where it stays at the disc.
+fn speed_far_away(mut simulation: Simulation) -> Option<f64> {
+    let far = 2.0 * RADIUS * (1.0 + 3.0 * DISTANCE_IN_DIAMETERS);
+    let steps = (0.1 / simulation.parameters().time_step_secs) as usize;
+    for _ in 0..steps {
+        take_steps(&mut simulation, 1);
+        if simulation.world().grains.positions[0].x > far {
+            return Some(simulation.world().grains.velocities[0].x);
+        }
+    }
+    None
+}
+
+/// C₀δ_c/m_ij, m²/s².
+fn work() -> f64 {
+    BOND * G * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS
+}
+
+#[test]
+fn a_pair_thrown_apart_parts_above_the_escape_speed_and_has_lost_the_bonds_work() {
+    let escape = (2.0 * work()).sqrt();
+    for physics in [LINE, SMOOTH, Physics::FULL] {
+        for time_step_secs in TIME_STEPS {
+            for factor in [1.001, 1.1, 1.5, 3.0, 10.0] {
+                let speed = factor * escape;
+                let found = speed_far_away(pair(time_step_secs, speed, 0.0, physics))
+                    .unwrap_or_else(|| panic!("held at {factor} of it, Δt = {time_step_secs}"));
+                let lost = 0.5 * (speed * speed - found * found);
+                assert_close(lost, work(), 1e-9, &format!("work at {factor}, {time_step_secs} s"));
+            }
+            for factor in [0.1, 0.5, 0.9, 0.999] {
+                let left = speed_far_away(pair(time_step_secs, factor * escape, 0.0, physics));
+                assert_eq!(left, None, "at {factor} of the escape speed, Δt = {time_step_secs}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_static_pull_off_force_is_the_cohesion_at_every_time_step() {
+    for time_step_secs in TIME_STEPS {
+        let cohesion = BOND * G;
+        let away = |load| speed_far_away(pair(time_step_secs, 0.0, load, LINE));
+        assert_eq!(away(0.999 * cohesion), None, "Δt = {time_step_secs}");
+        assert!(away(1.05 * cohesion).is_some(), "Δt = {time_step_secs}");
+    }
+}
+
+#[test]
+fn a_load_that_breaks_a_bond_gives_it_just_its_work() {
+    for time_step_secs in TIME_STEPS {
+        for factor in [1.1, 2.0, 5.0] {
+            let mut simulation = pair(time_step_secs, 0.0, factor * BOND * G, LINE);
+            while simulation.world().grains.positions[0].x < 3.0 * RADIUS {
+                take_steps(&mut simulation, 1);
+            }
+            // The bond pulls with C₀ until the pair has opened by δ_c, and no longer.
+            let opened = DISTANCE_IN_DIAMETERS * 2.0 * RADIUS;
+            let time = (2.0 * opened / ((factor - 1.0) * BOND * G)).sqrt();
+            let at = simulation.time_secs();
+            let free = factor * BOND * G * at - BOND * G * time;
+            let found = simulation.world().grains.velocities[0].x;
+            assert_close(found, free, 1e-9, &format!("v at {factor}, Δt = {time_step_secs}"));
+        }
+    }
+}
+
+#[test]
+fn two_free_grains_part_by_the_energy_of_their_relative_motion() {
+    let escape = (2.0 * work()).sqrt();
+    for time_step_secs in TIME_STEPS {
+        for factor in [0.8, 1.3] {
+            let second = DVec2::new(2.0 * RADIUS, 0.0);
+            let grains = [
+                moving(DVec2::ZERO, RADIUS, DVec2::ZERO),
+                moving(second, RADIUS, DVec2::new(factor * escape, 0.0)),
+            ];
+            let weightless = |grain| Grain { feels_gravity: false, ..grain };
+            let grains = grains.into_iter().map(weightless).collect();
+            let parameters = range(BOND, time_step_secs);
+            let scene = scene(LINE, DVec2::new(G, 0.0), parameters, grains);
+            let mut simulation = start(&Scene { stepper: Stepper::Range, ..scene });
+            take_steps(&mut simulation, (0.1 / time_step_secs) as usize);
+            let velocities = &simulation.world().grains.velocities;
+            let found = velocities[1].x - velocities[0].x;
+            let expected = escape * (factor * factor - 1.0f64).max(0.0).sqrt();
+            assert!((found - expected).abs() < 1e-9, "{factor}, Δt = {time_step_secs}: {found}");
+        }
+    }
+}
+
+#[test]
+fn overlap_is_pushed_out_and_moves_nothing() {
+    let grains = vec![
+        Grain { feels_gravity: false, ..Grain::at_rest(DVec2::ZERO, RADIUS) },
+        Grain { feels_gravity: false, ..Grain::at_rest(DVec2::new(1.8 * RADIUS, 0.0), RADIUS) },
+    ];
+    for bond in [0.0, BOND] {
+        let scene = scene(LINE, DVec2::new(G, 0.0), range(bond, 1e-3), grains.clone());
+        let scene = Scene { stepper: Stepper::Range, ..scene };
+        let mut simulation = start(&scene);
+        take_steps(&mut simulation, 60);
+        assert_eq!(simulation.observables().kinetic_energy, 0.0);
+        let gap = simulation.world().grains.positions[1].x - 2.0 * RADIUS;
+        let first = simulation.world().grains.positions[0].x;
+        assert!((gap - first).abs() < 1e-9, "gap {:e}", gap - first);
+    }
+}
+
+#[test]
+fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
+    for time_step_secs in TIME_STEPS {
+        for factor in [0.5, 0.9, 1.1, 3.0] {
+            let speed = factor * (2.0 * work()).sqrt();
+            let mut simulation = pair(time_step_secs, speed, 0.0, Physics::FULL);
+            let mass = simulation.world().grains.masses[0];
+            let begun = simulation.observables().kinetic_energy;
+            let (mut of_bonds, mut of_pushes, mut most) = (0.0, 0.0, 0f64);
+            for _ in 0..(0.1 / time_step_secs) as u32 {
+                let now = *simulation.step().expect("finite");
+                let [of_step, stored, broken] =
+                    [now.bond_work, now.bond_energy, now.broken_bond_energy].map(Option::unwrap);
+                of_bonds += of_step;
+                of_pushes += now.normal_work - of_step;
+                most = most.max(stored);
+                let what = format!("{factor} of the escape speed, Δt = {time_step_secs}");
+                assert!((of_bonds + stored + broken).abs() <= 1e-9 * begun, "{what}");
+                let sum = now.kinetic_energy - of_bonds - of_pushes;
+                assert_close(sum, begun, 1e-9, &what);
+                assert!(of_pushes <= 1e-9 * begun, "{what}: pushes gave {of_pushes} J");
+            }
+            let broken = simulation.observables().broken_bond_energy.unwrap();
+            let kept = if factor > 1.0 { mass * work() } else { 0.0 };
+            assert_close(broken, kept, 1e-9, "kept by the bond");
+            assert_eq!(simulation.observables().bond_energy, Some(0.0));
+            // At short steps the way out is seen.
+            let bond_time = (2.0 * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS / (BOND * G)).sqrt();
+            if factor < 1.0 && time_step_secs < 0.2 * bond_time {
+                assert!(most > 0.8 * begun, "stored {most} of {begun} J");
+            }
+        }
+    }
+}
+
+/// The part of ω_c = √(C₀/(m_ij L)), at which the bond holds the circle, from which on a pair that turns as one
+/// tears it. The pull is C₀ until δ_c, and L²ω is kept: it opens to L(1 + δ) where
+/// ½ω²L²(1 − (1 + δ)⁻²) = (C₀/m_ij)Lδ.
+fn tearing_part(delta: f64) -> f64 {
+    (2.0 * delta / (1.0 - (1.0 + delta).powi(-2))).sqrt()
+}
+
+/// Whether two grains of these radii, bonded and turning as one with a part of ω_c, are together after two turns.
+fn circling_pair_holds(
+    part: f64,
+    [bond, time_step_secs, size]: [f64; 3],
+    physics: Physics,
+) -> bool {
+    let distance = RADIUS * (1.0 + size);
+    let rate = part * (bond * G / distance).sqrt();
+    let share = size * size / (1.0 + size * size);
+    let at = |x: f64, radius: f64| Grain {
+        feels_gravity: false,
+        angular_velocity: if physics.rotation { rate } else { 0.0 },
+        ..moving(DVec2::new(x, 0.0), radius, DVec2::new(0.0, rate * x))
+    };
+    let grains = vec![at(-share * distance, RADIUS), at((1.0 - share) * distance, size * RADIUS)];
+    let mut simulation = start(&Scene {
+        stepper: Stepper::Range,
+        ..scene(physics, DVec2::new(0.0, -G), range(bond, time_step_secs), grains)
+    });
+    take_steps(
+        &mut simulation,
+        (4.0 * std::f64::consts::PI / (rate * time_step_secs)) as usize + 1,
+    );
+    let [one, other] = [0, 1].map(|grain| simulation.world().grains.positions[grain]);
+    one.distance(other) < distance * 1.05
+}
+
+#[test]
+fn a_pair_that_circles_holds_up_to_the_speed_at_which_its_bond_tears() {
+    for physics in [SMOOTH, Physics::FULL] {
+        for bond in [3.0, BOND] {
+            for size in [1.0, 0.4] {
+                for time_step_secs in TIME_STEPS {
+                    let numbers = [bond, time_step_secs, size];
+                    // Beyond 6.4 times of a break sixteen substeps do not see it, and the step says so.
+                    let bond_time = (4.0 * DISTANCE_IN_DIAMETERS * RADIUS / (bond * G)).sqrt();
+                    let below = if time_step_secs < 6.4 * bond_time { 0.99 } else { 0.98 };
+                    assert!(circling_pair_holds(below, numbers, physics), "{numbers:?} at {below}");
+                    let above = 1.01 * tearing_part(2.0 * DISTANCE_IN_DIAMETERS / (1.0 + size));
+                    assert!(
+                        !circling_pair_holds(above, numbers, physics),
+                        "{numbers:?} at {above}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! The stepping schemes `tgs-soft` and `dem`: what each must get right by itself.
+
+use crate::common::schemes::{SCHEMES, by, effective_mass, meeting, momentum, relative_velocity};
+use crate::common::{
+    G, LINE, SMOOTH, UNTURNING, assert_close, fixed, moving, parameters, pressed_pile, scene,
+    start, take_steps,
+};
+use glam::DVec2;
+use rayon::prelude::*;
+use slump::contact::ContactMemory;
+use slump::scene::{NewPile, Scene, paper_pile, pile_of, settle};
+use slump::sim::{Pull, Settings, Stepper};
+use slump::world::{Grain, Physics};
+
+#[test]
+fn soft_substeps_part_a_pair_with_the_restitution_that_is_asked_for() {
+    for physics in [LINE, SMOOTH, Physics::FULL] {
+        for restitution in [0.0, 0.1, 0.5, 1.0] {
+            for substeps in [1, 4, 16] {
+                let scene = meeting(physics, restitution, 1e-3);
+                let mut simulation = start(&by(Stepper::TgsSoft, substeps, scene));
+                let (before, carried) = (relative_velocity(&simulation), momentum(&simulation));
+                take_steps(&mut simulation, 2);
+                assert_eq!(simulation.observables().contacts, 1, "they met");
+                let after = relative_velocity(&simulation);
+                let off = (after + restitution * before).length();
+                assert!(off < 1e-12, "ρ {restitution}, {substeps} substeps: off by {off:e}");
+                assert!(momentum(&simulation).distance(carried) < 1e-12 * carried.length());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_threshold_of_restitution_holds_for_soft_substeps() {
+    // They meet with 1 m/s: 102 g·Δt.
+    for (threshold, parts) in [(90.0, true), (110.0, false)] {
+        let mut scene = by(Stepper::TgsSoft, 0, meeting(LINE, 0.5, 1e-3));
+        scene.parameters.restitution_threshold = threshold;
+        let mut simulation = start(&scene);
+        take_steps(&mut simulation, 2);
+        assert_eq!(relative_velocity(&simulation).x > 0.1, parts, "threshold {threshold}");
+    }
+}
+
+/// A disc that gravity pulls off the fixed disc above it, or off a free one.
+fn pulled(stepper: Stepper, bond: f64, dt: f64, free: bool) -> Scene {
+    let (radius, other) = (0.15, 0.1);
+    let hanging = Grain::at_rest(DVec2::new(0.0, -(radius + other) * (1.0 - 1e-9)), radius);
+    let mut grains = vec![hanging];
+    if free {
+        grains.push(Grain { feels_gravity: false, ..Grain::at_rest(DVec2::ZERO, other) });
+    }
+    let fixed_discs = if free { Vec::new() } else { vec![fixed(DVec2::ZERO, other)] };
+    let scene = scene(Physics::FULL, -G * DVec2::Y, parameters(bond, dt, 0.2, 0.5), grains);
+    by(stepper, 0, Scene { fixed_discs, ..scene })
+}
+
+#[test]
+fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
+    for method in SCHEMES {
+        for (dt, substeps) in [(1e-4, 0), (1e-3, 0), (1e-3, 400), (3e-3, 0), (1e-2, 0), (1e-2, 900)]
+        {
+            for free in [false, true] {
+                let run = |bond: f64| {
+                    let mut scene = pulled(method, bond, dt, free);
+                    scene.parameters.substeps = substeps;
+                    let mut simulation = start(&scene);
+                    take_steps(&mut simulation, (0.5 / dt) as usize);
+                    simulation
+                };
+                let holds = |bond: f64| run(bond).observables().contacts == 1;
+                let (mut opens_at, mut holds_at) = (0.5, 2.0);
+                assert!(!holds(opens_at) && holds(holds_at));
+                for _ in 0..9 {
+                    let bond = 0.5 * (opens_at + holds_at);
+                    *(if holds(bond) { &mut holds_at } else { &mut opens_at }) = bond;
+                }
+                // The pull is m_ij g, C₀ is Bond·m_ij·g.
+                let found = 0.5 * (opens_at + holds_at);
+                assert!((found - 1.0).abs() < 2e-3, "{method:?}, Δt {dt}: C₀ of {found} weights");
+
+                let held = run(1.5);
+                let grains = &held.world().grains;
+                let mass = if free { effective_mass(&held) } else { grains.masses[0] };
+                let force = held.contacts().impulses()[0].normal / dt;
+                assert_close(force, -mass * G, 1e-6, "the force that holds it");
+                assert!(held.observables().tensile_contacts == 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn free_fall_is_that_of_symplectic_euler_with_the_substep() {
+    let (dt, count, velocity) = (1e-3, 300, DVec2::new(-0.7, 2.0));
+    for method in SCHEMES {
+        for substeps in [0, 1, 7] {
+            let grains = vec![Grain { angular_velocity: 3.0, ..moving(DVec2::X, 0.1, velocity) }];
+            let scene = scene(Physics::FULL, -G * DVec2::Y, parameters(20.0, dt, 0.1, 0.5), grains);
+            let mut simulation = start(&by(method, substeps, scene));
+            take_steps(&mut simulation, count);
+            let n = f64::from(simulation.substeps()) * count as f64;
+            let time = dt * count as f64;
+            let way = time * velocity - DVec2::Y * 0.5 * G * time * time * (1.0 + 1.0 / n);
+            let grains = &simulation.world().grains;
+            assert!((grains.positions[0] - DVec2::X - way).length() < 1e-11, "{method:?}");
+            assert!((grains.velocities[0] - velocity + G * time * DVec2::Y).length() < 1e-11);
+            assert!((grains.angles[0] - 3.0 * time).abs() < 1e-11);
+        }
+    }
+}
+
+#[test]
+fn every_step_closes_its_energy_budget() {
+    for method in SCHEMES {
+        for (bond, mu, physics) in [
+            (0.0, 0.5, Physics::FULL),
+            (50.0, 0.3, Physics::FULL),
+            (20.0, 0.5, UNTURNING),
+            (20.0, 0.0, SMOOTH),
+        ] {
+            let pile = pressed_pile(30, 0.1, 3, parameters(bond, 1e-3, 0.3, mu));
+            let mut simulation = start(&by(method, 0, Scene { physics, ..pile }));
+            simulation.set_pull(Some(Pull { grain: 29, target: DVec2::new(0.02, 0.05) }));
+            let mut worked = 0.0;
+            for _ in 0..100 {
+                let before = simulation.observables().kinetic_energy;
+                let after = *simulation.step().expect("a finite state");
+                let works = [after.gravity_work, after.normal_work, after.tangential_work];
+                let scale = before + works.iter().map(|work| work.abs()).sum::<f64>();
+                let off = (after.kinetic_energy - before - works.iter().sum::<f64>()).abs();
+                assert!(off <= 1e-10 * scale, "{method:?}, step {}: {off:e}", after.step);
+                worked += after.normal_work.abs();
+                assert!(after.converged && after.residual.is_finite());
+            }
+            assert!(worked > 0.0, "contacts worked");
+        }
+    }
+}
+
+#[test]
+fn the_substeps_left_to_the_scheme_are_stable_and_counted() {
+    let pile = paper_pile().expect("the shipped state");
+    let soft = start(&by(Stepper::TgsSoft, 0, pile.clone()));
+    assert_eq!((soft.substeps(), soft.critical_time_step_secs()), (4, None));
+    let mut dem = start(&by(Stepper::Dem, 0, pile.clone()));
+    let critical = dem.critical_time_step_secs().expect("springs");
+    let substep = 1e-3 / f64::from(dem.substeps());
+    assert!((0.45..=0.5).contains(&(substep / critical)), "{substep} of {critical}");
+    let substeps = dem.substeps();
+    assert_eq!(dem.step().expect("a finite state").sweeps, substeps);
+    assert_eq!(start(&pile).substeps(), 1);
+}
+
+#[test]
+fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
+    for method in SCHEMES {
+        let mut pile = by(method, 0, paper_pile().expect("the shipped state"));
+        pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
+        let run = || {
+            let mut simulation = start(&pile);
+            take_steps(&mut simulation, 100);
+            simulation
+        };
+        let (mut one, other) = (run(), run());
+        assert!(one.observables().slump > 0.01, "it moves");
+        assert_eq!(one.world().grains, other.world().grains);
+        assert_eq!(one.observables(), other.observables());
+        let mut clone = one.clone();
+        take_steps(&mut one, 20);
+        take_steps(&mut clone, 20);
+        assert_eq!(one.world().grains, clone.world().grains);
+    }
+}
+
+#[test]
+fn what_a_scheme_remembers_is_for_itself_alone() {
+    let pile = by(Stepper::Dem, 0, paper_pile().expect("the shipped state"));
+    let mut simulation = start(&pile);
+    take_steps(&mut simulation, 5);
+    let blank = |memory: &ContactMemory| *memory == ContactMemory::default();
+    assert!(!simulation.contacts().memories().iter().all(blank));
+    let settings = Settings { stepper: Stepper::Moreau, ..*simulation.settings() };
+    simulation.change(settings).expect("sound");
+    take_steps(&mut simulation, 1);
+    assert!(simulation.contacts().memories().iter().all(blank));
+}
+
+/// Mean and standard error.
+fn mean(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (count - 1.0) / count).sqrt())
+}
+
+#[test]
+fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
+    // By Gauss-Seidel to a relative change of 1e-6, Δt = 1e-3 s, from seeds 1 to 4 of the rain.
+    let contact_dynamics = [0.454, 0.484, 0.532, 0.475];
+    let states: Vec<Scene> = (1..=4)
+        .into_par_iter()
+        .map(|seed| {
+            let rain = NewPile { seed, ..NewPile::default() };
+            let grains = settle(&rain, |_| true).expect("it comes to rest");
+            let mut pile = pile_of(grains, rain.box_width_in_diameters).expect("a pile");
+            pile.parameters.bond = 0.0;
+            pile
+        })
+        .collect();
+    for method in SCHEMES {
+        let slump = |pile: &Scene| {
+            let mut simulation = start(&by(method, 0, pile.clone()));
+            take_steps(&mut simulation, 1000);
+            simulation.observables().slump
+        };
+        let slumps: Vec<f64> = states.par_iter().map(slump).collect();
+        let pairs = slumps.iter().zip(contact_dynamics);
+        let (change, error) = mean(&pairs.map(|(slump, other)| slump - other).collect::<Vec<_>>());
+        println!("{method:?}: {slumps:.3?}, more by {change:.3} ± {error:.3}");
+        assert!(error < 0.02, "± {error} tells nothing");
+        assert!(change.abs() + error < 0.05, "{method:?}: more by {change} ± {error}");
+    }
+}
