@@ -86,14 +86,20 @@ impl GrowingFile {
 
     /// Writes rows with a head, each with its line end, so that they are there in one go: the rows are written
     /// below a line that begins with `draft`, which readers are to skip with what follows, and last of all
-    /// the head takes its place. That is one write within a page, or now and then two, which leaves some
-    /// 0.1 µs in which it can be cut.
+    /// the head takes its place. A kill can cut a write where a page of the file ends, so a head that lies in
+    /// two pages is written from its end: what stands in the second page still belongs to the draft until
+    /// what stands in the first has changed, all of it or nothing. Where the first page ends within the word
+    /// of the draft, the head's letters may follow those of it that are left; where it ends in what `draft`
+    /// and the head have in common, the second page says it all. So a reader must know a draft by the first
+    /// letter that no head has there.
     ///
     /// # Errors
     /// Names the file and what the system says; then it has nothing of them.
     pub(crate) fn add_at_once(&mut self, draft: &str, head: &str, rows: &str) -> Result<()> {
         let below_draft = format!("{draft:0$}\n{rows}", head.len().saturating_sub(1));
-        let written = self.put(below_draft.as_bytes()).and_then(|()| self.put(head.as_bytes()));
+        let written = self
+            .put(0, below_draft.as_bytes())
+            .and_then(|()| self.put_from_its_end(head.as_bytes()));
         let whole = self.whole + below_draft.len() as u64;
         let written = written.and_then(|()| self.file.seek(SeekFrom::Start(whole)));
         if let Err(error) = written {
@@ -104,9 +110,23 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Writes behind what is whole.
-    fn put(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.file.seek(SeekFrom::Start(self.whole))?;
+    /// Writes over what stands behind what is whole, the last page first.
+    fn put_from_its_end(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        let pages = self.pages(bytes.len());
+        pages.into_iter().rev().try_for_each(|part| self.put(part.start, &bytes[part]))
+    }
+
+    /// The parts of so many bytes behind what is whole that lie in one page each.
+    fn pages(&self, length: usize) -> Vec<std::ops::Range<usize>> {
+        let room = (PAGE - self.whole % PAGE) as usize;
+        let starts = std::iter::once(0).chain((room..length).step_by(PAGE as usize));
+        let ends = (room..length).step_by(PAGE as usize).chain([length]);
+        starts.zip(ends).map(|(start, end)| start..end).collect()
+    }
+
+    /// Writes so many bytes behind what is whole.
+    fn put(&mut self, behind: usize, bytes: &[u8]) -> std::io::Result<()> {
+        self.file.seek(SeekFrom::Start(self.whole + behind as u64))?;
         self.file.write_all(bytes)
     }
 
@@ -134,6 +154,37 @@ pub(crate) fn end_of_last(rows: &[u8]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What a file says after every write of a head, wherever its pages end.
+    #[test]
+    fn a_head_over_the_end_of_a_page_is_a_draft_until_it_is_whole() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (draft, head, rows) = ("ITEM: DRAFT", "ITEM: TIME\n0.5\nITEM: TIMESTEP\n7\n", "1 2\n");
+        let mut over_an_end = 0;
+        for before in PAGE - 40..=PAGE {
+            let mut file = GrowingFile::start(folder.path().join("rows")).expect("a file");
+            file.add(("x".repeat(before as usize - 1) + "\n").as_bytes()).expect("rows");
+            let below = format!("{draft:0$}\n{rows}", head.len() - 1);
+            file.put(0, below.as_bytes()).expect("a draft");
+            let pages = file.pages(head.len());
+            over_an_end += usize::from(pages.len() == 2);
+            for part in pages.into_iter().rev() {
+                let text = std::fs::read_to_string(file.path()).expect("text");
+                assert!(text[before as usize..].starts_with("ITEM: D"), "{before}");
+                file.put(part.start, &head.as_bytes()[part.clone()]).expect("a part of a head");
+                let text = std::fs::read_to_string(file.path()).expect("text");
+                let now = &text[before as usize..];
+                assert!(
+                    now.starts_with("ITEM: D") || now == head.to_owned() + rows,
+                    "{before}: {now}"
+                );
+                if now.starts_with("ITEM: T") {
+                    break;
+                }
+            }
+        }
+        assert!(over_an_end > 30, "the situation: {over_an_end}");
+    }
 
     #[test]
     fn no_two_rows_are_written_together_over_the_end_of_a_page() {

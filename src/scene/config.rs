@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use super::file::{read_unsettled, unsettled};
+use super::pile::put_on_base;
 use super::{NewPile, Origin, SavedState, Scene, Settling, built_in, cradle_from, pile_of, settle};
 use crate::data::{RecordedGrains, read_grains};
 use crate::error::{Error, Result};
@@ -270,6 +271,9 @@ impl Config {
     }
 
     pub(super) fn change_scene(&self, scene: &mut Scene) -> Result<()> {
+        if let Some(width) = self.origin.base_width {
+            put_on_base(scene, width)?;
+        }
         scene.stepper = self.stepper.unwrap_or(scene.stepper);
         // A preset leaves out what the stepper does not take.
         if let Some(preset) = self.origin.preset {

@@ -31,6 +31,10 @@ pub struct Origin {
     #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub box_width: Option<f64>,
+    /// Width of the rough base under a pile, in mean diameters [default: five heights beyond the box on either side]
+    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_width: Option<f64>,
     /// Seed of a new pile
     #[arg(long, value_name = "N", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,6 +70,7 @@ impl Origin {
             "initial-step" => self.initial_step = map.next_value()?,
             "grains" => self.grains = map.next_value()?,
             "box-width" => self.box_width = map.next_value()?,
+            "base-width" => self.base_width = map.next_value()?,
             "seed" => self.seed = map.next_value()?,
             "deposition" => self.deposition = map.next_value()?,
             "start" => self.start = map.next_value()?,

@@ -1,5 +1,7 @@
 //! The paper's pile (§3): discs at rest between walls over a rough base; at t = 0 the walls go.
 
+use std::ops::RangeInclusive;
+
 use glam::DVec2;
 
 use super::{NewPile, Scene, csv_states};
@@ -12,6 +14,10 @@ use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 pub(super) const DIAMETER: f64 = 5e-3;
 /// g, m/s².
 pub(super) const GRAVITY: f64 = 9.8;
+/// Its name.
+const NAME: &str = "pile";
+/// How wide a base may be asked for.
+const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
 /// How far the rough base reaches beyond the box on either side, in heights of the pile: further
 /// than any grain of a collapsing pile gets in the paper's second.
 const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
@@ -52,7 +58,7 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Sc
     let base_width = box_width_in_diameters + 2.0 * BASE_MARGIN_IN_HEIGHTS * height;
     tone_in_layers(&mut grains, DIAMETER);
     Ok(Scene {
-        name: "pile".into(),
+        name: NAME.into(),
         mean_diameter: DIAMETER,
         areal_density: 1.0,
         gap_tolerance: 0.0,
@@ -88,6 +94,23 @@ pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
     (-half..=half)
         .map(|k| Disc { position: DVec2::new(k as f64 * diameter, 0.0), radius: 0.5 * diameter })
         .collect()
+}
+
+/// Gives a pile a rough base of that width.
+///
+/// # Errors
+/// Where the width is outside its range, or the scene is no pile.
+pub(super) fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
+    if scene.name != NAME {
+        return Err(Error::value("scene", &scene.name, "pile where base-width is given"));
+    }
+    if !BASE_WIDTHS_IN_DIAMETERS.contains(&width_in_diameters) {
+        let (least, most) = BASE_WIDTHS_IN_DIAMETERS.into_inner();
+        let allowed = format!("{least} to {most} diameters");
+        return Err(Error::value("base-width", width_in_diameters, allowed));
+    }
+    scene.fixed_discs = rough_base(width_in_diameters, scene.mean_diameter);
+    Ok(())
 }
 
 /// Gives grains greys by the layer they start in, so that a picture shows what moved where.

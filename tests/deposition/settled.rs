@@ -114,6 +114,32 @@ fn what_is_no_pile_is_refused_in_a_sentence() {
 }
 
 #[test]
+fn a_wider_base_changes_no_bit_of_a_pile_that_stays_on_it() {
+    let said = |options: &[(&str, &str)]| {
+        let config = Config::of_options(options.iter().copied());
+        config.and_then(|config| config.scene(|_| true))
+    };
+    let run = |scene: &Scene| {
+        let mut simulation = scene.simulation().expect("a sound scene");
+        for _ in 0..50 {
+            simulation.step().expect("finite");
+        }
+        simulation.world().grains.positions.clone()
+    };
+    let (own, wide) = (said(&[]).expect("a pile"), said(&[("base-width", "500")]).expect("a pile"));
+    let ends = [&own, &wide].map(|scene| scene.fixed_discs[0].position.x / scene.mean_diameter);
+    assert!(ends[0] > -100.0 && ends[1] == -250.0, "the situation: {ends:?}");
+    assert_eq!(run(&own), run(&wide));
+    for (width, allowed) in [("0", "1 to 100000"), ("inf", "1 to 100000"), ("-3", "1 to 100000")] {
+        let refused = said(&[("base-width", width)]).expect_err("refused").to_string();
+        assert!(refused.starts_with("base-width is ") && refused.contains(allowed), "{refused}");
+    }
+    let no_pile =
+        said(&[("base-width", "9"), ("scene", "cradle")]).expect_err("refused").to_string();
+    assert_eq!(no_pile, "scene is cradle, but must be pile where base-width is given");
+}
+
+#[test]
 fn options_and_scene_files_ask_for_the_same_pile() {
     let options =
         [("grains", "40"), ("box-width", "9"), ("seed", "2"), ("deposition", "drop-and-roll")];

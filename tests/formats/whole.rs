@@ -44,19 +44,8 @@ pub fn frames_of_series(path: &Path) -> Vec<f64> {
     times.collect()
 }
 
-/// The steps of a dump, which must have whole frames and at most a draft. A head that lies in two pages of the
-/// file is seen half written by who reads while its writer is held up between the two, and only then.
+/// The steps of a dump, which must have whole frames and at most a draft.
 pub fn frames_of_dump(path: &Path) -> Vec<u64> {
-    for _ in 0..100 {
-        if let Some(steps) = whole_frames(path) {
-            return steps;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    panic!("{} has a frame that stays cut", path.display())
-}
-
-fn whole_frames(path: &Path) -> Option<Vec<u64>> {
     let text = snapshot_of(path);
     let mut lines = text.lines().peekable();
     let mut steps = Vec::new();
@@ -66,12 +55,18 @@ fn whole_frames(path: &Path) -> Option<Vec<u64>> {
             "ITEM: PARAMETERS" => {
                 while lines.next_if(|line| !line.starts_with("ITEM:")).is_some() {}
             }
-            "ITEM: DRAFT" => break,
-            "ITEM: TIME" => steps.push(read_frame(&mut lines)?),
+            draft if draft.starts_with("ITEM: D") => break,
+            "ITEM: TIME" => {
+                let step = read_frame(&mut lines);
+                let left: Vec<&str> = lines.clone().take(8).collect();
+                steps.push(step.unwrap_or_else(|| {
+                    panic!("{}: a cut frame ahead of {left:?}", path.display())
+                }));
+            }
             _ => panic!("{}: {line}", path.display()),
         }
     }
-    Some(steps)
+    steps
 }
 
 /// The step of a frame; none where something is missing.

@@ -6,8 +6,8 @@ use crate::common::{
 };
 use glam::DVec2;
 use slump::scene::Scene;
-use slump::sim::{Simulation, Stepper};
-use slump::world::{Grain, Physics};
+use slump::sim::{AlarmKind, Simulation, Stepper};
+use slump::world::{Grain, Motion, MotionCourse, Physics};
 
 const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
@@ -233,4 +233,31 @@ fn a_pair_that_circles_holds_up_to_the_speed_at_which_its_bond_tears() {
             }
         }
     }
+}
+
+#[test]
+fn a_grain_that_rides_on_a_moving_disc_does_not_circle_it() {
+    // How fast the disc goes along with the grain, which it does at 1 m/s; whether that is taken for a circle.
+    let circles = |disc_speed: f64| {
+        let direction = DVec2::Y;
+        let course = MotionCourse::Straight { direction, speed: disc_speed, travel: None };
+        let of_disc = Motion { fixed_discs: vec![0], course: Some(course), ..Motion::default() };
+        let grain = moving(DVec2::new(2.0 * RADIUS, 0.0), RADIUS, direction);
+        let mut simulation = start(&Scene {
+            fixed_discs: vec![fixed(DVec2::ZERO, RADIUS)],
+            motions: vec![of_disc],
+            stepper: Stepper::Range,
+            solver: tight(),
+            ..scene(
+                SMOOTH,
+                G * DVec2::X,
+                range(100.0, 5e-3),
+                vec![Grain { feels_gravity: false, ..grain }],
+            )
+        });
+        take_steps(&mut simulation, 3);
+        simulation.alarms().iter().any(|alarm| alarm.kind == AlarmKind::BreakUnseen)
+    };
+    assert!(circles(0.0), "the situation: past a disc that rests it circles too fast for the step");
+    assert!(!circles(1.0));
 }

@@ -12,6 +12,8 @@ use crate::error::{Error, Result};
 const FORM: &str = "a LAMMPS dump in text with the columns x, y and radius";
 /// Begins what is no frame yet. No reader knows such an item, and each skips it at the end of a file.
 pub(super) const DRAFT: &str = "ITEM: DRAFT";
+/// What a line begins with that belongs to a draft, also to one of whose word a kill has left a part.
+const OF_A_DRAFT: &str = "ITEM: D";
 /// How the head of a frame of ours begins, …
 const TIME: &str = "ITEM: TIME";
 /// … and what says the step of any.
@@ -36,7 +38,7 @@ pub(super) fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>
     loop {
         line.clear();
         let length = lines.read_line(&mut line).map_err(|error| Error::file(path, error))?;
-        if length == 0 || line.starts_with(DRAFT) {
+        if length == 0 || line.starts_with(OF_A_DRAFT) {
             return Ok(Some(line_start));
         }
         let text = line.trim_end();

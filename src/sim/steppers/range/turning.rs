@@ -9,6 +9,8 @@
 //! a shock that has thrown them apart, and a bond stops a shock below its escape speed √(2C₀δ_c/m_ij) alone. So a pair
 //! that its bond would hold parts where the step is long. In substeps v falls with Δt, and the escape speed does not.
 
+use glam::DVec2;
+
 use crate::contact::{Numbering, Other};
 use crate::sim::state::State;
 
@@ -33,7 +35,11 @@ pub(super) fn looks_like_a_shock(
         let grain = contact.grain as usize;
         let (velocity, radius) = match numbering.other(contact.other) {
             Other::Grain(other) => (grains.velocities[other], grains.radii[other]),
-            Other::FixedDisc(disc) => (glam::DVec2::ZERO, fixed_discs[disc].radius),
+            Other::FixedDisc(disc) => {
+                let surface = state.walls.surface(&state.world, contact);
+                let velocity = surface.map_or(DVec2::ZERO, |surface| surface.velocity);
+                (velocity, fixed_discs[disc].radius)
+            }
             // A straight feature has the same normal everywhere.
             Other::Feature(_) => return false,
         };
