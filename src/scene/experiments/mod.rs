@@ -10,7 +10,7 @@ mod vibrated;
 pub(crate) use collapse::{collapse, collapse_of, half_width};
 pub(crate) use drum::drum;
 pub(crate) use incline::{LEVEL_SECS, RATE, incline};
-pub(crate) use shear::shear;
+pub(crate) use shear::{ShearCell, shear, shear_of};
 pub(crate) use silo::{WIDTH as SILO_WIDTH, silo, silo_of};
 pub(crate) use vibrated::vibrated;
 
