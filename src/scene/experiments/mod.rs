@@ -1,5 +1,6 @@
 //! Experiments of granular physics: grains among bodies that move.
 
+mod biaxial;
 mod collapse;
 mod drum;
 mod incline;
@@ -7,6 +8,7 @@ mod shear;
 mod silo;
 mod vibrated;
 
+pub(crate) use biaxial::biaxial;
 pub(crate) use collapse::{collapse, collapse_of, half_width};
 pub(crate) use drum::drum;
 pub(crate) use incline::{LEVEL_SECS, RATE, incline};
