@@ -42,7 +42,7 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 29] = [
+pub const SCENES: [SceneInfo; 30] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
@@ -72,6 +72,12 @@ pub const SCENES: [SceneInfo; 29] = [
         group: SceneGroup::Experiments,
         summary: "228 grains between rough plates in a periodic cell: one is drawn along under a pressure",
         make: || Ok(experiments::shear()),
+    },
+    SceneInfo {
+        name: "biaxial",
+        group: SceneGroup::Experiments,
+        summary: "300 grains in a box: the sides press with a constant force each, the lid comes down",
+        make: || Ok(experiments::biaxial()),
     },
     SceneInfo {
         name: "vibrated",

@@ -15,12 +15,12 @@ fn methods() -> impl Iterator<Item = Method> {
     METHODS.iter().filter(|info| info.takes_drives).map(|info| info.method)
 }
 
-fn by_force(direction: DVec2, force: f64, mass: f64) -> Drive {
+pub(super) fn by_force(direction: DVec2, force: f64, mass: f64) -> Drive {
     let force = Some(force);
     Drive { direction, force, pressure: None, width: None, mass, damping: 0.0, speed: 0.0 }
 }
 
-fn driven(boundaries: &[usize], drive: Drive) -> Motion {
+pub(super) fn driven(boundaries: &[usize], drive: Drive) -> Motion {
     Motion { boundaries: boundaries.to_vec(), drive: Some(drive), ..Motion::default() }
 }
 

@@ -6,6 +6,7 @@ mod common;
 
 mod balance;
 mod belts;
+mod biaxial;
 mod borders;
 mod driven;
 mod driven_on_springs;

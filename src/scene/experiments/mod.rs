@@ -1,5 +1,6 @@
 //! Experiments of granular physics: grains among bodies that move.
 
+mod biaxial;
 mod collapse;
 mod drum;
 mod incline;
@@ -7,10 +8,11 @@ mod shear;
 mod silo;
 mod vibrated;
 
+pub(crate) use biaxial::biaxial;
 pub(crate) use collapse::{collapse, collapse_of, half_width};
 pub(crate) use drum::drum;
 pub(crate) use incline::{LEVEL_SECS, RATE, incline};
-pub(crate) use shear::shear;
+pub(crate) use shear::{ShearCell, shear, shear_of};
 pub(crate) use silo::{WIDTH as SILO_WIDTH, silo, silo_of};
 pub(crate) use vibrated::vibrated;
 

@@ -13,12 +13,20 @@ use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, GRAVITY};
 use crate::world::{Disc, Drive, Motion, MotionCourse, Periodic};
 
-/// Width of the cell, in diameters, and so the number of discs of a plate.
-const WIDE: u8 = 24;
-/// Columns and rows of the grains at the start, and their distances in diameters.
-const COLUMNS: u8 = 19;
-const ROWS: u8 = 12;
-const SPACING: [f64; 2] = [WIDE as f64 / COLUMNS as f64, 1.22];
+/// How many grains and how large the plates are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShearCell {
+    /// Width of the cell, in diameters, and so the number of discs of a plate.
+    pub wide: u8,
+    /// Columns and rows of the grains at the start.
+    pub columns: u8,
+    pub rows: u8,
+}
+
+/// That of the scene.
+const CELL: ShearCell = ShearCell { wide: 24, columns: 19, rows: 12 };
+/// Distance of rows at the start, in diameters.
+const ROW_SPACING: f64 = 1.22;
 /// From a plate to the nearest row, in diameters.
 const ROOM: f64 = 1.2;
 /// P, in m g/d: √(m/P) is 0.01 s.
@@ -28,40 +36,48 @@ const SPEED: f64 = 0.6;
 
 /// 228 grains between two plates.
 pub(crate) fn shear() -> Scene {
+    let mut scene = shear_of(CELL, PRESSURE, SPEED);
+    scene.parameters.time_step_secs = 2e-4;
+    scene.duration_secs = 2.0;
+    scene
+}
+
+/// Grains between two plates, the upper one under a pressure in m g/d and with a speed in m/s.
+pub(crate) fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
+    let ShearCell { wide, columns, rows } = cell;
+    let spacing = [f64::from(wide) / f64::from(columns), ROW_SPACING];
     let row = |row: u8| {
-        let y = ROOM + SPACING[1] * f64::from(row);
-        (0..COLUMNS).map(move |column| DVec2::new(SPACING[0] * (f64::from(column) + 0.5), y))
+        let y = ROOM + spacing[1] * f64::from(row);
+        (0..columns).map(move |column| DVec2::new(spacing[0] * (f64::from(column) + 0.5), y))
     };
-    let mut scene = of_loose_grains("shear", (0..ROWS).flat_map(row));
+    let mut scene = of_loose_grains("shear", (0..rows).flat_map(row));
     scene.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
-    let top = 2.0 * ROOM + SPACING[1] * f64::from(ROWS - 1);
+    let top = 2.0 * ROOM + spacing[1] * f64::from(rows - 1);
     let plate = |y: f64| {
-        (0..WIDE).map(move |k| Disc {
+        (0..wide).map(move |k| Disc {
             position: DIAMETER * DVec2::new(f64::from(k) + 0.5, y),
             radius: 0.5 * DIAMETER,
         })
     };
     scene.fixed_discs = plate(0.0).chain(plate(top)).collect();
-    scene.periodic = Some(Periodic { x: [0.0, DIAMETER * f64::from(WIDE)] });
+    scene.periodic = Some(Periodic { x: [0.0, DIAMETER * f64::from(wide)] });
     let of_grain = 0.25 * std::f64::consts::PI * DIAMETER * DIAMETER * scene.areal_density;
     let drive = Drive {
         direction: DVec2::NEG_Y,
         force: None,
-        pressure: Some(PRESSURE * of_grain * GRAVITY / DIAMETER),
+        pressure: Some(pressure * of_grain * GRAVITY / DIAMETER),
         width: None,
-        mass: f64::from(WIDE) * of_grain,
+        mass: f64::from(wide) * of_grain,
         damping: 0.0,
         speed: 0.0,
     };
-    let course = MotionCourse::Straight { direction: DVec2::X, speed: SPEED, travel: None };
+    let course = MotionCourse::Straight { direction: DVec2::X, speed, travel: None };
     scene.motions = vec![Motion {
-        fixed_discs: (usize::from(WIDE)..2 * usize::from(WIDE)).collect(),
+        fixed_discs: (usize::from(wide)..2 * usize::from(wide)).collect(),
         course: Some(course),
         drive: Some(drive),
         ..Motion::default()
     }];
-    scene.parameters.time_step_secs = 2e-4;
-    scene.duration_secs = 2.0;
-    scene.view = view(DVec2::new(-0.5, -1.0), DVec2::new(f64::from(WIDE) + 0.5, top + 1.0));
+    scene.view = view(DVec2::new(-0.5, -1.0), DVec2::new(f64::from(wide) + 0.5, top + 1.0));
     scene
 }

@@ -25,7 +25,7 @@ pub(super) struct Experiment {
 pub(super) enum Cases {
     /// It is about methods of its own, whichever are chosen.
     Own(fn(bool) -> Vec<Case>),
-    /// It is computed in each way that is chosen.
+    /// It is computed in each way that is chosen, but for those by which it has no cases.
     Chosen(fn(bool, Way) -> Vec<Case>),
 }
 

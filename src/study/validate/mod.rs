@@ -11,12 +11,14 @@
 
 mod chain;
 mod cliff;
+mod cohesive_shear;
 mod experiment;
 mod figure;
 mod fit;
 mod flow;
 mod gas;
 mod packing;
+mod plane_shear;
 mod quantity;
 mod registry;
 mod report;
@@ -25,6 +27,7 @@ mod runs;
 mod spread;
 mod start;
 mod trial;
+mod wall_load;
 mod way;
 
 use std::path::PathBuf;

@@ -64,7 +64,7 @@ fn cases(quick: bool, way: Way) -> Vec<Case> {
 }
 
 /// The scene with its grains' sizes dealt out anew.
-fn shuffled(mut scene: Scene, seed: u64) -> Scene {
+pub(super) fn shuffled(mut scene: Scene, seed: u64) -> Scene {
     let mut radii: Vec<f64> = scene.grains.iter().map(|grain| grain.radius).collect();
     radii.shuffle(&mut Pcg64::seed_from_u64(seed));
     for (grain, radius) in scene.grains.iter_mut().zip(radii) {

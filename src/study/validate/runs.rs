@@ -135,7 +135,7 @@ fn lay_out(
                 choice.ways().into_iter().map(|way| (Some(way), cases(quick, way))).collect()
             }
         };
-        for (way, cases) in sets {
+        for (way, cases) in sets.into_iter().filter(|(_, cases)| !cases.is_empty()) {
             let ran = Ran { experiment, way, found: Vec::new() };
             let words = ran.words();
             for case in cases {
