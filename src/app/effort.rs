@@ -24,7 +24,7 @@ pub(super) const TRUSTED: Effort = Effort {
     hint: "Each step to a residual of 1e-6: what is tighter has changed no mean of piles so far. At 138 grains \
            faster than Figures.",
     settings: SolverSettings {
-        fallback: Fallback::Tresca,
+        fallback: Fallback::OfMethod,
         ..SolverSettings::to_residual(Method::Auto, 1e-6, 500)
     },
 };
@@ -58,12 +58,32 @@ pub(super) fn for_grains(grains: usize) -> Effort {
 
 /// What a scene begins with whose user says nothing of how well its steps are to be solved: a pile what suits its
 /// size, every other what it says itself. Whoever watches must not take the impulses of an unsolved
-/// step for those of a law, so such a step is then solved under bounds of friction.
+/// step for those of a law, so such a step is then solved under bounds of friction, but where a force drives a wall,
+/// of which that solution knows nothing.
 pub(super) fn complete(scene: &mut Scene, asked: &SolverChanges) {
+    let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
     let is_pile = scene.name == Config::DEFAULT_SCENE;
     if is_pile && scene.solver == SolverSettings::default() {
         scene.solver = for_grains(scene.grains.len()).settings;
-    } else if asked.fallback.is_none() && scene.solver.fallback == Fallback::OfMethod {
+    } else if !is_driven && asked.fallback.is_none() && scene.solver.fallback == Fallback::OfMethod
+    {
         scene.solver.fallback = Fallback::Tresca;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::built_in;
+
+    #[test]
+    fn steps_fall_back_in_the_window_but_where_a_force_drives_a_wall() {
+        for (name, fallback) in [("cradle", Fallback::Tresca), ("shear", Fallback::OfMethod)] {
+            let mut scene = built_in(name).expect("a scene");
+            complete(&mut scene, &SolverChanges::default());
+            assert_eq!(scene.solver.fallback, fallback, "{name}");
+            scene.simulation().expect("a sound scene");
+        }
+        assert!(TRUSTED.settings.falls_back(), "by its method");
     }
 }

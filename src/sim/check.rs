@@ -8,7 +8,7 @@ use super::steppers::stepper::Stepper;
 use crate::contact::{Reach, check_distances};
 use crate::error::{Error, Result};
 use crate::setting::Group;
-use crate::solver::{FrictionModel, METHODS};
+use crate::solver::{Fallback, FrictionModel, METHODS};
 use crate::world::{FrictionCone, Motion, World};
 
 /// The diameter that lengths are measured in is at most this many radii of the largest grain: the
@@ -113,6 +113,9 @@ impl Settings {
         let model = self.solver.friction_model;
         if model != FrictionModel::Coulomb {
             return refuse("friction-model", model.to_string(), vec!["coulomb"]);
+        }
+        if self.stepper.uses_method() && self.solver.fallback == Fallback::Tresca {
+            return refuse("fallback", Fallback::Tresca.to_string(), vec!["none", "of-method"]);
         }
         if self.remedies.sequential_impacts {
             return refuse("sequential-impacts", "given".into(), vec!["left out"]);

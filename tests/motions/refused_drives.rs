@@ -5,6 +5,7 @@ use super::driven::pressed;
 use super::straight;
 use glam::DVec2;
 use slump::sim::Stepper;
+use slump::solver::Fallback;
 use slump::world::{Drive, Motion, MotionCourse};
 
 #[test]
@@ -31,6 +32,13 @@ fn ways_to_step_that_know_of_no_driven_wall_are_refused() {
     scene.stepper = Stepper::TgsSoft;
     let said = scene.simulation().map(|_| ()).expect_err("refused").to_string();
     assert!(said.starts_with("stepper is tgs-soft, but must be moreau"), "{said}");
+    let mut scene = pressed(1.0);
+    scene.solver.fallback = Fallback::Tresca;
+    let said = scene.simulation().map(|_| ()).expect_err("refused").to_string();
+    assert_eq!(
+        said,
+        "fallback is tresca, but must be none or of-method where a motion has a drive"
+    );
 }
 
 #[test]

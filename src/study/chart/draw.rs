@@ -7,6 +7,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::register_font;
 
+use super::layout::edges;
 use super::places::Places;
 use super::sheet::{CAPTION_LINE, LEGEND};
 use super::{Cell, Chart, Corner, Layer, Look, Rgb, Sheet};
@@ -65,7 +66,7 @@ fn register_fonts() -> Result<()> {
 fn draw<DB: DrawingBackend>(sheet: &Sheet, area: DrawingArea<DB, Shift>) -> Result<()> {
     register_fonts()?;
     area.fill(&WHITE).map_err(failed)?;
-    let (width, height) = sheet.size;
+    let height = sheet.size.1;
     let caption_height = CAPTION_LINE * sheet.caption.len() as u32 + 8;
     let (charts, caption) = area.split_vertically(height - caption_height);
     for (number, line) in sheet.caption.iter().enumerate() {
@@ -73,15 +74,10 @@ fn draw<DB: DrawingBackend>(sheet: &Sheet, area: DrawingArea<DB, Shift>) -> Resu
         let style = (FONT, CAPTION).into_font().color(&RGBColor(90, 90, 90));
         caption.draw_text(line, &style, at).map_err(failed)?;
     }
-    let total: f64 = sheet.charts.iter().map(|chart| chart.width).sum();
-    let mut edges = vec![0.0];
-    for chart in &sheet.charts {
-        edges.push(edges[edges.len() - 1] + chart.width / total * f64::from(width));
-    }
-    let inner: Vec<i32> = edges[1..edges.len() - 1].iter().map(|edge| *edge as i32).collect();
-    let no_rows: Vec<i32> = Vec::new();
-    let panels = charts.split_by_breakpoints(inner, no_rows);
-    for (chart, panel) in sheet.charts.iter().zip(&panels) {
+    for (chart, [left, top, right, bottom]) in
+        sheet.charts.iter().zip(edges(sheet, height - caption_height))
+    {
+        let panel = &charts.clone().shrink((left, top), (right - left, bottom - top));
         if chart.only_legend {
             draw_legend(chart, panel)?;
         } else {

@@ -3,6 +3,7 @@
 
 mod csv;
 mod draw;
+mod layout;
 mod places;
 mod scale;
 mod sheet;

@@ -189,6 +189,8 @@ pub struct Chart {
     pub(crate) width: f64,
     /// Whether it is nothing but a legend, without axes: for long ones, beside other charts.
     pub(crate) only_legend: bool,
+    /// Whether it stands below the charts before it, at the left.
+    pub(crate) begins_row: bool,
 }
 
 impl Chart {
@@ -202,6 +204,7 @@ impl Chart {
             legend: Corner::default(),
             width: 1.0,
             only_legend: false,
+            begins_row: false,
         }
     }
 
@@ -240,7 +243,7 @@ pub(super) const CAPTION_LINE: u32 = 28;
 pub struct Sheet {
     /// Pixels.
     pub size: (u32, u32),
-    /// From left to right.
+    /// From left to right, and from the top to the bottom.
     pub charts: Vec<Chart>,
     /// Lines of words below.
     pub caption: Vec<String>,

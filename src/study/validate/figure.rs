@@ -9,21 +9,31 @@ use crate::study::statistics::mean;
 const LEAST_ERROR: f64 = 1e-3;
 /// Errors above this are drawn here.
 const MOST_ERROR: f64 = 2.0;
-/// Width of a chart, pixels.
-const WIDTH: u32 = 390;
-/// Charts that stand in the sheet at the least, so that the caption has room.
-const LEAST_CHARTS: u32 = 4;
+/// Width and height of a chart, pixels.
+const WIDTH: u32 = 440;
+const HEIGHT: u32 = 400;
+/// Charts side by side; fewer leave room for the caption.
+const ABREAST: u32 = 4;
 
 /// Draws a point for each experiment and way.
 pub(super) fn draw(all: &[Ran], machine: &str) -> Sheet {
     let ways = ways(all);
     let mut charts = Vec::new();
     for of_experiment in all.chunk_by(|one, other| one.experiment.name == other.experiment.name) {
-        charts.push(chart(of_experiment, &ways));
+        let chart = chart(of_experiment, &ways);
+        // Where no way has a value there is nothing to see.
+        if !chart.layers.is_empty() {
+            charts.push(chart);
+        }
     }
-    let legend = Chart::legend_of(&mut charts, 0.9);
+    let count = charts.len() as u32;
+    let below = charts.iter_mut().skip(ABREAST as usize).step_by(ABREAST as usize);
+    below.for_each(|chart| chart.begins_row = true);
+    // Where there are fewer, it has the room of those that are not there.
+    let missing = f64::from(ABREAST.saturating_sub(count));
+    let legend = Chart::legend_of(&mut charts, 0.9 + missing);
     charts.push(legend);
-    let width = WIDTH * (charts.len() as u32).max(LEAST_CHARTS);
+    let size = (ABREAST * WIDTH + WIDTH * 9 / 10, HEIGHT * count.div_ceil(ABREAST).max(1) + 120);
     let caption = vec![
         "Mean relative deviation of an experiment's quantities from the published values; those below 1e-3 are drawn \
          there."
@@ -31,7 +41,7 @@ pub(super) fn draw(all: &[Ran], machine: &str) -> Sheet {
         "Runs were timed while the other cores ran others.".to_owned(),
         machine.to_owned(),
     ];
-    Sheet { size: (width, 640), charts, caption }.high_enough()
+    Sheet { size, charts, caption }.high_enough()
 }
 
 /// The ways that there are, each once, in their order.
