@@ -31,11 +31,14 @@ pub(crate) fn check_distances(world: &World) -> Result<()> {
     let discs: Vec<(DVec2, f64)> =
         grains.positions.iter().copied().zip(grains.radii.iter().copied()).chain(fixed).collect();
     let mut found = first_too_close(&discs, grains.len());
-    if let (None, Some(periodic)) = (found, world.periodic) {
-        // Two that meet across the border are next to each other half a period on.
-        let half = DVec2::new(0.5 * periodic.width(), 0.0);
-        let shifted = discs.iter().map(|&(place, radius)| (periodic.wrap(place + half), radius));
-        found = first_too_close(&shifted.collect::<Vec<_>>(), grains.len());
+    if let Some(periodic) = world.periodic {
+        // Two that meet across a border are next to each other half a period on.
+        let half = periodic.periods().map(|period| 0.5 * period.unwrap_or(0.0));
+        for by in [DVec2::new(half[0], 0.0), DVec2::new(0.0, half[1]), DVec2::from(half)] {
+            let shifted = discs.iter().map(|&(place, radius)| (periodic.wrap(place + by), radius));
+            let shifted: Vec<(DVec2, f64)> = shifted.collect();
+            found = found.or_else(|| first_too_close(&shifted, grains.len()));
+        }
     }
     let Some((one, other)) = found else { return Ok(()) };
     let name = |index: usize| match index.checked_sub(grains.len()) {

@@ -1,4 +1,4 @@
-//! Periodic borders, as thin dashed lines from top to bottom.
+//! Periodic borders, as thin dashed lines from one side of the picture to the other.
 
 use glam::DVec2;
 
@@ -13,7 +13,7 @@ const HALF_WIDTH_EM: f64 = 0.035;
 const DASH_EM: f64 = 0.45;
 const SPACING_EM: f64 = 0.9;
 
-/// The dashes of both borders that show in a picture of `[width, height]` pixels.
+/// The dashes of the borders that show in a picture of `[width, height]` pixels.
 pub(super) fn border_links(
     periodic: Periodic,
     camera: &Camera,
@@ -23,15 +23,20 @@ pub(super) fn border_links(
 ) -> Vec<LinkInstance> {
     let em = f64::from(text_px);
     let half = DVec2::new(f64::from(width), f64::from(height)) / 2.0;
-    let columns = periodic.x.map(|x| camera.offset_px(DVec2::new(x, camera.centre.y)).x);
-    let shown = columns.into_iter().filter(|column| column.abs() <= half.x + em);
-    let dashes = (half.y / (SPACING_EM * em)).ceil() as i32;
-    let rows = move || (-dashes..=dashes).map(move |row| f64::from(row) * SPACING_EM * em);
-    let dash = |column: f64, row: f64| LinkInstance {
-        start: [column as f32, (row - 0.5 * DASH_EM * em) as f32],
-        end: [column as f32, (row + 0.5 * DASH_EM * em) as f32],
-        half_width: (HALF_WIDTH_EM * em) as f32,
-        colour,
+    let dashes = |borders: Option<[f64; 2]>, across: DVec2, along: DVec2| {
+        let at =
+            |border: f64| camera.offset_px(border * across + camera.centre * along).dot(across);
+        let shown = borders.into_iter().flatten().map(at);
+        let shown = shown.filter(move |at| at.abs() <= half.dot(across) + em);
+        let count = (half.dot(along) / (SPACING_EM * em)).ceil() as i32;
+        let steps = move || (-count..=count).map(move |step| f64::from(step) * SPACING_EM * em);
+        let dash = move |at: f64, step: f64| LinkInstance {
+            start: (at * across + (step - 0.5 * DASH_EM * em) * along).as_vec2().into(),
+            end: (at * across + (step + 0.5 * DASH_EM * em) * along).as_vec2().into(),
+            half_width: (HALF_WIDTH_EM * em) as f32,
+            colour,
+        };
+        shown.flat_map(move |at| steps().map(move |step| dash(at, step))).collect::<Vec<_>>()
     };
-    shown.flat_map(|column| rows().map(move |row| dash(column, row))).collect()
+    [dashes(periodic.x, DVec2::X, DVec2::Y), dashes(periodic.y, DVec2::Y, DVec2::X)].concat()
 }

@@ -60,7 +60,7 @@ pub(super) fn force_links(
         .into_iter()
         .flat_map(|(contact, part)| {
             // One that reaches over a periodic border shows on both sides.
-            let reach = [contact.from.x.min(contact.to.x), contact.from.x.max(contact.to.x)];
+            let reach = [contact.from.min(contact.to), contact.from.max(contact.to)];
             let images = periodic.into_iter().flat_map(move |periodic| periodic.images(reach));
             std::iter::once(DVec2::ZERO).chain(images).map(move |by| (contact, part, by))
         })

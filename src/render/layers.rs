@@ -119,7 +119,7 @@ impl View<'_> {
 
     /// Where a disc is to be drawn: at its place, and a period on where it reaches over a border.
     fn images(&self, position: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
-        let reach = [position.x - radius, position.x + radius];
+        let reach = [position - radius, position + radius];
         let images = self.periodic.into_iter().flat_map(move |periodic| periodic.images(reach));
         std::iter::once(DVec2::ZERO).chain(images).map(move |by| position + by)
     }

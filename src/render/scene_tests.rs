@@ -162,7 +162,7 @@ fn what_straddles_a_periodic_border_is_drawn_on_both_sides() {
     };
     let alone = drawn(&snapshot);
     // Grains are at 0, 1, 2 and 3, links between the first three.
-    Arc::make_mut(&mut snapshot.surroundings).periodic = Some(Periodic { x: [0.8, 4.2] });
+    Arc::make_mut(&mut snapshot.surroundings).periodic = Some(Periodic::along_x([0.8, 4.2]));
     let (discs, chains) = drawn(&snapshot);
     // Beyond the left border are the first two grains, the fixed disc and the first link.
     assert_eq!((discs, chains), (alone.0 + 3, alone.1 + 1));

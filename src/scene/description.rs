@@ -221,7 +221,7 @@ impl Scene {
         let radii = self.grains.iter().map(|grain| grain.radius);
         let radii = radii.chain(self.fixed_discs.iter().map(|disc| disc.radius));
         let lengths = [radii.fold(0.0, f64::max), self.mean_diameter];
-        periodic.check((&self.boundaries, &self.motions), &self.gravity, lengths)
+        periodic.check((&self.boundaries, &self.motions), &self.gravity, self.physics, lengths)
     }
 
     /// A scene on a line must lie on the line.
@@ -257,9 +257,9 @@ impl Scene {
             max = max.max(grain.position + grain.radius);
         }
         if let Some(periodic) = self.periodic {
-            let room = 0.5 * self.mean_diameter;
-            (min.x, max.x) = (periodic.x[0] - room, periodic.x[1] + room);
-            return self.with_fixed_discs_beside(View { min, max });
+            let room = 0.5 * self.mean_diameter * periodic.axes();
+            let [min, max] = periodic.borders_or([min, max]);
+            return self.with_fixed_discs_beside(View { min: min - room, max: max + room });
         }
         let room = DVec2::new(if self.physics.axes == 1 { 0.0 } else { max.y - min.y }, 0.0);
         self.with_fixed_discs_beside(View { min: min - room, max: max + room })

@@ -172,11 +172,15 @@ impl Edges {
         let all = || world.grains.positions.iter().chain(&fixed).copied();
         let min = all().fold(DVec2::INFINITY, DVec2::min);
         let max = all().fold(DVec2::NEG_INFINITY, DVec2::max);
+        // Grains that go round come wherever the cell is.
+        let periodic = world.periodic.unwrap_or_default();
+        let [low, high] = periodic.borders_or([min, max]);
+        let (min, max) = (min.min(low), max.max(high));
         let side = (max - min).max_element() + world.mean_diameter;
         let down = match world.gravity {
-            // What turns has no bottom.
+            // What turns has no bottom, and neither has what wraps.
             Gravity::Uniform { acceleration } if world.gravity_turn.is_none() => {
-                acceleration.normalize_or_zero()
+                (acceleration * (1.0 - periodic.axes())).normalize_or_zero()
             }
             Gravity::Uniform { .. } | Gravity::Attraction { .. } => DVec2::ZERO,
         };

@@ -20,7 +20,7 @@ pub struct Drive {
     /// In place of a force: N along it for each m of `width`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<f64>,
-    /// What the pressure acts on, m; the period where borders are periodic, unless it is given.
+    /// What the pressure acts on, m; the period across it where borders are periodic, unless it is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
     /// Of all bodies of the motion together, kg.
@@ -46,8 +46,21 @@ impl Drive {
 
     /// The force along the axis, N.
     pub fn force_in(&self, periodic: Option<Periodic>) -> f64 {
-        let width = self.width.or(periodic.map(Periodic::width));
+        let width = self.width.or_else(|| self.period_across(periodic));
         self.force.unwrap_or_else(|| self.pressure.unwrap_or(0.0) * width.unwrap_or(0.0))
+    }
+
+    /// The period along the one axis, m, where borders wrap along that and the direction is along the other.
+    fn period_across(&self, periodic: Option<Periodic>) -> Option<f64> {
+        let [width, height] = periodic?.periods();
+        let DVec2 { x, y } = self.direction;
+        if x == 0.0 {
+            width
+        } else if y == 0.0 {
+            height
+        } else {
+            None
+        }
     }
 
     /// ½mv², J.
@@ -91,10 +104,10 @@ impl Drive {
                 Some(width) if !(*width > 0.0 && width.is_finite()) => {
                     refuse("width", width.to_string(), "a finite number of m > 0")
                 }
-                None if periodic.is_none() || direction.x != 0.0 => refuse(
+                None if self.period_across(periodic).is_none() => refuse(
                     "width",
                     "left out".into(),
-                    "given with a pressure, unless borders are periodic and it acts along y",
+                    "given with a pressure, unless borders are periodic and it acts across their axis",
                 ),
                 _ => Ok(()),
             },

@@ -71,7 +71,7 @@ impl World {
         let fixed = self.fixed_discs.iter().map(|disc| disc.radius);
         let largest_radius = self.grains.radii.iter().copied().chain(fixed).fold(0.0, f64::max);
         let lengths = [largest_radius, self.mean_diameter];
-        periodic.check((&self.boundaries, &self.motions), &self.gravity, lengths)
+        periodic.check((&self.boundaries, &self.motions), &self.gravity, physics, lengths)
     }
 
     /// Whether anything can move that no grain moves.

@@ -124,16 +124,16 @@ impl Motion {
         matches!(&self.course, Some(Rotation { .. } | Swing { .. } | AngleTable { .. }))
     }
 
-    /// Whether a course along a line leads them along x.
-    pub(super) fn goes_along_x(&self) -> bool {
-        if self.drive.as_ref().is_some_and(|drive| drive.direction.x != 0.0) {
+    /// Whether a course along a line, or a force, leads them along an axis: x is 0, y is 1.
+    pub(super) fn goes_along(&self, axis: usize) -> bool {
+        if self.drive.as_ref().is_some_and(|drive| drive.direction[axis] != 0.0) {
             return true;
         }
         match &self.course {
-            Some(MotionCourse::Straight { direction, .. }) => direction.x != 0.0,
-            Some(MotionCourse::Sine { amplitude, .. }) => amplitude.x != 0.0,
+            Some(MotionCourse::Straight { direction, .. }) => direction[axis] != 0.0,
+            Some(MotionCourse::Sine { amplitude, .. }) => amplitude[axis] != 0.0,
             Some(MotionCourse::Table { offsets, .. }) => {
-                offsets.iter().any(|offset| offset.x != offsets[0].x)
+                offsets.iter().any(|offset| offset[axis] != offsets[0][axis])
             }
             Some(
                 MotionCourse::Rotation { .. }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Boundary, Gravity, Motion, Periodic};
+use super::{Boundary, Gravity, Motion, Periodic, Physics};
 use crate::error::{Error, Result};
 
 /// Narrowest cell, in diameters of its largest disc: in a narrower one a disc and its images leave no room to pass.
@@ -10,6 +10,16 @@ const LEAST_DIAMETERS: f64 = 3.0;
 /// How far apart surfaces can be that feel each other, in mean diameters: above the longest bond
 /// ([`Parameters::debonding_distance`](super::Parameters)).
 const FELT_IN_DIAMETERS: f64 = 0.2;
+
+/// An axis along which borders wrap.
+#[derive(Clone, Copy)]
+struct Wrapping {
+    /// What users call its borders.
+    field: &'static str,
+    /// Along x: 0, along y: 1.
+    axis: usize,
+    borders: [f64; 2],
+}
 
 impl Periodic {
     /// Checks it against what there is in a world, of which the radius of the largest disc and d are given, m.
@@ -20,29 +30,65 @@ impl Periodic {
         self,
         (boundaries, motions): (&[Boundary], &[Motion]),
         gravity: &Gravity,
-        [largest_radius, mean_diameter]: [f64; 2],
+        physics: Physics,
+        lengths: [f64; 2],
     ) -> Result<()> {
-        let [left, right] = self.x;
-        let found = || format!("[{left}, {right}]");
-        if !(left.is_finite() && right.is_finite() && self.width().is_finite()) {
-            return Err(Error::value("periodic.x", found(), "two finite numbers of m"));
+        if self == Self::default() {
+            return Err(Error::value("periodic", "without borders", "given with x, y or both"));
+        }
+        if self.y.is_some() && physics.axes == 1 {
+            let allowed = "left out where physics.axes is 1";
+            return Err(Error::value("periodic.y", "given", allowed));
+        }
+        for wrapping in self.wrapping() {
+            wrapping.check_period(lengths)?;
+        }
+        if matches!(gravity, Gravity::Attraction { .. }) {
+            return Err(Error::value("periodic", "given", "left out where gravity is not uniform"));
+        }
+        for wrapping in self.wrapping() {
+            wrapping.check_shapes(boundaries)?;
+            wrapping.check_motions(boundaries, motions)?;
+        }
+        Ok(())
+    }
+
+    fn wrapping(self) -> impl Iterator<Item = Wrapping> {
+        let of = |(axis, (field, borders)): (usize, (&'static str, Option<[f64; 2]>))| {
+            borders.map(|borders| Wrapping { field, axis, borders })
+        };
+        [("periodic.x", self.x), ("periodic.y", self.y)].into_iter().enumerate().filter_map(of)
+    }
+}
+
+impl Wrapping {
+    fn check_period(self, [largest_radius, mean_diameter]: [f64; 2]) -> Result<()> {
+        let [low, high] = self.borders;
+        let found = || format!("[{low}, {high}]");
+        let period = high - low;
+        if !(low.is_finite() && high.is_finite() && period.is_finite()) {
+            return Err(Error::value(self.field, found(), "two finite numbers of m"));
         }
         // No two images of a disc are felt by the same other one.
         let largest_diameter = 2.0 * largest_radius;
         let felt = FELT_IN_DIAMETERS * mean_diameter;
         let least = (LEAST_DIAMETERS * largest_diameter).max(2.0 * (largest_diameter + felt));
-        if self.width().is_nan() || self.width() < least {
+        if period.is_nan() || period < least {
+            let size = ["wide", "high"][self.axis];
             let allowed = format!(
-                "at least {least} m wide: {LEAST_DIAMETERS} times the largest diameter, and twice as far as discs \
+                "at least {least} m {size}: {LEAST_DIAMETERS} times the largest diameter, and twice as far as discs \
                  feel each other"
             );
-            return Err(Error::value("periodic.x", found(), allowed));
+            return Err(Error::value(self.field, found(), allowed));
         }
-        if matches!(gravity, Gravity::Attraction { .. }) {
-            return Err(Error::value("periodic", "given", "left out where gravity is not uniform"));
-        }
+        Ok(())
+    }
+
+    fn check_shapes(self, boundaries: &[Boundary]) -> Result<()> {
         let fits = |shape: &Boundary| match shape {
-            Boundary::HalfSpace { normal, .. } | Boundary::Piston { normal, .. } => normal.x == 0.0,
+            Boundary::HalfSpace { normal, .. } | Boundary::Piston { normal, .. } => {
+                normal[self.axis] == 0.0
+            }
             Boundary::Segment { from, to } => [from, to].iter().all(|place| self.holds(**place)),
             Boundary::Polyline { points } | Boundary::ConvexPolygon { points } => {
                 points.iter().all(|place| self.holds(*place))
@@ -50,10 +96,11 @@ impl Periodic {
         };
         if let Some(index) = boundaries.iter().position(|shape| !fits(shape)) {
             let found = format!("a {} that does not go on across it", boundaries[index].word());
-            let allowed = "level, or between the borders of periodic.x";
+            let along = ["level", "upright"][self.axis];
+            let allowed = format!("{along}, or between the borders of {}", self.field);
             return Err(Error::value(format!("boundaries[{index}]"), found, allowed));
         }
-        self.check_motions(boundaries, motions)
+        Ok(())
     }
 
     fn check_motions(self, boundaries: &[Boundary], motions: &[Motion]) -> Result<()> {
@@ -63,17 +110,21 @@ impl Periodic {
                 let allowed = "left out or along a line where borders are periodic";
                 return Err(Error::value(field, "round a pivot", allowed));
             }
-            let stays_level = |&boundary: &usize| boundaries[boundary].is_half_space();
-            if motion.goes_along_x() && !motion.boundaries.iter().all(stays_level) {
-                let allowed = "along y for shapes with ends where borders are periodic: fixed discs and half-spaces \
-                               alone cross them";
-                return Err(Error::value(field, "along x", allowed));
+            let goes_on = |&boundary: &usize| boundaries[boundary].is_half_space();
+            if motion.goes_along(self.axis) && !motion.boundaries.iter().all(goes_on) {
+                let [along, across] = [["along x", "along y"], ["along y", "along x"]][self.axis];
+                let allowed = format!(
+                    "{across} for shapes with ends where borders are periodic: fixed discs and half-spaces alone \
+                     cross them"
+                );
+                return Err(Error::value(field, along, allowed));
             }
         }
         Ok(())
     }
 
     fn holds(self, place: DVec2) -> bool {
-        (self.x[0]..=self.x[1]).contains(&place.x)
+        let [low, high] = self.borders;
+        (low..=high).contains(&place[self.axis])
     }
 }

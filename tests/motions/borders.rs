@@ -15,7 +15,7 @@ fn measures_of_a_packing_do_not_depend_on_where_the_border_is() {
     take_steps(&mut run, 200);
     let state = |shift: f64| {
         let (mut moment, cell) = (run.moment(), run.world().periodic.expect("a cell"));
-        let by = shift * cell.width() * DVec2::X;
+        let by = shift * cell.periods()[0].expect("a width") * DVec2::X;
         moment.grains.iter_mut().for_each(|grain| grain.position = cell.wrap(grain.position + by));
         let around = std::sync::Arc::make_mut(&mut moment.surroundings);
         around
@@ -57,7 +57,7 @@ fn a_recording_says_where_the_borders_are_and_is_a_start() {
     recording.add(run.moment()).expect("a frame");
     recording.finish().expect("an end");
     let dump = std::fs::read_to_string(place.join("ovito/grains.dump")).expect("a dump");
-    let [left, right] = scene.periodic.expect("a cell").x;
+    let [left, right] = scene.periodic.expect("a cell").x.expect("borders");
     let bounds = format!("ITEM: BOX BOUNDS pp ss ss\n{left:?} {right:?}\n");
     assert!(dump.contains(&bounds), "{}", &dump[..2000.min(dump.len())]);
     let said = std::fs::read_to_string(place.join("data.json")).expect("a manifest");
@@ -74,7 +74,7 @@ fn a_wall_at_the_border_that_a_grain_goes_through_across_it_is_told_of() {
     let of = |boundaries: Vec<Boundary>| {
         let mut scene =
             scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-3, 0.0, 0.0), vec![grain.clone()]);
-        scene.periodic = Some(Periodic { x: [0.0, 1.0] });
+        scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
         scene.boundaries = boundaries;
         scene
     };
@@ -96,7 +96,7 @@ fn a_disc_hits_a_wall_beyond_the_border() {
         let grain = moving(DVec2::new(from, 0.0), 0.1, speed * DVec2::X);
         let mut scene =
             scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-3, 0.5, 0.0), vec![grain]);
-        scene.periodic = Some(Periodic { x: [0.0, 1.0] });
+        scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
         let ends = [-1.0, 1.0].map(|y| DVec2::new(wall, y));
         scene.boundaries = vec![Boundary::Segment { from: ends[0], to: ends[1] }];
         let mut run = start(&scene);
@@ -114,7 +114,7 @@ fn a_disc_rolls_over_a_floor_that_ends_at_the_borders_as_over_one_without_end() 
         let grain = moving(DVec2::new(0.9, 0.0999), 0.1, DVec2::X);
         let gravity = -9.8 * DVec2::Y;
         let mut scene = scene(Physics::FULL, gravity, parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
-        scene.periodic = Some(Periodic { x: [0.0, 1.0] });
+        scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
         scene.boundaries = vec![floor];
         let mut run = start(&scene);
         take_steps(&mut run, 400);
@@ -134,7 +134,7 @@ fn cells_that_cannot_be_are_refused_in_one_sentence() {
         let mut scene =
             scene(physics, -9.8 * DVec2::Y, parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
         (scene.boundaries, scene.motions) = (vec![boundary], motions);
-        scene.periodic = Some(Periodic { x });
+        scene.periodic = Some(Periodic::along_x(x));
         scene.simulation().map(|_| ()).expect_err("no such cell").to_string()
     };
     assert_eq!(
@@ -170,7 +170,7 @@ fn two_discs_in_one_place_across_the_border_are_refused() {
         vec![grain(0.99), grain(0.01)],
     );
     scene.simulation().expect("apart");
-    scene.periodic = Some(Periodic { x: [0.0, 1.0] });
+    scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
     let said = scene.simulation().map(|_| ()).expect_err("in one place").to_string();
     assert!(said.contains("from that of grains[0]"), "{said}");
 }

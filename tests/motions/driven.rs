@@ -43,7 +43,7 @@ pub(super) fn pressed(mass: f64) -> Scene {
     scene.boundaries = between(0.06);
     // What touches at the start touches in the first step.
     scene.gap_tolerance = 1e-8;
-    scene.periodic = Some(Periodic { x: [-0.025, 0.225] });
+    scene.periodic = Some(Periodic::along_x([-0.025, 0.225]));
     let pressure = Drive { force: None, pressure: Some(40.0), ..by_force(DVec2::NEG_Y, 0.0, mass) };
     scene.motions = vec![driven(&[1], pressure)];
     scene
@@ -185,7 +185,7 @@ fn sheared(mass: f64) -> Scene {
     scene.boundaries = vec![level()];
     scene.fixed_discs =
         (0..6).map(|k| fixed(DVec2::new(0.011 * f64::from(k), 0.046), 0.005)).collect();
-    scene.periodic = Some(Periodic { x: [-0.0055, 0.0605] });
+    scene.periodic = Some(Periodic::along_x([-0.0055, 0.0605]));
     let drive = Drive { damping: 0.2, ..by_force(DVec2::NEG_Y, 2.0, mass) };
     let course = Some(straight(0.1 * DVec2::X));
     scene.motions = vec![Motion {

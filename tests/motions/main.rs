@@ -12,6 +12,7 @@ mod driven;
 mod driven_on_springs;
 mod gravity;
 mod periodic;
+mod periodic_both;
 mod refusals;
 mod refused_drives;
 mod turning;

@@ -13,8 +13,8 @@ use slump::solver::Method;
 use slump::world::{Boundary, Grain, Motion, Periodic, Physics};
 
 /// The scene with a cell of this width whose left border is at `left`, and all discs moved by `shift`, m.
-fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Scene {
-    let cell = Periodic { x: [left, left + width] };
+pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Scene {
+    let cell = Periodic::along_x([left, left + width]);
     let mut scene = Scene { periodic: Some(cell), ..scene.clone() };
     let fixed = scene.fixed_discs.iter_mut().map(|disc| &mut disc.position);
     for place in scene.grains.iter_mut().map(|grain| &mut grain.position).chain(fixed) {
@@ -32,7 +32,7 @@ fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
 }
 
 /// A scene in which every grain comes to where no other solution leads, on discs and on the level, 16 d wide.
-fn at_rest_on_discs() -> (Scene, f64) {
+pub(super) fn at_rest_on_discs() -> (Scene, f64) {
     let mut scene = at_rest_and_falling();
     scene.boundaries = vec![level()];
     let below = |grain: &Grain| fixed(grain.position - (grain.radius + 0.02) * DVec2::Y, 0.02);
@@ -120,7 +120,7 @@ fn gas(small: f64) -> Scene {
     let ceiling = Boundary::HalfSpace { point: 0.1 * DVec2::Y, normal: DVec2::NEG_Y };
     scene.boundaries = vec![level(), ceiling];
     scene.mean_diameter = diameter;
-    scene.periodic = Some(Periodic { x: [0.0, 0.1] });
+    scene.periodic = Some(Periodic::along_x([0.0, 0.1]));
     scene
 }
 
@@ -202,7 +202,7 @@ pub(super) fn sliding(bond: f64) -> Scene {
     // Discs of the base touch one another, the last and the first across the border.
     let (left, count) = (scene.fixed_discs[0].position.x, scene.fixed_discs.len());
     let width = count as f64 * 2.0 * scene.fixed_discs[0].radius;
-    scene.periodic = Some(Periodic { x: [left, left + width] });
+    scene.periodic = Some(Periodic::along_x([left, left + width]));
     scene.motions = vec![Motion {
         fixed_discs: (0..count).collect(),
         course: Some(straight(0.4 * DVec2::X)),

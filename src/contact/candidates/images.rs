@@ -1,16 +1,21 @@
 //! Candidates across periodic borders.
 //!
-//! **Discs.** Those that lie near the left border are looked for once more beyond the right one, a period on. A pair is
-//! told by that of its images whose offset is the shortest, so no pair is told twice, however far the search looks.
+//! **Discs.** Those that lie near the left border are looked for once more beyond the right one, a period on, and so are
+//! those near the lower one, above, and those near its corners. A pair is told by that of its images whose offset is
+//! the shortest, so no pair is told twice, however far the search looks.
 //!
 //! **Shapes** with ends lie in the cell. A disc near a border may be nearest to an image of theirs, so the disc is tried
-//! where it is, a period to the left and a period to the right.
+//! where it is and a period to each side.
 
 use glam::DVec2;
 
 use crate::contact::broad_phase::BroadPhase;
 use crate::contact::features::Feature;
 use crate::world::{Periodic, World};
+
+/// The images of a disc that others are looked for around, in periods: half of those around the cell, since of a pair
+/// across a border either disc can be the one in the cell.
+const HALF_AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(-1.0, 1.0)];
 
 /// Calls `found` once with every pair of discs, by their numbers, whose nearest images are nearer to each other than
 /// their extents together: radii with skins, m. And with some others.
@@ -24,31 +29,47 @@ pub(super) fn pairs<const AXES: usize>(
     let reach = 2.0 * extents.clone().fold(0.0, f64::max);
     let mut places: Vec<DVec2> = centres.iter().map(|&centre| periodic.wrap(centre)).collect();
     let mut extents: Vec<f64> = extents.collect();
-    let mut disc_of: Vec<u32> = (0..count as u32).collect();
+    let size = DVec2::from(periodic.periods().map(|period| period.unwrap_or(0.0)));
+    // Which disc an image is of, and how many periods from it.
+    let mut images: Vec<(u32, DVec2)> = Vec::new();
     for disc in 0..count {
-        if places[disc].x < periodic.x[0] + reach {
-            disc_of.push(disc as u32);
-            places.push(places[disc] + DVec2::new(periodic.width(), 0.0));
+        let place = places[disc];
+        let is_near = |by: &DVec2| {
+            near_border(periodic.x, place.x, by.x, reach)
+                && near_border(periodic.y, place.y, by.y, reach)
+        };
+        for by in HALF_AROUND.into_iter().filter(is_near) {
+            images.push((disc as u32, by));
+            places.push(place + by * size);
             extents.push(extents[disc]);
         }
     }
     // A tree is kept for a number of discs that stays the same.
     broad_phase.forget_discs();
     broad_phase.pairs::<AXES>(&places, extents.iter().copied(), |first, second| {
-        let discs = [first, second].map(|place| disc_of[place as usize]);
-        let [from, to] = discs.map(|disc| places[disc as usize].x);
-        // Whole periods from the second disc to that image of it which the first is nearest to.
-        let periods = ((from - to) / periodic.width()).round();
-        let told_by = match [first, second].map(|place| place as usize >= count) {
-            [false, false] => 0.0,
-            [false, true] => 1.0,
-            [true, false] => -1.0,
-            [true, true] => return,
+        let image = |place: u32| (place as usize).checked_sub(count).map(|number| images[number]);
+        let (discs, told_by) = match (image(first), image(second)) {
+            (None, None) => ([first, second], DVec2::ZERO),
+            (None, Some((disc, by))) => ([first, disc], by),
+            (Some((disc, by)), None) => ([disc, second], -by),
+            (Some(_), Some(_)) => return,
         };
-        if periods == told_by && discs[0] != discs[1] {
+        let [from, to] = discs.map(|disc| places[disc as usize]);
+        // Whole periods from the second disc to that image of it which the first is nearest to.
+        if periodic.whole(from - to) == told_by && discs[0] != discs[1] {
             found(discs[0], discs[1]);
         }
     });
+}
+
+/// Whether a disc whose image is so many periods on, along an axis, is near enough to the border for that to show.
+fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> bool {
+    match borders {
+        _ if periods == 0.0 => true,
+        None => false,
+        Some([low, _]) if periods > 0.0 => at < low + reach,
+        Some([_, high]) => at >= high - reach,
+    }
 }
 
 /// Normal and distance of the nearest image of a feature, as [`Feature::distance`] has them.
@@ -60,7 +81,7 @@ pub(super) fn distance(
     if feature.is_half_space() {
         return feature.distance(centre);
     }
-    let distances = places(periodic, centre).into_iter().filter_map(|at| feature.distance(at));
+    let distances = places(periodic, centre).filter_map(|at| feature.distance(at));
     distances.min_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
@@ -69,15 +90,14 @@ pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DV
     match world.periodic {
         Some(periodic) if !feature.is_half_space() => {
             let distances = places(periodic, centre).map(|at| feature.distance_to_any_point(at));
-            distances.into_iter().fold(f64::INFINITY, f64::min)
+            distances.fold(f64::INFINITY, f64::min)
         }
         _ => feature.distance_to_any_point(centre),
     }
 }
 
-/// Where a disc is in the cell, and a period to either side.
-fn places(periodic: Periodic, centre: DVec2) -> [DVec2; 3] {
+/// Where a disc is in the cell, and a period to each side.
+fn places(periodic: Periodic, centre: DVec2) -> impl Iterator<Item = DVec2> {
     let centre = periodic.wrap(centre);
-    let period = DVec2::new(periodic.width(), 0.0);
-    [centre, centre - period, centre + period]
+    periodic.around().map(move |by| centre + by)
 }

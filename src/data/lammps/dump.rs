@@ -129,15 +129,16 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
     let observables = &moment.observables;
     let ([min, max], radius) = bounds(moment);
     // Periodic where the borders wrap, else as far as there is anything.
-    let along_x = if moment.surroundings.periodic.is_some() { "pp" } else { "ss" };
+    let periods = moment.surroundings.periodic.unwrap_or_default().periods();
+    let [along_x, along_y] = periods.map(|period| if period.is_some() { "pp" } else { "ss" });
     format!(
         "ITEM: TIME\n{:?}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF {label}\n{count}\n\
-         ITEM: BOX BOUNDS {along_x} ss ss\n{:?} {:?}\n{:?} {:?}\n{:?} {:?}\nITEM: {label}",
+         ITEM: BOX BOUNDS {along_x} {along_y} ss\n{:?} {:?}\n{:?} {:?}\n{:?} {:?}\nITEM: {label}",
         observables.time_secs, observables.step, min.x, max.x, min.y, max.y, -radius, radius
     )
 }
 
-/// What holds all discs that are not lost, along x the cell where there is one, and the largest radius, m.
+/// What holds all discs that are not lost, along an axis whose borders wrap the cell, and the largest radius, m.
 fn bounds(moment: &Moment) -> ([DVec2; 2], f64) {
     let grains = moment.grains.iter().filter(|grain| !grain.lost);
     let grains = grains.map(|grain| (grain.position, grain.radius));
@@ -150,9 +151,6 @@ fn bounds(moment: &Moment) -> ([DVec2; 2], f64) {
         corners = Some([min.min(low), max.max(high)]);
         largest = largest.max(radius);
     }
-    let [mut min, mut max] = corners.unwrap_or_default();
-    if let Some(periodic) = moment.surroundings.periodic {
-        [min.x, max.x] = periodic.x;
-    }
-    ([min, max], largest)
+    let periodic = moment.surroundings.periodic.unwrap_or_default();
+    (periodic.borders_or(corners.unwrap_or_default()), largest)
 }

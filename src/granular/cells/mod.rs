@@ -198,16 +198,21 @@ impl Bounds {
 
     fn area(&self) -> f64 {
         let size = self.high - self.low;
-        let width = self.periodic.map_or(size.x, Periodic::width);
-        if size.y < 0.0 { f64::NAN } else { width * size.y }
+        let [width, height] = self.periodic.unwrap_or_default().periods();
+        let area = width.unwrap_or(size.x) * height.unwrap_or(size.y);
+        if size.y < 0.0 { f64::NAN } else { area }
     }
 
     /// Its sides, seen from a point inside.
     fn cuts(&self, centre: DVec2) -> [Cut; 4] {
         let (mut above, mut below) = (self.high - centre, centre - self.low);
-        if let Some(periodic) = self.periodic {
-            // Farther than any cell reaches.
-            (above.x, below.x) = (2.0 * periodic.width(), 2.0 * periodic.width());
+        let [width, height] = self.periodic.unwrap_or_default().periods();
+        // Farther than any cell reaches.
+        if let Some(width) = width {
+            (above.x, below.x) = (2.0 * width, 2.0 * width);
+        }
+        if let Some(height) = height {
+            (above.y, below.y) = (2.0 * height, 2.0 * height);
         }
         [
             Cut { offset: above.x, direction: DVec2::X },

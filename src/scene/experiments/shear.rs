@@ -60,7 +60,7 @@ pub(crate) fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
         })
     };
     scene.fixed_discs = plate(0.0).chain(plate(top)).collect();
-    scene.periodic = Some(Periodic { x: [0.0, DIAMETER * f64::from(wide)] });
+    scene.periodic = Some(Periodic::along_x([0.0, DIAMETER * f64::from(wide)]));
     let of_grain = 0.25 * std::f64::consts::PI * DIAMETER * DIAMETER * scene.areal_density;
     let drive = Drive {
         direction: DVec2::NEG_Y,
