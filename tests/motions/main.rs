@@ -13,6 +13,7 @@ mod gravity;
 mod periodic;
 mod refusals;
 mod refused_drives;
+mod tilt;
 mod turning;
 mod views;
 
