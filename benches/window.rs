@@ -93,6 +93,7 @@ fn load(simulation: Simulation) -> Command {
             view,
             slumps: true,
             worlds: Vec::new(),
+            record: None,
         })
     }))
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Starts the real window under Xvfb, drags the slider of the time step with the mouse, and checks
 # through the state that the window exports that the drag reached the solver. Also: release, resize,
-# a state and data that are saved, a lost graphics device, closing, and the sentence that a missing display is told with.
+# a state, a session and data that are saved, a lost graphics device, closing, and the sentence that a missing display is told with.
 #
 #   tests/window.sh [FOLDER]        screenshots go to FOLDER (default target/window)
 #
@@ -102,6 +102,10 @@ at_secs=$(value "'%.4f' % s['time_secs']")
 xdotool mousemove $(at "Save state" 0.5) click 1
 wait_for "the state" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*-${at_secs}s.slump') != []"
 saved=$(echo "$work"/out/slump-pile-bond20-dt*-"${at_secs}"s.slump)
+xdotool mousemove $(at "Save session" 0.5) click 1
+wait_for "the session" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*-${at_secs}s.session') != []"
+session=$(echo "$work"/out/slump-pile-bond20-dt*-"${at_secs}"s.session)
+session_step=$(value "s['step']")
 xdotool mousemove $(at "Export data" 0.5) click 1
 wait_for "the data" "__import__('os').path.exists('$work/out/data/frames.csv')"
 sleep 1
@@ -203,4 +207,16 @@ window=$!
 wait_for "the station of the time before" "s['station'] == 3 and s['worlds'] == 2"
 xdotool mousemove $(at "leave tour" 0.5) click 1
 wait_for "the end of the tour" "s['station'] == 0"
+kill "$window"
+wait "$window" 2> /dev/null || true
+rm -f "$state"
+
+# A session opens at its moment, with its record.
+"$program" --session "$session" --export-state "$state" > "$work/log" 2>&1 &
+window=$!
+wait_for "the session's moment" "s['step'] == $session_step and s['station'] == 0"
+import -window root "$shots/window-session.png"
+xdotool search --name Slump windowfocus
+xdotool key Left
+wait_for "the step before" "s['step'] == $session_step - 1"
 echo "window.sh: Δt dragged to $dragged s reached the solver; screenshots in $shots"

@@ -39,6 +39,7 @@ class _Settings(TypedDict):
     cone: Literal["shifted", "compressive"]
     restitution_threshold: float
     debonding_distance: float
+    tilt: float
     stiffness: float
     damping_ratio: float
     substeps: int
@@ -66,6 +67,7 @@ class _Changes(TypedDict, total=False):
     cone: Literal["shifted", "compressive"] | None
     restitution_threshold: float | None
     debonding_distance: float | None
+    tilt: float | None
     stiffness: float | None
     damping_ratio: float | None
     substeps: int | None
@@ -93,6 +95,7 @@ class _Attributes:
     cone: Literal["shifted", "compressive"]
     restitution_threshold: float
     debonding_distance: float
+    tilt: float
     stiffness: float
     damping_ratio: float
     substeps: int

@@ -1,6 +1,7 @@
 //! Which part of the scene the window shows: the whole of it, until the user pans or zooms.
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use crate::render::{Camera, Style};
 
@@ -8,7 +9,7 @@ use crate::render::{Camera, Style};
 const ZOOM_LIMITS: [f64; 2] = [1e-3, 30.0];
 
 /// The view of all worlds of a window.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneCamera {
     framed: bool,
     centre: DVec2,

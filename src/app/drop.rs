@@ -5,6 +5,7 @@ use std::path::Path;
 use egui::Context;
 
 use super::export::STATE_ENDING;
+use super::session::SESSION_ENDING;
 use super::state::AppState;
 use crate::scene::{Config, Origin};
 
@@ -19,7 +20,7 @@ pub(super) fn take_files(context: &Context, state: &mut AppState) {
         None => {
             let name = path.display();
             state.warn(format!(
-                "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING})"
+                "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING}) nor a session (.{SESSION_ENDING})"
             ));
         }
     }
@@ -30,7 +31,7 @@ pub(super) fn take_files(context: &Context, state: &mut AppState) {
 enum Asked {
     /// A start.
     Scene(Box<Config>),
-    /// To go on with what is in the file.
+    /// To go on with what is in the file, a saved run or a session.
     SavedRun,
 }
 
@@ -43,7 +44,7 @@ fn asked(path: &Path) -> Option<Asked> {
             let origin = Origin { initial: Some(path.to_owned()), ..Origin::default() };
             Some(Asked::Scene(Box::new(Config { origin, ..Config::default() })))
         }
-        STATE_ENDING => Some(Asked::SavedRun),
+        STATE_ENDING | SESSION_ENDING => Some(Asked::SavedRun),
         _ => None,
     }
 }

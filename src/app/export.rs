@@ -16,6 +16,7 @@ use crate::world::Parameters;
 
 use super::number::written;
 use super::plot_picture::{PlotPicture, PlotPrinter};
+use super::session::{SESSION_ENDING, SessionOrder, write_session};
 use super::taken::TakenRun;
 
 /// A file to be written.
@@ -28,6 +29,8 @@ pub(crate) enum Export {
     Plots(Box<PlotPicture>, Texts),
     /// A run that is on its way, to be gone on with.
     State(Receiver<TakenRun>),
+    /// All worlds with their record, and the window.
+    Session(Box<SessionOrder>),
 }
 
 /// A picture of the worlds, as they are seen side by side.
@@ -80,6 +83,7 @@ impl Export {
             Self::Curves(..) => "csv",
             Self::Scene(_) | Self::Plots(..) => "png",
             Self::State(_) => STATE_ENDING,
+            Self::Session(_) => SESSION_ENDING,
         }
     }
 }
@@ -179,6 +183,7 @@ fn write(
             write_png(&path, &image, texts)?;
         }
         Export::State(run) => return write_state(&job.folder, run),
+        Export::Session(order) => write_session(&path, order)?,
     }
     Ok(path)
 }

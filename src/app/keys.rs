@@ -1,7 +1,8 @@
 //! Keys that act wherever the mouse is, unless a control takes them.
 
-use egui::{Context, Key, KeyboardShortcut, Modifiers};
+use egui::{Context, Event, Key, KeyboardShortcut, Modifiers};
 
+use super::link::LINK_START;
 use super::panels::picture;
 use super::state::AppState;
 
@@ -25,6 +26,11 @@ pub(super) fn act(context: &Context, state: &mut AppState) {
     if context.input_mut(|input| input.consume_shortcut(&undo)) {
         state.undo();
     }
+    let save = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
+    if context.input_mut(|input| input.consume_shortcut(&save)) {
+        state.save_session(context);
+    }
+    take_link(context, state);
     let pressed = |key: Key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     if pressed(Key::Space) {
         state.toggle_play();
@@ -46,5 +52,20 @@ pub(super) fn act(context: &Context, state: &mut AppState) {
     }
     if pressed(Key::H) {
         state.help = !state.help;
+    }
+}
+
+/// Opens a link that is pasted where no field takes it.
+fn take_link(context: &Context, state: &mut AppState) {
+    let pasted = context.input(|input| {
+        input.events.iter().rev().find_map(|event| match event {
+            Event::Paste(text) => Some(text.clone()),
+            _ => None,
+        })
+    });
+    if let Some(text) = pasted.filter(|text| text.trim_start().starts_with(LINK_START))
+        && let Err(refusal) = state.open_link(&text)
+    {
+        state.warn(refusal.to_string());
     }
 }

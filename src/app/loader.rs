@@ -1,15 +1,19 @@
 //! From what a user asks for to a start that the solver's thread makes.
 
 use std::path::PathBuf;
+use std::sync::mpsc::Sender;
 
 use glam::DVec2;
 
 use super::effort;
+use super::link::Link;
+use super::session::{Arrangement, Session};
 use super::taken::{LastOpened, Opened};
 use super::tour::Station;
+use crate::error::Result;
 use crate::scene::{Config, SavedState, Scene};
 use crate::sim::Tally;
-use crate::sim::live::{Loader, Progress, Start};
+use crate::sim::live::{Loader, Progress, Record, Start};
 use crate::world::{Boundary, Gravity};
 
 /// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
@@ -20,23 +24,28 @@ const WALL_HEIGHTS: f64 = 1.1;
 /// Makes the start of `config` on the thread that calls it.
 pub(crate) fn loader(config: Config, last: LastOpened) -> Loader {
     Box::new(move |tell| {
-        let mut part = 0f64;
-        let mut scene = config.scene(|settling| {
-            // Rain falls for a quarter of the limit at most; then the slowing down tells how far it
-            // has come.
-            let rained = 4.0 * settling.time_secs / settling.limit_secs;
-            let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
-            part = part.max(0.5 * rained.min(1.0) + 0.5 * slowed.clamp(0.0, 1.0) * rained.min(1.0));
-            let text = format!(
-                "Settling a new pile: t = {:.2} s, fastest grain {:.0} × rest",
-                settling.time_secs, settling.speed_over_rest
-            );
-            tell(Progress { part: part as f32, text })
-        })?;
+        let mut scene = settled(&config, tell)?;
         effort::complete(&mut scene, &config.solver);
         let start = start(&scene)?;
         last.note(Opened { scene, config });
         Ok(start)
+    })
+}
+
+/// The scene, with progress told where a new pile has to settle first.
+fn settled(config: &Config, tell: &mut dyn FnMut(Progress) -> bool) -> Result<Scene> {
+    let mut part = 0f64;
+    config.scene(|settling| {
+        // Rain falls for a quarter of the limit at most; then the slowing down tells how far it
+        // has come.
+        let rained = 4.0 * settling.time_secs / settling.limit_secs;
+        let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
+        part = part.max(0.5 * rained.min(1.0) + 0.5 * slowed.clamp(0.0, 1.0) * rained.min(1.0));
+        let text = format!(
+            "Settling a new pile: t = {:.2} s, fastest grain {:.0} × rest",
+            settling.time_secs, settling.speed_over_rest
+        );
+        tell(Progress { part: part as f32, text })
     })
 }
 
@@ -51,6 +60,29 @@ pub(crate) fn loader_of_station(station: &'static Station, last: LastOpened) -> 
         last.note(Opened { scene, config });
         Ok(start)
     })
+}
+
+/// Makes the start of a link, with what its worlds have come to. Settings are those that it says, whatever the
+/// window would choose.
+pub(crate) fn loader_of_link(link: Link, last: LastOpened) -> Loader {
+    Box::new(move |tell| {
+        let config = link.config();
+        let scene = settled(&config, tell)?;
+        let start = start(&scene)?;
+        let plans = link.plans(&scene.settings());
+        let record = Record::computed((&start.simulation, start.tally), &plans, tell)?;
+        last.note(Opened { scene, config });
+        Ok(Start { record: Some(record), ..start })
+    })
+}
+
+/// Makes a start of a session, and hands on how its window was arranged.
+pub(crate) fn loader_of_session(
+    session: impl FnOnce() -> Result<Session> + Send + 'static,
+    last: LastOpened,
+    window: Sender<Arrangement>,
+) -> Loader {
+    Box::new(move |_| Ok(session()?.begin(&last, &window)))
 }
 
 /// Makes a start of a saved run, which goes on in time.
@@ -75,13 +107,14 @@ fn start_of_run(state: SavedState, last: &LastOpened) -> Start {
         view: [view.min, view.max],
         slumps: slumps(&scene),
         worlds: Vec::new(),
+        record: None,
     };
     let config = Config::of_scene(&scene.name);
     last.note(Opened { scene, config });
     start
 }
 
-fn start(scene: &Scene) -> crate::error::Result<Start> {
+fn start(scene: &Scene) -> Result<Start> {
     let view = scene.view();
     Ok(Start {
         name: scene.name.clone(),
@@ -92,6 +125,7 @@ fn start(scene: &Scene) -> crate::error::Result<Start> {
         view: [view.min, view.max],
         slumps: slumps(scene),
         worlds: Vec::new(),
+        record: None,
     })
 }
 

@@ -9,16 +9,19 @@ use egui::Rect;
 use super::camera::SceneCamera;
 use super::data_desk::DataDesk;
 use super::data_export::DataExport;
-use super::export::{Export, Exporter, STATE_ENDING};
-use super::loader::{loader, loader_of_file, loader_of_run};
+use super::export::{Exporter, STATE_ENDING};
+use super::link::Linking;
+use super::loader::loader;
 use super::notice::Notice;
 use super::other_piles::OtherPiles;
 use super::preferences::Preferences;
 use super::scene_legend::LegendCache;
+use super::session::{Arrangement, SESSION_ENDING};
 use super::spread::Spread;
 use super::step_race::StepRace;
 use super::taken::{LastOpened, TakenRun};
-use crate::scene::{Config, SavedState};
+use super::validation::Validation;
+use crate::scene::Config;
 use crate::sim::Settings;
 use crate::sim::live::{Command, Controls, Frame, Live, WorldFrame};
 
@@ -61,6 +64,10 @@ pub struct AppState {
     pub(crate) exporter: Exporter,
     /// What is being done about data and saved runs.
     pub(crate) data: DataDesk,
+    /// What was found of published experiments.
+    pub(super) validation: Validation,
+    /// The file of another such report, as it is typed.
+    pub(crate) report: String,
     /// What the present settings make of other piles.
     pub other_piles: OtherPiles,
     /// How forces and the like are distributed.
@@ -75,6 +82,12 @@ pub struct AppState {
     pub(crate) restart_graphics: bool,
     pub(super) legend: LegendCache,
     pub(super) last_opened: LastOpened,
+    /// Links that are to be copied.
+    pub(super) linking: Option<Linking>,
+    /// How the panels lay when a session was saved.
+    pub(super) layout: Option<egui::Memory>,
+    /// The window of a session that is being opened.
+    pub(super) arriving: Option<Receiver<Arrangement>>,
     notice: Option<Notice>,
     seen_start: u64,
     seen_refusal: Option<std::sync::Arc<str>>,
@@ -105,6 +118,8 @@ impl AppState {
             help: false,
             exporter: Exporter::default(),
             data: DataDesk::default(),
+            validation: Validation::of_last_run(),
+            report: String::new(),
             other_piles: OtherPiles::new(),
             race: None,
             spread: Spread::default(),
@@ -113,6 +128,9 @@ impl AppState {
             restart_graphics: false,
             legend: LegendCache::default(),
             last_opened: LastOpened::default(),
+            linking: None,
+            layout: None,
+            arriving: None,
             notice: None,
             seen_start: 0,
             seen_refusal: None,
@@ -128,27 +146,6 @@ impl AppState {
         self.leave_tour();
         self.config = config.clone();
         self.live.send(Command::Load(loader(config, self.last_opened.clone())));
-    }
-
-    /// Opens a saved run, to go on with it.
-    pub fn load_run(&mut self, state: SavedState) {
-        self.leave_tour();
-        self.live.send(Command::Load(loader_of_run(state, self.last_opened.clone())));
-    }
-
-    /// Opens the file of a saved run, to go on with it.
-    pub fn load_saved(&mut self, path: &Path) {
-        self.leave_tour();
-        self.data.saved_run = path.display().to_string();
-        let loader = loader_of_file(path.to_owned(), self.last_opened.clone());
-        self.live.send(Command::Load(loader));
-    }
-
-    /// Saves the moment that the selected world has come to.
-    pub(crate) fn save_state(&mut self, context: &egui::Context) {
-        let run = self.take_run();
-        let folder = self.preferences.folder.clone();
-        self.exporter.submit(context, Export::State(run), &folder, "");
     }
 
     /// Whether a file or a recording is being written.
@@ -173,6 +170,10 @@ impl AppState {
             self.race = None;
             if let Some(opened) = self.last_opened.get() {
                 self.config.clone_from(&opened.config);
+            }
+            let arrangement = self.arriving.as_ref().and_then(|window| window.try_recv().ok());
+            if let Some(arrangement) = arrangement {
+                self.arrange(arrangement);
             }
         }
         if self.frame.refusal != self.seen_refusal {
@@ -216,7 +217,8 @@ impl AppState {
 
     /// A run that was just saved is the one that is likely to be opened.
     fn note_saved_run(&mut self, path: &Path) {
-        if path.extension().is_some_and(|ending| ending == STATE_ENDING) {
+        let is = |ending: &str| path.extension().is_some_and(|found| found == ending);
+        if is(STATE_ENDING) || is(SESSION_ENDING) {
             self.data.saved_run = path.display().to_string();
         }
     }
@@ -252,6 +254,11 @@ impl AppState {
     /// Says something in the status bar for a while.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         self.say(text.into(), true);
+    }
+
+    /// The same of what went well.
+    pub(crate) fn tell(&mut self, text: impl Into<String>) {
+        self.say(text.into(), false);
     }
 
     fn say(&mut self, text: String, failure: bool) {

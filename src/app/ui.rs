@@ -16,6 +16,8 @@ const PLOTS: f32 = 176.0;
 pub fn ui(ui: &mut Ui, state: &mut AppState) {
     state.refresh();
     let context = ui.ctx().clone();
+    state.restore_layout(&context);
+    state.follow_link(&context);
     if context.options(|options| options.theme_preference) != state.preferences.theme {
         context.set_theme(state.preferences.theme);
     }

@@ -10,6 +10,7 @@ mod lock;
 pub(crate) mod number;
 mod png;
 mod progress;
+mod seal;
 mod signals;
 mod target;
 mod texts;
@@ -24,5 +25,6 @@ pub(crate) use lines::{lost_stdout, note_line, note_printed, print_line, print_t
 pub(crate) use lock::{FolderLock, Locked};
 pub(crate) use png::{png_of_rgb, write_png};
 pub(crate) use progress::{Progress, warn_of_steps};
+pub(crate) use seal::Seal;
 pub(crate) use signals::{Signal, caught_signal, heed_signals};
 pub(crate) use texts::Texts;

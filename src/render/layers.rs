@@ -8,6 +8,7 @@ use super::boundaries::boundary_links;
 use super::colour_scale::ColourScale;
 use super::font::TextStyle;
 use super::forces::force_links;
+use super::motions::motion_links;
 use super::scale_bar::ScaleBar;
 use super::{Camera, Colour, DiscInstance, LinkInstance, Palette, Picture, Style};
 use crate::sim::{GrainView, Snapshot};
@@ -57,6 +58,9 @@ pub(crate) fn scene_picture(
     }
     if style.show_velocities {
         picture.push_links(velocity_links(snapshot, style, palette.ink, camera, width, height));
+    }
+    if style.show_motions {
+        picture.push_links(motion_links(surroundings, &palette, camera, [width, height], text_px));
     }
     if let Some(centre) = surroundings.centre_of_attraction {
         // The ring keeps the dot visible on a grain of its own colour.

@@ -27,6 +27,7 @@ mod forces;
 mod layers;
 mod legend;
 mod link;
+mod motions;
 #[cfg(not(feature = "gpu"))]
 mod no_gpu;
 pub(crate) mod numbers;

@@ -45,6 +45,7 @@ fn row_of_grains(at: DVec2) -> Snapshot {
             periodic: None,
             mean_diameter: 1.0,
             gravity_magnitude: 9.8,
+            moving: Vec::new(),
         }),
     }
 }

@@ -70,6 +70,8 @@ pub struct Style {
     /// The speed that is drawn at full length, m/s; a round number above the fastest grain's if
     /// absent.
     pub speed_reference: Option<f64>,
+    /// Whether arrows show how walls and fixed discs move, and what drives them.
+    pub show_motions: bool,
     /// Whether grains have an outline.
     pub outlines: bool,
     /// Whether a mark on each grain shows its angle.
@@ -91,6 +93,7 @@ impl Default for Style {
             force_reference: None,
             show_velocities: false,
             speed_reference: None,
+            show_motions: true,
             outlines: true,
             angles: false,
             scale_bar: true,

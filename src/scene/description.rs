@@ -217,6 +217,7 @@ impl Scene {
         let bodies = (&*self.boundaries, self.fixed_discs.len());
         check_motions(&self.motions, bodies, self.physics.axes, self.periodic)?;
         self.settings().check_drives(&self.motions)?;
+        self.settings().check_tilt(&self.gravity, self.physics)?;
         let Some(periodic) = self.periodic else { return Ok(()) };
         let radii = self.grains.iter().map(|grain| grain.radius);
         let radii = radii.chain(self.fixed_discs.iter().map(|disc| disc.radius));

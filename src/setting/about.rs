@@ -30,6 +30,8 @@ pub enum Needs {
     Friction,
     /// Cohesion.
     Cohesion,
+    /// Uniform gravity in the plane, which has a direction.
+    Direction,
 }
 
 /// How the window shows a setting.

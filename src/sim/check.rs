@@ -9,7 +9,7 @@ use crate::contact::{Reach, check_distances};
 use crate::error::{Error, Result};
 use crate::setting::Group;
 use crate::solver::{Fallback, FrictionModel, METHODS};
-use crate::world::{FrictionCone, Motion, World};
+use crate::world::{FrictionCone, Gravity, Motion, Physics, World};
 
 /// The diameter that lengths are measured in is at most this many radii of the largest grain: the
 /// skin goes with it, and all that lie within the skin are candidates.
@@ -87,6 +87,23 @@ impl Settings {
             return Err(Error::value("cone", cone, allowed));
         }
         Ok(())
+    }
+
+    /// Whether there is a gravity that can be tilted, if it is.
+    ///
+    /// # Errors
+    /// Names what has none.
+    pub(crate) fn check_tilt(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
+        let refuse = |of: &str| {
+            let allowed = format!("left out or 0 where {of}");
+            Err(Error::value("tilt", self.parameters.tilt, allowed))
+        };
+        match gravity {
+            _ if self.parameters.tilt == 0.0 => Ok(()),
+            Gravity::Attraction { .. } => refuse("gravity is not uniform"),
+            Gravity::Uniform { .. } if physics.axes == 1 => refuse("physics.axes is 1"),
+            Gravity::Uniform { .. } => Ok(()),
+        }
     }
 
     /// Whether there is a way to move walls that a force drives, if any of the motions is one.

@@ -12,7 +12,7 @@ use parry2d_f64::shape::Segment;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Feature;
-use crate::world::{Gravity, Physics, World};
+use crate::world::{Physics, World};
 
 /// How far the world reaches beyond the box of all that was there at the start, in sides of the box.
 const ROOM_IN_SIDES: f64 = 3.0;
@@ -177,13 +177,9 @@ impl Edges {
         let [low, high] = periodic.borders_or([min, max]);
         let (min, max) = (min.min(low), max.max(high));
         let side = (max - min).max_element() + world.mean_diameter;
-        let down = match world.gravity {
-            // What turns has no bottom, and neither has what wraps.
-            Gravity::Uniform { acceleration } if world.gravity_turn.is_none() => {
-                (acceleration * (1.0 - periodic.axes())).normalize_or_zero()
-            }
-            Gravity::Uniform { .. } | Gravity::Attraction { .. } => DVec2::ZERO,
-        };
+        // What turns has no bottom, and neither has what wraps.
+        let down = world.listed_down().unwrap_or(DVec2::ZERO);
+        let down = (down * (1.0 - periodic.axes())).normalize_or_zero();
         let lowest = all().map(|place| place.dot(down)).fold(f64::NEG_INFINITY, f64::max);
         Self {
             corners: Some([min - ROOM_IN_SIDES * side, max + ROOM_IN_SIDES * side]),

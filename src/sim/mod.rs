@@ -32,7 +32,7 @@ pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};
 pub use run::RunEnding;
 pub use settings::Settings;
 pub use simulation::Simulation;
-pub use snapshot::{ContactView, GrainView, Snapshot, Surroundings};
+pub use snapshot::{ContactView, GrainView, MotionView, Snapshot, Surroundings};
 pub use steppers::{FractureWork, SpringDashpot, Stepper, StepperInfo};
 pub use stepping::{Advance, BondEnergies, Outcome, Stage};
 pub use tally::Tally;

@@ -56,9 +56,11 @@ impl Simulation {
         settings.validate()?;
         world.validate(physics)?;
         settings.check_drives(&world.motions)?;
+        settings.check_tilt(&world.gravity, physics)?;
         world.wrap();
+        world.tilt(settings.parameters.tilt.to_radians());
         let candidates = Candidates::new(&world, reach_in(&world, gap_tolerance)?)?;
-        let surroundings = Arc::new(Surroundings::of(&world));
+        let surroundings = Arc::new(Surroundings::of(&world, settings.parameters.time_step_secs));
         let mut simulation = Self {
             initial_heights: world.grains.positions.iter().map(|position| position.y).sum(),
             watch: Watch::new(&world, candidates.features(), physics),
@@ -217,6 +219,8 @@ impl Simulation {
     pub fn change(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
         settings.check_drives(&self.state.world.motions)?;
+        settings.check_tilt(&self.state.world.gravity, self.state.physics)?;
+        self.state.world.tilt(settings.parameters.tilt.to_radians());
         if settings.parameters.time_step_secs != self.settings.parameters.time_step_secs {
             self.steady = Steady::since(&self.observables);
         }

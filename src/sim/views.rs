@@ -62,7 +62,7 @@ impl Simulation {
         if !self.state.world.has_motion() {
             return Arc::clone(&self.surroundings);
         }
-        Arc::new(Surroundings::of(&self.state.world))
+        Arc::new(Surroundings::of(&self.state.world, self.parameters().time_step_secs))
     }
 
     /// Centre of another disc, or the nearest point of another shape, m: of the nearest image of either.

@@ -46,6 +46,8 @@ pub struct TurningGravity {
     pub listed: DVec2,
     /// How it turns from there.
     pub turn: GravityTurn,
+    /// By which angle it is turned besides, as long as it is not changed, rad.
+    pub tilt: f64,
 }
 
 impl TurningGravity {
@@ -53,7 +55,7 @@ impl TurningGravity {
     pub(crate) fn of(gravity: Gravity, turn: Option<&GravityTurn>) -> Option<Self> {
         match gravity {
             Gravity::Uniform { acceleration } => {
-                turn.map(|turn| Self { listed: acceleration, turn: turn.clone() })
+                turn.map(|turn| Self { listed: acceleration, turn: turn.clone(), tilt: 0.0 })
             }
             Gravity::Attraction { .. } => None,
         }
@@ -61,12 +63,21 @@ impl TurningGravity {
 
     /// The gravity of the next `secs`: that of the middle of them, so that a step's impulse of it errs by Δt³.
     pub(crate) fn in_next(&self, secs: f64) -> Gravity {
-        let angle = self.turn.angle(self.turn.elapsed_secs + 0.5 * secs);
+        let angle = self.turn.angle(self.turn.elapsed_secs + 0.5 * secs) + self.tilt;
         Gravity::Uniform { acceleration: DVec2::from_angle(angle).rotate(self.listed) }
     }
 }
 
 impl GravityTurn {
+    /// By no angle at any time.
+    pub(super) const NONE: Self =
+        Self { course: TurnCourse::Rate { rate: 0.0 }, elapsed_secs: 0.0 };
+
+    /// Whether it turns nothing.
+    pub(crate) fn is_none(&self) -> bool {
+        self.course == Self::NONE.course
+    }
+
     fn angle(&self, time: f64) -> f64 {
         match &self.course {
             TurnCourse::Rate { rate } => rate * time,

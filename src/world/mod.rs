@@ -12,6 +12,7 @@ mod parameters;
 mod periodic;
 mod periodic_check;
 mod physics;
+mod tilt;
 
 pub use boundary::{Boundary, Disc, Edge};
 pub(crate) use carry::{Carry, RigidVelocity};

@@ -134,6 +134,25 @@ settings! {
                 logarithmic: true,
             }),
         }
+        /// By which angle uniform gravity is turned against how the scene has it, degrees, positive anticlockwise.
+        #[serde(default, skip_serializing_if = "is_none_given")]
+        tilt: f64 = 0.0, {
+            name: "tilt",
+            value_name: "DEGREES",
+            help: "Angle by which gravity is turned against how the scene has it, degrees: above 0 towards the right \
+                   where it points down",
+            allowed: "between -180 and 180 degrees",
+            holds: |value| (-180.0..=180.0).contains(&value),
+            needs: Needs::Direction,
+            control: Some(Control {
+                label: "Tilt",
+                symbol: "tilt",
+                unit: "°",
+                hint: "Turns gravity, as if all that is fixed were tilted the other way: above 0 to the right.",
+                range: [-45.0, 45.0],
+                ..Control::PLAIN
+            }),
+        }
         /// k of the stepper `dem`, N/m; 0 leaves it to the stepper, which takes it from the weight of the pile.
         #[serde(default, skip_serializing_if = "is_none_given")]
         stiffness: f64 = 0.0, {

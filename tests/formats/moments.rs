@@ -54,6 +54,7 @@ pub fn moment(step: u64) -> Moment {
         periodic: None,
         mean_diameter: 1.0,
         gravity_magnitude: 9.8,
+        moving: Vec::new(),
     };
     Moment {
         observables: Observables { step, time_secs: step as f64 * 0.1, ..Observables::default() },

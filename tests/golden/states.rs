@@ -62,6 +62,7 @@ pub fn pile() -> Snapshot {
             periodic: None,
             mean_diameter: D,
             gravity_magnitude: 9.8,
+            moving: Vec::new(),
         }),
     }
 }
@@ -133,6 +134,7 @@ pub fn cradle() -> Snapshot {
             periodic: None,
             mean_diameter: 2.0 * radius,
             gravity_magnitude: 2.0,
+            moving: Vec::new(),
         }),
     }
 }

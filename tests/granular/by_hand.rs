@@ -38,6 +38,7 @@ pub fn discs(grains: Vec<GrainState>) -> Moment {
             periodic: None,
             mean_diameter,
             gravity_magnitude: 9.8,
+            moving: Vec::new(),
         }),
     }
 }
@@ -53,6 +54,7 @@ pub fn among(mut moment: Moment, boundaries: Vec<Boundary>, fixed_discs: Vec<Dis
         periodic: None,
         mean_diameter,
         gravity_magnitude,
+        moving: Vec::new(),
     });
     moment
 }

@@ -98,6 +98,7 @@ fn mapped(
         periodic: None,
         mean_diameter,
         gravity_magnitude,
+        moving: Vec::new(),
     });
     mapped
 }

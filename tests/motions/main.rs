@@ -15,6 +15,7 @@ mod periodic;
 mod periodic_both;
 mod refusals;
 mod refused_drives;
+mod tilt;
 mod turning;
 mod views;
 

@@ -3,7 +3,7 @@
 use egui_kittest::kittest::Queryable;
 use slump::scene::Config;
 
-use crate::robot::{File, Robot, pile};
+use crate::robot::{File, Robot, bits, pile};
 
 #[test]
 fn a_slider_changes_the_time_step_of_the_next_snapshot() {
@@ -173,4 +173,59 @@ fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
     robot.settle();
     assert!(robot.world().failure.is_none());
     assert_eq!(robot.steps(), 1);
+}
+
+#[test]
+fn gravity_is_tilted_while_the_pile_runs_and_the_record_knows() {
+    let mut robot = Robot::open(pile());
+    let step = |robot: &mut Robot, steps: u64| {
+        (0..steps).for_each(|_| robot.state_mut().step());
+        robot.settle();
+    };
+    step(&mut robot, 5);
+    robot.type_number("Tilt", "25");
+    let g = robot.world().gravity.expect("uniform gravity");
+    assert!((g.x / g.length() - 25f64.to_radians().sin()).abs() < 1e-12, "{g}");
+    step(&mut robot, 40);
+    let (end, end_secs) = (bits(robot.world()), robot.state().frame.time_secs());
+    let mean_x = |robot: &Robot| {
+        let grains = &robot.world().snapshot.grains;
+        grains.iter().map(|grain| grain.velocity.x).sum::<f64>() / grains.len() as f64
+    };
+    assert!(mean_x(&robot) > 0.0, "the pile slides to the right");
+    for secs in [0.002, end_secs] {
+        robot.state_mut().live.send(slump::sim::live::Command::Seek(secs));
+        robot.settle();
+    }
+    assert_eq!(bits(robot.world()), end);
+    assert!(robot.state().command_line().expect("a command line").contains("--tilt 25"));
+    // Where gravity pulls to a point, there is nothing to tilt.
+    let cradle = Robot::open(Config::of_scene("cradle"));
+    assert!(cradle.harness.query_by_label("Tilt slider").is_none());
+}
+
+#[test]
+fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
+    let mut robot = Robot::open(pile());
+    robot.click("Physics");
+    assert!(robot.harness.query_by_label_contains("rain takes some").is_none());
+    let grains = |robot: &mut Robot, count: &str| {
+        robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Grains").focus();
+        (0..3).for_each(|_| robot.harness.step());
+        robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        robot.harness.event(egui::Event::Text(count.to_owned()));
+        robot.harness.step();
+        robot.harness.key_press(egui::Key::Enter);
+        (0..3).for_each(|_| robot.harness.step());
+    };
+    grains(&mut robot, "2500");
+    assert!(robot.harness.query_by_label_contains("2500 grains: rain takes some 3 min").is_some());
+    grains(&mut robot, "600");
+    robot.click("Roll");
+    robot.click("New pile");
+    robot.until("the pile", |state| {
+        state.world().is_some_and(|world| world.snapshot.grains.len() == 600)
+    });
+    let line = robot.state().command_line().expect("a command line");
+    assert!(line.contains("--grains 600") && line.contains("--deposition drop-and-roll"), "{line}");
 }

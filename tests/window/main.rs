@@ -22,8 +22,10 @@ mod recording;
 mod recordings;
 mod robot;
 mod saved;
+mod sessions;
 mod speed;
 mod tour;
+mod validation;
 
 #[path = "../data/tables.rs"]
 #[allow(dead_code, reason = "tests of recordings use more of it")]

@@ -1,6 +1,6 @@
 //! The recording gives back what was computed, bit for bit.
 
-use slump::sim::live::{Command, Live, LiveOptions, Start};
+use slump::sim::live::{Command, Live, LiveOptions, Pace, Start};
 use slump::sim::{Pull, Tally};
 use slump::sim::{Settings, Stepper};
 
@@ -155,6 +155,7 @@ fn little_memory_is_enough_to_get_anywhere() {
             view: [glam::DVec2::ZERO, glam::DVec2::ONE],
             slumps: true,
             worlds: Vec::new(),
+            record: None,
         })
     })));
     for _ in 0..200 {
@@ -197,4 +198,90 @@ fn stepping_schemes_and_a_pull_are_played_back_bitwise() {
         robot.settle();
         assert_eq!(bits(robot.world()), uninterrupted, "from {time_secs} s on");
     }
+}
+
+#[test]
+fn play_shows_stored_moments_and_computes_where_they_end() {
+    let mut robot = Robot::open(pile());
+    let steps = 60;
+    let mut recorded = vec![bits(robot.world())];
+    for step in 1..=steps {
+        if step == 30 {
+            robot.type_number("Bond", "80");
+        }
+        robot.key(egui::Key::ArrowRight);
+        recorded.push(bits(robot.world()));
+    }
+    let at = |robot: &Robot| robot.steps() as usize;
+    robot.state_mut().live.send(Command::Seek(0.0));
+    robot.settle();
+    // Slowly, so that there is time to look.
+    robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.02)));
+    robot.state_mut().live.send(Command::Play);
+    robot.until("stored moments", |state| {
+        state.frame.stored && state.world().expect("a world").snapshot.observables.step >= 5
+    });
+    let shown = at(&robot);
+    assert_eq!(bits(robot.world()), recorded[shown]);
+    assert!(robot.state().frame.playing && robot.state().frame.replaying);
+    // Stopped on the way, that moment is there to go on from.
+    robot.key(egui::Key::Space);
+    let stopped = at(&robot);
+    assert!(!robot.state().frame.stored && (shown..30).contains(&stopped), "step {stopped}");
+    assert_eq!(bits(robot.world()), recorded[stopped]);
+    robot.key(egui::Key::ArrowRight);
+    assert_eq!(bits(robot.world()), recorded[stopped + 1]);
+
+    // Played again, a change branches off at the moment that is shown.
+    robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.5)));
+    robot.state_mut().live.send(Command::Play);
+    robot.until("its end, and more", |state| {
+        state.world().expect("a world").snapshot.observables.step > steps as u64 + 3
+    });
+    robot.key(egui::Key::Space);
+    assert!(robot.state().frame.past.is_empty(), "a replay is no branch");
+    robot.state_mut().live.send(Command::Seek(0.06));
+    robot.settle();
+    assert_eq!(bits(robot.world()), recorded[steps]);
+    robot.state_mut().live.send(Command::Seek(0.01));
+    robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.02)));
+    robot.state_mut().live.send(Command::Play);
+    robot.until("stored moments", |state| state.frame.stored);
+    let mut settings = robot.world().controls.settings;
+    settings.parameters.bond = 5.0;
+    robot.state_mut().change(0, settings);
+    robot.settle();
+    assert_eq!(robot.world().controls.settings.parameters.bond, 5.0);
+    robot.until("a branch", |state| !state.frame.past.is_empty());
+    assert!(!robot.state().frame.stored);
+}
+
+#[test]
+fn runs_have_the_names_that_they_are_given() {
+    let mut robot = Robot::open(pile());
+    let steps = |robot: &mut Robot, count: u32| {
+        (0..count).for_each(|_| robot.state_mut().step());
+        robot.settle();
+    };
+    steps(&mut robot, 3);
+    robot.key(egui::Key::R);
+    steps(&mut robot, 2);
+    robot.click("Physics");
+    let number = robot.state().frame.past[0].number;
+    robot.type_number(&format!("Name of run {number}"), "first try");
+    robot.type_number("Name of this run", "second");
+    assert_eq!(robot.state().frame.past[0].name, "first try");
+    assert_eq!(robot.state().frame.name, "second");
+    robot.click("↶ first try, 0.003 s");
+    assert_eq!((robot.steps(), &*robot.state().frame.name), (3, "first try"));
+    assert_eq!(robot.state().frame.past[0].name, "second");
+    // What branches off is another run.
+    robot.state_mut().live.send(Command::Seek(0.001));
+    robot.settle();
+    let mut settings = robot.world().controls.settings;
+    settings.parameters.bond = 3.0;
+    robot.state_mut().change(0, settings);
+    steps(&mut robot, 1);
+    let names: Vec<_> = robot.state().frame.past.iter().map(|run| &*run.name).collect();
+    assert_eq!((names, &*robot.state().frame.name), (vec!["second", "first try"], ""));
 }

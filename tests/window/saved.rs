@@ -146,7 +146,7 @@ fn a_state_that_is_saved_can_be_opened_and_is_a_run_of_its_own() {
     take_steps(&mut robot, 10);
     let end = bits(robot.world());
     // The file that was just saved is the one that the panel offers.
-    robot.click("Open state");
+    robot.click("Open");
     assert_eq!((robot.steps(), bits(robot.world())), (25, before.clone()));
     assert_eq!(robot.world().recorded_from_secs, robot.state().frame.time_secs());
     take_steps(&mut robot, 10);

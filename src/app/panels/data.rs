@@ -26,23 +26,33 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 }
 
 fn saved_runs(ui: &mut Ui, state: &mut AppState) {
-    let save = ui.button("Save state").on_hover_text(
-        "The moment that is shown as a .slump file in the folder: the run goes on from it bit for bit, here or with --restart.",
-    );
-    state.note_control("Save state", save.rect);
-    if save.clicked() {
-        state.save_state(ui.ctx());
-    }
     ui.horizontal(|ui| {
-        let hint = "A file that Save state, --save or --checkpoint-every wrote. It can be dropped on the window, too.";
-        let label = ui.label("Saved run").on_hover_text(hint);
+        let save = ui.button("Save state").on_hover_text(
+            "The moment that is shown as a .slump file in the folder: the run goes on from it bit for bit, here or with --restart.",
+        );
+        state.note_control("Save state", save.rect);
+        if save.clicked() {
+            state.save_state(ui.ctx());
+        }
+        let save = ui.button("Save session").on_hover_text(
+            "All worlds with their record and the runs before, and the window as it is arranged, as a .session file in \
+             the folder (Ctrl S). Opened, it shows this moment; others are computed again when the timeline asks for them.",
+        );
+        state.note_control("Save session", save.rect);
+        if save.clicked() {
+            state.save_session(ui.ctx());
+        }
+    });
+    ui.horizontal(|ui| {
+        let hint = "A file that Save state, Save session, --save or --checkpoint-every wrote. It can be dropped on the window, too.";
+        let label = ui.label("Saved").on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let is_named = !state.data.saved_run.trim().is_empty();
-            let open = ui.add_enabled(is_named, Button::new("Open state"));
-            let open = open.on_hover_text("Go on with that run, in place of the present one.");
+            let open = ui.add_enabled(is_named, Button::new("Open"));
+            let open = open.on_hover_text("Go on with that run or session, in place of the present one.");
             let edit = TextEdit::singleline(&mut state.data.saved_run)
                 .desired_width(f32::INFINITY)
-                .hint_text("file.slump");
+                .hint_text("file.slump, file.session");
             let typed = ui.add(edit).labelled_by(label.id);
             let is_entered =
                 typed.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));

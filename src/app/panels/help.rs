@@ -4,13 +4,15 @@ use egui::{Align2, RichText, Ui};
 
 use crate::app::state::AppState;
 
-const KEYS: [(&str, &str); 10] = [
+const KEYS: [(&str, &str); 12] = [
     ("space", "release, pause, play on"),
     ("→  ←", "one step on, one step back"),
     ("R", "reset to the start, with the present settings; the run is kept"),
     ("Ctrl Z", "back to the run that was there before"),
     ("F", "frame the whole scene"),
     ("S", "save a picture of the scene"),
+    ("Ctrl S", "save the session: worlds, record and window"),
+    ("Ctrl V", "open a link that was copied"),
     ("H", "this help"),
     ("Tab", "next control"),
     ("Ctrl +  −", "larger and smaller window contents"),
@@ -67,7 +69,7 @@ fn contents(ui: &mut Ui, restart_graphics: &mut bool) {
         });
         ui.add_space(6.0);
     }
-    ui.label("Double-click a slider to reset it. Type any value into its field. Drop a scene (TOML), discs (CSV) or a saved run (.slump) on the window to open them.");
+    ui.label("Double-click a slider to reset it. Type any value into its field. Drop a scene (TOML), discs (CSV), a saved run (.slump) or a session on the window to open them.");
     ui.add_space(6.0);
     ui.horizontal(|ui| {
         let restart = ui.button("Restart graphics");

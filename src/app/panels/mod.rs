@@ -20,6 +20,7 @@ mod spread;
 pub(super) mod status;
 pub(super) mod tour;
 pub(super) mod transport;
+mod validate;
 
 use egui::Ui;
 
@@ -57,6 +58,12 @@ pub(super) const SECTIONS: &[Section] = &[
         title: |_| Some("Speed and accuracy".into()),
         open: false,
         show: speed::show,
+    },
+    Section {
+        id: "validate",
+        title: |_| Some("Validation".into()),
+        open: false,
+        show: validate::show,
     },
 ];
 

@@ -10,6 +10,9 @@ use crate::sim::live::{Command, Controls, PastRun, PastWorld};
 /// Grains of a ghost at the most: more outlines would hide what is in front.
 const MOST_OUTLINES: usize = 3_000;
 
+/// Width of the fields of names, points.
+const NAME_WIDTH: f32 = 84.0;
+
 /// Shows the list, where there is any.
 pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
     if state.frame.past.is_empty() {
@@ -25,15 +28,56 @@ pub(super) fn show(ui: &mut Ui, state: &mut AppState) {
                 .on_hover_text("Show the last of them: its curves in grey, its grains as outlines.");
         });
     });
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("This run").size(11.5));
+        let given = state.frame.name.clone();
+        name_field(ui, state, None, &given);
+    });
     let runs = state.frame.past.clone();
     for run in runs.iter().rev() {
-        let text = format!("↶ {}, {:.3} s", name(run), run.recorded_secs);
-        let button = Button::new(RichText::new(&text).size(11.5)).truncate();
-        let response = ui.add(button);
-        if response.on_hover_text(format!("Back to it (the last: Ctrl Z): {text}")).clicked() {
-            state.live.send(Command::Return(run.number));
-        }
+        ui.horizontal(|ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                name_field(ui, state, Some(run.number), &run.name);
+                return_button(ui, state, run);
+            });
+        });
     }
+}
+
+fn return_button(ui: &mut Ui, state: &mut AppState, run: &PastRun) {
+    let about = format!("↶ {}, {:.3} s", name(run), run.recorded_secs);
+    let text = match &*run.name {
+        "" => about.clone(),
+        name => format!("↶ {name}, {:.3} s", run.recorded_secs),
+    };
+    let button = Button::new(RichText::new(text).size(11.5)).truncate();
+    let response = ui.add(button);
+    if response.on_hover_text(format!("Back to it (the last: Ctrl Z): {about}")).clicked() {
+        state.live.send(Command::Return(run.number));
+    }
+}
+
+/// The field that names a run. What is typed is kept here until the field is left: a name comes back a step later.
+fn name_field(ui: &mut Ui, state: &mut AppState, number: Option<u64>, given: &str) {
+    let id = egui::Id::unique(("name of run", number));
+    let typed = ui.data(|data| data.get_temp(id));
+    let mut text: String = typed.unwrap_or_else(|| given.to_owned());
+    let edit = egui::TextEdit::singleline(&mut text).desired_width(NAME_WIDTH).hint_text("name");
+    let response = ui.add(edit);
+    let label = number.map_or("Name of this run".into(), |number| format!("Name of run {number}"));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &label));
+    if response.changed() {
+        state.live.send(Command::Name(number, text.clone()));
+    }
+    let has_focus = response.has_focus();
+    ui.data_mut(|data| {
+        if has_focus {
+            data.insert_temp(id, text);
+        } else {
+            data.remove::<String>(id);
+        }
+    });
+    response.on_hover_text("What to call it; sessions keep the name.");
 }
 
 /// What its worlds were.

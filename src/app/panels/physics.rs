@@ -1,6 +1,7 @@
 //! Panel: the contact law with its numbers, and the time step.
 
 use egui::{RichText, Ui};
+use glam::DVec2;
 
 use crate::app::setting_control;
 use crate::app::state::AppState;
@@ -24,7 +25,10 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let mut settings = before;
     let mut places = Vec::new();
     stepper_switch(ui, &mut settings);
-    let shown = Parameters::ABOUT.iter().filter(|about| is_shown(about, &before, start.physics));
+    let gravity = state.world().and_then(|world| world.gravity);
+    let gravity = gravity.filter(|_| start.physics.axes == 2);
+    let has = (start.physics, gravity.is_some_and(|gravity| gravity != DVec2::ZERO));
+    let shown = Parameters::ABOUT.iter().filter(|about| is_shown(about, &before, has));
     for about in shown {
         let rect = setting_control::show(ui, about, &mut settings, &start.settings);
         places.extend(about.control.map(|control| control.symbol).zip(rect));
@@ -43,11 +47,12 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// Whether a parameter means anything to the stepper and the scene.
-fn is_shown(about: &About, settings: &Settings, physics: Physics) -> bool {
+fn is_shown(about: &About, settings: &Settings, (physics, has_direction): (Physics, bool)) -> bool {
     let has = match about.needs {
         Needs::Nothing => true,
         Needs::Friction => physics.friction,
         Needs::Cohesion => physics.cohesion,
+        Needs::Direction => has_direction,
     };
     has && about.control.is_some() && settings.stepper.reads(about.name)
 }

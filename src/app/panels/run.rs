@@ -6,7 +6,7 @@ use super::past;
 use crate::app::effort;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::scene::{Config, NewPile, Origin, SCENES, SceneGroup};
+use crate::scene::{Config, Deposition, NewPile, Origin, SCENES, SceneGroup};
 use crate::sim::live::{Command, Controls};
 use crate::solver::SolverChanges;
 
@@ -15,12 +15,32 @@ const MOST_GRAINS: usize = 20_000;
 /// Ends of the speed slider, simulated time per time on the wall.
 const SPEEDS: [f64; 2] = [0.01, 10.0];
 
+/// Piles of that many grains cost enough to say so, and what was measured of just as many (`RESULTS.md`, piles made
+/// quickly), s of one core.
+const LARGE: usize = 2_000;
+const RAIN_SECS: f64 = 116.0;
+const ROLL_SECS: f64 = 0.2;
+/// How the grains of a new pile are put in place.
+const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
+    (
+        Deposition::Rain,
+        "Rain",
+        "Grains rain into the box, as in the paper's pile: seconds for hundreds, minutes for thousands.",
+    ),
+    (
+        Deposition::DropAndRoll,
+        "Roll",
+        "Each grain rolls to where two others hold it: seconds for thousands, but another pile, denser and with more bonds.",
+    ),
+];
+
 /// What is typed for a new pile.
 #[derive(Clone, PartialEq)]
 struct Draft {
     grains: usize,
     seed: u64,
     box_width_in_diameters: f64,
+    deposition: Deposition,
 }
 
 impl Draft {
@@ -47,16 +67,25 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// What makes the run again without a window.
-fn command_line(ui: &mut Ui, state: &AppState) {
-    let copy = ui.button("Copy command line").on_hover_text(
-        "The command that computes the selected world from its start with the present settings, without a window \
-         and to the last digit.",
-    );
-    if copy.clicked()
-        && let Some(line) = state.command_line()
-    {
-        ui.ctx().copy_text(line);
-    }
+fn command_line(ui: &mut Ui, state: &mut AppState) {
+    ui.horizontal(|ui| {
+        let copy = ui.button("Copy command line").on_hover_text(
+            "The command that computes the selected world from its start with the present settings, without a \
+             window and to the last digit.",
+        );
+        if copy.clicked()
+            && let Some(line) = state.command_line()
+        {
+            ui.ctx().copy_text(line);
+        }
+        let copy = ui.button("Copy link").on_hover_text(
+            "A line of text that opens all worlds as they are now: scene, settings, changes on the way, and the \
+             moment. Paste it into a window (Ctrl V), or give it to slump --open.",
+        );
+        if copy.clicked() {
+            state.copy_link();
+        }
+    });
 }
 
 fn scene_box(ui: &mut Ui, state: &mut AppState) {
@@ -88,10 +117,11 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
 }
 
 fn new_pile(ui: &mut Ui, state: &mut AppState) {
-    let NewPile { grains, seed, box_width_in_diameters, .. } = state.config.origin.new_pile();
+    let NewPile { grains, seed, box_width_in_diameters, deposition } =
+        state.config.origin.new_pile();
     let id = egui::Id::unique("new pile");
     let drafted = ui.data(|data| data.get_temp(id));
-    let mut draft = drafted.unwrap_or(Draft { grains, seed, box_width_in_diameters });
+    let mut draft = drafted.unwrap_or(Draft { grains, seed, box_width_in_diameters, deposition });
     ui.horizontal(|ui| {
         let label = ui.label("Grains");
         let grains = egui::DragValue::new(&mut draft.grains).range(1..=MOST_GRAINS).speed(2.0);
@@ -112,26 +142,42 @@ fn new_pile(ui: &mut Ui, state: &mut AppState) {
         ui.add(egui::DragValue::new(&mut draft.seed).speed(0.1))
             .labelled_by(label.id)
             .on_hover_text("Another seed is another pile of the same kind.");
-        let fresh = ui.button("New pile").on_hover_text(
-            "Rain a pile and let it settle: seconds for hundreds of grains, minutes for thousands. \
-             Where the window was opened with --deposition drop-and-roll, seconds for thousands.",
-        );
+        for (way, name, hint) in DEPOSITIONS {
+            ui.selectable_value(&mut draft.deposition, way, name).on_hover_text(hint);
+        }
+        let fresh = ui.button("New pile").on_hover_text("Make it, and let it come to rest.");
         if fresh.clicked() {
             let config = pile_like_this(state, draft.clone());
             state.load(config);
         }
     });
+    if draft.grains >= LARGE {
+        ui.label(RichText::new(cost(draft.grains)).small().weak());
+    }
     ui.data_mut(|data| data.insert_temp(id, draft));
+}
+
+/// What a large pile costs before it can be released, and how it is stepped then.
+fn cost(grains: usize) -> String {
+    // Rain's steps are as many as its fall takes, which goes with the root of the height.
+    let part = grains as f64 / LARGE as f64;
+    let minutes = (RAIN_SECS * part.powf(1.25) / 60.0).ceil();
+    let secs = ROLL_SECS * part.powf(1.8);
+    format!(
+        "{grains} grains: rain takes some {minutes:.0} min, rolling {secs:.1} s. Steps of more than {LARGE} begin with \
+         Fast, 40 sweeps."
+    )
 }
 
 /// A new pile with the numbers that the controls show.
 fn pile_like_this(state: &AppState, draft: Draft) -> Config {
-    let Draft { grains, seed, box_width_in_diameters } = draft;
+    let Draft { grains, seed, box_width_in_diameters, deposition } = draft;
     let origin = Origin {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
         grains: Some(grains),
         seed: Some(seed),
         box_width: Some(box_width_in_diameters),
+        deposition: (deposition != Deposition::default()).then_some(deposition),
         initial: None,
         ..state.config.origin.clone()
     };

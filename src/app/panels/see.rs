@@ -43,6 +43,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         ui.checkbox(&mut style.scale_bar, "Scale bar").on_hover_text("A bar of round length.");
         ui.checkbox(&mut style.legend, "Legend").on_hover_text("What colours and links mean.");
         ui.end_row();
+        ui.checkbox(&mut style.show_motions, "Motions").on_hover_text(
+            "Arrows on walls and fixed discs that move; with two heads, a force that drives them.",
+        );
         ui.checkbox(&mut state.preferences.gravity, "Gravity").on_hover_text(
             "An arrow where gravity points; it shows by itself where that is not straight down.",
         );

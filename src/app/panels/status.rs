@@ -24,6 +24,10 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
                 ui.label(mono(format!("{:.2}× real time", state.frame.real_time_factor)));
             }
             convergence(ui, state, world);
+            if state.frame.stored {
+                ui.label(RichText::new("stored").weak())
+                    .on_hover_text("What is recorded is shown as it was; nothing is computed.");
+            }
             if state.frame.seeking {
                 ui.label(RichText::new("computing that moment").weak());
             }

@@ -56,7 +56,8 @@ pub(crate) fn run(
     }
     let mut stored = storage::load();
     stored.preferences.follow(pictures)?;
-    let first = First::of(config, pictures.saving.restart.as_deref(), &stored.preferences)?;
+    let first =
+        First::of(config, pictures.saving.restart.as_deref(), options, &stored.preferences)?;
     let events =
         EventLoop::<Message>::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();

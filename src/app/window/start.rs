@@ -7,7 +7,10 @@ use winit::event_loop::ActiveEventLoop;
 use winit::monitor::MonitorHandle;
 use winit::window::{Window, WindowAttributes};
 
+use crate::app::link::Link;
+use crate::app::options::WindowOptions;
 use crate::app::preferences::Preferences;
+use crate::app::session::Session;
 use crate::app::state::AppState;
 use crate::error::{Error, Result};
 use crate::scene::{Config, SavedState};
@@ -23,6 +26,9 @@ pub(super) enum First {
     Scene(Box<Config>),
     /// A saved run that is to go on.
     Run(Box<SavedState>),
+    /// What a link tells of.
+    Link(Box<Link>),
+    Session(Box<Session>),
 }
 
 impl First {
@@ -35,8 +41,23 @@ impl First {
     pub(super) fn of(
         asked: &Config,
         restart: Option<&Path>,
+        options: &WindowOptions,
         preferences: &Preferences,
     ) -> Result<Self> {
+        let others = [options.session.is_some(), options.open.is_some()];
+        if others.contains(&true) && !asked.is_empty() {
+            let field = if others[0] { "session" } else { "open" };
+            let allowed = "left out where a scene or a setting is given: it has its own";
+            return Err(Error::value(field, "given", allowed));
+        }
+        if let Some(path) = &options.session {
+            return Ok(Self::Session(Box::new(Session::open(path)?)));
+        }
+        if let Some(text) = &options.open {
+            let link = Link::read(text)?;
+            link.check()?;
+            return Ok(Self::Link(Box::new(link)));
+        }
         if let Some(path) = restart {
             let mut saved = SavedState::open(path)?;
             asked.change_state(&mut saved)?;
@@ -62,6 +83,8 @@ impl First {
             Self::Tour(at) => state.visit(at),
             Self::Scene(config) => state.load(*config),
             Self::Run(saved) => state.load_run(*saved),
+            Self::Link(link) => state.load_link(*link),
+            Self::Session(session) => state.load_session(move || Ok(*session)),
         }
     }
 }

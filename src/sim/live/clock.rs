@@ -41,6 +41,13 @@ impl Clock {
         self.window = (now, time_secs, self.steps);
     }
 
+    /// The simulated time that is due now, s.
+    pub(super) fn time_secs(&self) -> f64 {
+        let (anchor, anchor_secs) = self.anchor;
+        let factor = if let Pace::RealTime(factor) = self.pace { factor } else { 0.0 };
+        anchor_secs + factor * anchor.elapsed().as_secs_f64()
+    }
+
     /// How long to wait before the step from `time_secs` is due.
     pub(super) fn wait(&mut self, time_secs: f64) -> Duration {
         let Pace::RealTime(factor) = self.pace else { return Duration::ZERO };

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::sim::Observables;
 
 /// Rows in a chunk that is shared and never changes again.
@@ -12,7 +14,8 @@ const MOST_ROWS: usize = 32_768;
 /// Observables in the order of time: every step's, or every n-th's in a long run.
 ///
 /// A clone shares all full chunks and copies fewer than 256 rows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Curve {
     chunks: Vec<Arc<Vec<Observables>>>,
     tail: Vec<Observables>,
@@ -60,7 +63,12 @@ impl Curve {
         if self.tail.len() == CHUNK {
             self.chunks.push(Arc::new(std::mem::take(&mut self.tail)));
         }
-        if self.len() > MOST_ROWS {
+        self.thin_to(MOST_ROWS);
+    }
+
+    /// Drops every second row until there are no more than that.
+    pub(super) fn thin_to(&mut self, most_rows: usize) {
+        while self.len() > most_rows.max(1) {
             self.stride *= 2;
             let stride = self.stride;
             self.keep(|row| row.step.is_multiple_of(stride));

@@ -11,8 +11,8 @@ use super::clock::Clock;
 use super::frame::message;
 use super::past::Past;
 use super::worlds::Worlds;
-use super::{Command, Frame, LiveOptions, Progress, Start, StartInfo};
-use crate::sim::{Settings, Surroundings};
+use super::{Command, Frame, LiveOptions, Pace, Progress, Record, Start, StartInfo};
+use crate::sim::Surroundings;
 
 /// A frame that nobody fetched yet is renewed after so many frame intervals: making one costs time,
 /// and an old one shows late what happens.
@@ -31,6 +31,8 @@ pub(super) struct Engine {
     pub(super) clock: Clock,
     pub(super) playing: bool,
     pub(super) seeking: bool,
+    /// The simulated time up to which stored moments are shown in place of the present one, s.
+    pub(super) film: Option<f64>,
     /// Where this play pauses, s.
     pub(super) stop_at_secs: Option<f64>,
     pub(super) loading: Option<Progress>,
@@ -65,6 +67,7 @@ impl Engine {
             clock: Clock::new(),
             playing: false,
             seeking: false,
+            film: None,
             stop_at_secs: None,
             loading: None,
             refusal: None,
@@ -85,6 +88,10 @@ impl Engine {
             }
             if self.seeking {
                 self.advance_seek();
+            } else if self.playing && self.film.is_some() {
+                if self.wait_for_frame().is_zero() {
+                    self.advance_film();
+                }
             } else if self.playing && self.wait_for_step().is_zero() {
                 self.tick();
                 self.stop_when_done();
@@ -144,7 +151,10 @@ impl Engine {
     }
 
     fn wait_for_step(&mut self) -> Duration {
-        self.clock.wait(self.worlds.time_secs())
+        match self.film {
+            Some(_) => self.wait_for_frame(),
+            None => self.clock.wait(self.worlds.time_secs()),
+        }
     }
 
     fn wait_for_frame(&self) -> Duration {
@@ -154,6 +164,11 @@ impl Engine {
     }
 
     fn handle(&mut self, number: u64, command: Command) {
+        if self.film.is_some() && command.is_about_the_moment() {
+            self.leave_film();
+            self.waiting.push_front((number, command));
+            return;
+        }
         match command {
             Command::Load(loader) => self.load(loader),
             Command::CancelLoading => {}
@@ -169,7 +184,10 @@ impl Engine {
                 }
             }
             Command::Play => self.play(),
-            Command::Pause => self.playing = false,
+            Command::Pause => {
+                self.playing = false;
+                self.leave_film();
+            }
             Command::Step => {
                 self.playing = false;
                 self.tick();
@@ -186,26 +204,44 @@ impl Engine {
             }
             Command::Seek(time_secs) => {
                 self.playing = false;
-                self.seeking = true;
-                self.worlds.seek(time_secs);
-            }
-            Command::Take(world, taker) => {
-                if let Some(track) = self.worlds.tracks.get(world) {
-                    taker(track.taken());
-                }
+                self.seek(time_secs);
             }
             Command::SetPace(pace) => {
                 self.clock.pace = pace;
                 self.restart_clock();
+                if pace == Pace::Max {
+                    self.leave_film();
+                }
             }
             Command::Quit => self.quit = true,
+            Command::Name(..) | Command::Take(..) | Command::TakeAll(..) => self.hand_out(command),
         }
         self.acknowledged = number;
         self.unpublished = true;
     }
 
+    /// Names what there is, or hands it out; nothing of it changes.
+    fn hand_out(&mut self, command: Command) {
+        match command {
+            Command::Name(None, name) => self.worlds.name = name,
+            Command::Name(Some(number), name) => self.past.name(number, name),
+            Command::Take(world, taker) => {
+                if let Some(track) = self.worlds.tracks.get(world) {
+                    taker(track.taken());
+                }
+            }
+            Command::TakeAll(taker) => {
+                if let Some(start) = &self.start {
+                    let record = Some(Record::of(&self.worlds, &self.past));
+                    taker(Start { record, ..start.clone() });
+                }
+            }
+            _ => {}
+        }
+    }
+
     fn play(&mut self) {
-        if self.worlds.tracks.is_empty() || self.worlds.has_failed() {
+        if self.worlds.tracks.is_empty() || self.worlds.has_failed() || self.film.is_some() {
             return;
         }
         let duration = self.start.as_ref().map_or(f64::INFINITY, |start| start.duration_secs);
@@ -213,34 +249,13 @@ impl Engine {
         self.stop_at_secs = before_end.then_some(duration);
         self.playing = true;
         self.restart_clock();
-    }
-
-    fn restart_clock(&mut self) {
-        self.clock.start(self.worlds.time_secs());
-    }
-
-    /// Puts worlds at the start, one a variant.
-    pub(super) fn restart(&mut self, variants: &[Settings]) {
-        let Some(start) = &self.start else { return };
-        if variants.is_empty() {
-            return;
-        }
-        let start = (&start.simulation, start.tally);
-        let worlds = Worlds::new(start, variants, self.options.recording_bytes);
-        self.put_in_place(worlds);
-    }
-
-    /// Keeps the present worlds for later, and goes on with others.
-    fn put_in_place(&mut self, worlds: Worlds) {
-        let before = std::mem::replace(&mut self.worlds, worlds);
-        self.past.keep(before, self.options.recording_bytes);
-        self.playing = false;
-        self.seeking = false;
+        self.begin_film();
     }
 
     fn tick(&mut self) {
         if self.worlds.branch() {
             self.past.keep(self.worlds.clone(), self.options.recording_bytes);
+            self.worlds.name.clear();
         }
         let (steps, all_well) = self.worlds.tick();
         self.clock.count(steps, self.worlds.time_secs());
@@ -276,6 +291,7 @@ impl Command {
                 | Self::Reset
                 | Self::Return(..)
                 | Self::Take(..)
+                | Self::TakeAll(..)
         )
     }
 }

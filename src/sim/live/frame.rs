@@ -21,6 +21,8 @@ pub struct Frame {
     pub start: Option<Arc<StartInfo>>,
     /// The worlds, one unless they are compared.
     pub worlds: Vec<WorldFrame>,
+    /// What the user calls the present run; empty where nothing.
+    pub name: String,
     /// Runs that others have taken the place of, the newest last.
     pub past: Arc<[PastRun]>,
     /// Whether time passes.
@@ -29,6 +31,8 @@ pub struct Frame {
     pub replaying: bool,
     /// Whether the next step leaves what is recorded behind.
     pub branching: bool,
+    /// Whether what shows is stored, and nothing is computed.
+    pub stored: bool,
     /// Whether a recorded moment is being computed.
     pub seeking: bool,
     /// A start that is being made.

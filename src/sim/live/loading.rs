@@ -6,8 +6,8 @@ use std::time::Duration;
 use super::engine::Engine;
 use super::frame::message;
 use super::worlds::Worlds;
-use super::{Command, Loader, Progress, Start, StartInfo};
-use crate::sim::Surroundings;
+use super::{Command, Loader, Progress, Record, Start, StartInfo};
+use crate::sim::{Settings, Surroundings};
 
 /// Least time between two frames that tell of the progress of a loading.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
@@ -16,6 +16,7 @@ impl Engine {
     /// Replaces everything by what `loader` makes, unless that fails or is given up.
     pub(super) fn load(&mut self, loader: Loader) {
         self.playing = false;
+        self.leave_film();
         self.refusal = None;
         self.loading = Some(Progress::default());
         self.publish();
@@ -71,7 +72,41 @@ impl Engine {
         self.worlds = Worlds::default();
         self.past.forget();
         let worlds = std::mem::take(&mut start.worlds);
+        let record = start.record.take();
         self.start = Some(start);
-        self.restart(if worlds.is_empty() { &alone } else { &worlds });
+        match record {
+            Some(record) => self.take_up(record),
+            None => self.restart(if worlds.is_empty() { &alone } else { &worlds }),
+        }
+    }
+
+    /// Puts worlds at the start, one a variant.
+    pub(super) fn restart(&mut self, variants: &[Settings]) {
+        let Some(start) = &self.start else { return };
+        if variants.is_empty() {
+            return;
+        }
+        let start = (&start.simulation, start.tally);
+        let worlds = Worlds::new(start, variants, self.options.recording_bytes);
+        self.put_in_place(worlds);
+    }
+
+    /// Goes on with what a run had come to.
+    fn take_up(&mut self, record: Record) {
+        let (mut worlds, past) = record.into_parts();
+        for run in past {
+            self.past.keep(run, self.options.recording_bytes);
+        }
+        worlds.keep_within(self.options.recording_bytes);
+        self.put_in_place(worlds);
+    }
+
+    /// Keeps the present worlds for later, and goes on with others.
+    pub(super) fn put_in_place(&mut self, worlds: Worlds) {
+        let before = std::mem::replace(&mut self.worlds, worlds);
+        self.past.keep(before, self.options.recording_bytes);
+        self.playing = false;
+        self.seeking = false;
+        self.film = None;
     }
 }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::film::Film;
 use super::worlds::Worlds;
 use super::{Controls, Curve};
 use crate::sim::Snapshot;
@@ -17,6 +18,8 @@ const PART: usize = 8;
 pub struct PastRun {
     /// What it is called up by ([`Command::Return`](super::Command::Return)).
     pub number: u64,
+    /// What its user calls it; empty where nothing.
+    pub name: String,
     /// Simulated time of its last recorded step, s.
     pub recorded_secs: f64,
     /// Its worlds.
@@ -49,6 +52,7 @@ impl Past {
             return;
         }
         worlds.keep_within(recording_bytes / PART);
+        worlds.tracks.iter_mut().for_each(|track| track.film = Film::default());
         self.count += 1;
         let of_world = worlds.tracks.iter().map(|track| PastWorld {
             controls: Controls::of(&track.simulation),
@@ -58,6 +62,7 @@ impl Past {
         let ends = worlds.tracks.iter().map(|track| track.recording.end_secs());
         let run = PastRun {
             number: self.count,
+            name: worlds.name.clone(),
             recorded_secs: ends.fold(0.0, f64::max),
             worlds: of_world.collect(),
         };
@@ -74,6 +79,20 @@ impl Past {
         let (_, worlds) = self.runs.remove(index);
         self.tell();
         Some(worlds)
+    }
+
+    /// Calls a run by a name.
+    pub(super) fn name(&mut self, number: u64, name: String) {
+        if let Some((run, worlds)) = self.runs.iter_mut().find(|(run, _)| run.number == number) {
+            run.name.clone_from(&name);
+            worlds.name = name;
+            self.tell();
+        }
+    }
+
+    /// All of them, the oldest first.
+    pub(super) fn runs(&self) -> impl Iterator<Item = &Worlds> {
+        self.runs.iter().map(|(_, worlds)| worlds)
     }
 
     /// Forgets all of them.

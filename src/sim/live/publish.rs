@@ -36,11 +36,13 @@ impl Engine {
             acknowledged: self.acknowledged,
             start: self.info.clone(),
             worlds,
+            name: self.worlds.name.clone(),
             past: self.past.told(),
             playing: self.playing,
             replaying: self.worlds.replay(),
             branching: self.worlds.branch(),
             seeking: self.seeking,
+            stored: self.film.is_some(),
             loading: self.loading.clone(),
             refusal: self.refusal.clone(),
             real_time_factor: self.clock.real_time_factor,
@@ -52,18 +54,32 @@ impl Engine {
         (self.options.wake)();
     }
 
-    fn world_frame(&self, track: &Track) -> WorldFrame {
+    /// The present moment of a world; before the first step, with the shapes that hold it.
+    fn present(&self, track: &Track) -> Arc<Snapshot> {
         let mut snapshot: Snapshot = track.simulation.snapshot();
         if snapshot.observables.step == 0
             && let Some(held) = &self.held
         {
             snapshot.surroundings = Arc::clone(held);
         }
+        Arc::new(snapshot)
+    }
+
+    fn world_frame(&self, track: &Track) -> WorldFrame {
+        let stored = self.film.and_then(|secs| track.film.at(secs));
+        let tally = stored.map_or(track.tally, |moment| moment.tally);
+        let gravity = stored.map_or(track.simulation.world().gravity, |moment| moment.gravity);
+        let now = Controls::of(&track.simulation);
+        let controls = stored.and_then(|moment| {
+            track.recording.controls_after(moment.snapshot.observables.step).copied()
+        });
+        let snapshot =
+            stored.map_or_else(|| self.present(track), |moment| Arc::clone(&moment.snapshot));
         let sweeps = f64::from(snapshot.observables.sweeps);
         WorldFrame {
-            snapshot: Arc::new(snapshot),
-            controls: Controls::of(&track.simulation),
-            gravity: match track.simulation.world().gravity {
+            snapshot,
+            controls: controls.unwrap_or(now),
+            gravity: match gravity {
                 Gravity::Uniform { acceleration } => Some(acceleration),
                 Gravity::Attraction { .. } => None,
             },
@@ -71,8 +87,8 @@ impl Engine {
             is_even: track.recording.is_all_with(track.simulation.settings()),
             recorded_from_secs: track.recording.start().time_secs(),
             recorded_secs: track.recording.end_secs(),
-            unconverged_steps: track.tally.unconverged_steps,
-            fallback_steps: track.tally.fallback_steps,
+            unconverged_steps: tally.unconverged_steps,
+            fallback_steps: tally.fallback_steps,
             step_ms: 1e3 * track.step_secs,
             substeps: track.simulation.substeps(),
             picked_method: track.simulation.picked_method(),

@@ -7,13 +7,16 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::sim::{Pull, Settings, Simulation, Tally};
 
 /// Steps between keyframes at first.
 const FIRST_SPACING: u64 = 32;
 
 /// All that can be changed between two steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Controls {
     /// How the next step is taken.
     pub settings: Settings,
@@ -29,7 +32,8 @@ impl Controls {
 }
 
 /// A moment from which on other controls are in force.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Change {
     /// The step before the first that they are in force for.
     pub after_step: u64,
@@ -40,7 +44,8 @@ pub struct Change {
 }
 
 /// The recorded part of a run. A clone shares its keyframes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct Recording {
     keyframes: Vec<Keyframe>,
     changes: Vec<Change>,
@@ -50,7 +55,8 @@ pub(crate) struct Recording {
     end_secs: f64,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Keyframe {
     simulation: Arc<Simulation>,
     tally: Tally,
@@ -108,6 +114,16 @@ impl Recording {
         }
     }
 
+    /// Keeps the state at the end of what is recorded, so that it need not be computed again.
+    pub(crate) fn keep_end(&mut self, simulation: &Simulation, tally: &Tally) {
+        let step = simulation.observables().step;
+        if step == self.end_step && self.keyframes.last().is_none_or(|last| last.step() < step) {
+            let simulation = Arc::new(simulation.clone());
+            self.keyframes.push(Keyframe { simulation, tally: *tally });
+            self.thin();
+        }
+    }
+
     /// Notes a state that has just taken a step.
     pub(crate) fn after_step(&mut self, simulation: &Simulation) {
         self.end_step = simulation.observables().step;
@@ -137,6 +153,17 @@ impl Recording {
         while !self.is_within_budget() {
             self.thin();
         }
+    }
+
+    /// Whether one that was read holds together: it begins, goes on in time, and ends after all of it.
+    pub(super) fn is_sound(&self) -> bool {
+        let rise = |pair: &[Keyframe]| pair[0].step() < pair[1].step();
+        let last = self.keyframes.last().map(Keyframe::step);
+        let changes = self.changes.windows(2);
+        last.is_some_and(|last| last <= self.end_step)
+            && self.spacing > 0
+            && self.keyframes.windows(2).all(rise)
+            && changes.into_iter().all(|pair| pair[0].after_step < pair[1].after_step)
     }
 
     /// Whether anything is recorded.
@@ -209,7 +236,7 @@ impl Recording {
     }
 
     /// The controls of the step that follows `step`; none before anything was recorded.
-    fn controls_after(&self, step: u64) -> Option<&Controls> {
+    pub(super) fn controls_after(&self, step: u64) -> Option<&Controls> {
         let count = self.changes.partition_point(|change| change.after_step <= step);
         count.checked_sub(1).map(|index| &self.changes[index].controls)
     }

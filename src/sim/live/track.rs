@@ -3,6 +3,9 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
+use super::film::Film;
 use super::{Curve, Recording, Replay, Taken};
 use crate::sim::{Settings, Simulation, Tally};
 
@@ -10,18 +13,24 @@ use crate::sim::{Settings, Simulation, Tally};
 const NEWEST: f64 = 0.05;
 
 /// One world of a live run. A clone shares what is recorded.
-#[derive(Clone)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Track {
     pub simulation: Simulation,
     pub recording: Recording,
     pub curve: Curve,
+    /// What of the record can be shown without computing.
+    #[serde(skip)]
+    pub film: Film,
     /// Sums over the steps up to the present moment.
     pub tally: Tally,
     /// Mean time that a step takes, s.
+    #[serde(skip)]
     pub step_secs: f64,
     /// Why the last step was no success.
     pub failure: Option<Arc<str>>,
     /// The simulated time that a seek is on its way to, s.
+    #[serde(skip)]
     goal_secs: Option<f64>,
 }
 
@@ -41,6 +50,7 @@ impl Track {
             recording: Recording::new(&simulation, tally, budget_bytes),
             simulation,
             curve,
+            film: Film::default(),
             tally,
             step_secs: 0.0,
             failure: None,
@@ -96,6 +106,7 @@ impl Track {
             Ok(observables) => {
                 self.tally.add(&observables);
                 self.curve.push(observables);
+                self.film.store(&self.simulation, &self.tally, false);
                 true
             }
             Err(error) => {
@@ -122,6 +133,9 @@ impl Track {
 
     /// Starts on the way to a recorded moment.
     pub(super) fn seek(&mut self, time_secs: f64) {
+        if self.failure.is_none() {
+            self.recording.keep_end(&self.simulation, &self.tally);
+        }
         let (keyframe, tally) = self.recording.keyframe_before(time_secs);
         self.simulation.clone_from(keyframe);
         self.tally = tally;
@@ -146,6 +160,7 @@ impl Track {
         match self.simulation.step() {
             Ok(observables) => {
                 self.tally.add(observables);
+                self.film.store(&self.simulation, &self.tally, true);
                 self.recording.restore_controls(&mut self.simulation);
                 true
             }

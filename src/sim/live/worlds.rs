@@ -1,15 +1,19 @@
 //! Worlds that run side by side, kept at the same simulated time.
 
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+use serde::{Deserialize, Serialize};
 
 use super::track::Track;
 use crate::sim::{Settings, Simulation, Tally};
 
 /// One track a world. The world with the largest time step leads; the others follow to within half
 /// a step of their own.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Worlds {
     pub tracks: Vec<Track>,
+    /// What their user calls them; empty where nothing.
+    pub name: String,
 }
 
 impl Worlds {
@@ -22,7 +26,7 @@ impl Worlds {
     ) -> Self {
         let budget_bytes = recording_bytes / variants.len().max(1);
         let track = |variant: &Settings| Track::new(start, variant, budget_bytes);
-        Self { tracks: variants.iter().map(track).collect() }
+        Self { tracks: variants.iter().map(track).collect(), name: String::new() }
     }
 
     pub(super) fn variants(&self) -> Vec<Settings> {
@@ -84,6 +88,11 @@ impl Worlds {
                 .reduce(|| true, |one, other| one && other),
         };
         (self.steps() - steps_before, all_well)
+    }
+
+    /// Simulated time of the last recorded step of the leader, s.
+    pub(super) fn recorded_secs(&self) -> f64 {
+        self.leader().map_or(0.0, |track| track.recording.end_secs())
     }
 
     fn steps(&self) -> u64 {

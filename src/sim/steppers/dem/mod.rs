@@ -27,7 +27,17 @@ use crate::solver::{Kinematics, Model};
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
-    settings: &["bond", "dt", "rho", "mu", "cone", "stiffness", "damping-ratio", "substeps"],
+    settings: &[
+        "bond",
+        "dt",
+        "tilt",
+        "rho",
+        "mu",
+        "cone",
+        "stiffness",
+        "damping-ratio",
+        "substeps",
+    ],
     takes_drives: true,
     substeps,
     critical_time_step_secs: |world, physics, parameters| {

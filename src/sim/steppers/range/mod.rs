@@ -40,6 +40,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     settings: &[
         "bond",
         "dt",
+        "tilt",
         "rho",
         "mu",
         "cone",

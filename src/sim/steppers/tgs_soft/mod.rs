@@ -38,6 +38,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     settings: &[
         "bond",
         "dt",
+        "tilt",
         "rho",
         "mu",
         "cone",

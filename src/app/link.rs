@@ -1,0 +1,215 @@
+//! A run as a line of text that opens it again: where its scene comes from, and for each world its settings,
+//! what was changed on the way, and how many steps it has taken.
+//!
+//! > slump://run?scene=pile&bond=20&from=120&bond=5&to=300
+//!
+//! Names are those of the command line. `from` begins settings that are in force after that step, `to` ends a
+//! world with the step that it has come to; what follows is the next world. What is left out is as the scene
+//! says, or as before.
+
+use std::sync::mpsc::Receiver;
+
+use super::taken::TakenRun;
+use crate::error::{Error, Result};
+use crate::scene::{Config, Origin, words_of};
+use crate::sim::Settings;
+use crate::sim::live::{Change, Plan, Taken};
+
+/// What links begin with.
+pub(crate) const LINK_START: &str = "slump://";
+const HEAD: &str = "slump://run?";
+/// What a link must be, for messages.
+const FORM: &str = "a line that Copy link gave: slump://run?…&to=STEP";
+/// More of a link is no help in a message.
+const MOST_SHOWN: usize = 60;
+
+/// A run, by what was asked of it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Link {
+    /// Where the scene comes from.
+    pub origin: Origin,
+    worlds: Vec<World>,
+}
+
+/// A world of it.
+#[derive(Clone, Debug, PartialEq)]
+struct World {
+    /// What is asked for after each of these steps, the first of which is 0.
+    changes: Vec<(u64, Config)>,
+    steps: u64,
+}
+
+/// Worlds whose runs are on their way, to be made a link of.
+pub(super) struct Linking {
+    /// Where they come.
+    pub waiting: Vec<Receiver<TakenRun>>,
+    /// Those that have come, in that order.
+    pub come: Vec<TakenRun>,
+}
+
+/// Words of a command line as parts of a link.
+fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String]) {
+    for pair in words.chunks_exact(2) {
+        query.append_pair(pair[0].trim_start_matches('-'), &pair[1]);
+    }
+}
+
+/// The link of a run that began with what `config` asks for, by what its worlds have come to. Grains that the
+/// mouse has pulled are not in it.
+///
+/// # Errors
+/// Where the run went on from a file, or its scene is no longer there.
+pub(crate) fn link_of(config: &Config, worlds: &[Taken]) -> Result<String> {
+    let unchanged = Config { origin: config.origin.clone(), ..Config::default() };
+    let base = unchanged.without_settling()?.settings();
+    let mut query = form_urlencoded::Serializer::new(HEAD.to_owned());
+    append(&mut query, &unchanged.words(&base)?);
+    for world in worlds {
+        if world.replay.start().observables().step > 0 {
+            let allowed = "one that began with a scene; a saved session tells of this one";
+            return Err(Error::value("run", "one that goes on from a saved run", allowed));
+        }
+        let now = &world.simulation;
+        let steps = now.observables().step;
+        let mut before = base;
+        let made = world.replay.changes(0, now.time_secs());
+        let made = made.map(|Change { after_step, controls, .. }| (*after_step, controls.settings));
+        for (after, settings) in made.chain([(steps, *now.settings())]) {
+            let words = words_of(&settings, Some(&before));
+            if after > 0 && !words.is_empty() {
+                query.append_pair("from", &after.to_string());
+            }
+            append(&mut query, &words);
+            before = settings;
+        }
+        query.append_pair("to", &steps.to_string());
+    }
+    Ok(query.finish())
+}
+
+impl Link {
+    /// Reads a link.
+    ///
+    /// # Errors
+    /// Says what of it is none.
+    pub(crate) fn read(text: &str) -> Result<Self> {
+        let text = text.trim();
+        let refuse = || Error::value("link", shortened(text), FORM);
+        let query = text.strip_prefix(HEAD).ok_or_else(refuse)?;
+        let mut link = Self { origin: Origin::default(), worlds: Vec::new() };
+        let (mut after, mut options) = (0, Vec::new());
+        let mut changes = Vec::new();
+        for (name, value) in form_urlencoded::parse(query.as_bytes()).into_owned() {
+            let is_step = matches!(&*name, "from" | "to");
+            if !is_step {
+                options.push((name, value));
+                continue;
+            }
+            let step: u64 = value.parse().map_err(|_| {
+                Error::value(format!("link: {name}"), &value, "the number of a step")
+            })?;
+            if step < after {
+                let allowed = format!("no step before {after}, which comes before it");
+                return Err(Error::value(format!("link: {name}"), step, allowed));
+            }
+            let config =
+                Config::of_options(options.iter().map(|(name, value)| (&**name, &**value)))?;
+            options.clear();
+            let is_first = link.worlds.is_empty() && changes.is_empty();
+            let Config { origin, .. } = &config;
+            if is_first {
+                link.origin = origin.clone();
+            } else if *origin != Origin::default() {
+                let allowed = "said once, before the first step";
+                return Err(Error::value("link: the origin of the scene", "said twice", allowed));
+            }
+            changes.push((after, Config { origin: Origin::default(), ..config }));
+            after = step;
+            if name == "to" {
+                link.worlds.push(World { changes: std::mem::take(&mut changes), steps: step });
+                after = 0;
+            }
+        }
+        if link.worlds.is_empty() || !options.is_empty() || !changes.is_empty() {
+            return Err(refuse());
+        }
+        Ok(link)
+    }
+
+    /// What asks for the scene.
+    pub(crate) fn config(&self) -> Config {
+        Config { origin: self.origin.clone(), ..Config::default() }
+    }
+
+    /// Checks what can be checked before a pile is made.
+    ///
+    /// # Errors
+    /// Names the first setting that is refused, or says that the scene is not there.
+    pub(crate) fn check(&self) -> Result<()> {
+        let base = self.config().without_settling()?.settings();
+        let mut settings = self.plans(&base).into_iter().flat_map(|plan| {
+            let changed = plan.changes.into_iter().map(|(_, settings)| settings);
+            std::iter::once(plan.settings).chain(changed)
+        });
+        settings.try_for_each(|settings| settings.validate())
+    }
+
+    /// How its worlds come about, from the settings that the scene has.
+    pub(crate) fn plans(&self, base: &Settings) -> Vec<Plan> {
+        let plan = |world: &World| {
+            let mut settings = *base;
+            let mut changes = world.changes.iter().map(|(after, config)| {
+                config.change_settings(&mut settings);
+                (*after, settings)
+            });
+            let (_, first) = changes.next().unwrap_or((0, *base));
+            Plan { settings: first, changes: changes.collect(), steps: world.steps }
+        };
+        self.worlds.iter().map(plan).collect()
+    }
+}
+
+fn shortened(text: &str) -> String {
+    let mut shown: String = text.chars().take(MOST_SHOWN).collect();
+    if shown.len() < text.len() {
+        shown.push('…');
+    }
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_says_worlds_changes_and_steps() {
+        let text = "slump://run?scene=pile&bond=20&from=120&bond=5&to=300&dt=0.005&to=60";
+        let link = Link::read(&format!("  {text}\n")).expect("a link");
+        assert_eq!(link.config(), Config::of_scene("pile"));
+        let base = Settings::default();
+        let [first, second] = &link.plans(&base)[..] else { panic!("two worlds") };
+        assert_eq!(first.settings, base.with_bond(20.0));
+        assert_eq!((&first.changes[..], first.steps), (&[(120, base.with_bond(5.0))][..], 300));
+        assert_eq!(*second, Plan { settings: base.over(5e-3), changes: Vec::new(), steps: 60 });
+    }
+
+    #[test]
+    fn what_is_no_link_is_refused_in_a_sentence() {
+        for (text, said) in [
+            (
+                "http://example.org",
+                "link is http://example.org, but must be a line that Copy link gave",
+            ),
+            ("slump://run?scene=pile", "but must be a line"),
+            ("slump://run?scene=pile&to=3&bond=5", "but must be a line"),
+            ("slump://run?scene=pile&to=-3", "link: to is -3, but must be the number of a step"),
+            ("slump://run?from=9&to=3", "link: to is 3, but must be no step before 9"),
+            ("slump://run?scene=pile&to=3&scene=drum&to=4", "said once"),
+            ("slump://run?glue=3&to=3", "--glue"),
+            ("slump://run?bond=much&to=3", "--bond is much"),
+        ] {
+            let refusal = Link::read(text).expect_err("no link").to_string();
+            assert!(refusal.contains(said), "{text}: {refusal}");
+        }
+    }
+}

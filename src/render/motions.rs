@@ -1,0 +1,291 @@
+//! How walls and fixed discs move: arrows that lie on them and go with them, along their way; arrows with two heads
+//! where a force drives them; and an arc with a head at what they turn round.
+//!
+//! An arrow says which way, not how fast: its length is that of words, so that a slow wall has one, too.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::boundaries::clip;
+use super::{Camera, Colour, LinkInstance, Palette};
+use crate::sim::{MotionView, Surroundings};
+use crate::world::Edge;
+
+// All in units of the font size of the picture's labels.
+
+/// Length of an arrow, and of the two barbs of its head.
+const LENGTH_EM: f64 = 1.7;
+const BARB_EM: f64 = 0.5;
+/// From one of two heads to the other.
+const SECOND_HEAD_EM: f64 = 0.42;
+/// Half the width of its lines, and what the ground shows around them.
+const HALF_WIDTH_EM: f64 = 0.075;
+const HALO_EM: f64 = 0.07;
+/// Least distance between two arrows of one motion.
+const SPACING_EM: f64 = 4.0;
+/// How far beside a wall an arrow lies that goes along it.
+const BESIDE_EM: f64 = 0.75;
+/// How far before what it drives the middle of a force's arrow lies.
+const LOAD_EM: f64 = 1.75;
+/// Radius of the arc at a pivot, how far it goes round, and its pieces.
+const ARC_EM: f64 = 0.9;
+const ARC_TURN: f64 = 0.75 * TAU;
+const ARC_PIECES: usize = 18;
+/// What is slower than this many mean diameters a second stands still.
+const LEAST_DIAMETERS_PER_SEC: f64 = 1e-9;
+/// Cosine above which a way is one along a wall.
+const ALONG: f64 = 0.9;
+
+/// Draws the arrows of one picture.
+struct Arrows<'a> {
+    camera: &'a Camera,
+    em: f64,
+    reach: DVec2,
+    least_speed: f64,
+    lines: Vec<[DVec2; 2]>,
+}
+
+/// A place where an arrow may lie.
+struct Spot {
+    /// Its place, and in pixels from the middle of the picture.
+    place: DVec2,
+    at: DVec2,
+    /// Unit vector out of the body, where it is a wall; and whether the other side is open as well.
+    normal: Option<(DVec2, bool)>,
+}
+
+/// The links of all motions that show in a picture of `size` pixels.
+pub(super) fn motion_links(
+    surroundings: &Surroundings,
+    palette: &Palette,
+    camera: &Camera,
+    [width, height]: [u32; 2],
+    text_px: f32,
+) -> Vec<LinkInstance> {
+    let em = f64::from(text_px);
+    let reach = DVec2::new(f64::from(width), f64::from(height)) / 2.0 + em;
+    let least_speed = LEAST_DIAMETERS_PER_SEC * surroundings.mean_diameter;
+    let mut arrows = Arrows { camera, em, reach, least_speed, lines: Vec::new() };
+    for motion in &surroundings.moving {
+        arrows.of_motion(motion, surroundings);
+    }
+    let links = |half_width: f64, colour: Colour| {
+        let clipped = arrows.lines.iter().filter_map(|[from, to]| clip(*from, *to, reach));
+        let link = move |[start, end]: [DVec2; 2]| LinkInstance {
+            start: start.as_vec2().into(),
+            end: end.as_vec2().into(),
+            half_width: half_width as f32,
+            colour,
+        };
+        clipped.map(link).collect::<Vec<_>>()
+    };
+    let half_width = (HALF_WIDTH_EM * em).max(0.7);
+    let mut all = links(half_width + HALO_EM * em, palette.ground);
+    all.extend(links(half_width, palette.ink));
+    all
+}
+
+impl Arrows<'_> {
+    fn of_motion(&mut self, motion: &MotionView, surroundings: &Surroundings) {
+        let spots = self.spots(motion, surroundings);
+        for (index, spot) in spots.iter().enumerate() {
+            let velocity = motion.velocity_at(spot.place);
+            if velocity.length() > self.least_speed {
+                let beside = self.beside(spot, velocity);
+                self.arrow(spot.at + beside, velocity, 1);
+            }
+            if motion.surface_speed != 0.0 {
+                self.belt(spot, motion.surface_speed);
+            }
+            // One force drives all of them.
+            if motion.force != DVec2::ZERO && index == spots.len() / 2 {
+                let before = -LOAD_EM * self.em * motion.force.normalize_or_zero();
+                self.arrow(spot.at + before, motion.force, 2);
+            }
+        }
+        if motion.angular_velocity != 0.0 {
+            self.arc(self.camera.offset_px(motion.pivot), ARC_EM, motion.angular_velocity);
+        }
+    }
+
+    /// Where its arrows lie: on all bodies, but not closer to each other than can be told apart.
+    fn spots(&self, motion: &MotionView, surroundings: &Surroundings) -> Vec<Spot> {
+        let boundaries =
+            motion.boundaries.iter().filter_map(|&index| surroundings.boundaries.get(index));
+        let walls = boundaries.flat_map(|boundary| boundary.edges());
+        let walls = walls.map(|edge| self.spot_on(edge));
+        let discs =
+            motion.fixed_discs.iter().filter_map(|&index| surroundings.fixed_discs.get(index));
+        let discs = discs.map(|disc| {
+            let at = self.camera.offset_px(disc.position);
+            Spot { place: disc.position, at, normal: None }
+        });
+        let mut spots: Vec<Spot> = Vec::new();
+        for spot in walls.chain(discs) {
+            let is_free = |other: &Spot| other.at.distance(spot.at) >= SPACING_EM * self.em;
+            if spot.at.abs().cmple(self.reach).all() && spots.iter().all(is_free) {
+                spots.push(spot);
+            }
+        }
+        spots
+    }
+
+    /// The middle of an edge; of an endless one the place that is nearest to the middle of the picture.
+    fn spot_on(&self, edge: Edge) -> Spot {
+        match edge {
+            Edge::Endless { point, normal } => {
+                let normal = normal.normalize_or_zero();
+                let foot = self.camera.offset_px(point).dot(normal) * normal;
+                Spot { place: self.camera.unproject(foot), at: foot, normal: Some((normal, false)) }
+            }
+            Edge::Wall([from, to]) | Edge::Side([from, to]) => {
+                let place = 0.5 * (from + to);
+                let normal = -(to - from).perp().normalize_or_zero();
+                let is_open = matches!(edge, Edge::Wall(_));
+                Spot { place, at: self.camera.offset_px(place), normal: Some((normal, is_open)) }
+            }
+        }
+    }
+
+    /// How far from its spot an arrow lies: beside a wall that it goes along, inside of a solid.
+    fn beside(&self, spot: &Spot, velocity: DVec2) -> DVec2 {
+        let Some((normal, _)) = spot.normal else { return DVec2::ZERO };
+        let along = velocity.normalize_or_zero().dot(normal.perp()).abs() > ALONG;
+        if along { -BESIDE_EM * self.em * normal } else { DVec2::ZERO }
+    }
+
+    /// A surface that goes round its body.
+    fn belt(&mut self, spot: &Spot, speed: f64) {
+        let Some((normal, is_open)) = spot.normal else {
+            return self.arc(spot.at, ARC_EM, speed);
+        };
+        let sides: &[f64] = if is_open { &[1.0, -1.0] } else { &[1.0] };
+        for side in sides {
+            let outward = *side * normal;
+            // Outside of an open wall on either side; inside of a solid.
+            let place = if is_open { outward } else { -outward };
+            self.arrow(spot.at + BESIDE_EM * self.em * place, speed * outward.perp(), 1);
+        }
+    }
+
+    /// An arrow with its middle at a place, pixels.
+    fn arrow(&mut self, middle: DVec2, along: DVec2, heads: u32) {
+        let along = along.normalize_or_zero();
+        let half = 0.5 * LENGTH_EM * self.em * along;
+        self.lines.push([middle - half, middle + half]);
+        for head in 0..heads {
+            self.head(middle + half - f64::from(head) * SECOND_HEAD_EM * self.em * along, along);
+        }
+    }
+
+    fn head(&mut self, tip: DVec2, along: DVec2) {
+        for turn in [2.5, -2.5] {
+            let barb = DVec2::from_angle(turn).rotate(along) * (BARB_EM * self.em);
+            self.lines.push([tip, tip + barb]);
+        }
+    }
+
+    /// An arc round a place, pixels, that goes anticlockwise where the rate is above 0.
+    fn arc(&mut self, centre: DVec2, radius_em: f64, rate: f64) {
+        if !centre.abs().cmple(self.reach).all() {
+            return;
+        }
+        let turn = ARC_TURN * rate.signum() / ARC_PIECES as f64;
+        let first = -0.5 * ARC_TURN * rate.signum() + 0.25 * TAU;
+        let place = |piece: usize| {
+            centre + radius_em * self.em * DVec2::from_angle(first + turn * piece as f64)
+        };
+        let points: Vec<DVec2> = (0..=ARC_PIECES).map(place).collect();
+        self.lines.extend(points.windows(2).map(|ends| [ends[0], ends[1]]));
+        let last = points[ARC_PIECES];
+        self.head(last, rate.signum() * (last - centre).perp().normalize_or_zero());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::Theme;
+    use crate::world::{Boundary, Disc};
+
+    const CAMERA: Camera = Camera { centre: DVec2::ZERO, metres_per_pixel: 0.01 };
+
+    fn lines(
+        boundaries: Vec<Boundary>,
+        fixed_discs: Vec<Disc>,
+        moving: MotionView,
+    ) -> Vec<LinkInstance> {
+        let surroundings = Surroundings {
+            fixed_discs,
+            boundaries,
+            centre_of_attraction: None,
+            periodic: None,
+            mean_diameter: 0.1,
+            gravity_magnitude: 9.8,
+            moving: vec![moving],
+        };
+        let palette = Theme::Light.palette();
+        let links = motion_links(&surroundings, &palette, &CAMERA, [800, 600], 16.0);
+        // The second half lies on the first, which is its halo.
+        links[links.len() / 2..].to_vec()
+    }
+
+    fn wall() -> Vec<Boundary> {
+        vec![Boundary::Segment { from: DVec2::new(-1.0, 0.0), to: DVec2::new(1.0, 0.0) }]
+    }
+
+    #[test]
+    fn an_arrow_lies_on_what_moves_and_points_where_it_goes() {
+        let velocity = DVec2::new(0.0, -0.3);
+        let motion = MotionView { boundaries: vec![0], velocity, ..MotionView::default() };
+        let drawn = lines(wall(), Vec::new(), motion.clone());
+        assert_eq!(drawn.len(), 3, "a shaft and two barbs");
+        assert_eq!(drawn[0].start[0], 0.0);
+        assert!(drawn[0].start[1] > 0.0 && drawn[0].end[1] < 0.0);
+        // Two heads where a force drives it, beside the first.
+        let force = MotionView { force: DVec2::Y, ..motion.clone() };
+        assert_eq!(lines(wall(), Vec::new(), force).len(), 3 + 5);
+        let still = MotionView { velocity: DVec2::ZERO, ..motion };
+        assert!(lines(wall(), Vec::new(), still).is_empty());
+    }
+
+    #[test]
+    fn what_turns_has_arrows_round_the_pivot_and_an_arc_at_it() {
+        let disc = |angle: f64| Disc { position: DVec2::from_angle(angle), radius: 0.05 };
+        let discs: Vec<Disc> = (0..8).map(|index| disc(TAU * f64::from(index) / 8.0)).collect();
+        let turning = MotionView {
+            fixed_discs: (0..8).collect(),
+            angular_velocity: -2.0,
+            ..MotionView::default()
+        };
+        let drawn = lines(Vec::new(), discs, turning);
+        assert_eq!(drawn.len(), 8 * 3 + ARC_PIECES + 2);
+        for shaft in drawn[..24].chunks(3).map(|arrow| &arrow[0]) {
+            let [from, to] = [shaft.start, shaft.end].map(|[x, y]| DVec2::new(x.into(), y.into()));
+            assert!(from.perp_dot(to - from) < 0.0, "clockwise");
+        }
+    }
+
+    #[test]
+    fn arrows_of_one_motion_keep_apart() {
+        let disc =
+            |index: u32| Disc { position: DVec2::new(0.01 * f64::from(index), 0.0), radius: 0.05 };
+        let motion = MotionView {
+            fixed_discs: (0..100).collect(),
+            velocity: DVec2::X,
+            ..MotionView::default()
+        };
+        let drawn = lines(Vec::new(), (0..100).map(disc).collect(), motion);
+        assert_eq!(drawn.len(), 3 * 2, "100 pixels have room for two");
+    }
+
+    #[test]
+    fn a_belt_goes_along_its_wall() {
+        let floor = vec![Boundary::HalfSpace { point: DVec2::new(3.0, 0.0), normal: DVec2::Y }];
+        let belt = MotionView { boundaries: vec![0], surface_speed: 0.5, ..MotionView::default() };
+        let drawn = lines(floor, Vec::new(), belt);
+        // To the left on a floor, below its surface.
+        assert!(drawn[0].end[0] < drawn[0].start[0] && drawn[0].start[1] < 0.0);
+    }
+}
