@@ -66,6 +66,7 @@ fn parameters(u: &mut Unstructured<'_>) -> Result<Parameters> {
         stiffness: *u.choose(&[0.0, 0.0, 10.0, 1e4])?,
         damping_ratio: *u.choose(&[0.0, 0.0, 0.05, 3.0])?,
         substeps: *u.choose(&[0, 0, 1, 7])?,
+        tilt: 0.0,
     })
 }
 

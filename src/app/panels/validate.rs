@@ -92,7 +92,8 @@ fn row(ui: &mut Ui, texts: [&str; 3], colour: Color32, hint: &str) {
         for (index, (column, text)) in columns.iter_mut().zip(texts).enumerate() {
             let text = RichText::new(text).small();
             let text = if index == 2 { text.color(colour) } else { text.weak() };
-            let shown = column.label(text);
+            // Broken into lines a number is none.
+            let shown = column.add(egui::Label::new(text).extend());
             if !hint.is_empty() {
                 shown.on_hover_text(hint);
             }
