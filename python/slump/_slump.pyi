@@ -119,6 +119,7 @@ class _Options(_Changes, total=False):
     initial_step: int | None
     grains: int | None
     box_width: float | None
+    base_width: float | None
     seed: int | None
     deposition: Literal["rain", "drop-and-roll"] | None
     start: float | None
