@@ -112,16 +112,19 @@ impl GrowingFile {
 
     /// Writes over what stands behind what is whole, the last page first.
     fn put_from_its_end(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        let pages = self.pages(bytes.len());
-        pages.into_iter().rev().try_for_each(|part| self.put(part.start, &bytes[part]))
+        self.pages_from_the_last(bytes.len())
+            .into_iter()
+            .try_for_each(|part| self.put(part.start, &bytes[part]))
     }
 
-    /// The parts of so many bytes behind what is whole that lie in one page each.
-    fn pages(&self, length: usize) -> Vec<std::ops::Range<usize>> {
+    /// The parts of so many bytes behind what is whole that lie in one page each, the last first.
+    fn pages_from_the_last(&self, length: usize) -> Vec<std::ops::Range<usize>> {
         let room = (PAGE - self.whole % PAGE) as usize;
         let starts = std::iter::once(0).chain((room..length).step_by(PAGE as usize));
         let ends = (room..length).step_by(PAGE as usize).chain([length]);
-        starts.zip(ends).map(|(start, end)| start..end).collect()
+        let mut pages: Vec<_> = starts.zip(ends).map(|(start, end)| start..end).collect();
+        pages.reverse();
+        pages
     }
 
     /// Writes so many bytes behind what is whole.
@@ -166,9 +169,9 @@ mod tests {
             file.add(("x".repeat(before as usize - 1) + "\n").as_bytes()).expect("rows");
             let below = format!("{draft:0$}\n{rows}", head.len() - 1);
             file.put(0, below.as_bytes()).expect("a draft");
-            let pages = file.pages(head.len());
+            let pages = file.pages_from_the_last(head.len());
             over_an_end += usize::from(pages.len() == 2);
-            for part in pages.into_iter().rev() {
+            for part in pages {
                 let text = std::fs::read_to_string(file.path()).expect("text");
                 assert!(text[before as usize..].starts_with("ITEM: D"), "{before}");
                 file.put(part.start, &head.as_bytes()[part.clone()]).expect("a part of a head");
