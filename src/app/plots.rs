@@ -27,6 +27,21 @@ const BUCKETS: usize = 300;
 const BESIDE: [LineStyle; 2] =
     [LineStyle::Dashed { length: 6.0 }, LineStyle::Dotted { spacing: 4.0 }];
 
+/// A plot of a panel, which stands still under the mouse.
+pub(super) fn still_plot<'a>(
+    ui: &Ui,
+    id: impl std::hash::Hash + std::fmt::Debug,
+    height: f32,
+) -> Plot<'a> {
+    Plot::new(id)
+        .height(height)
+        .allow_scroll(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .show_background(false)
+        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
+}
+
 /// Everything that plots are drawn from.
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {

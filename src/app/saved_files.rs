@@ -11,7 +11,7 @@ use super::session::{Arrangement, SESSION_ENDING, Session, SessionOrder};
 use super::state::AppState;
 use super::storage::Stored;
 use super::taken::Opened;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::scene::SavedState;
 use crate::sim::live::{Command, Start};
 
@@ -58,13 +58,30 @@ impl AppState {
         if self.frame.worlds.is_empty() {
             return;
         }
-        let order = self.session_order(context);
+        let order = match self.session_order(context) {
+            Ok(order) => order,
+            Err(error) => return self.warn(error.to_string()),
+        };
         let (folder, stem) = (self.preferences.folder.clone(), file_stem(self));
         self.exporter.submit(context, Export::Session(Box::new(order)), &folder, &stem);
     }
 
     /// What a session of the present moment is made of.
-    fn session_order(&mut self, context: &egui::Context) -> SessionOrder {
+    ///
+    /// # Errors
+    /// Where the window's arrangement cannot be said as text.
+    fn session_order(&mut self, context: &egui::Context) -> Result<SessionOrder> {
+        let arrangement = Arrangement {
+            stored: Stored {
+                preferences: self.preferences.clone(),
+                layout: context.memory(Clone::clone),
+            },
+            touring: self.touring,
+            selected: self.selected,
+            camera: self.camera,
+        };
+        let refuse = |error| Error::value("window", "arranged so", format!("written ({error})"));
+        let window = ron::to_string(&arrangement).map_err(refuse)?;
         let (sender, run) = channel();
         let last = self.last_opened.clone();
         let hand_on = move |start: Start| {
@@ -76,17 +93,7 @@ impl AppState {
             }
         };
         self.live.send(Command::TakeAll(Box::new(hand_on)));
-        let arrangement = Arrangement {
-            stored: Stored {
-                preferences: self.preferences.clone(),
-                layout: context.memory(Clone::clone),
-            },
-            touring: self.touring,
-            selected: self.selected,
-            camera: self.camera,
-        };
-        // What cannot be written is told of where the file is read back.
-        SessionOrder { run, window: ron::to_string(&arrangement).unwrap_or_default() }
+        Ok(SessionOrder { run, window })
     }
 
     /// Arranges the window as it was when a session was saved. What belongs to this window and its user stays:

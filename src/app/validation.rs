@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::error::{Error, Result};
+use crate::study::Verdict;
 
 /// The command that makes a report in a few minutes.
 pub(super) const COMMAND: &str = "slump validate --quick --out validation";
@@ -44,15 +45,6 @@ pub(super) struct Measured {
     pub mean: Option<f64>,
     pub low: Option<f64>,
     pub high: Option<f64>,
-}
-
-/// Whether the two agree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Verdict {
-    Agrees,
-    Differs,
-    NotDecided,
 }
 
 /// A report, and where it comes from.

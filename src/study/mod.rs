@@ -44,4 +44,6 @@ pub(crate) use states::settled_pile;
 pub(crate) use statistics::mean;
 pub(crate) use sweep::{SweepOptions, merge, sweep};
 pub(crate) use table::RunsTable;
+#[cfg(feature = "window")]
+pub(crate) use validate::Verdict;
 pub(crate) use validate::{ValidateOptions, experiment_names, validate};

@@ -4,9 +4,10 @@
 use std::sync::OnceLock;
 
 use egui::{Color32, RichText, Ui};
-use egui_plot::{GridMark, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
+use egui_plot::{GridMark, Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points};
 use serde::Deserialize;
 
+use crate::app::plots::still_plot;
 use crate::app::state::AppState;
 use crate::app::step_race::StepRace;
 use crate::app::theme;
@@ -114,13 +115,7 @@ fn now(state: &AppState, race: &StepRace) -> Option<[f64; 2]> {
 fn draw(ui: &mut Ui, curves: &[Vec<PlotPoint>], now: Option<[f64; 2]>) {
     let dark = ui.visuals().dark_mode;
     ui.label(RichText::new("residual against ms a step").small());
-    Plot::new("speed and accuracy")
-        .height(HEIGHT)
-        .allow_scroll(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .show_background(false)
-        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
+    still_plot(ui, "speed and accuracy", HEIGHT)
         .x_grid_spacer(|grid| decades(grid.bounds))
         .y_grid_spacer(|grid| decades(grid.bounds))
         .x_axis_formatter(|mark, _| power_of_ten(mark.value))

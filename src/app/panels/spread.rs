@@ -1,8 +1,9 @@
 //! Panel: how forces, directions, contacts and overlaps are distributed at the moment that is shown.
 
 use egui::{RichText, Ui};
-use egui_plot::{Bar, BarChart, Plot};
+use egui_plot::{Bar, BarChart};
 
+use crate::app::plots::still_plot;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::granular::Histogram;
@@ -37,17 +38,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let about = ALL.iter().find(|(known, ..)| *known == name).map_or("", |(.., about)| about);
     let colour = theme::world_colour(state.selected, ui.visuals().dark_mode);
     let bars = bars(histogram);
-    Plot::new(("histogram", name))
-        .height(HEIGHT)
-        .allow_scroll(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .show_background(false)
-        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
-        .include_y(1.0)
-        .show(ui, |plot| {
-            plot.bar_chart(BarChart::new(name, bars).color(colour));
-        });
+    still_plot(ui, ("histogram", name), HEIGHT).include_y(1.0).show(ui, |plot| {
+        plot.bar_chart(BarChart::new(name, bars).color(colour));
+    });
     let total: u64 = histogram.counts.iter().sum();
     let text = format!("{about}: {total} in all. Outer bars hold what lies beyond.");
     ui.label(RichText::new(text).small().weak());

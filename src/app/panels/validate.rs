@@ -4,8 +4,9 @@ use egui::{CollapsingHeader, Color32, RichText, TextEdit, Ui};
 
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::app::validation::{COMMAND, Found, Measured, Published, Validation, Verdict, scene_of};
+use crate::app::validation::{COMMAND, Found, Measured, Published, Validation, scene_of};
 use crate::scene::Config;
+use crate::study::Verdict;
 
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {

@@ -10,7 +10,7 @@
 //! It bounds H from above: a slip along a plane is one way to fall, and there may be easier ones.
 
 use super::experiment::{Case, Cases, Experiment, Found, values, with};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::spread::Column;
 use super::way::Way;
 use crate::study::statistics::mean;
@@ -104,29 +104,22 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
             * crate::scene::experiments::half_width(grains as usize, ASPECT);
         ratios.push(height / bound(standing_from(&runs)));
     }
-    let expected = |[low, value, high]: [f64; 3], source| Expected {
-        value,
-        low,
-        high,
-        provenance: Provenance::Memory,
-        source,
+    let quantity = |name: &str, values: &[f64], band, source| {
+        Quantity::new(name, &system, mean(values), band, (Provenance::Memory, source))
     };
     vec![
-        Quantity {
-            name: "rank correlation of run-out and Bond".into(),
-            system: system.clone(),
-            expected: expected(
-                [f64::NEG_INFINITY, -1.0, -0.7],
-                "Abramian et al. 2020, Gans et al. 2023: it falls",
-            ),
-            measured: mean(&trends),
-        },
-        Quantity {
-            name: "height of the least cohesive cliff that stands, over the bound".into(),
-            system,
-            expected: expected([0.2, 1.0, 1.0], "Mohr, Coulomb: at most 1"),
-            measured: mean(&ratios),
-        },
+        quantity(
+            "rank correlation of run-out and Bond",
+            &trends,
+            [f64::NEG_INFINITY, -1.0, -0.7],
+            "Abramian et al. 2020, Gans et al. 2023: it falls",
+        ),
+        quantity(
+            "height of the least cohesive cliff that stands, over the bound",
+            &ratios,
+            [0.2, 1.0, 1.0],
+            "Mohr, Coulomb: at most 1",
+        ),
     ]
 }
 

@@ -5,7 +5,7 @@
 
 use super::experiment::{Case, Cases, Experiment, Found, values, with};
 use super::plane_shear::{Layer, PRESSURE, size, takes_drives};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::way::Way;
 use crate::study::statistics::mean;
 
@@ -60,37 +60,32 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
         mean(&pairs.collect::<Vec<_>>())
     };
     let (ratio, difference) = (|with, without| with / without, |with, without| with - without);
-    let quantity = |name: &str, measured, [low, value, high]: [f64; 3], provenance, source| {
-        let expected = Expected { value, low, high, provenance, source };
-        Quantity { name: name.into(), system: system.clone(), expected, measured }
+    let quantity = |name: &str, measured, band, source| {
+        Quantity::new(name, &system, measured, band, (Provenance::Memory, source))
     };
     vec![
         quantity(
             "T/N at η = 1 over that without cohesion",
             against(WEAK, "friction", ratio),
             [0.85, 1.0, 1.2],
-            Provenance::Memory,
             "Rognon et al. 2006: weak cohesion leaves it",
         ),
         quantity(
             "φ at η = 1 less that without cohesion",
             against(WEAK, "solid_fraction", difference),
             [-0.04, -0.01, 0.0],
-            Provenance::Memory,
             "Rognon et al. 2006: weak cohesion dilates",
         ),
         quantity(
             "T/N at η = 30 over that without cohesion",
             against(STRONG, "friction", ratio),
             [1.2, 2.0, f64::INFINITY],
-            Provenance::Memory,
             "Rognon et al. 2006: strong cohesion raises it",
         ),
         quantity(
             "φ at η = 30 less that without cohesion",
             against(STRONG, "solid_fraction", difference),
             [f64::NEG_INFINITY, -0.1, -0.02],
-            Provenance::Memory,
             "Rognon et al. 2006: strong cohesion dilates further",
         ),
     ]

@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use super::experiment::{Case, Cases, Experiment, Found, Measured, values, with};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::spread::at_rest;
 use super::start::{loose, settle};
 use super::trial::Trial;
@@ -129,13 +129,8 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
         };
         ratios.push(at(TIMES_GRAVITY) / at(1.0));
     }
-    let quantity = |name: &str,
-                    values: &[f64],
-                    [low, value, high]: [f64; 3],
-                    of: (Provenance, &'static str)| {
-        let expected = Expected { value, low, high, provenance: of.0, source: of.1 };
-        Quantity { name: name.into(), system: system.clone(), expected, measured: mean(values) }
-    };
+    let quantity =
+        |name: &str, values: &[f64], band, of| Quantity::new(name, &system, mean(values), band, of);
     let memory = |source| (Provenance::Memory, source);
     vec![
         quantity(

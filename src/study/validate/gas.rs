@@ -22,7 +22,7 @@ use rand_pcg::Pcg64;
 
 use super::experiment::{Case, Cases, Experiment, Found, Measured};
 use super::fit::cooling_law;
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::start::wall;
 use super::trial::Trial;
 use super::way::Way;
@@ -140,30 +140,20 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
     let of = |name| mean(&found.iter().map(|one| one.reading(name)).collect::<Vec<_>>());
     let system = format!("{discs} discs, {} runs", found.len());
     vec![
-        Quantity {
-            name: "exponent p of T = T₀ (1 + t/τ)^−p".into(),
-            system: system.clone(),
-            expected: Expected {
-                value: 2.0,
-                low: 1.85,
-                high: 2.15,
-                provenance: Provenance::Exact,
-                source: "Haff 1983",
-            },
-            measured: of("exponent"),
-        },
-        Quantity {
-            name: "τ over that of kinetic theory".into(),
-            system,
-            expected: Expected {
-                value: 1.0,
-                low: 0.9,
-                high: 1.1,
-                provenance: Provenance::Memory,
-                source: "Enskog's collision rate, Henderson 1975, walls included",
-            },
-            measured: of("time"),
-        },
+        Quantity::new(
+            "exponent p of T = T₀ (1 + t/τ)^−p",
+            &system,
+            of("exponent"),
+            [1.85, 2.0, 2.15],
+            (Provenance::Exact, "Haff 1983"),
+        ),
+        Quantity::new(
+            "τ over that of kinetic theory",
+            &system,
+            of("time"),
+            [0.9, 1.0, 1.1],
+            (Provenance::Memory, "Enskog's collision rate, Henderson 1975, walls included"),
+        ),
     ]
 }
 

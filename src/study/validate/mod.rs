@@ -33,6 +33,9 @@ mod way;
 use std::path::PathBuf;
 use std::time::Instant;
 
+#[cfg(feature = "window")]
+pub(crate) use self::quantity::Verdict;
+
 use self::experiment::Experiment;
 use self::registry::EXPERIMENTS;
 use self::runs::{Entry, run_all};

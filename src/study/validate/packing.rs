@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::experiment::{Case, Cases, Experiment, Found, Measured, with};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::start::{loose, settle, wall};
 use super::trial::Trial;
 use super::way::Way;
@@ -144,60 +144,41 @@ fn tail(moment: &Moment) -> f64 {
 fn judge(found: &[Found]) -> Vec<Quantity> {
     let discs = found.first().map_or(0.0, |one| one.at("discs"));
     let runs = with(found, "friction", 0.0).count();
-    let quantity = |name: &str, (friction, reading): (f64, &str), expected: Expected| {
+    let system = format!("{discs} discs, {runs} runs");
+    let quantity = |name: &str, (friction, reading): (f64, &str), band, of| {
         let of_friction = with(found, "friction", friction).map(|one| one.reading(reading));
-        let measured = mean(&of_friction.collect::<Vec<_>>());
-        Quantity {
-            name: name.into(),
-            system: format!("{discs} discs, {runs} runs"),
-            expected,
-            measured,
-        }
-    };
-    let expected = |[low, value, high]: [f64; 3], provenance, source| Expected {
-        value,
-        low,
-        high,
-        provenance,
-        source,
+        Quantity::new(name, &system, mean(&of_friction.collect::<Vec<_>>()), band, of)
     };
     vec![
         quantity(
             "φ without friction",
             (0.0, "solid_fraction"),
-            expected(
-                [0.82, 0.84, 0.86],
-                Provenance::Read,
-                "reported for nearly monodisperse discs",
-            ),
+            [0.82, 0.84, 0.86],
+            (Provenance::Read, "reported for nearly monodisperse discs"),
         ),
         quantity(
             "Z without friction",
             (0.0, "coordination"),
-            expected([3.9, 4.0, 4.1], Provenance::Read, "2D = 4: isostatic"),
+            [3.9, 4.0, 4.1],
+            (Provenance::Read, "2D = 4: isostatic"),
         ),
         quantity(
             "Z at μ = 10",
             (LARGE_FRICTION, "coordination"),
-            expected([2.95, 3.1, 3.4], Provenance::Memory, "→ 3 as μ → ∞"),
+            [2.95, 3.1, 3.4],
+            (Provenance::Memory, "→ 3 as μ → ∞"),
         ),
         quantity(
             "β without friction",
             (0.0, "tail"),
-            expected(
-                [1.2, 1.6, 2.0],
-                Provenance::Memory,
-                "1.4 (Radjai et al. 1996) … 1.8 (experiment)",
-            ),
+            [1.2, 1.6, 2.0],
+            (Provenance::Memory, "1.4 (Radjai et al. 1996) … 1.8 (experiment)"),
         ),
         quantity(
             "β at μ = 10",
             (LARGE_FRICTION, "tail"),
-            expected(
-                [1.2, 1.6, 2.0],
-                Provenance::Memory,
-                "1.4 (Radjai et al. 1996) … 1.8 (experiment)",
-            ),
+            [1.2, 1.6, 2.0],
+            (Provenance::Memory, "1.4 (Radjai et al. 1996) … 1.8 (experiment)"),
         ),
     ]
 }

@@ -11,7 +11,7 @@
 use glam::DVec2;
 
 use super::experiment::{Case, Cases, Experiment, Found, Measured, values, with};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::repose::shuffled;
 use super::trial::Trial;
 use super::way::Way;
@@ -218,10 +218,8 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
         let lines: Vec<[f64; 2]> = seeds.iter().map(line).collect();
         [0, 1].map(|part| lines.iter().map(|line| line[part]).collect())
     };
-    let quantity = |name: &str, values: &[f64], [low, value, high]: [f64; 3], source| {
-        let provenance = Provenance::Memory;
-        let expected = Expected { value, low, high, provenance, source };
-        Quantity { name: name.into(), system: system.clone(), expected, measured: mean(values) }
+    let quantity = |name: &str, values: &[f64], band, source| {
+        Quantity::new(name, &system, mean(values), band, (Provenance::Memory, source))
     };
     let [least_friction, friction_slopes] = lines("friction");
     let [densest, dilations] = lines("solid_fraction");

@@ -1,6 +1,6 @@
 //! A quantity that was published: what it should be, what was measured, and what is to be said of the two.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::study::statistics::Mean;
 
@@ -46,9 +46,9 @@ pub(super) struct Expected {
 }
 
 /// Whether the measured agrees with the published.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Verdict {
+pub(crate) enum Verdict {
     /// The whole interval lies within the band.
     Agrees,
     /// The whole interval lies outside.
@@ -92,6 +92,19 @@ pub(super) struct Quantity {
 }
 
 impl Quantity {
+    /// What was measured, against the low end of a band, the published value, and the high end; with where these come
+    /// from and who says so.
+    pub(super) fn new(
+        name: impl Into<String>,
+        system: &str,
+        measured: Mean,
+        [low, value, high]: [f64; 3],
+        (provenance, source): (Provenance, &'static str),
+    ) -> Self {
+        let expected = Expected { value, low, high, provenance, source };
+        Self { name: name.into(), system: system.to_owned(), expected, measured }
+    }
+
     /// Relative deviation of the mean from the published value.
     pub(super) fn error(&self) -> f64 {
         (self.measured.mean / self.expected.value - 1.0).abs()
@@ -109,14 +122,8 @@ mod tests {
     use crate::study::statistics::mean;
 
     fn quantity(values: &[f64]) -> Quantity {
-        let expected = Expected {
-            value: 2.0,
-            low: 1.9,
-            high: 2.1,
-            provenance: Provenance::Exact,
-            source: "arithmetic",
-        };
-        Quantity { name: "two".into(), system: String::new(), expected, measured: mean(values) }
+        let of = (Provenance::Exact, "arithmetic");
+        Quantity::new("two", "", mean(values), [1.9, 2.0, 2.1], of)
     }
 
     #[test]

@@ -10,7 +10,7 @@ use rand_pcg::Pcg64;
 
 use super::cliff::rank_correlation;
 use super::experiment::{Case, Cases, Experiment, Found, Measured, values, with};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::trial::Trial;
 use super::way::Way;
 use crate::error::Result;
@@ -116,30 +116,30 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
         (DRUM, "drum", "150 grains", [15.0, 25.0, 40.0], "slopes of discs with μ = 0.5: 20° … 30°"),
         (INCLINE, "incline", "300 grains", [14.0, 22.0, 32.0], "discs with μ = 0.5: 20° … 25°"),
     ];
-    for (number, name, grains, [low, value, high], source) in scenes {
+    for (number, name, grains, band, source) in scenes {
         let of_scene: Vec<Found> = with(found, "scene", number).cloned().collect();
         let system = format!("{grains}, Bond {}, {} seeds", list.join(", "), seeds.len());
         let dry: Vec<f64> = with(&of_scene, "bond", 0.0).map(|one| one.reading("angle")).collect();
-        let provenance = Provenance::Memory;
-        quantities.push(Quantity {
-            name: format!("angle without cohesion, {name}, degrees"),
-            system: system.clone(),
-            expected: Expected { value, low, high, provenance, source },
-            measured: mean(&dry),
-        });
+        quantities.push(Quantity::new(
+            format!("angle without cohesion, {name}, degrees"),
+            &system,
+            mean(&dry),
+            band,
+            (Provenance::Memory, source),
+        ));
         let trend = |seed: &f64| {
             let pairs: Vec<(f64, f64)> = with(&of_scene, "seed", *seed)
                 .map(|one| (one.at("bond"), one.reading("angle")))
                 .collect();
             rank_correlation(&pairs)
         };
-        let source = "it grows with cohesion";
-        quantities.push(Quantity {
-            name: format!("rank correlation of angle and Bond, {name}"),
-            system,
-            expected: Expected { value: 1.0, low: 0.5, high: f64::INFINITY, provenance, source },
-            measured: mean(&seeds.iter().map(trend).collect::<Vec<_>>()),
-        });
+        quantities.push(Quantity::new(
+            format!("rank correlation of angle and Bond, {name}"),
+            &system,
+            mean(&seeds.iter().map(trend).collect::<Vec<_>>()),
+            [0.5, 1.0, f64::INFINITY],
+            (Provenance::Memory, "it grows with cohesion"),
+        ));
     }
     quantities
 }

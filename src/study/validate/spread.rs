@@ -2,7 +2,7 @@
 //! were.
 
 use super::experiment::{Case, Cases, Experiment, Found, Measured, values, with};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::start::{loose, settle, wall};
 use super::trial::Trial;
 use super::way::Way;
@@ -193,18 +193,8 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
     let aspects = values(found, "aspect");
     let list: Vec<String> = aspects.iter().map(f64::to_string).collect();
     let system = format!("{grains} grains, a = {}, {seeds} seeds", list.join(", "));
-    let expected = |[low, value, high]: [f64; 3], source| Expected {
-        value,
-        low,
-        high,
-        provenance: Provenance::Memory,
-        source,
-    };
-    let quantity = |name: &str, values: &[f64], expected| Quantity {
-        name: name.into(),
-        system: system.clone(),
-        expected,
-        measured: mean(values),
+    let quantity = |name: &str, values: &[f64], band, source| {
+        Quantity::new(name, &system, mean(values), band, (Provenance::Memory, source))
     };
     let low_factors = linear(found);
     let [high_exponents, high_factors] = power_law(found, "run_out", [LINEAR_TO, f64::INFINITY]);
@@ -213,27 +203,32 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
         quantity(
             "run-out over a, a ≤ 2",
             &low_factors,
-            expected([1.2, 2.5, 3.2], "Staron, Hinch 2005: 2.5; Lube et al. 2005: 1.2"),
+            [1.2, 2.5, 3.2],
+            "Staron, Hinch 2005: 2.5; Lube et al. 2005: 1.2",
         ),
         quantity(
             "exponent of run-out in a, a ≥ 2",
             &high_exponents,
-            expected([0.55, 0.7, 0.9], "Staron, Hinch 2005: 0.7; Lajeunesse et al. 2005: 2/3"),
+            [0.55, 0.7, 0.9],
+            "Staron, Hinch 2005: 0.7; Lajeunesse et al. 2005: 2/3",
         ),
         quantity(
             "factor of run-out, a ≥ 2",
             &high_factors,
-            expected([1.7, 3.25, 4.0], "Staron, Hinch 2005: 3.25; Lube et al. 2005: 1.9"),
+            [1.7, 3.25, 4.0],
+            "Staron, Hinch 2005: 3.25; Lube et al. 2005: 1.9",
         ),
         quantity(
             "exponent of final height in a, a ≥ 1",
             &height_exponents,
-            expected([0.25, 0.35, 0.5], "Staron, Hinch 2005: 0.35; Lajeunesse et al. 2005: 1/3"),
+            [0.25, 0.35, 0.5],
+            "Staron, Hinch 2005: 0.35; Lajeunesse et al. 2005: 1/3",
         ),
         quantity(
             "factor of final height, a ≥ 1",
             &height_factors,
-            expected([0.5, 0.65, 0.8], "Staron, Hinch 2005: 0.65"),
+            [0.5, 0.65, 0.8],
+            "Staron, Hinch 2005: 0.65",
         ),
     ]
 }

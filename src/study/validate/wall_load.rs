@@ -12,7 +12,7 @@
 use glam::DVec2;
 
 use super::experiment::{Case, Cases, Experiment, Found, Measured, values, with};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use super::spread::at_rest;
 use super::start::{loose, settle, wall};
 use super::trial::Trial;
@@ -154,10 +154,8 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
         };
         gains.push(load(HIGH) / load(HALF_AS_HIGH));
     }
-    let quantity = |name: &str, values: &[f64], [low, value, high]: [f64; 3], source| {
-        let provenance = Provenance::Memory;
-        let expected = Expected { value, low, high, provenance, source };
-        Quantity { name: name.into(), system: system.clone(), expected, measured: mean(values) }
+    let quantity = |name: &str, values: &[f64], band, source| {
+        Quantity::new(name, &system, mean(values), band, (Provenance::Memory, source))
     };
     vec![
         quantity(

@@ -29,7 +29,7 @@ use self::arms::{ARMS, Arm, Sweeper};
 use self::own_sweeps::OwnSweeps;
 use super::experiment::{Case, Cases, Experiment, Found, Measured, Reading, values, with};
 use super::fit::{DampedWave, damped_wave};
-use super::quantity::{Expected, Provenance, Quantity};
+use super::quantity::{Provenance, Quantity};
 use crate::error::Result;
 use crate::scene::stability::column_on_line;
 use crate::sim::Simulation;
@@ -166,17 +166,12 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
     let mut exponents = Vec::new();
     for (number, arm) in ARMS.iter().enumerate() {
         let of_arm: Vec<Found> = with(found, "arm", number as f64).cloned().collect();
-        let expected = Expected {
-            value: arm.q(),
-            low: arm.q() * (1.0 - arm.within),
-            high: arm.q() * (1.0 + arm.within),
-            provenance: arm.provenance,
-            source: arm.source,
-        };
+        let band = [1.0 - arm.within, 1.0, 1.0 + arm.within].map(|factor| arm.q() * factor);
         for (reading, from) in [("q_period", "period"), ("q_damping", "damping")] {
             let measured = mean(&of_arm.iter().map(|one| one.reading(reading)).collect::<Vec<_>>());
             let name = format!("q of {}, from the {from}", arm.name);
-            quantities.push(Quantity { name, system: system.clone(), expected, measured });
+            let of = (arm.provenance, arm.source);
+            quantities.push(Quantity::new(name, &system, measured, band, of));
         }
         for &discs in &discs {
             let of_row = with(&of_arm, "discs", discs);
@@ -185,18 +180,13 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
             exponents.push(slope(&points));
         }
     }
-    quantities.push(Quantity {
-        name: "exponent of the period in N".into(),
-        system,
-        expected: Expected {
-            value: -0.5,
-            low: -0.51,
-            high: -0.49,
-            provenance: Provenance::Read,
-            source: "Unger et al. 2002: T ∝ 1/√N",
-        },
-        measured: mean(&exponents),
-    });
+    quantities.push(Quantity::new(
+        "exponent of the period in N",
+        &system,
+        mean(&exponents),
+        [-0.51, -0.5, -0.49],
+        (Provenance::Read, "Unger et al. 2002: T ∝ 1/√N"),
+    ));
     quantities
 }
 
