@@ -29,7 +29,7 @@ def cases():
         for method in METHODS:
             for remedy in ([], ["--max-travel", "0.1"], ["--preset", "robust"]):
                 yield [*base, "--stepper", "range", "--solver", method, *remedy]
-        for stepper in ("tgs-soft", "dem"):
+        for stepper in ("tgs-soft", "avbd", "dem"):
             for remedy in ([], ["--substeps", "7"]):
                 yield [*base, "--stepper", stepper, *remedy]
 

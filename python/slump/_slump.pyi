@@ -31,7 +31,7 @@ _Initial = _Path | Mapping[str, npt.ArrayLike] | Any
 
 # Settings: written by the test that compares them with the program's (SLUMP_BLESS=1 pytest python/tests/test_types.py).
 class _Settings(TypedDict):
-    stepper: Literal["moreau", "range", "tgs-soft", "dem"]
+    stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"]
     bond: float
     dt: float
     rho: float
@@ -59,7 +59,7 @@ class _Settings(TypedDict):
     speculative: bool
 
 class _Changes(TypedDict, total=False):
-    stepper: Literal["moreau", "range", "tgs-soft", "dem"] | None
+    stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"] | None
     bond: float | None
     dt: float | None
     rho: float | None
@@ -87,7 +87,7 @@ class _Changes(TypedDict, total=False):
     speculative: bool | None
 
 class _Attributes:
-    stepper: Literal["moreau", "range", "tgs-soft", "dem"]
+    stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"]
     bond: float
     dt: float
     rho: float

@@ -25,6 +25,9 @@ pub(super) fn what_to_try(settings: &Settings) -> &'static str {
         Stepper::Range => {
             "Under this law Bond means the same at every Δt: set both, release, and see whether it does."
         }
+        Stepper::Avbd => {
+            "Here a step gets as far as its iterations take it: set Δt, release, and see what it leaves undone."
+        }
         Stepper::TgsSoft | Stepper::Dem => {
             "Here cohesion is a force like any other, whatever Δt: set Bond, release, and see whether the pile holds."
         }

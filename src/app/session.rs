@@ -20,7 +20,7 @@ use crate::sim::live::Start;
 /// What files begin with.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
-    format: 1,
+    format: 2,
     what: "session",
     of: "",
     form: "a session that the window saved",

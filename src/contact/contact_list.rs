@@ -52,6 +52,8 @@ pub struct ContactMemory {
     pub normal_force: f64,
     /// T of the last substep, newton.
     pub tangential_force: f64,
+    /// Stiffness of the penalty along normal and tangent, N/m.
+    pub stiffness: [f64; 2],
 }
 
 /// What is kept of a contact as long as it lives.

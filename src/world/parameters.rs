@@ -194,13 +194,13 @@ settings! {
         substeps: u32 = 0, {
             name: "substeps",
             value_name: "N",
-            help: "Substeps of a step; 0 takes 4 for tgs-soft, and as many as keep dem stable",
+            help: "Substeps of a step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable",
             allowed: "at most 100000; 0 leaves it to the stepper",
             holds: |value| value <= MAX_SUBSTEPS,
             control: Some(Control {
                 label: "Substeps",
                 symbol: "substeps",
-                hint: "Substeps of each step; 0 takes 4 for tgs-soft, and as many as keep dem stable.",
+                hint: "Substeps of each step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable.",
                 range: [0.0, 100.0],
                 ..Control::PLAIN
             }),

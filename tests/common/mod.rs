@@ -119,6 +119,11 @@ pub fn every_way() -> Vec<(Stepper, Method)> {
     Stepper::ALL.iter().flat_map(of).collect()
 }
 
+/// Those of [`every_way`] whose impulses are what moves the grains, so that momentum and energy balance.
+pub fn every_way_that_balances() -> Vec<(Stepper, Method)> {
+    every_way().into_iter().filter(|way| way.0 != Stepper::Avbd).collect()
+}
+
 /// A simulation of a scene that has no fault.
 pub fn start(scene: &Scene) -> Simulation {
     scene.simulation().expect("a proper scene")

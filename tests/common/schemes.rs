@@ -7,8 +7,11 @@ use slump::world::{Grain, Physics};
 
 use super::{G, moving, parameters, scene};
 
-/// The steppers that solve no problem of the whole step.
+/// The steppers that solve no problem of the whole step, and whose impulses are what moves the grains.
 pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
+
+/// Those, and the one whose bodies are moved a little past their impulses.
+pub const ALL_SCHEMES: [Stepper; 3] = [Stepper::TgsSoft, Stepper::Avbd, Stepper::Dem];
 
 /// The same scene, stepped this way with so many substeps.
 pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {

@@ -24,7 +24,7 @@ const REFUSED: [&str; 8] = ["-1", "nan", "inf", "-inf", "1e300", "-1e-300", "muc
 
 /// Options with values that mean something.
 const OPTIONS: [(&str, &[&str]); 25] = [
-    ("--stepper", &["moreau", "range", "tgs-soft", "dem"]),
+    ("--stepper", &["moreau", "range", "tgs-soft", "avbd", "dem"]),
     ("--bond", &["0", "1", "20", "1000"]),
     ("--rho", &["0", "0.1", "0.9", "1"]),
     ("--mu", &["0", "0.5", "5"]),

@@ -1,7 +1,8 @@
 //! Gravity that turns: what falls freely, what a box that is tilted lets slide, and the budget of energy.
 
 use super::common::{
-    G, UNTURNING, assert_close, every_way, parameters, pressed_pile, scene, start, take_steps,
+    G, UNTURNING, assert_close, every_way, every_way_that_balances, parameters, pressed_pile,
+    scene, start, take_steps,
 };
 use super::{level, through_a_file};
 use glam::DVec2;
@@ -81,7 +82,7 @@ fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
 
 #[test]
 fn the_budget_of_energy_is_closed_under_gravity_that_turns() {
-    for (stepper, method) in every_way() {
+    for (stepper, method) in every_way_that_balances() {
         let mut scene = pressed_pile(40, 0.3, 5, parameters(2.0, DT, 0.3, 0.5));
         scene.gravity_turn = evenly(3.0);
         scene.solver.max_sweeps = 100;

@@ -147,7 +147,10 @@ fn discs_that_move_are_found_wherever_they_come_to() {
         assert_close(disc.x, 0.5, 1e-12, "the disc has gone its way and stays");
         assert_eq!(simulation.snapshot().surroundings.fixed_discs, simulation.world().fixed_discs);
         let speed = simulation.world().grains.velocities[0].x;
-        let tolerance = if *stepper == Stepper::Dem { 0.05 } else { 1e-9 };
+        let tolerance = match stepper {
+            Stepper::Dem | Stepper::Avbd => 0.05,
+            _ => 1e-9,
+        };
         assert_close(speed, 1.0, tolerance, stepper.name());
     }
 }

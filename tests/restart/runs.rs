@@ -137,7 +137,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
 fn a_checkpoint_that_cannot_be_gone_on_with_is_refused_and_overwritten_when_asked() {
     let out = folder();
     let checkpoint = out.path().join("checkpoint.slump");
-    std::fs::write(&checkpoint, "slump-state 1 0.0.0 1 x\ny").expect("a file");
+    std::fs::write(&checkpoint, "slump-state 2 0.0.0 1 x\ny").expect("a file");
     let said = refusal(&mut slump(&PILE, out.path()));
     assert!(said.contains("is of version 0.0.0") && said.contains("unless --overwrite"), "{said}");
     let mut brief = PILE;

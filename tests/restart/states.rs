@@ -143,9 +143,12 @@ fn what_a_way_to_step_remembers_is_lost_or_kept_as_without_the_file() {
 #[test]
 fn a_pile_that_collapses_goes_on_for_long() {
     let mut scene = built_in("pile").expect("a scene");
-    for (stepper, bond, dt) in
-        [(Stepper::Moreau, 20.0, 2e-3), (Stepper::Range, 20.0, 2e-3), (Stepper::Dem, 0.0, 1e-3)]
-    {
+    for (stepper, bond, dt) in [
+        (Stepper::Moreau, 20.0, 2e-3),
+        (Stepper::Range, 20.0, 2e-3),
+        (Stepper::Avbd, 20.0, 2e-3),
+        (Stepper::Dem, 0.0, 1e-3),
+    ] {
         scene.stepper = stepper;
         scene.parameters = parameters(bond, dt, 0.1, 0.5);
         scene.solver.tolerance = 1e-3;

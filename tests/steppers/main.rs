@@ -1,8 +1,9 @@
-//! The steppers beside the paper's: `range`, `tgs-soft` and `dem`, and what all have in common.
+//! The steppers beside the paper's: `range`, `tgs-soft`, `avbd` and `dem`, and what all have in common.
 
 #[path = "../common/mod.rs"]
 mod common;
 
+mod avbd;
 mod range;
 mod range_bounces;
 mod range_piles;

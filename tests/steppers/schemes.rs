@@ -1,6 +1,8 @@
 //! The stepping schemes `tgs-soft` and `dem`: what each must get right by itself.
 
-use crate::common::schemes::{SCHEMES, by, effective_mass, meeting, momentum, relative_velocity};
+use crate::common::schemes::{
+    ALL_SCHEMES, SCHEMES, by, effective_mass, meeting, momentum, relative_velocity,
+};
 use crate::common::{
     G, LINE, SMOOTH, UNTURNING, assert_close, fixed, moving, parameters, pressed_pile, scene,
     start, take_steps,
@@ -94,7 +96,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
 #[test]
 fn free_fall_is_that_of_symplectic_euler_with_the_substep() {
     let (dt, count, velocity) = (1e-3, 300, DVec2::new(-0.7, 2.0));
-    for method in SCHEMES {
+    for method in ALL_SCHEMES {
         for substeps in [0, 1, 7] {
             let grains = vec![Grain { angular_velocity: 3.0, ..moving(DVec2::X, 0.1, velocity) }];
             let scene = scene(Physics::FULL, -G * DVec2::Y, parameters(20.0, dt, 0.1, 0.5), grains);
@@ -155,7 +157,7 @@ fn the_substeps_left_to_the_scheme_are_stable_and_counted() {
 
 #[test]
 fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
-    for method in SCHEMES {
+    for method in ALL_SCHEMES {
         let mut pile = by(method, 0, paper_pile().expect("the shipped state"));
         pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
         let run = || {
@@ -209,7 +211,7 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
             pile
         })
         .collect();
-    for method in SCHEMES {
+    for method in ALL_SCHEMES {
         let slump = |pile: &Scene| {
             let mut simulation = start(&by(method, 0, pile.clone()));
             take_steps(&mut simulation, 1000);

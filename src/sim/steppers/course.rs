@@ -20,7 +20,7 @@ pub(super) struct Course<K: Kinematics> {
     /// Bodies at the beginning of the substep.
     pub start: Vec<K::Body<f64>>,
     /// Bodies at the end of the substep if no contact acted.
-    free: Vec<K::Body<f64>>,
+    pub free: Vec<K::Body<f64>>,
     pub works: Works,
 }
 

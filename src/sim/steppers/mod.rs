@@ -3,6 +3,7 @@
 
 #![deny(dead_code, reason = "a way to step that no row names would not be missed")]
 
+mod avbd;
 mod course;
 mod dem;
 mod info;
@@ -11,6 +12,7 @@ pub(super) mod moreau;
 mod range;
 pub(super) mod stepper;
 mod tgs_soft;
+mod touching;
 
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +32,7 @@ impl Stepper {
             Self::Moreau => &moreau::INFO,
             Self::Range => &range::INFO,
             Self::TgsSoft => &tgs_soft::INFO,
+            Self::Avbd => &avbd::INFO,
             Self::Dem => &dem::INFO,
         }
     }
@@ -63,6 +66,7 @@ impl Advance for Memory {
             Stepper::Moreau => moreau::advance(stage, settings),
             Stepper::Range => range::advance(stage, settings, &mut self.range),
             Stepper::TgsSoft => tgs_soft::advance(stage, settings),
+            Stepper::Avbd => avbd::advance(stage, settings),
             Stepper::Dem => dem::advance(stage, settings),
         }
     }
@@ -79,7 +83,9 @@ impl Memory {
     pub(super) fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
             Stepper::Range => range::prepare(stage, settings),
-            Stepper::Moreau | Stepper::TgsSoft | Stepper::Dem => moreau::set_up(stage, settings),
+            Stepper::Moreau | Stepper::TgsSoft | Stepper::Avbd | Stepper::Dem => {
+                moreau::set_up(stage, settings);
+            }
         }
     }
 
@@ -89,7 +95,7 @@ impl Memory {
         match settings.stepper {
             Stepper::Moreau => moreau::set_up_with_impacts(stage, settings),
             Stepper::Range => range::set_up(stage, settings, &mut self.range),
-            Stepper::TgsSoft | Stepper::Dem => moreau::set_up(stage, settings),
+            Stepper::TgsSoft | Stepper::Avbd | Stepper::Dem => moreau::set_up(stage, settings),
         }
     }
 }

@@ -14,6 +14,8 @@ words! {
         /// Substeps with soft contacts.
         TgsSoft = "tgs-soft",
             "substeps with soft contacts and a relaxing sweep, as game engines step";
+        /// Penalties that stiffen, minimised body by body.
+        Avbd = "avbd", "augmented vertex block descent: stiffening penalties, body by body, as game engines try";
         /// Discrete elements with springs and dashpots.
         Dem = "dem", "smooth discrete elements: springs, dashpots and a constant attraction";
     }

@@ -21,12 +21,11 @@
 
 mod softness;
 
-use self::softness::{SoftContact, Softness};
+use self::softness::Softness;
 use super::StepperInfo;
 use super::course::{Course, Works};
-use crate::contact::ContactMemory;
+use super::touching::{self, Touching};
 use crate::sim::settings::Settings;
-use crate::sim::state::State;
 use crate::sim::stepping::{Outcome, Stage};
 use crate::solver::{Kinematics, Model, Row, StepProblem};
 use crate::world::Parameters;
@@ -64,7 +63,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let softness = Softness::new(&stage.state.world, &settings.parameters, substep_secs);
     let gap_tolerance = stage.state.candidates.gap_tolerance();
     let warm_secs = if settings.solver.warm_start { substep_secs } else { 0.0 };
-    let mut contacts = soft_contacts(stage, warm_secs);
+    let mut contacts = touching::all(stage, warm_secs);
     let capture_speed = stage.problem.capture_speed / f64::from(substeps);
     stage.in_pieces(substeps, settings, Outcome::nothing_yet(), |stage, _, _| {
         course.begin(stage);
@@ -78,88 +77,28 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         });
         course.place(stage);
         let problem = &mut *stage.problem;
-        let velocities = velocities(problem, &problem.bodies);
-        for (contact, [normal_velocity, _]) in contacts.iter_mut().zip(velocities) {
-            contact.gap += substep_secs * (normal_velocity - contact.wall_speed);
-        }
+        touching::follow(problem, &mut contacts, substep_secs);
         update(problem, &mut contacts, |_, contact, velocity| {
             softness.solve::<M, false>(contact, velocity)
         });
         course.add_gravity_work(&problem.bodies, &stage.state.world.grains.masses);
-        end_substep(problem, &mut contacts, course);
+        touching::end_substep(problem, &mut contacts, course);
         // The spring that pulls a grain looks at its velocity.
         course.store(stage);
     });
-    remember(stage, &contacts, substep_secs);
+    touching::remember(stage, &contacts, substep_secs);
     let problem = &mut *stage.problem;
     restitute(problem, &mut contacts, &mut course.works);
-    let capture_speed = problem.capture_speed;
-    for (row, contact) in problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows).zip(&contacts)
-    {
-        row.shifted_impulse = contact.total[0] + capture_speed;
-        row.tangential_impulse = contact.total[1];
-    }
+    touching::hand_over(problem, &contacts);
     course.store(stage);
     stage.problem.store_impulses(&mut stage.state.contacts);
     course.end_step(stage, 2 * substeps + 1)
 }
 
-/// The contacts in the order of the rows, with the forces of the step before for so long (s).
-fn soft_contacts<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<SoftContact> {
-    let (contacts, problem) = (&stage.state.contacts, &stage.problem);
-    let fixed = problem.fixed_rows().len();
-    let soft = |((number, row), &index): ((usize, &Row<M::Kinematics>), &u32)| {
-        let memory = contacts.memories()[index as usize];
-        let per_mass = warm_secs / row.effective_mass;
-        SoftContact {
-            gap: contacts.contacts()[index as usize].gap,
-            wall_speed: problem.wall_speed(number),
-            surface_speed: if number < fixed { row.surface_speed() } else { 0.0 },
-            capture_speed: 0.0,
-            impulse: [per_mass * memory.normal_force, per_mass * memory.tangential_force],
-            total: [0.0; 2],
-        }
-    };
-    problem.rows().zip(&problem.contact_of_row).map(soft).collect()
-}
-
-/// Hands the forces of the last substep to the contacts' memories.
-fn remember<M: Model>(stage: &mut Stage<'_, M>, contacts: &[SoftContact], substep_secs: f64) {
-    let Stage { state: State { contacts: list, .. }, problem, .. } = stage;
-    let (_, _, memories) = list.parts_mut();
-    let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-    for ((row, contact), &index) in rows.zip(contacts).zip(&problem.contact_of_row) {
-        let per_secs = row.effective_mass / substep_secs;
-        memories[index as usize] = ContactMemory {
-            normal_force: per_secs * contact.impulse[0],
-            tangential_force: per_secs * contact.impulse[1],
-            ..ContactMemory::default()
-        };
-    }
-}
-
-/// Sums up impulses and works of a substep.
-fn end_substep<K: Kinematics>(
-    problem: &StepProblem<K>,
-    contacts: &mut [SoftContact],
-    course: &mut Course<K>,
-) {
-    let Course { works, start, .. } = course;
-    let start = velocities(problem, start);
-    let end = velocities(problem, &problem.bodies);
-    let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-    for (((row, contact), start), end) in rows.zip(contacts).zip(start).zip(end) {
-        contact.total[0] += contact.impulse[0];
-        contact.total[1] += contact.impulse[1];
-        works.add(row.effective_mass, contact.impulse, start, end);
-        works.add_of_wall(row.effective_mass, contact.impulse, contact.wall_velocity());
-    }
-}
-
 /// Gives contacts that met, and pushed, the speed they part with.
 fn restitute<K: Kinematics>(
     problem: &mut StepProblem<K>,
-    contacts: &mut [SoftContact],
+    contacts: &mut [Touching],
     works: &mut Works,
 ) {
     update(problem, contacts, |row, contact, [normal_velocity, _]| {
@@ -180,8 +119,8 @@ fn restitute<K: Kinematics>(
 #[inline(always)]
 fn update<K: Kinematics>(
     problem: &mut StepProblem<K>,
-    contacts: &mut [SoftContact],
-    mut change: impl FnMut(&Row<K>, &mut SoftContact, [f64; 2]) -> [f64; 2],
+    contacts: &mut [Touching],
+    mut change: impl FnMut(&Row<K>, &mut Touching, [f64; 2]) -> [f64; 2],
 ) {
     let StepProblem { bodies, fixed_rows, pair_rows, .. } = problem;
     let (of_fixed, of_pairs) = contacts.split_at_mut(fixed_rows.len());
@@ -197,16 +136,4 @@ fn update<K: Kinematics>(
         bodies[row.i as usize] = i;
         bodies[row.j as usize] = j;
     }
-}
-
-/// The relative velocities of all rows with the given bodies, m/s.
-fn velocities<'a, K: Kinematics>(
-    problem: &'a StepProblem<K>,
-    bodies: &'a [K::Body<f64>],
-) -> impl Iterator<Item = [f64; 2]> + 'a {
-    let of_fixed = |row: &Row<K>| K::velocity(row.normal, &bodies[row.i as usize]);
-    let of_pair = |row: &Row<K>| {
-        K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])
-    };
-    problem.fixed_rows.iter().map(of_fixed).chain(problem.pair_rows.iter().map(of_pair))
 }

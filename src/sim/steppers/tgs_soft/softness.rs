@@ -9,6 +9,7 @@
 //! The spring carries σ, not λ_n: N + C₀ = −k s at rest, as for the smooth discrete elements. Sprung at
 //! λ_n, a contact that pulls would rest at a positive gap, where it has no cohesion, and let go.
 
+use super::super::touching::Touching;
 use crate::contact::law;
 use crate::sim::pull::GRAVITY_IF_NONE;
 use crate::solver::{Kinematics, Model};
@@ -23,29 +24,6 @@ const FREQUENCY_PER_SUBSTEP: f64 = 0.25;
 const DAMPING_RATIO: f64 = 10.0;
 /// Fastest push out of an overlap, in units of √(g·d). Higher: deep overlaps explode; lower: they stay.
 const PUSH_OUT_SPEED: f64 = 1.0;
-
-/// A contact in the course of a step.
-pub(super) struct SoftContact {
-    /// Gap, m.
-    pub gap: f64,
-    /// How fast its wall comes, m/s.
-    pub wall_speed: f64,
-    /// How fast its surface goes along the tangent, m/s.
-    pub surface_speed: f64,
-    /// Bond·g·h where it is cohesive in this substep, else 0, m/s.
-    pub capture_speed: f64,
-    /// (λ_n, λ_t) of this substep, m/s.
-    pub impulse: [f64; 2],
-    /// (λ_n, λ_t) of the step so far, m/s.
-    pub total: [f64; 2],
-}
-
-impl SoftContact {
-    /// (V_n, V_t) of its wall, m/s.
-    pub(super) fn wall_velocity(&self) -> [f64; 2] {
-        [self.wall_speed, self.surface_speed]
-    }
-}
 
 /// What all contacts of a step share.
 pub(super) struct Softness {
@@ -80,7 +58,7 @@ impl Softness {
 
     /// Projects the impulses of the substep before on what the contact allows now.
     #[inline(always)]
-    pub(super) fn warm_start<M: Model>(&self, contact: &mut SoftContact) -> [f64; 2] {
+    pub(super) fn warm_start<M: Model>(&self, contact: &mut Touching) -> [f64; 2] {
         let shifted = law::signorini(contact.impulse[0] + contact.capture_speed);
         let bound = self.bound::<M>(shifted, contact.capture_speed);
         contact.impulse =
@@ -92,7 +70,7 @@ impl Softness {
     #[inline(always)]
     pub(super) fn solve<M: Model, const SOFT: bool>(
         &self,
-        contact: &mut SoftContact,
+        contact: &mut Touching,
         [normal_velocity, tangential_velocity]: [f64; 2],
     ) -> [f64; 2] {
         let (bias, compliance) = if contact.gap > 0.0 {
