@@ -11,7 +11,7 @@
 
 use crate::contact::law;
 use crate::sim::pull::GRAVITY_IF_NONE;
-use crate::solver::{Kinematics, Model};
+use crate::solver::{DrivenRow, Kinematics, Model};
 use crate::world::{Parameters, World};
 
 /// ω/2π of the springs, in units of √(g/d): 30 Hz for discs of 1 m, as engines have it. Higher: less
@@ -32,6 +32,12 @@ pub(super) struct SoftContact {
     pub wall_speed: f64,
     /// How fast its surface goes along the tangent, m/s.
     pub surface_speed: f64,
+    /// What it knows of a wall that a force drives, if its own is one.
+    pub driven: Option<DrivenRow>,
+    /// (d_n, d_t): 1 but where a wall gives way.
+    pub answers: [f64; 2],
+    /// What the law asks it to part with, relative to its wall, m/s; below 0 where it closed.
+    pub rebound: f64,
     /// Bond·g·h where it is cohesive in this substep, else 0, m/s.
     pub capture_speed: f64,
     /// (λ_n, λ_t) of this substep, m/s.
@@ -105,14 +111,15 @@ impl Softness {
         let before = contact.impulse;
         let shifted = before[0] + contact.capture_speed;
         let closing = normal_velocity - contact.wall_speed + bias;
-        let change = (1.0 - compliance) * closing + compliance * shifted;
+        let [answer, tangential_answer] = contact.answers;
+        let change = (1.0 - compliance) * closing / answer + compliance * shifted;
         let shifted = law::signorini(shifted - change);
         contact.impulse[0] = shifted - contact.capture_speed;
         if M::FRICTION {
             let bound = self.bound::<M>(shifted, contact.capture_speed);
             let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
             let slip = tangential_velocity - contact.surface_speed;
-            contact.impulse[1] = law::coulomb(before[1] - part * slip, bound);
+            contact.impulse[1] = law::coulomb(before[1] - part * slip / tangential_answer, bound);
         }
         [contact.impulse[0] - before[0], contact.impulse[1] - before[1]]
     }
