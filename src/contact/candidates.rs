@@ -46,6 +46,8 @@ pub struct Candidates {
     way_of_features: f64,
     /// Longest way that a fixed disc can have gone since then, m.
     way_of_discs: f64,
+    /// Way that images beyond a border have gone beside their discs since then, m.
+    way_of_images: f64,
     #[serde(skip)]
     broad_phase: BroadPhase,
     /// Radii of grains, then of fixed discs.
@@ -83,6 +85,7 @@ impl Candidates {
             boundary_of,
             way_of_features: 0.0,
             way_of_discs: 0.0,
+            way_of_images: 0.0,
             broad_phase: BroadPhase::of(&radii),
             radii,
             skins: Vec::new(),
@@ -144,6 +147,11 @@ impl Candidates {
         self.way_of_discs += way_of_discs;
     }
 
+    /// Takes note that images beyond a border have gone by so much beside their discs, m.
+    pub(crate) fn slide(&mut self, way: f64) {
+        self.way_of_images += way.abs();
+    }
+
     /// The gap below which a pair touches, m.
     pub(crate) fn gap_tolerance(&self) -> f64 {
         self.reach.gap_tolerance
@@ -169,6 +177,7 @@ impl Candidates {
     ) -> bool {
         let touch = 0.5 * self.reach.gap_tolerance;
         let way_of_grain = |grain: usize| way_of_grain(grain) + touch;
+        let way_of_images = 0.5 * self.way_of_images;
         let way_of_others = way_of_others + touch;
         let positions = &world.grains.positions;
         let grains = positions.iter().zip(&self.centres).zip(&self.skins).enumerate();
@@ -178,7 +187,8 @@ impl Candidates {
                 .iter()
                 .all(|&skin| self.way_of_discs + way_of_others <= skin)
             && grains.take(positions.len()).all(|(at, ((&now, &then), &skin))| {
-                length::<AXES>(world.shortest(now - then)) + way_of_grain(at) <= skin
+                let way = length::<AXES>(world.shortest(now - then)) + way_of_images;
+                way + way_of_grain(at) <= skin
             });
         if !still_good {
             self.set_skins(positions.len(), way_of_grain, way_of_others);
@@ -200,7 +210,7 @@ impl Candidates {
 
     fn rebuild<const AXES: usize>(&mut self, world: &World) {
         let grain_count = world.grains.len();
-        (self.way_of_features, self.way_of_discs) = (0.0, 0.0);
+        (self.way_of_features, self.way_of_discs, self.way_of_images) = (0.0, 0.0, 0.0);
         self.centres.clone_from(&world.grains.positions);
         self.centres.extend(world.fixed_discs.iter().map(|disc| disc.position));
         self.pairs.clear();

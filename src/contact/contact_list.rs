@@ -222,11 +222,12 @@ impl ContactList {
             if bond.alive {
                 return true;
             }
+            let i = contact.grain as usize;
             let other = match numbering.other(contact.other) {
-                Other::Grain(j) => velocities[j],
+                Other::Grain(j) => velocities[j] + world.speed_of_image(i, j) * DVec2::X,
                 Other::FixedDisc(_) | Other::Feature(_) => DVec2::ZERO,
             };
-            let opening = contact.normal.dot(velocities[contact.grain as usize] - other);
+            let opening = contact.normal.dot(velocities[i] - other);
             gap < ahead.reach && gap + ahead.time_step_secs * opening.min(0.0) < ahead.distance
         });
     }

@@ -79,6 +79,7 @@ impl BodyForm {
         let friction = self.friction(file)?;
         Ok(ModelParts {
             axes: self.axes,
+            sheared: false,
             friction: self.axes == 2 && friction > 0.0,
             rotation: self.rotation,
             compressive_cone: file.cone == FrictionCone::Compressive && self.capture_speed > 0.0,

@@ -63,10 +63,7 @@ impl ProblemVisitor for Dump<'_> {
         problem: &mut StepProblem<M::Kinematics>,
         _: &ContactList,
     ) -> Result<ProblemFile> {
-        if problem.is_driven() {
-            let allowed = "left out: files hold problems of grains alone";
-            return Err(Error::value("motions.drive", "given", allowed));
-        }
+        check(problem)?;
         let Assembled { matrix, free_velocities } = Assembled::of(problem)?;
         let grains = self.grains;
         let rows = || problem.fixed_rows.iter().chain(&problem.pair_rows);
@@ -117,4 +114,18 @@ impl ProblemVisitor for Dump<'_> {
             matrix,
         })
     }
+}
+
+/// Whether a file can hold a problem.
+fn check<K: Kinematics>(problem: &StepProblem<K>) -> Result<()> {
+    let refuse = |field: &str, holds: &str| {
+        Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))
+    };
+    if problem.is_driven() {
+        return refuse("motions.drive", "grains alone");
+    }
+    if K::SLIDES {
+        return refuse("periodic.shear_rate", "grains whose images stay");
+    }
+    Ok(())
 }

@@ -218,11 +218,13 @@ impl Scene {
         check_motions(&self.motions, bodies, self.physics.axes, self.periodic)?;
         self.settings().check_drives(&self.motions)?;
         self.settings().check_tilt(&self.gravity, self.physics)?;
+        self.settings().check_shear(self.periodic)?;
         let Some(periodic) = self.periodic else { return Ok(()) };
         let radii = self.grains.iter().map(|grain| grain.radius);
         let radii = radii.chain(self.fixed_discs.iter().map(|disc| disc.radius));
         let lengths = [radii.fold(0.0, f64::max), self.mean_diameter];
-        periodic.check((&self.boundaries, &self.motions), &self.gravity, self.physics, lengths)
+        let bodies = (&*self.boundaries, self.fixed_discs.len(), &*self.motions);
+        periodic.check(bodies, &self.gravity, self.physics, lengths)
     }
 
     /// A scene on a line must lie on the line.

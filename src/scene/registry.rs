@@ -42,7 +42,7 @@ pub struct SceneInfo {
 }
 
 /// All built-in scenes.
-pub const SCENES: [SceneInfo; 30] = [
+pub const SCENES: [SceneInfo; 31] = [
     SceneInfo {
         name: "pile",
         group: SceneGroup::Paper,
@@ -72,6 +72,12 @@ pub const SCENES: [SceneInfo; 30] = [
         group: SceneGroup::Experiments,
         summary: "228 grains between rough plates in a periodic cell: one is drawn along under a pressure",
         make: || Ok(experiments::shear()),
+    },
+    SceneInfo {
+        name: "shear-periodic",
+        group: SceneGroup::Experiments,
+        summary: "224 grains without walls: the cell above slides over this one, and that over the one below",
+        make: || Ok(experiments::shear_periodic()),
     },
     SceneInfo {
         name: "biaxial",

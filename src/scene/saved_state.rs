@@ -111,6 +111,7 @@ impl SavedState {
             boundaries: world.boundaries.clone(),
             fixed_discs: world.fixed_discs.clone(),
             motions: world.motions.clone(),
+            periodic: world.periodic,
             ..self.scene.clone()
         }
     }

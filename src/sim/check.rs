@@ -9,7 +9,7 @@ use crate::contact::{Reach, check_distances};
 use crate::error::{Error, Result};
 use crate::setting::Group;
 use crate::solver::{Fallback, FrictionModel, METHODS};
-use crate::world::{FrictionCone, Gravity, Motion, Physics, World};
+use crate::world::{FrictionCone, Gravity, Motion, Periodic, Physics, World};
 
 /// The diameter that lengths are measured in is at most this many radii of the largest grain: the
 /// skin goes with it, and all that lie within the skin are candidates.
@@ -89,6 +89,16 @@ impl Settings {
         Ok(())
     }
 
+    /// Whether all that a world has goes with the settings.
+    ///
+    /// # Errors
+    /// Names the first setting that does not go with it.
+    pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
+        self.check_drives(&world.motions)?;
+        self.check_tilt(&world.gravity, physics)?;
+        self.check_shear(world.periodic)
+    }
+
     /// Whether there is a gravity that can be tilted, if it is.
     ///
     /// # Errors
@@ -138,6 +148,22 @@ impl Settings {
             return refuse("sequential-impacts", "given".into(), vec!["left out"]);
         }
         Ok(())
+    }
+
+    /// Whether the method knows of images that slide, if there are any.
+    ///
+    /// # Errors
+    /// Names it if it does not.
+    pub(crate) fn check_shear(&self, periodic: Option<Periodic>) -> Result<()> {
+        let method = self.solver.method;
+        let is_taken = !self.stepper.uses_method() || method.info().takes_shear;
+        if is_taken || !periodic.is_some_and(Periodic::is_sheared) {
+            return Ok(());
+        }
+        let takers = METHODS.iter().filter(|info| info.takes_shear).map(|info| info.name);
+        let takers: Vec<_> = takers.collect();
+        let allowed = format!("{} where periodic borders shear", takers.join(" or "));
+        Err(Error::value("solver", method, allowed))
     }
 
     /// The same without the remedies and the model of friction that its stepper or its method do not take, and

@@ -18,7 +18,7 @@ use super::walls::Walls;
 use super::{Alarm, Observables, Pull, Settings};
 use crate::contact::{Candidates, ContactList};
 use crate::error::{Error, Result};
-use crate::solver::{ModelParts, Slots, SolverSettings};
+use crate::solver::{Slots, SolverSettings};
 use crate::world::{Parameters, Physics, World};
 
 /// A world in motion.
@@ -55,8 +55,7 @@ impl Simulation {
         physics.validate()?;
         settings.validate()?;
         world.validate(physics)?;
-        settings.check_drives(&world.motions)?;
-        settings.check_tilt(&world.gravity, physics)?;
+        settings.check_in(&world, physics)?;
         world.wrap();
         world.tilt(settings.parameters.tilt.to_radians());
         let candidates = Candidates::new(&world, reach_in(&world, gap_tolerance)?)?;
@@ -140,12 +139,16 @@ impl Simulation {
 
     fn take_step(&mut self, pieces: u32, advance: &mut impl Advance) {
         let Self { state, settings, slots, observables, initial_heights, .. } = self;
-        let parts = ModelParts::leanest(state.physics, &settings.parameters);
+        let parts = state.leanest_model(&settings.parameters);
         let initial_heights = *initial_heights;
         state.contacts.begin_step(observables.step + 1);
         let step = Step { state, settings, pieces, advance, observables, initial_heights };
         slots.visit(parts, step);
-        self.state.world.wrap();
+        let work_of_crossing = state.world.wrap();
+        if let Some(border_work) = &mut observables.border_work {
+            *border_work += work_of_crossing;
+            observables.kinetic_energy += work_of_crossing;
+        }
     }
 
     fn look(&mut self) -> Result<&Observables> {
@@ -165,7 +168,7 @@ impl Simulation {
     /// Measures the initial state.
     fn observe_start(&mut self) {
         let Self { state, settings, slots, memory, observables, initial_heights, .. } = self;
-        let parts = ModelParts::leanest(state.physics, &settings.parameters);
+        let parts = state.leanest_model(&settings.parameters);
         *observables = slots
             .visit(parts, Start { state, settings, memory, initial_heights: *initial_heights });
     }
@@ -175,7 +178,7 @@ impl Simulation {
     /// simulation stays as it is.
     pub fn next_problem<V: ProblemVisitor>(&self, visitor: V) -> V::Output {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
-        let parts = ModelParts::leanest(state.physics, &settings.parameters);
+        let parts = state.leanest_model(&settings.parameters);
         state.contacts.begin_step(self.observables.step + 1);
         let pieces = max_travel::pieces(&state, &settings);
         let settings = &settings.over(settings.parameters.time_step_secs / f64::from(pieces));
@@ -218,8 +221,7 @@ impl Simulation {
     /// Names the first one outside its range, or that does not go with the others, and changes none.
     pub fn change(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
-        settings.check_drives(&self.state.world.motions)?;
-        settings.check_tilt(&self.state.world.gravity, self.state.physics)?;
+        settings.check_in(&self.state.world, self.state.physics)?;
         self.state.world.tilt(settings.parameters.tilt.to_radians());
         if settings.parameters.time_step_secs != self.settings.parameters.time_step_secs {
             self.steady = Steady::since(&self.observables);

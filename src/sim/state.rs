@@ -7,8 +7,8 @@ use super::pull::Pull;
 use super::walls::Walls;
 use crate::contact::{Candidates, ContactList, LookAhead, Reach};
 use crate::error::Result;
-use crate::solver::{Kinematics, Model};
-use crate::world::{Physics, World};
+use crate::solver::{Kinematics, Model, ModelParts};
+use crate::world::{Parameters, Physics, World};
 
 /// Skin of the candidate search, in units of d. Smaller: the list is built more often; larger: more
 /// pairs are looked at in vain. Does not change any result.
@@ -32,6 +32,11 @@ pub(crate) struct State {
 }
 
 impl State {
+    /// The model that computes what there is, and no more.
+    pub(crate) fn leanest_model(&self, parameters: &Parameters) -> ModelParts {
+        ModelParts::leanest(self.physics, self.world.periodic, parameters)
+    }
+
     /// Begins a step of that length: the contacts' forces stay what they were, walls get their speeds, and gravity its
     /// direction.
     pub(crate) fn begin(&mut self, time_step_secs: f64) {
@@ -56,12 +61,15 @@ impl State {
     }
 
     fn detect_on<const AXES: usize>(&mut self, ahead: Option<LookAhead>) {
+        let speed_of_border = self.speed_of_border();
         let Self { world, candidates, contacts, .. } = self;
         let Some(ahead) = ahead else {
             candidates.update::<AXES>(world);
             return contacts.detect::<AXES>(world, candidates);
         };
-        let way_of_grain = |grain: usize| ahead.way_of_grain(world.grains.velocities[grain]);
+        let slides = 0.5 * speed_of_border * ahead.time_step_secs;
+        let way_of_grain =
+            |grain: usize| ahead.way_of_grain(world.grains.velocities[grain]) + slides;
         candidates.update_ahead::<AXES>(world, way_of_grain, ahead.way_of_others());
         contacts.detect_ahead::<AXES>(world, candidates, ahead);
     }
@@ -85,9 +93,15 @@ impl State {
         self.fastest_with(Walls::fastest_in(&self.world, &self.candidates, time_step_secs))
     }
 
+    /// Of what images beyond a border have besides, each of two grains that meet sees half.
     fn fastest_with(&self, fastest_wall: f64) -> f64 {
         let speeds = self.world.grains.velocities.iter().map(|velocity| velocity.length());
-        speeds.fold(fastest_wall, f64::max)
+        speeds.fold(fastest_wall, f64::max) + 0.5 * self.speed_of_border()
+    }
+
+    /// How fast images beyond a border that shears go beside their grains, m/s.
+    fn speed_of_border(&self) -> f64 {
+        self.world.periodic.map_or(0.0, |periodic| periodic.border_speed().abs())
     }
 
     /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and the angles where grains turn.
@@ -108,6 +122,10 @@ impl State {
         }
         if let Some(turning) = &mut self.world.gravity_turn {
             turning.turn.elapsed_secs += time_step_secs;
+        }
+        if let Some(periodic) = &mut self.world.periodic {
+            periodic.slide(time_step_secs);
+            self.candidates.slide(time_step_secs * periodic.border_speed());
         }
         if self.walls.any_move() || !self.world.motions.is_empty() {
             self.walls.advance(&mut self.world, &mut self.candidates, time_step_secs);

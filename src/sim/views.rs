@@ -8,6 +8,7 @@ use super::simulation::Simulation;
 use super::snapshot::{ContactView, GrainView, Snapshot, Surroundings};
 use super::state::State;
 use crate::contact::{Numbering, Other};
+use crate::world::Periodic;
 
 impl Simulation {
     /// This moment, for pictures.
@@ -59,10 +60,11 @@ impl Simulation {
 
     /// What no grain moves, where it is now.
     pub(super) fn surroundings(&self) -> Arc<Surroundings> {
-        if !self.state.world.has_motion() {
+        let world = &self.state.world;
+        if !world.has_motion() && !world.periodic.is_some_and(Periodic::is_sheared) {
             return Arc::clone(&self.surroundings);
         }
-        Arc::new(Surroundings::of(&self.state.world, self.parameters().time_step_secs))
+        Arc::new(Surroundings::of(world, self.parameters().time_step_secs))
     }
 
     /// Centre of another disc, or the nearest point of another shape, m: of the nearest image of either.

@@ -184,18 +184,25 @@ impl Walls {
         })
     }
 
-    /// Has the walls that a force drives go on as a step has found.
-    pub(crate) fn take_driven(&mut self, world: &mut World, driven: &[DrivenWall]) {
+    /// Has the walls that a force drives go on as a step has found. Gives the work of the forces and of the damping, J:
+    /// Δt (F − cV) ½(V + V⁻), in which ΔtF = V_free/r − MV⁻ and cΔt = 1/r − M (`solver::problem::driven`).
+    pub(crate) fn take_driven(&mut self, world: &mut World, driven: &[DrivenWall]) -> f64 {
+        let mut work = 0.0;
         for found in driven {
             let Some(drive) = &mut world.motions[found.motion].drive else { continue };
-            drive.speed = found.now;
+            let DrivenWall { response, before, free, now, .. } = *found;
+            let pushed = free / response - drive.mass * before;
+            let damped = (1.0 / response - drive.mass) * now;
+            work += 0.5 * (pushed - damped) * (now + before);
+            drive.speed = now;
             for wall in &mut self.moving {
                 let is_it = matches!(wall.mover, Mover::Motion(motion) if motion == found.motion);
                 if let (true, Some(Driver { axis, course, .. })) = (is_it, wall.driver) {
-                    wall.velocity.velocity = course + found.now * axis;
+                    wall.velocity.velocity = course + now * axis;
                 }
             }
         }
+        work
     }
 
     /// How fast the surface of the other body of a contact goes along n and t, m/s.

@@ -28,12 +28,12 @@ pub use ordering::Ordering;
 pub use problem::prepare::{Approach, ProblemNumbers};
 pub(crate) use problem::worst;
 pub(crate) use problem::{
-    DrivenBy, DrivenWall, ModelParts, ModelVisitor, Surface, for_each_row, measure,
+    DrivenBy, DrivenRow, DrivenWall, ModelParts, ModelVisitor, Surface, for_each_row, measure,
     relative_velocities,
 };
 pub use problem::{
-    Kinematics, Line, LineBody, Measures, Model, Motion, Plane, PlaneBody, Row, SpinningPlane,
-    StepModel, StepProblem, residual,
+    Kinematics, Line, LineBody, Measures, Model, Motion, Plane, PlaneBody, Row, ShearedPlane,
+    SlidingNormal, SpinningPlane, StepModel, StepProblem, residual,
 };
 pub use settings::{SolverChanges, SolverSettings, StopTest};
 pub(crate) use slots::{Slot, SlotVisitor, Slots, visit_model};

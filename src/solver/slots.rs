@@ -2,7 +2,8 @@
 
 use super::methods::Memory;
 use super::problem::{
-    Kinematics, Line, Model, ModelParts, ModelVisitor, Plane, SpinningPlane, StepModel, StepProblem,
+    Kinematics, Line, Model, ModelParts, ModelVisitor, Plane, ShearedPlane, SpinningPlane,
+    StepModel, StepProblem,
 };
 
 /// A problem, and what the methods keep that solve it.
@@ -22,6 +23,7 @@ pub(crate) struct Slots {
     line: Slot<Line>,
     plane: Slot<Plane>,
     spinning_plane: Slot<SpinningPlane>,
+    sheared_plane: Slot<ShearedPlane>,
 }
 
 /// Something to be done with a slot once the model is known.
@@ -35,8 +37,15 @@ pub(crate) trait SlotVisitor {
 impl Slots {
     /// Calls `visitor` with the model that computes just these parts, and its slot.
     pub(crate) fn visit<V: SlotVisitor>(&mut self, parts: ModelParts, visitor: V) -> V::Output {
-        let ModelParts { axes, friction, rotation, compressive_cone } = parts;
-        let Self { line, plane, spinning_plane: spinning } = self;
+        let ModelParts { axes, sheared, friction, rotation, compressive_cone } = parts;
+        let Self { line, plane, spinning_plane: spinning, sheared_plane } = self;
+        if sheared {
+            // With friction, whether there is any at present or not: its bound is then 0.
+            return match compressive_cone {
+                false => visitor.visit::<StepModel<ShearedPlane, true, false>>(sheared_plane),
+                true => visitor.visit::<StepModel<ShearedPlane, true, true>>(sheared_plane),
+            };
+        }
         match (axes, friction, rotation, compressive_cone) {
             (1, ..) => visitor.visit::<StepModel<Line, false, false>>(line),
             (_, false, ..) => visitor.visit::<StepModel<Plane, false, false>>(plane),

@@ -12,6 +12,7 @@ mod parameters;
 mod periodic;
 mod periodic_check;
 mod physics;
+mod shearing;
 mod tilt;
 
 pub use boundary::{Boundary, Disc, Edge};
@@ -72,7 +73,8 @@ impl World {
         let fixed = self.fixed_discs.iter().map(|disc| disc.radius);
         let largest_radius = self.grains.radii.iter().copied().chain(fixed).fold(0.0, f64::max);
         let lengths = [largest_radius, self.mean_diameter];
-        periodic.check((&self.boundaries, &self.motions), &self.gravity, physics, lengths)
+        let bodies = (&*self.boundaries, self.fixed_discs.len(), &*self.motions);
+        periodic.check(bodies, &self.gravity, physics, lengths)
     }
 
     /// Whether anything can move that no grain moves.
@@ -87,15 +89,6 @@ impl World {
         match self.periodic {
             None => offset,
             Some(periodic) => periodic.shortest(offset),
-        }
-    }
-
-    /// Brings all discs back into the cell, where there is one.
-    pub(crate) fn wrap(&mut self) {
-        let Some(periodic) = self.periodic else { return };
-        let fixed = self.fixed_discs.iter_mut().map(|disc| &mut disc.position);
-        for place in self.grains.positions.iter_mut().chain(fixed) {
-            *place = periodic.wrap(*place);
         }
     }
 }

@@ -1,4 +1,5 @@
 //! A cell whose opposite borders are one and the same line: what leaves it on one side comes back on the other.
+//! Where its borders shear (`shearing`), the cells above and below slide.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -14,12 +15,27 @@ pub struct Periodic {
     /// y of the lower and of the upper border, m; none where they do not wrap.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub y: Option<[f64; 2]>,
+    /// γ̇, 1/s: the cell above goes along x with γ̇ times the height of a cell, relative to this one.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub shear_rate: f64,
+    /// By how much the cell above is off this one along x now, m; up to a width to either side at the start.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub shift: f64,
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 impl Periodic {
     /// Left and right borders alone, m.
     pub const fn along_x(x: [f64; 2]) -> Self {
-        Self { x: Some(x), y: None }
+        Self { x: Some(x), y: None, shear_rate: 0.0, shift: 0.0 }
+    }
+
+    /// All four borders, m.
+    pub const fn along_both(x: [f64; 2], y: [f64; 2]) -> Self {
+        Self { x: Some(x), y: Some(y), shear_rate: 0.0, shift: 0.0 }
     }
 
     /// Width and height of the cell, m, each where its borders wrap.
@@ -42,41 +58,55 @@ impl Periodic {
     /// The image of a place that lies in the cell, the left and the lower border included, m. What is there stays to the
     /// last bit.
     pub fn wrap(self, place: DVec2) -> DVec2 {
-        DVec2::new(wrapped(self.x, place.x), wrapped(self.y, place.y))
+        let x = match self.is_sheared() {
+            true => place.x - self.lean(self.cells_above(place.y)),
+            false => place.x,
+        };
+        DVec2::new(wrapped(self.x, x), wrapped(self.y, place.y))
     }
 
     /// The shortest way between two places that are apart by `offset`, or by it and some periods, m. One that is
     /// shorter than half a period stays to the last bit.
     #[inline]
     pub fn shortest(self, offset: DVec2) -> DVec2 {
+        let offset = if self.is_sheared() { self.upright(offset) } else { offset };
         DVec2::new(shortest(self.x, offset.x), shortest(self.y, offset.y))
     }
 
     /// How many whole periods along each axis the shortest way leaves out of an offset, m; 0 where nothing wraps.
     pub(crate) fn whole(self, offset: DVec2) -> DVec2 {
-        let along = |borders: Option<[f64; 2]>, offset: f64| {
-            borders.map_or(0.0, |borders| (offset / period(borders)).round())
-        };
-        DVec2::new(along(self.x, offset.x), along(self.y, offset.y))
+        let offset = if self.is_sheared() { self.upright(offset) } else { offset };
+        DVec2::new(periods_in(self.x, offset.x), periods_in(self.y, offset.y))
     }
 
     /// By how much a shape is to be moved (m) for its other images that reach into the cell, where it reaches from
     /// one corner of an upright box to the other; a shape that lies in the cell but for rounding has none.
     pub(crate) fn images(self, [low, high]: [DVec2; 2]) -> impl Iterator<Item = DVec2> {
-        let along_x = reaching(self.x, [low.x, high.x]);
-        let along_y = reaching(self.y, [low.y, high.y]);
-        combined(along_x, along_y).filter(|by| *by != DVec2::ZERO)
+        let middle = 0.5 * (low.x + high.x);
+        let along_y = reaching(self.y, [low.y, high.y]).into_iter().flatten();
+        let all = along_y.flat_map(move |y| {
+            let lean = self.lean_into_cell(middle, y);
+            let along_x = reaching(self.x, [low.x + lean, high.x + lean]).into_iter().flatten();
+            along_x.map(move |x| DVec2::new(lean + x, y))
+        });
+        all.filter(|by| *by != DVec2::ZERO)
     }
 
     /// By how much a place is to be moved (m) for itself and its images a period to either side.
     pub(crate) fn around(self) -> impl Iterator<Item = DVec2> {
         let [along_x, along_y] =
             self.periods().map(|period| [Some(0.0), period, period.map(|by| -by)]);
-        combined(along_x, along_y)
+        along_y.into_iter().flatten().flat_map(move |y| {
+            let lean = self.lean_of(y);
+            along_x.into_iter().flatten().map(move |x| DVec2::new(lean + x, y))
+        })
     }
 
     /// The image of a place that is nearest to another one, m.
     pub(crate) fn near(self, place: DVec2, other: DVec2) -> DVec2 {
+        if self.is_sheared() {
+            return other - self.shortest(other - place);
+        }
         let along = |borders: Option<[f64; 2]>, [place, other]: [f64; 2]| match borders {
             None => place,
             Some(borders) => {
@@ -88,11 +118,17 @@ impl Periodic {
     }
 }
 
-fn period([low, high]: [f64; 2]) -> f64 {
+pub(super) fn period([low, high]: [f64; 2]) -> f64 {
     high - low
 }
 
-fn wrapped(borders: Option<[f64; 2]>, at: f64) -> f64 {
+/// Whole periods in an offset, to the nearest; 0 where nothing wraps.
+#[inline]
+pub(super) fn periods_in(borders: Option<[f64; 2]>, offset: f64) -> f64 {
+    borders.map_or(0.0, |borders| (offset / period(borders)).round())
+}
+
+pub(super) fn wrapped(borders: Option<[f64; 2]>, at: f64) -> f64 {
     let Some([low, high]) = borders.filter(|[low, high]| !(*low..*high).contains(&at)) else {
         return at;
     };
@@ -102,7 +138,7 @@ fn wrapped(borders: Option<[f64; 2]>, at: f64) -> f64 {
 }
 
 #[inline]
-fn shortest(borders: Option<[f64; 2]>, offset: f64) -> f64 {
+pub(super) fn shortest(borders: Option<[f64; 2]>, offset: f64) -> f64 {
     borders.map_or(offset, |borders| {
         let period = period(borders);
         offset - period * (offset / period).round()
@@ -117,12 +153,6 @@ fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3]
         [(from < low - rounding).then_some(period), (to > high + rounding).then_some(-period)]
     });
     [Some(0.0), over[0], over[1]]
-}
-
-/// Every way along x with every one along y.
-fn combined(along_x: [Option<f64>; 3], along_y: [Option<f64>; 3]) -> impl Iterator<Item = DVec2> {
-    let with = move |y: f64| along_x.into_iter().flatten().map(move |x| DVec2::new(x, y));
-    along_y.into_iter().flatten().flat_map(with)
 }
 
 #[cfg(test)]

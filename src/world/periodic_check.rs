@@ -28,12 +28,12 @@ impl Periodic {
     /// Names what does not fit.
     pub(crate) fn check(
         self,
-        (boundaries, motions): (&[Boundary], &[Motion]),
+        (boundaries, fixed_discs, motions): (&[Boundary], usize, &[Motion]),
         gravity: &Gravity,
         physics: Physics,
         lengths: [f64; 2],
     ) -> Result<()> {
-        if self == Self::default() {
+        if self.x.is_none() && self.y.is_none() && !self.is_sheared() {
             return Err(Error::value("periodic", "without borders", "given with x, y or both"));
         }
         if self.y.is_some() && physics.axes == 1 {
@@ -46,9 +46,47 @@ impl Periodic {
         if matches!(gravity, Gravity::Attraction { .. }) {
             return Err(Error::value("periodic", "given", "left out where gravity is not uniform"));
         }
+        self.check_shear((boundaries.len(), fixed_discs), physics)?;
         for wrapping in self.wrapping() {
             wrapping.check_shapes(boundaries)?;
             wrapping.check_motions(boundaries, motions)?;
+        }
+        Ok(())
+    }
+
+    /// Whether there is nothing that borders which shear would tear, and all that they need.
+    fn check_shear(
+        self,
+        (boundaries, fixed_discs): (usize, usize),
+        physics: Physics,
+    ) -> Result<()> {
+        let Self { shear_rate, shift, .. } = self;
+        let numbers = [("periodic.shear_rate", shear_rate), ("periodic.shift", shift)];
+        if let Some((field, found)) = numbers.into_iter().find(|(_, number)| !number.is_finite()) {
+            return Err(Error::value(field, found, "a finite number"));
+        }
+        if !self.border_speed().is_finite() {
+            let allowed = "so small that the border's speed is a finite number";
+            return Err(Error::value("periodic.shear_rate", shear_rate, allowed));
+        }
+        let Some((field, found)) = numbers.into_iter().find(|(_, number)| *number != 0.0) else {
+            return Ok(());
+        };
+        let (Some([left, right]), Some(_)) = (self.x, self.y) else {
+            let allowed = "0 unless both periodic.x and periodic.y are given";
+            return Err(Error::value(field, found, allowed));
+        };
+        if shift.abs() > right - left {
+            let allowed = format!("from -{0} to {0} m, a width of the cell", right - left);
+            return Err(Error::value("periodic.shift", shift, allowed));
+        }
+        if !(physics.friction && physics.rotation) {
+            let allowed = "0 unless physics has friction and rotation; mu = 0 is no matter";
+            return Err(Error::value(field, found, allowed));
+        }
+        if boundaries + fixed_discs > 0 {
+            let allowed = "0 where there are boundaries or fixed discs, which cannot go with it";
+            return Err(Error::value(field, found, allowed));
         }
         Ok(())
     }

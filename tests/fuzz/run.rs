@@ -52,7 +52,7 @@ fn finite(simulation: &Simulation, step: &Observables) {
     assert!(grains.positions.iter().chain(&grains.velocities).all(|v| v.is_finite()));
     assert!(grains.angular_velocities.iter().all(|spin| spin.is_finite()));
     assert!(!step.converged || step.residual.is_finite(), "{step:?}");
-    let bonds = [step.bond_work, step.bond_energy, step.broken_bond_energy];
+    let some = [step.bond_work, step.bond_energy, step.broken_bond_energy, step.border_work];
     let measured = [
         step.time_secs,
         step.mean_overlap,
@@ -65,7 +65,7 @@ fn finite(simulation: &Simulation, step: &Observables) {
         step.gravity_work,
         step.slump,
     ];
-    let all = measured.into_iter().chain(bonds.into_iter().flatten());
+    let all = measured.into_iter().chain(some.into_iter().flatten());
     assert!(all.into_iter().all(f64::is_finite) || !simulation.alarms().is_empty(), "{step:?}");
 }
 

@@ -140,9 +140,11 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     if u.ratio(1, 8)? {
         let width = ratio(u, [0.5 * size, 4.0 * size])?;
         let borders = Some([-0.5 * width, 0.5 * width]);
-        let one = Periodic { x: borders, y: None };
-        let both = Periodic { x: borders, y: borders };
-        scene.periodic = Some(*u.choose(&[one, Periodic { x: None, y: borders }, both])?);
+        let one = Periodic { x: borders, ..Periodic::default() };
+        let both = Periodic { y: borders, ..one };
+        let upright = Periodic { y: borders, ..Periodic::default() };
+        let sheared = Periodic { shear_rate: number(u, [-100.0, 100.0])?, ..both };
+        scene.periodic = Some(*u.choose(&[one, upright, both, sheared])?);
     }
     if u.ratio(1, 8)? && !scene.boundaries.is_empty() && scene.motions.is_empty() {
         scene.motions = vec![driven(u, size)?];

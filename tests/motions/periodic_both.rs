@@ -15,7 +15,7 @@ use slump::world::{Boundary, Grain, Gravity, Motion, Periodic, Physics};
 
 /// Side of a square cell, m.
 const SIDE: f64 = 0.1;
-const SQUARE: Periodic = Periodic { x: Some([0.0, SIDE]), y: Some([0.0, SIDE]) };
+const SQUARE: Periodic = Periodic::along_both([0.0, SIDE], [0.0, SIDE]);
 
 /// The scene turned by +90°: its left is below, and what it has below is at its right.
 fn turned(scene: &Scene) -> Scene {
@@ -31,7 +31,7 @@ fn turned(scene: &Scene) -> Scene {
     if let Gravity::Uniform { acceleration } = &mut turned.gravity {
         *acceleration = acceleration.perp();
     }
-    turned.periodic = scene.periodic.map(|cell| Periodic { x: None, y: cell.x });
+    turned.periodic = scene.periodic.map(|cell| Periodic { y: cell.x, ..Periodic::default() });
     turned
 }
 
@@ -258,13 +258,13 @@ fn cells_that_cannot_be_are_refused_in_one_sentence() {
         scene.periodic = Some(cell);
         scene.simulation().map(|_| ()).expect_err("no such cell").to_string()
     };
-    let along_y = |y: [f64; 2]| Periodic { x: None, y: Some(y) };
+    let along_y = |y: [f64; 2]| Periodic { y: Some(y), ..Periodic::default() };
     assert_eq!(
         of(along_y([0.0, 0.5]), vec![], 2),
         "periodic.y is [0, 0.5], but must be at least 0.6000000000000001 m high: 3 times the largest diameter, \
          and twice as far as discs feel each other"
     );
-    let said = of(Periodic { x: Some([0.0, 0.5]), y: Some([0.0, 1.0]) }, vec![], 2);
+    let said = of(Periodic::along_both([0.0, 0.5], [0.0, 1.0]), vec![], 2);
     assert!(said.starts_with("periodic.x is [0, 0.5], but"), "{said}");
     assert_eq!(
         of(along_y([0.0, 1.0]), vec![level()], 2),
@@ -289,7 +289,7 @@ fn cells_that_cannot_be_are_refused_in_one_sentence() {
         (twins.fixed_discs, twins.motions) = (vec![], vec![]);
         twins.periodic = None;
         twins.simulation().expect("apart");
-        twins.periodic = Some(Periodic { x: Some([0.0, 1.0]), y: Some([0.0, 1.0]) });
+        twins.periodic = Some(Periodic::along_both([0.0, 1.0], [0.0, 1.0]));
         let said = twins.simulation().map(|_| ()).expect_err("in one place").to_string();
         assert!(said.contains("from that of grains[0]"), "{said}");
     }

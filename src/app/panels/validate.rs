@@ -55,11 +55,10 @@ fn source(ui: &mut Ui, state: &mut AppState) {
             }
         });
     });
-    let Validation { from, found } = &state.validation;
-    let told = match found.is_empty() {
-        true => format!("No report is open. {COMMAND} makes one in a few minutes."),
-        false => format!("{from}. What lies with its whole interval in the published band agrees."),
-    };
+    let from = &state.validation.from;
+    let told = format!(
+        "{from}. What lies with its whole interval in the published band agrees. {COMMAND} makes a report anew."
+    );
     ui.label(RichText::new(told).small().weak());
 }
 

@@ -4,6 +4,8 @@
 //! those near the lower one, above, and those near its corners. A pair is told by that of its images whose offset is
 //! the shortest, so no pair is told twice, however far the search looks.
 //!
+//! Where borders shear, images above lean to a side and wrap again there, before those beside them are looked for.
+//!
 //! **Shapes** with ends lie in the cell. A disc near a border may be nearest to an image of theirs, so the disc is tried
 //! where it is and a period to each side.
 
@@ -34,13 +36,16 @@ pub(super) fn pairs<const AXES: usize>(
     let mut images: Vec<(u32, DVec2)> = Vec::new();
     for disc in 0..count {
         let place = places[disc];
-        let is_near = |by: &DVec2| {
-            near_border(periodic.x, place.x, by.x, reach)
-                && near_border(periodic.y, place.y, by.y, reach)
-        };
-        for by in HALF_AROUND.into_iter().filter(is_near) {
-            images.push((disc as u32, by));
-            places.push(place + by * size);
+        for by in HALF_AROUND {
+            let lean = periodic.lean_into_cell(place.x, by.y * size.y);
+            let is_near = near_border(periodic.x, place.x + lean, by.x, reach)
+                && near_border(periodic.y, place.y, by.y, reach);
+            if !is_near {
+                continue;
+            }
+            let image = place + by * size + DVec2::new(lean, 0.0);
+            images.push((disc as u32, periodic.whole(image - place)));
+            places.push(image);
             extents.push(extents[disc]);
         }
     }

@@ -10,10 +10,15 @@ impl Candidates {
     /// # Errors
     /// Where they tell of bodies that do not exist.
     pub(crate) fn complete(self, world: &World) -> Result<Self> {
-        let Self { reach, way_of_features, way_of_discs, skins, skin_of_features, .. } = self;
-        let Self { centres, starts, others, .. } = self;
-        let whole =
-            Self { way_of_features, way_of_discs, skin_of_features, ..Self::new(world, reach)? };
+        let Self { reach, way_of_features, way_of_discs, way_of_images, .. } = self;
+        let Self { skins, skin_of_features, centres, starts, others, .. } = self;
+        let whole = Self {
+            way_of_features,
+            way_of_discs,
+            way_of_images,
+            skin_of_features,
+            ..Self::new(world, reach)?
+        };
         let count = world.grains.len();
         let bodies = whole.radii.len() + whole.features.len();
         let is_list = starts.len() == count + 1

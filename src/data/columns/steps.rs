@@ -3,8 +3,8 @@
 use crate::data::table::{Declared, Table, Value, table};
 use crate::sim::Observables;
 
-/// A column of numbers that there are but under the law `range`.
-const fn of_bonds(
+/// A column of energies that some runs alone have: those with bonds, driven walls, or borders that shear.
+const fn of_some_runs(
     name: &'static str,
     about: &'static str,
     of: fn(&Observables) -> Option<f64>,
@@ -83,6 +83,19 @@ const COLUMNS: &[Declared<Observables>] = &[
         "part of both that surfaces which move did in the step",
         |row| row.wall_work,
     ),
+    of_some_runs("drive_energy", "kinetic energy of walls that a force drives", |row| {
+        row.drive_energy
+    }),
+    of_some_runs(
+        "drive_work",
+        "work in the step of the forces that drive walls, less that of their damping",
+        |row| row.drive_work,
+    ),
+    of_some_runs(
+        "border_work",
+        "work that borders which shear did in the step, beside the others",
+        |row| row.border_work,
+    ),
     Declared::number("gravity_work", "J", "work of the gravity field in the step", |row| {
         row.gravity_work
     }),
@@ -92,9 +105,9 @@ const COLUMNS: &[Declared<Observables>] = &[
         "how far the centre of mass has sunk, in its first height",
         |row| row.slump,
     ),
-    of_bonds("bond_work", "work that bonds did in the step", |row| row.bond_work),
-    of_bonds("bond_energy", "what stretching the bonds that live took", |row| row.bond_energy),
-    of_bonds("broken_bond_energy", "what bonds took that have broken", |row| {
+    of_some_runs("bond_work", "work that bonds did in the step", |row| row.bond_work),
+    of_some_runs("bond_energy", "what stretching the bonds that live took", |row| row.bond_energy),
+    of_some_runs("broken_bond_energy", "what bonds took that have broken", |row| {
         row.broken_bond_energy
     }),
     Declared::count("lost_grains", "grains that went through a wall or left the world", |row| {

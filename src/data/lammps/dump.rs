@@ -129,12 +129,28 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
     let observables = &moment.observables;
     let ([min, max], radius) = bounds(moment);
     // Periodic where the borders wrap, else as far as there is anything.
-    let periods = moment.surroundings.periodic.unwrap_or_default().periods();
-    let [along_x, along_y] = periods.map(|period| if period.is_some() { "pp" } else { "ss" });
+    let periodic = moment.surroundings.periodic.unwrap_or_default();
+    let [along_x, along_y] =
+        periodic.periods().map(|period| if period.is_some() { "pp" } else { "ss" });
+    let tilt = periodic.shift;
+    let bounds = match tilt == 0.0 {
+        true => {
+            format!("{along_x} {along_y} ss\n{:?} {:?}\n{:?} {:?}\n", min.x, max.x, min.y, max.y)
+        }
+        // Of a leaning box: those of the upright one around it, and by how much it leans.
+        false => format!(
+            "xy xz yz {along_x} {along_y} ss\n{:?} {:?} {tilt:?}\n{:?} {:?} 0.0\n",
+            min.x + tilt.min(0.0),
+            max.x + tilt.max(0.0),
+            min.y,
+            max.y
+        ),
+    };
+    let along_z = if tilt == 0.0 { "" } else { " 0.0" };
     format!(
         "ITEM: TIME\n{:?}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF {label}\n{count}\n\
-         ITEM: BOX BOUNDS {along_x} {along_y} ss\n{:?} {:?}\n{:?} {:?}\n{:?} {:?}\nITEM: {label}",
-        observables.time_secs, observables.step, min.x, max.x, min.y, max.y, -radius, radius
+         ITEM: BOX BOUNDS {bounds}{:?} {:?}{along_z}\nITEM: {label}",
+        observables.time_secs, observables.step, -radius, radius
     )
 }
 

@@ -5,6 +5,7 @@ mod collapse;
 mod drum;
 mod incline;
 mod shear;
+mod shear_periodic;
 mod silo;
 mod vibrated;
 
@@ -13,6 +14,7 @@ pub(crate) use collapse::{collapse, collapse_of, half_width};
 pub(crate) use drum::drum;
 pub(crate) use incline::{LEVEL_SECS, RATE, incline};
 pub(crate) use shear::{ShearCell, shear, shear_of};
+pub(crate) use shear_periodic::shear_periodic;
 pub(crate) use silo::{WIDTH as SILO_WIDTH, silo, silo_of};
 pub(crate) use vibrated::vibrated;
 

@@ -2,18 +2,21 @@
 
 mod heights;
 mod overlaps;
+mod plotted;
 mod quantity;
 
 use serde::{Deserialize, Serialize};
 
 use heights::heights;
 use overlaps::overlaps;
+pub use plotted::QUANTITIES;
 pub use quantity::{Beside, Quantity};
 
 use super::settings::Settings;
 use super::state::State;
 use super::stepping::{BondEnergies, Outcome, Stage};
 use crate::solver::{Kinematics, Measures, Model, SolveReport};
+use crate::world::{Drive, Motion, Periodic};
 
 /// Measured after each step. One row of the observables' CSV.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -72,6 +75,17 @@ pub struct Observables {
     /// is what contacts took.
     #[serde(default)]
     pub wall_work: f64,
+    /// Σ ½MV² of the walls that a force drives, along the axes of the forces, J. None where there are no such walls.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_energy: Option<f64>,
+    /// Work in this step of the forces that drive walls, less what the walls' damping took, J: it changes
+    /// `drive_energy` by what the walls did not hand on to grains. None where there are no such walls.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drive_work: Option<f64>,
+    /// Work that borders which shear did in this step, beside the other works, J: through contacts with images that
+    /// slide, and on grains that crossed. None where no border shears.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub border_work: Option<f64>,
     /// Work of the gravity field, and of a spring that pulls a grain, in this step, J.
     pub gravity_work: f64,
     /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11), both sums over the grains that are not
@@ -93,9 +107,11 @@ pub struct Observables {
 }
 
 impl Observables {
-    /// Whether it tells of what only some runs have: bonds, or a model of friction.
+    /// Whether it tells of what only some runs have: bonds, a model of friction, walls that a force drives, or
+    /// borders that shear.
     pub fn has_further_columns(&self) -> bool {
-        self.bond_work.is_some() || self.model_residual.is_some()
+        let Self { bond_work, model_residual, drive_energy, border_work, .. } = self;
+        [bond_work, model_residual, drive_energy, border_work].iter().any(|some| some.is_some())
     }
 
     /// Whether a step was solved under another model of friction than Coulomb's law.
@@ -103,14 +119,17 @@ impl Observables {
         self.step > 0 && self.duality_gap.is_some_and(f64::is_finite)
     }
 
-    /// With numbers that are none where there are no bonds or no model of friction, so that rows with and
-    /// without them fit in one table.
+    /// With numbers that are none where there is not what they tell of, so that rows with and without them fit in
+    /// one table.
     pub fn with_further_columns(self) -> Self {
         let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));
         Self {
             model_residual: number(self.model_residual),
             duality_gap: number(self.duality_gap),
             fell_back: Some(self.fell_back.unwrap_or(false)),
+            drive_energy: number(self.drive_energy),
+            drive_work: number(self.drive_work),
+            border_work: number(self.border_work),
             bond_work: number(self.bond_work),
             bond_energy: number(self.bond_energy),
             broken_bond_energy: number(self.broken_bond_energy),
@@ -118,39 +137,6 @@ impl Observables {
         }
     }
 }
-
-/// What can be plotted, in the order in which it is shown.
-pub const QUANTITIES: &[Quantity<Observables>] = &[
-    Quantity { name: "slump", title: "slump Δy", value: |row| row.slump, ..Quantity::PLAIN },
-    Quantity {
-        name: "overlap",
-        title: "mean overlap δ/d (%)",
-        value: |row| 100.0 * row.mean_overlap,
-        ..Quantity::PLAIN
-    },
-    Quantity {
-        name: "residual",
-        title: "residual",
-        logarithmic: true,
-        value: |row| row.residual,
-        beside: &[
-            ("the model's", |row| row.model_residual.filter(|_| row.is_of_a_model())),
-            ("its duality gap", |row| row.duality_gap.filter(|_| row.is_of_a_model())),
-        ],
-        ..Quantity::PLAIN
-    },
-    Quantity {
-        name: "energy",
-        title: "kinetic energy",
-        unit: "J",
-        value: |row| row.kinetic_energy,
-        beside: &[
-            ("stored in bonds", |row| row.bond_energy),
-            ("taken by broken ones", |row| row.broken_bond_energy),
-        ],
-        ..Quantity::PLAIN
-    },
-];
 
 /// The observables after a step of Δt that began with those `before`.
 pub(super) fn after_step<M: Model>(
@@ -194,6 +180,12 @@ pub(super) fn at_start<M: Model>(
     of_state::<M>(state, outcome, kinetic_energy, time_step_secs, initial_heights)
 }
 
+/// Σ ½MV² of the walls that a force drives, if there are any, J.
+fn energy_of_drives(motions: &[Motion]) -> Option<f64> {
+    let drives = motions.iter().filter_map(|motion| motion.drive.as_ref());
+    drives.map(Drive::kinetic_energy).reduce(|one, other| one + other)
+}
+
 /// What a state and what led to it tell, as at the beginning of a run. Each observable is named, so that none
 /// is forgotten.
 fn of_state<M: Model>(
@@ -203,11 +195,13 @@ fn of_state<M: Model>(
     time_step_secs: f64,
     initial_heights: f64,
 ) -> Observables {
-    let Outcome { report, measures, gravity_work, bonds } = outcome;
+    let Outcome { report, measures, gravity_work, drive_work, bonds } = outcome;
     let SolveReport { sweeps, factorisations, converged, stalled, fell_back } = report;
     let Measures { residual, model_residual, duality_gap, .. } = measures;
     let Measures { compressive_contacts, tensile_contacts, .. } = measures;
-    let Measures { normal_work, tangential_work, wall_work, .. } = measures;
+    let Measures { normal_work, tangential_work, wall_work, border_work, .. } = measures;
+    let is_sheared = state.world.periodic.is_some_and(Periodic::is_sheared);
+    let drive_energy = energy_of_drives(&state.world.motions);
     let [mean_overlap, max_overlap] = overlaps(state, bonds.is_some());
     let [heights, potential_energy] = heights(state);
     let dropped = initial_heights - heights;
@@ -235,6 +229,9 @@ fn of_state<M: Model>(
         normal_work,
         tangential_work,
         wall_work,
+        drive_energy,
+        drive_work: drive_energy.map(|_| drive_work),
+        border_work: is_sheared.then_some(border_work),
         gravity_work,
         // On a line nothing can slump, and about a mean height of 0 a relative drop says nothing.
         slump: if M::Kinematics::AXES == 1 || initial_heights == 0.0 {
@@ -247,37 +244,5 @@ fn of_state<M: Model>(
         broken_bond_energy: bonds.map(|bonds| bonds.broken),
         // Who watches over the run knows (`sim::losses`).
         lost_grains: 0,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Columns that the window does not plot.
-    const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled fell_back \
-        contacts compressive_contacts tensile_contacts max_overlap potential_energy normal_work \
-        tangential_work wall_work gravity_work bond_work lost_grains";
-
-    #[test]
-    fn every_column_is_plotted_or_said_not_to_be() {
-        // A step that was solved under a model: others have nothing of it to plot.
-        let plain = Observables { step: 7, duality_gap: Some(0.5), ..Observables::default() };
-        let columns = serde_json::to_value(plain.with_further_columns()).unwrap();
-        let columns = columns.as_object().unwrap();
-        let fields = format!("{plain:?}").matches(": ").count();
-        assert_eq!(columns.len(), fields, "columns where there are bonds");
-        for (column, value) in columns {
-            let mut row = serde_json::to_value(plain).unwrap();
-            row[column] = if value.is_boolean() { true.into() } else { 1.into() };
-            let row: Observables = serde_json::from_value(row).unwrap();
-            let tells = |quantity: &Quantity<Observables>| {
-                let beside = |(_, value): &Beside<Observables>| value(&row) != value(&plain);
-                (quantity.value)(&row) != (quantity.value)(&plain)
-                    || quantity.beside.iter().any(beside)
-            };
-            let plotted = QUANTITIES.iter().any(tells);
-            assert_ne!(plotted, NOT_PLOTTED.split(' ').any(|name| name == column), "{column}");
-        }
     }
 }

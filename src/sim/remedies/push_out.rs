@@ -52,7 +52,8 @@ pub(in crate::sim) fn push_out(state: &mut State, time_step_secs: f64) {
     for contact in contacts.contacts() {
         let i = contact.grain as usize;
         let j = numbering.other(contact.other).grain();
-        let velocity_of_other = j.map_or(DVec2::ZERO, |j| grains.velocities[j]);
+        let velocity_of = |j| grains.velocities[j] + world.speed_of_image(i, j) * DVec2::X;
+        let velocity_of_other = j.map_or(DVec2::ZERO, velocity_of);
         let approach = (grains.velocities[i] - velocity_of_other).dot(contact.normal);
         let approach = approach - walls.velocity(world, contact)[0];
         let depth = -(contact.gap + time_step_secs * approach) - left;

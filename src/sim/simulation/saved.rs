@@ -53,8 +53,7 @@ impl Simulation {
         self.settings.validate()?;
         self.state.physics.validate()?;
         self.state.world.validate(self.state.physics)?;
-        self.settings.check_drives(&self.state.world.motions)?;
-        self.settings.check_tilt(&self.state.world.gravity, self.state.physics)?;
+        self.settings.check_in(&self.state.world, self.state.physics)?;
         self.state.candidates = self.state.candidates.complete(&self.state.world)?;
         let Self { state, watch, .. } = &self;
         let grains = state.world.grains.len();

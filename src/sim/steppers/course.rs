@@ -31,6 +31,8 @@ pub(super) struct Works {
     tangential: f64,
     gravity: f64,
     wall: f64,
+    border: f64,
+    drives: f64,
 }
 
 impl<K: Kinematics> Course<K> {
@@ -56,12 +58,16 @@ impl<K: Kinematics> Course<K> {
         stage: &Stage<'_, M>,
         sweeps: u32,
     ) -> Outcome {
-        let Works { normal, tangential, gravity: gravity_work, wall: wall_work } = self.works;
-        let measures = measure::<M>(stage.problem);
-        let measures =
-            Measures { normal_work: normal, tangential_work: tangential, wall_work, ..measures };
+        let Works { normal, tangential, gravity, wall, border, drives } = self.works;
+        let measures = Measures {
+            normal_work: normal,
+            tangential_work: tangential,
+            wall_work: wall,
+            border_work: border,
+            ..measure::<M>(stage.problem)
+        };
         let report = SolveReport { sweeps, ..SolveReport::nothing_yet() };
-        Outcome { report, measures, gravity_work, bonds: None }
+        Outcome { report, measures, gravity_work: gravity, drive_work: drives, bonds: None }
     }
 
     /// Begins a substep: gravity and a spring that pulls act on the bodies.
@@ -115,8 +121,33 @@ impl Works {
         self.wall += work;
     }
 
+    /// Counts what an image that slides did besides.
+    #[inline(always)]
+    pub(super) fn add_of_border<K: Kinematics>(
+        &mut self,
+        mass: f64,
+        impulse: [f64; 2],
+        normal: K::Normal<f64>,
+    ) {
+        if K::SLIDES {
+            let along = K::slide_along(normal);
+            self.border += mass * (impulse[0] * along[0] + impulse[1] * along[1]);
+        }
+    }
+
+    /// Counts the work of the forces that drive walls, J.
+    pub(super) fn add_of_drives(&mut self, work: f64) {
+        self.drives += work;
+    }
+
     /// Counts what of it a wall did that goes with (V_n, V_t), m/s.
     pub(super) fn add_of_wall(&mut self, mass: f64, impulse: [f64; 2], velocity: [f64; 2]) {
         self.wall += mass * (impulse[0] * velocity[0] + impulse[1] * velocity[1]);
     }
+}
+
+/// Tells the problem that a step is judged by how walls that a force drives go at its end.
+pub(super) fn tell_of_drives<M: Model>(stage: &mut Stage<'_, M>) {
+    let drives = stage.state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
+    stage.problem.set_wall_velocities(drives.map(|drive| drive.speed));
 }

@@ -4,7 +4,7 @@ use super::course::Course;
 use crate::contact::ContactMemory;
 use crate::sim::state::State;
 use crate::sim::stepping::Stage;
-use crate::solver::{Kinematics, Model, Row, StepProblem};
+use crate::solver::{DrivenRow, Kinematics, Model, Row, StepProblem};
 
 /// A contact in the course of a step.
 pub(super) struct Touching {
@@ -14,6 +14,13 @@ pub(super) struct Touching {
     pub wall_speed: f64,
     /// How fast its surface goes along the tangent, m/s.
     pub surface_speed: f64,
+    /// What it knows of a wall that a force drives, if its own is one.
+    pub driven: Option<DrivenRow>,
+    /// 1 but where a wall gives way: how much an impulse changes v_n and v_t, over how much it would if the wall did
+    /// not.
+    pub answers: [f64; 2],
+    /// What the law asks it to part with, relative to its wall, m/s; below 0 where it closed.
+    pub rebound: f64,
     /// Bond·g·h where it is cohesive in this substep, else 0, m/s.
     pub capture_speed: f64,
     /// (λ_n, λ_t) of this substep, m/s.
@@ -36,9 +43,13 @@ pub(super) fn all<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touchin
     let touching = |((number, row), &index): ((usize, &Row<M::Kinematics>), &u32)| {
         let memory = contacts.memories()[index as usize];
         let per_mass = warm_secs / row.effective_mass;
+        let wall_speed = problem.wall_speed(number);
         Touching {
             gap: contacts.contacts()[index as usize].gap,
-            wall_speed: problem.wall_speed(number),
+            wall_speed,
+            driven: problem.driven.row(number).copied(),
+            answers: [1.0; 2],
+            rebound: row.restitution_velocity + wall_speed,
             surface_speed: if number < fixed { row.surface_speed() } else { 0.0 },
             capture_speed: 0.0,
             impulse: [per_mass * memory.normal_force, per_mass * memory.tangential_force],
@@ -75,6 +86,7 @@ pub(super) fn end_substep<K: Kinematics>(
         contact.total[1] += contact.impulse[1];
         works.add(row.effective_mass, contact.impulse, start, end);
         works.add_of_wall(row.effective_mass, contact.impulse, contact.wall_velocity());
+        works.add_of_border::<K>(row.effective_mass, contact.impulse, row.normal);
     }
 }
 

@@ -11,6 +11,8 @@ pub struct Outcome {
     pub measures: Measures,
     /// Work of gravity and of a spring that pulls, J.
     pub gravity_work: f64,
+    /// Work of the forces that drive walls, less what their damping took, J.
+    pub drive_work: f64,
     /// Of a law with bonds.
     pub bonds: Option<BondEnergies>,
 }
@@ -39,10 +41,11 @@ impl Outcome {
 
     /// Counts another piece of the step; what it measures at its end counts for the whole.
     pub fn add(&mut self, piece: Self) {
-        let Self { report, measures, gravity_work, bonds } = piece;
+        let Self { report, measures, gravity_work, drive_work, bonds } = piece;
         self.report.add(report);
         self.measures.add(measures);
         self.gravity_work += gravity_work;
+        self.drive_work += drive_work;
         let earlier = self.bonds.unwrap_or_default();
         self.bonds = bonds.map(|BondEnergies { work, stored, broken }| BondEnergies {
             work: earlier.work + work,

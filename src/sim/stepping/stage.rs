@@ -103,7 +103,7 @@ impl<'a, M: Model> Stage<'a, M> {
         let Self { state, problem, .. } = self;
         let measures = measure::<M>(problem);
         problem.store_impulses(&mut state.contacts);
-        state.walls.take_driven(&mut state.world, &problem.driven.walls);
+        let drive_work = state.walls.take_driven(&mut state.world, &problem.driven.walls);
         let mut gravity_work = 0.0;
         for (index, body) in problem.bodies.iter().enumerate() {
             M::Kinematics::store(body, &mut state.world, index);
@@ -112,7 +112,7 @@ impl<'a, M: Model> Stage<'a, M> {
             gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
         }
         state.integrate::<M>(settings.parameters.time_step_secs);
-        Outcome { report, measures, gravity_work, bonds: None }
+        Outcome { report, measures, gravity_work, drive_work, bonds: None }
     }
 
     /// Cuts a step into pieces of equal length and takes them one after the other: `piece` gets the

@@ -40,6 +40,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::AllAtOnce,
     takes_models: false,
     takes_drives: true,
+    takes_shear: true,
 };
 
 /// L after a step that was too long, over the curvature that it met: a little more than needed, or

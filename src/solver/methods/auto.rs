@@ -24,6 +24,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::OfSettings,
     takes_models: false,
     takes_drives: true,
+    takes_shear: true,
 };
 
 /// Up to so many contacts Newton's method is taken. At 270 contacts it wins by far, at 1,000 by a

@@ -22,6 +22,8 @@ pub struct MethodInfo {
     pub takes_models: bool,
     /// Whether it solves for walls that a force drives.
     pub takes_drives: bool,
+    /// Whether it solves for grains whose images slide.
+    pub takes_shear: bool,
 }
 
 /// In which order a method takes the contacts.

@@ -32,6 +32,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::AllAtOnce,
     takes_models: false,
     takes_drives: true,
+    takes_shear: true,
 };
 
 /// Solves a prepared problem.

@@ -30,6 +30,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::OfSettings,
     takes_models: false,
     takes_drives: true,
+    takes_shear: true,
 };
 
 /// Solves a prepared problem.

@@ -90,6 +90,11 @@ impl Driven {
         self.rows.push(DrivenRow { number, by, still, speed: wall_speed - by.along[0] * before });
     }
 
+    /// The same as [`Self::row`], to be changed.
+    pub(super) fn row_mut(&mut self, number: usize) -> Option<&mut DrivenRow> {
+        self.rows.get_mut(*self.of_row.get(number)? as usize)
+    }
+
     /// What is known of a row against a fixed body, by its number, if that is driven.
     #[inline(always)]
     pub(crate) fn row(&self, number: usize) -> Option<&DrivenRow> {

@@ -11,6 +11,28 @@ impl<K: Kinematics> StepProblem<K> {
         !self.driven.is_empty()
     }
 
+    /// Whether the wall of a row is driven.
+    #[inline(always)]
+    pub(crate) fn gives_way(&self, number: usize) -> bool {
+        self.driven.row(number).is_some()
+    }
+
+    /// Lets a row close as fast as that relative to its wall, which comes with `wall_speed`, m/s.
+    pub(crate) fn let_close(&mut self, number: usize, allowed: f64, wall_speed: f64) {
+        self.row_at_mut(number).restitution_velocity = allowed - wall_speed;
+        if let Some(known) = self.driven.row_mut(number) {
+            known.still[0] = allowed - known.speed;
+        }
+    }
+
+    /// How fast the wall of a row comes along n as the step begins, and what it gains in the step, m/s.
+    pub(crate) fn wall_speed_and_gain(&self, number: usize) -> [f64; 2] {
+        let Some(known) = self.driven.row(number) else { return [self.wall_speed(number), 0.0] };
+        let DrivenBy { wall, along: [along, _] } = known.by;
+        let wall = &self.driven.walls[wall as usize];
+        [known.speed + along * wall.before, along * (wall.now - wall.before)]
+    }
+
     /// Where the wall of a row is driven: what part of its (v_n, v_t) is its grain's to undo, ρ's term included, m/s.
     /// Its impulses undo them by as much as those of a row whose body stays undo the whole.
     #[inline(always)]

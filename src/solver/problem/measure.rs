@@ -29,6 +29,8 @@ pub struct Measures {
     pub tangential_work: f64,
     /// Of both, the work of surfaces that move, J.
     pub wall_work: f64,
+    /// Beside both, what images that slide do to the grains that touch them, J.
+    pub border_work: f64,
 }
 
 impl Measures {
@@ -43,7 +45,7 @@ impl Measures {
     pub fn add(&mut self, piece: Self) {
         let Self { residual, model_residual, duality_gap, .. } = piece;
         let Self { compressive_contacts, tensile_contacts, .. } = piece;
-        let Self { normal_work, tangential_work, wall_work, .. } = piece;
+        let Self { normal_work, tangential_work, wall_work, border_work, .. } = piece;
         self.residual = worst(self.residual, residual);
         self.model_residual = worst_of(self.model_residual, model_residual);
         self.duality_gap = worst_of(self.duality_gap, duality_gap);
@@ -52,6 +54,7 @@ impl Measures {
         self.normal_work += normal_work;
         self.tangential_work += tangential_work;
         self.wall_work += wall_work;
+        self.border_work += border_work;
     }
 }
 
@@ -132,7 +135,7 @@ pub(crate) fn worst(one: f64, other: f64) -> f64 {
 /// Work: from v^n = v^{n−1} + M⁻¹(ΔtF + HP) the kinetic energy changes by
 /// ½(v^n + v^{n−1})·(ΔtF + HP), so a contact impulse does the work P·½(u^n + u^{n−1}) with u its
 /// relative velocity. Summed with gravity's this closes the budget to rounding, whatever the solver
-/// left undone.
+/// left undone. Where j is an image that slides, u is relative to that, and P·(what it slides by) is the border's work.
 pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
     let mut sums = Sums::default();
     let mut measures = Measures::default();
@@ -145,6 +148,11 @@ pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measure
         measures.normal_work += half_mass * normal * (motion.now[0] + motion.before[0]);
         if M::FRICTION {
             measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
+        }
+        if M::Kinematics::SLIDES {
+            let [along_normal, along_tangent] = M::Kinematics::slide_along(row.normal);
+            let work = normal * along_normal + tangential * along_tangent;
+            measures.border_work += row.effective_mass * work;
         }
     });
     if problem.has_moving_walls() {

@@ -21,6 +21,7 @@ pub(crate) use self::held::{Bound, Held, LawNumbers, Opening};
 pub use self::kinematics::Kinematics;
 pub use self::kinematics::line::{Line, LineBody};
 pub use self::kinematics::plane::{Plane, PlaneBody, SpinningPlane};
+pub use self::kinematics::sheared::{ShearedPlane, SlidingNormal};
 pub use self::measure::{Measures, residual};
 pub(crate) use self::measure::{
     errors, held_residual, measure, natural_map, residual_of, squared_residual_scale, worst,

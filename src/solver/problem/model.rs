@@ -2,7 +2,7 @@
 
 use super::kinematics::Kinematics;
 use crate::contact::{Lanes, law};
-use crate::world::{FrictionCone, Parameters, Physics};
+use crate::world::{FrictionCone, Parameters, Periodic, Physics};
 
 /// What a step computes. Everything here is known when the step is compiled, so a leaner model
 /// has no branch for what it leaves out.
@@ -55,6 +55,8 @@ pub(crate) trait ModelVisitor {
 pub(crate) struct ModelParts {
     /// 1 or 2.
     pub axes: u8,
+    /// Whether borders shear.
+    pub sheared: bool,
     /// Whether contacts carry tangential impulses.
     pub friction: bool,
     /// Whether grains turn; without friction nothing turns them.
@@ -67,10 +69,15 @@ impl ModelParts {
     /// The leanest model that computes what the scene has (`physics`) and what is switched on at
     /// present: without friction where μ = 0, with one cone where Bond = 0. Each gives the same
     /// impulses as the fuller model would.
-    pub(crate) fn leanest(physics: Physics, parameters: &Parameters) -> Self {
+    pub(crate) fn leanest(
+        physics: Physics,
+        periodic: Option<Periodic>,
+        parameters: &Parameters,
+    ) -> Self {
         let cohesion = physics.cohesion && parameters.bond > 0.0;
         Self {
             axes: physics.axes,
+            sheared: periodic.is_some_and(Periodic::is_sheared),
             friction: physics.friction && parameters.friction > 0.0,
             rotation: physics.rotation,
             compressive_cone: cohesion && parameters.cone == FrictionCone::Compressive,

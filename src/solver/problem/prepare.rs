@@ -66,7 +66,7 @@ impl<K: Kinematics> StepProblem<K> {
         for at in 0..self.contact_of_row.len() {
             let index = self.contact_of_row[at] as usize;
             let contact = &contacts.contacts()[index];
-            let (i, normal) = (contact.grain as usize, K::normal(contact.normal.to_array()));
+            let (i, normal) = (contact.grain as usize, K::normal_of(world, contact));
             let j = numbering.other(contact.other).grain();
             let ([velocity, _], mass, of_other) = match j {
                 None => (K::velocity(normal, &self.before[i]), grains.masses[i], 0.0),
@@ -79,7 +79,8 @@ impl<K: Kinematics> StepProblem<K> {
             let in_touch = contacts.is_in_touch(index);
             let rebound = rebound(Approach { velocity, gap: contact.gap, in_touch });
             let start = settings.warm_start.then(|| contacts.impulses()[index]);
-            let row = self.row::<M>(contact, (mass, of_other), rebound, self.capture(at), start);
+            let (known, capture) = ((contact, normal), self.capture(at));
+            let row = self.row::<M>(known, (mass, of_other), rebound, capture, start);
             match j {
                 None => self.fixed_rows.push(row),
                 Some(_) => self.pair_rows.push(row),
@@ -124,7 +125,7 @@ impl<K: Kinematics> StepProblem<K> {
     /// One row, with the impulses of `start` (N·s) projected on what the contact law allows now.
     fn row<M: Model<Kinematics = K>>(
         &self,
-        contact: &Contact,
+        (contact, normal): (&Contact, K::Normal<f64>),
         (effective_mass, of_other): (f64, f64),
         restitution_velocity: f64,
         capture_speed: f64,
@@ -142,7 +143,7 @@ impl<K: Kinematics> StepProblem<K> {
         Row {
             i: contact.grain,
             j: contact.other,
-            normal: K::normal(contact.normal.to_array()),
+            normal,
             of_other,
             restitution_velocity,
             shifted_impulse,

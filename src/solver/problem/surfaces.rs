@@ -62,7 +62,7 @@ impl<K: Kinematics> StepProblem<K> {
     pub(crate) fn turn_row(&mut self, number: usize, normal: DVec2) -> f64 {
         let surface = self.surfaces.get(number).copied().flatten();
         let row = self.row_at_mut(number);
-        row.normal = K::normal(normal.to_array());
+        row.normal = K::sliding(K::normal(normal.to_array()), K::slide(row.normal));
         let Some(surface) = surface else { return 0.0 };
         let [speed, slide] = surface.along(normal);
         row.of_other = slide;

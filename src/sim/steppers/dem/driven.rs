@@ -34,11 +34,5 @@ pub(super) fn drive<M: Model>(
     for (wall, along) in pushed() {
         works.add_of_driven_wall(0.5 * along * (driven[wall].now - driven[wall].before));
     }
-    walls.take_driven(world, &driven);
-}
-
-/// Tells the problem that the step is judged by how such walls go at its end.
-pub(super) fn tell<M: Model>(stage: &mut Stage<'_, M>) {
-    let drives = stage.state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
-    stage.problem.set_wall_velocities(drives.map(|drive| drive.speed));
+    works.add_of_drives(walls.take_driven(world, &driven));
 }

@@ -14,7 +14,7 @@ pub use spring_dashpot::SpringDashpot;
 
 use self::spring_dashpot::{contact_time_secs, critical_time_step_secs, substeps};
 use super::StepperInfo;
-use super::course::Course;
+use super::course::{Course, tell_of_drives};
 use super::mean_pair::MeanPair;
 use crate::contact::{Contact, ContactMemory, Impulse, law};
 use crate::sim::settings::Settings;
@@ -80,23 +80,29 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         let bodies = &stage.problem.bodies;
         let list = stage.state.contacts.contacts();
         for (contact, &(mass, impulse, of_wall)) in list.iter().zip(&pushes) {
-            let of = |bodies: &[_]| velocity::<M::Kinematics>(contact, bodies);
+            let normal = M::Kinematics::normal_of(&stage.state.world, contact);
+            let of = |bodies: &[_]| velocity::<M::Kinematics>(normal, contact, bodies);
             course.works.add(mass, impulse, of(&course.start), of(bodies));
             course.works.add_of_wall(mass, impulse, of_wall);
+            course.works.add_of_border::<M::Kinematics>(mass, impulse, normal);
         }
         course.add_gravity_work(bodies, &stage.state.world.grains.masses);
         driven::drive(stage, course.substep_secs, &pushes, &mut course.works);
         course.place(stage);
     });
     stage.problem.set_impulses(&totals.impulses);
-    driven::tell(stage);
+    tell_of_drives(stage);
     course.end_step(stage, substeps)
 }
 
 /// (v_n, v_t) of a contact, m/s.
 #[inline(always)]
-fn velocity<K: Kinematics>(contact: &Contact, bodies: &[K::Body<f64>]) -> [f64; 2] {
-    let (normal, i) = (K::normal(contact.normal.to_array()), &bodies[contact.grain as usize]);
+fn velocity<K: Kinematics>(
+    normal: K::Normal<f64>,
+    contact: &Contact,
+    bodies: &[K::Body<f64>],
+) -> [f64; 2] {
+    let i = &bodies[contact.grain as usize];
     match bodies.get(contact.other as usize) {
         Some(j) => K::relative_velocity(normal, i, j),
         None => K::velocity(normal, i),
@@ -159,7 +165,9 @@ impl Elements {
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
             let mass = masses[i] * share;
-            let [normal_velocity, tangential_velocity] = velocity::<M::Kinematics>(contact, start);
+            let normal = M::Kinematics::normal_of(world, contact);
+            let [normal_velocity, tangential_velocity] =
+                velocity::<M::Kinematics>(normal, contact, start);
             let of_wall = walls.velocity(world, contact);
             let slip = [normal_velocity - of_wall[0], tangential_velocity - of_wall[1]];
             self.force::<M>(memory, contact.gap, mass, slip);
@@ -172,7 +180,6 @@ impl Elements {
             totals.add(contact, impulse);
             let reduced = [impulse.normal / mass, impulse.tangential / mass];
             pushes.push((mass, reduced, of_wall));
-            let normal = M::Kinematics::normal(contact.normal.to_array());
             if j < bodies.len() {
                 let (mut one, mut other) = (bodies[i], bodies[j]);
                 M::Kinematics::push_pair(&mut one, &mut other, normal, reduced, share);

@@ -126,11 +126,12 @@ impl Run {
         let Closed { part, gained } = closed.unwrap_or(Closed { part: 1.0, gained: 0.0 });
         let [impulse, _] = problem.reduced_impulse(number, row);
         let [now, before] = [motion.now, motion.before].map(|[normal, _]| normal);
+        let [wall_before, wall_gained] = problem.wall_speed_and_gain(number);
         Self {
             part,
             is_closed: closed.is_some(),
-            speed: before - problem.wall_speed(number) + gained,
-            load: part * (now - before - impulse),
+            speed: before - wall_before + gained,
+            load: part * (now - before - impulse - wall_gained),
             impulse,
         }
     }

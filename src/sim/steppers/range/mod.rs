@@ -60,6 +60,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
         FrictionCone::Shifted => Ok(()),
         cone => Err(Error::value("cone", cone, "shifted where stepper is range")),
     },
+    takes_drives: true,
     fracture_work: |world, physics, parameters| {
         let distance = parameters.debonding_distance * world.mean_diameter;
         MeanPair::of(world).fracture_work(physics, parameters, |force| force * distance)
@@ -203,6 +204,7 @@ fn try_step<M: Model>(
         measures.normal_work += of_shocks.normal_work;
         measures.tangential_work += of_shocks.tangential_work;
         measures.wall_work += of_shocks.wall_work;
+        measures.border_work += of_shocks.border_work;
         outcome.gravity_work -= of_gravity;
     }
     separation::separate::<M>(stage.state);

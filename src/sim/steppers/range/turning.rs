@@ -34,7 +34,10 @@ pub(super) fn looks_like_a_shock(
     bonds.filter(|(_, bond)| bond.alive).any(|(contact, _)| {
         let grain = contact.grain as usize;
         let (velocity, radius) = match numbering.other(contact.other) {
-            Other::Grain(other) => (grains.velocities[other], grains.radii[other]),
+            Other::Grain(other) => {
+                let slide = state.world.speed_of_image(grain, other) * DVec2::X;
+                (grains.velocities[other] + slide, grains.radii[other])
+            }
             Other::FixedDisc(disc) => {
                 let surface = state.walls.surface(&state.world, contact);
                 let velocity = surface.map_or(DVec2::ZERO, |surface| surface.velocity);

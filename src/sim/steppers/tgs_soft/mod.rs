@@ -19,15 +19,16 @@
 //! begins, and so a force that depends on neither Δt nor h; with a gap the bound is 0, and the
 //! contact only keeps the grains from closing the gap by more than it is.
 
+mod driven;
 mod softness;
 
 use self::softness::Softness;
 use super::StepperInfo;
-use super::course::{Course, Works};
+use super::course::{Course, Works, tell_of_drives};
 use super::touching::{self, Touching};
 use crate::sim::settings::Settings;
 use crate::sim::stepping::{Outcome, Stage};
-use crate::solver::{Kinematics, Model, Row, StepProblem};
+use crate::solver::{DrivenWall, Kinematics, Model, Row, StepProblem};
 use crate::world::Parameters;
 
 /// The row of the registry.
@@ -45,6 +46,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
         "warm-start",
         "substeps",
     ],
+    takes_drives: true,
     substeps: |_, _, parameters| substeps(parameters),
     ..StepperInfo::WHOLE
 };
@@ -67,49 +69,61 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let capture_speed = stage.problem.capture_speed / f64::from(substeps);
     stage.in_pieces(substeps, settings, Outcome::nothing_yet(), |stage, _, _| {
         course.begin(stage);
-        update(stage.problem, &mut contacts, |_, contact, _| {
+        let walls = &mut driven::begin(stage, &mut contacts, substep_secs);
+        update(stage.problem, walls, &mut contacts, |_, contact, _| {
             let cohesive = contact.gap < gap_tolerance;
             contact.capture_speed = if cohesive { capture_speed } else { 0.0 };
             softness.warm_start::<M>(contact)
         });
-        update(stage.problem, &mut contacts, |_, contact, velocity| {
+        update(stage.problem, walls, &mut contacts, |_, contact, velocity| {
             softness.solve::<M, true>(contact, velocity)
         });
+        driven::take(stage, &mut contacts, walls);
         course.place(stage);
         let problem = &mut *stage.problem;
         touching::follow(problem, &mut contacts, substep_secs);
-        update(problem, &mut contacts, |_, contact, velocity| {
+        update(problem, walls, &mut contacts, |_, contact, velocity| {
             softness.solve::<M, false>(contact, velocity)
         });
         course.add_gravity_work(&problem.bodies, &stage.state.world.grains.masses);
-        touching::end_substep(problem, &mut contacts, course);
+        course.works.add_of_drives(driven::take(stage, &mut contacts, walls));
+        touching::end_substep(stage.problem, &mut contacts, course);
+        driven::correct_works(stage.problem, &contacts, walls, &mut course.works);
         // The spring that pulls a grain looks at its velocity.
         course.store(stage);
     });
     touching::remember(stage, &contacts, substep_secs);
-    let problem = &mut *stage.problem;
-    restitute(problem, &mut contacts, &mut course.works);
-    touching::hand_over(problem, &contacts);
+    let walls = &mut driven::begin(stage, &mut contacts, 0.0);
+    restitute(stage.problem, walls, &mut contacts, &mut course.works);
+    driven::take(stage, &mut contacts, walls);
+    touching::hand_over(stage.problem, &contacts);
     course.store(stage);
     stage.problem.store_impulses(&mut stage.state.contacts);
+    tell_of_drives(stage);
     course.end_step(stage, 2 * substeps + 1)
 }
 
 /// Gives contacts that met, and pushed, the speed they part with.
 fn restitute<K: Kinematics>(
     problem: &mut StepProblem<K>,
+    walls: &mut [DrivenWall],
     contacts: &mut [Touching],
     works: &mut Works,
 ) {
-    update(problem, contacts, |row, contact, [normal_velocity, _]| {
-        if row.restitution_velocity >= 0.0 || contact.total[0] <= 0.0 {
+    update(problem, walls, contacts, |row, contact, [normal_velocity, _]| {
+        if contact.rebound >= 0.0 || contact.total[0] <= 0.0 {
             return [0.0; 2];
         }
-        let missing = (-row.restitution_velocity - normal_velocity).max(0.0);
+        let parting = contact.wall_speed - contact.rebound;
+        let missing = (parting - normal_velocity).max(0.0) / contact.answers[0];
         let (push, before, after) = ([missing, 0.0], normal_velocity, normal_velocity + missing);
         contact.total[0] += missing;
         works.add(row.effective_mass, push, [before, 0.0], [after, 0.0]);
         works.add_of_wall(row.effective_mass, push, contact.wall_velocity());
+        // The wall gave way, which takes so much off its mean speed.
+        let given_way = (contact.answers[0] - 1.0) * missing;
+        works.add_of_driven_wall(-0.5 * row.effective_mass * missing * given_way);
+        works.add_of_border::<K>(row.effective_mass, push, row.normal);
         push
     });
 }
@@ -119,6 +133,7 @@ fn restitute<K: Kinematics>(
 #[inline(always)]
 fn update<K: Kinematics>(
     problem: &mut StepProblem<K>,
+    walls: &mut [DrivenWall],
     contacts: &mut [Touching],
     mut change: impl FnMut(&Row<K>, &mut Touching, [f64; 2]) -> [f64; 2],
 ) {
@@ -126,8 +141,10 @@ fn update<K: Kinematics>(
     let (of_fixed, of_pairs) = contacts.split_at_mut(fixed_rows.len());
     for (row, contact) in fixed_rows.iter().zip(of_fixed) {
         let i = &mut bodies[row.i as usize];
+        contact.see(walls);
         let impulse = change(row, contact, K::velocity(row.normal, i));
         K::push_single(i, row.normal, impulse);
+        contact.push_back(walls, row.effective_mass, impulse);
     }
     for (row, contact) in pair_rows.iter().zip(of_pairs) {
         let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);

@@ -83,14 +83,15 @@ impl Softness {
         let before = contact.impulse;
         let shifted = before[0] + contact.capture_speed;
         let closing = normal_velocity - contact.wall_speed + bias;
-        let change = (1.0 - compliance) * closing + compliance * shifted;
+        let [answer, tangential_answer] = contact.answers;
+        let change = (1.0 - compliance) * closing / answer + compliance * shifted;
         let shifted = law::signorini(shifted - change);
         contact.impulse[0] = shifted - contact.capture_speed;
         if M::FRICTION {
             let bound = self.bound::<M>(shifted, contact.capture_speed);
             let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
             let slip = tangential_velocity - contact.surface_speed;
-            contact.impulse[1] = law::coulomb(before[1] - part * slip, bound);
+            contact.impulse[1] = law::coulomb(before[1] - part * slip / tangential_answer, bound);
         }
         [contact.impulse[0] - before[0], contact.impulse[1] - before[1]]
     }

@@ -127,7 +127,12 @@ impl<const D: usize> Directions<D> {
         let rows = fixed.chain(problem.pair_rows.iter_mut().map(|row| (row, true)));
         for ((row, is_pair), target) in rows.zip(&mut targets) {
             let [normal, tangential] = self.velocity::<M>(row, is_pair);
-            let opening = normal + row.restitution_velocity;
+            // V knows no images, and no surfaces.
+            let [away, along] = match is_pair {
+                true => M::Kinematics::slide_along(row.normal),
+                false => [0.0, row.surface_speed()],
+            };
+            let opening = normal - away + row.restitution_velocity;
             let shifted = law::signorini(row.shifted_impulse - opening / compliance);
             let change = compliance * (shifted - row.shifted_impulse);
             row.shifted_impulse = shifted;
@@ -140,7 +145,7 @@ impl<const D: usize> Directions<D> {
             if M::FRICTION {
                 let softness = compliance * M::Kinematics::TANGENTIAL_COMPLIANCE;
                 let bound = M::friction_bound(friction, shifted, capture_speed);
-                let slip = if is_pair { tangential } else { tangential - row.surface_speed() };
+                let slip = tangential - along;
                 let moved = law::coulomb(row.tangential_impulse - slip / softness, bound);
                 let change = softness * (moved - row.tangential_impulse);
                 row.tangential_impulse = moved;

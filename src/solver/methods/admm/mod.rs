@@ -39,6 +39,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::AllAtOnce,
     takes_models: false,
     takes_drives: false,
+    takes_shear: true,
 };
 
 /// ε at first.

@@ -62,6 +62,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::OfSettings,
     takes_models: true,
     takes_drives: false,
+    takes_shear: true,
 };
 
 /// Sweeps before the first factorisation: many steps of a pile at rest need no more.

@@ -52,6 +52,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::OfSettings,
     takes_models: false,
     takes_drives: false,
+    takes_shear: true,
 };
 
 /// Compliance of the first step.

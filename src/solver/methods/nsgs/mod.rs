@@ -32,6 +32,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::OfSettings,
     takes_models: true,
     takes_drives: true,
+    takes_shear: true,
 };
 
 /// Solves a prepared problem by sweeps, under the model of friction that it was prepared for.

@@ -35,6 +35,7 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     order: MethodOrder::Always(Ordering::Coloured),
     takes_models: false,
     takes_drives: false,
+    takes_shear: false,
 };
 
 /// Blocks from which on threads are woken, once a sweep: some 130 µs of work, several times what waking costs.

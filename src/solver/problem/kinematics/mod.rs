@@ -14,10 +14,11 @@
 
 pub(crate) mod line;
 pub(crate) mod plane;
+pub(crate) mod sheared;
 
 use std::fmt::Debug;
 
-use crate::contact::Lanes;
+use crate::contact::{Contact, Lanes};
 use crate::world::World;
 
 /// The ways in which the bodies of a scene can move.
@@ -30,6 +31,8 @@ pub trait Kinematics: Copy + Debug + Default + Send + Sync + 'static {
     const AXES: usize;
     /// Whether grains turn.
     const ROTATION: bool;
+    /// Whether images of grains slide beside the grains themselves.
+    const SLIDES: bool = false;
     /// m_n / m_t, the same for every contact of solid discs.
     const TANGENTIAL_COMPLIANCE: f64;
 
@@ -51,6 +54,33 @@ pub trait Kinematics: Copy + Debug + Default + Send + Sync + 'static {
     ) -> Self::Body<f64>;
     /// Packs a normal, given along x and y.
     fn normal<T: Lanes>(normal: [T; 2]) -> Self::Normal<T>;
+    /// Packs the normal of a contact as it is in a world: it tells of an image that slides.
+    #[inline(always)]
+    fn normal_of(world: &World, contact: &Contact) -> Self::Normal<f64> {
+        let normal = Self::normal(contact.normal.to_array());
+        let (i, j) = (contact.grain as usize, contact.other as usize);
+        match Self::SLIDES && j < world.grains.len() {
+            true => Self::sliding(normal, world.speed_of_image(i, j)),
+            false => normal,
+        }
+    }
+    /// A packed normal of a pair whose image of j goes so fast (m/s along x) beside j, where images slide.
+    #[inline(always)]
+    fn sliding(normal: Self::Normal<f64>, _slide: f64) -> Self::Normal<f64> {
+        normal
+    }
+    /// How fast the image goes that a packed normal is of, m/s along x.
+    #[inline(always)]
+    fn slide(_normal: Self::Normal<f64>) -> f64 {
+        0.0
+    }
+    /// The same along n and t, m/s: by so much the relative velocity is less than that of i and j themselves.
+    #[inline(always)]
+    fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
+        let [x, y] = Self::components(normal);
+        let slide = Self::slide(normal);
+        [x * slide, -y * slide]
+    }
     /// A packed normal along x and y; along axes that there are not, 0.
     fn components(normal: Self::Normal<f64>) -> [f64; 2];
     /// (v_n, v_t) of body i relative to body j, m/s.

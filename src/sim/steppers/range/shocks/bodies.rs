@@ -172,6 +172,7 @@ impl Passed {
         all.normal_work += measures.normal_work;
         all.tangential_work += measures.tangential_work;
         all.wall_work += measures.wall_work;
+        all.border_work += measures.border_work;
     }
 }
 
@@ -217,6 +218,8 @@ impl Shocks {
                 let rests = touches && speed.abs() <= RESTS_BELOW * x.hypot(y);
                 bodies[grain].is_held |= rests || is_cohesive && around.is_bonded(problem, number);
             }
+            // The step proper stops what comes to a wall that gives way (see the module).
+            let touches = touches && !problem.gives_way(number);
             pairs.push(Pair {
                 normal,
                 gap,

@@ -18,6 +18,9 @@ impl Shocks {
     ) -> f64 {
         let mut first = NEVER;
         for (number, row) in problem.rows() {
+            if problem.gives_way(number) {
+                continue;
+            }
             if self.pairs[number].is_new {
                 let acceleration = self.acceleration(problem, number, row, around.numbers);
                 self.pairs[number].acceleration = acceleration;
@@ -66,7 +69,7 @@ impl Shocks {
         let acceleration = if falls { self.fall::<K>(i) / time_step_secs } else { DVec2::ZERO };
         let of_other = j.map_or_else(
             || (DVec2::ZERO, problem.shape_velocity(number, pair.normal)),
-            |j| (offset(j), velocity(j)),
+            |j| (offset(j), velocity(j) + K::slide(row.normal) * DVec2::X),
         );
         let (offset, velocity) = (offset(i) - of_other.0, velocity(i) - of_other.1);
         Course { offset, velocity, acceleration }

@@ -40,6 +40,10 @@
 //! be. Then no solution is to be had. Asked for alone, v⁺ = −ρ v⁻ of all grains obeys every contact, and so does v = 0 in the step.
 //! For this, contacts that open have their term too: they may close by ρ v_n⁻, and are struck by the next pass if they do.
 //!
+//! **Walls that a force drives** are struck in no shock: what hits such a wall would change its speed, and with that
+//! the moments of all that it is still to meet. The step proper stops what comes to it, and its unknown speed takes that
+//! up, so momentum and energy balance; but nothing bounces off it.
+//!
 //! **No energy is gained** by a pass without friction, for the reason that `remedies::sequential_impacts` gives.
 //!
 //! **How tightly.** As the step. Solved less tightly, with what that leaves of approach taken up by the

@@ -55,8 +55,8 @@ impl Shocks {
                 Some(normal) => problem.turn_row(number, normal),
                 None => problem.wall_speed(number),
             };
+            problem.let_close(number, allowed.max(0.0), wall_speed);
             let row = problem.row_at_mut(number);
-            row.restitution_velocity = allowed.max(0.0) - wall_speed;
             if let Some([before, after]) = capture {
                 row.shifted_impulse = (row.shifted_impulse - before + after).max(0.0);
                 problem.captures[number] = after;
@@ -88,7 +88,7 @@ impl Shocks {
             allowed = left * rest.max(0.0);
         }
         let mut normal = None;
-        let misses = pair.next == NEVER && !pair.is_new;
+        let misses = pair.next == NEVER && !pair.is_new && !problem.gives_way(number);
         if misses && pair.speed + allowed < 0.0 {
             let is_in_touch = self.is_in_touch(problem, row, around);
             if let Some((at_end, gap)) = self.approach(problem, row, around, secs)

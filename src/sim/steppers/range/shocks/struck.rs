@@ -142,7 +142,8 @@ impl Shocks {
         } else {
             solve_together::<M>(part, memory, settings, self.least)
         };
-        let Measures { residual, normal_work, mut tangential_work, .. } = measure::<M>(part);
+        let measures = measure::<M>(part);
+        let Measures { residual, normal_work, mut tangential_work, border_work, .. } = measures;
         let [wall_work, of_surfaces] = problem.surface_works_in(part);
         tangential_work += of_surfaces;
         // Against the scale of the step, as all of it is.
@@ -151,8 +152,14 @@ impl Shocks {
             // Exact but for rounding, which may be more than is asked for.
             report.converged = residual <= settings.tolerance;
         }
-        let mut measures =
-            Measures { residual, normal_work, tangential_work, wall_work, ..Measures::default() };
+        let mut measures = Measures {
+            residual,
+            normal_work,
+            tangential_work,
+            wall_work,
+            border_work,
+            ..Measures::default()
+        };
         for ((_, row), &number) in part.rows().zip(&part.contact_of_row) {
             let pair = &mut self.pairs[number as usize];
             pair.impulse += row.shifted_impulse;
