@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Starts the real window under Xvfb, drags the slider of the time step with the mouse, and checks
 # through the state that the window exports that the drag reached the solver. Also: release, resize,
-# a state, a session and data that are saved, a lost graphics device, closing, and the sentence that a missing display is told with.
+# a state, a session, data and a video that are saved, a grain that comes and goes by hand, a lost graphics device, closing,
+# a screen of small pixels, and the sentence that a missing display is told with.
 #
 #   tests/window.sh [FOLDER]        screenshots go to FOLDER (default target/window)
 #
@@ -44,12 +45,17 @@ fi
 grep -q -- "--headless" "$work/log" || fail "a missing display is not explained"
 [ "$(wc -l < "$work/log")" -eq 1 ] || fail "a missing display takes more than one sentence"
 
-# Any display number that is free.
-Xvfb -displayfd 4 -screen 0 1280x800x24 4> "$work/display" > "$work/xvfb.log" 2>&1 &
-server=$!
-for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
-[ -s "$work/display" ] || fail "Xvfb does not start"
-export DISPLAY=:$(cat "$work/display")
+# screen WIDTHxHEIGHT: a display of that size in place of the one before, by any number that is free.
+screen() {
+    [ -z "$server" ] || kill "$server" 2>/dev/null || true
+    rm -f "$work/display"
+    Xvfb -displayfd 4 -screen 0 "$1x24" 4> "$work/display" > "$work/xvfb.log" 2>&1 &
+    server=$!
+    for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
+    [ -s "$work/display" ] || fail "Xvfb does not start"
+    export DISPLAY=:$(cat "$work/display")
+}
+screen 1280x800
 
 # value EXPRESSION: a value of the exported state; s is the state.
 value() { python3 -c "import json,sys; s=json.load(open('$state')); print($1)"; }
@@ -117,11 +123,37 @@ for section in data run physics; do
     sleep 1
 done
 
+# The record as a video.
+for section in physics run see; do
+    xdotool mousemove $(at $section 0.3) click 1
+    sleep 1
+done
+xdotool mousemove $(at "Save video" 0.5) click 1
+wait_for "the video" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*.mp4') != []"
+import -window root "$shots/window-video.png"
+head -c 64 "$work"/out/slump-pile-*.mp4 | grep -q ftypisom || fail "the video is none"
+for section in see run physics; do
+    xdotool mousemove $(at $section 0.3) click 1
+    sleep 1
+done
+
+# With Shift, a click puts a grain above the pile; another takes it out.
+grains=$(value "s['grains']")
+above=$(value "'%d %d' % (lambda c: ((c[0] + c[2]) / 2, c[1] + 0.1 * (c[3] - c[1])))(s['controls']['scene'])")
+xdotool mousemove $above keydown Shift_L
+sleep 0.5
+import -window root "$shots/window-hand.png"
+xdotool click 1
+wait_for "one grain more" "s['grains'] == $grains + 1"
+sleep 1
+xdotool click 1 keyup Shift_L
+wait_for "one grain less" "s['grains'] == $grains"
+
 xdotool key r
 wait_for "the reset" "s['step'] == 0"
 
-# Another size, and a small one.
-for size in "1000 700" "1280 800"; do
+# Another size, and small ones.
+for size in "1000 700" "640 480" "1280 800"; do
     xdotool search --name Slump windowsize $size
     wait_for "$size pixels" "s['window'] == [${size/ /, }]"
     sleep 0.5
@@ -219,4 +251,27 @@ import -window root "$shots/window-session.png"
 xdotool search --name Slump windowfocus
 xdotool key Left
 wait_for "the step before" "s['step'] == $session_step - 1"
+kill "$window"
+wait "$window" 2> /dev/null || true
+rm -f "$state"
+
+# On a screen of small pixels all is twice as large, in light and in dark.
+screen 2560x1440
+for theme in light dark; do
+    WINIT_X11_SCALE_FACTOR=2 "$program" --reset-ui --bond 20 --theme $theme --export-state "$state" > "$work/log" 2>&1 &
+    window=$!
+    wait_for "the pile" "s['scene'] == 'pile'"
+    xdotool search --name Slump windowsize 2560 1440
+    wait_for "small pixels" "s['window'] == [2560, 1440]"
+    xdotool search --name Slump windowfocus
+    xdotool key space
+    wait_for "some steps" "s['step'] >= 20"
+    xdotool key space
+    wait_for "the pause" "not s['playing']"
+    sleep 1
+    import -window root "$shots/window-2560x1440-$theme.png"
+    kill "$window"
+    wait "$window" 2> /dev/null || true
+    rm -f "$state"
+done
 echo "window.sh: Δt dragged to $dragged s reached the solver; screenshots in $shots"

@@ -5,7 +5,7 @@ use crate::output::Texts;
 use crate::scene::{Config, Provenance, asked_time_secs, joined, words_up_to};
 
 /// What is said of a run that no command line makes.
-const CHANGED: &str = "settings changed, or a grain was pulled, on the way: the command line and the settings are those \
+const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \
                        of the moment that is shown, and make another run";
 
 impl AppState {

@@ -1,6 +1,6 @@
 //! What is being done about data and saved runs.
 
-use super::data_export::DataExport;
+use super::work::Work;
 
 /// What the panel about data is busy with.
 #[derive(Default)]
@@ -10,7 +10,7 @@ pub(crate) struct DataDesk {
     /// Whether an earlier recording in the folder is to be removed.
     pub overwrite: bool,
     /// The export that is going on.
-    pub export: Option<DataExport>,
+    pub export: Option<Work>,
     /// What became of the last one, and whether it failed.
     pub told: Option<(String, bool)>,
     /// The file of a saved run, as it is typed.

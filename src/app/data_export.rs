@@ -3,23 +3,16 @@
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::sync::mpsc::Receiver;
 
 use super::taken::{Opened, TakenRun};
+use super::work::{Telling, Work};
 use crate::data::{About, Claim, DataSettings, Recording, Times};
 use crate::error::{Error, Result};
 use crate::headless::told_of_data;
-use crate::sim::live::{Change, Replay};
-use crate::sim::{Pull, RunEnding, Simulation};
-
-/// Least time between two looks at what the window says, and between two frames that show how far it is.
-const INTERVAL: Duration = Duration::from_millis(50);
-/// What has been done, in parts of this.
-const WHOLE: f64 = 1000.0;
+use crate::sim::live::{Change, HandMade, Replay};
+use crate::sim::{Edit, Pull, RunEnding, Simulation};
+use crate::world::Disc;
 
 /// What is to be written.
 pub(crate) struct DataOrder {
@@ -33,91 +26,12 @@ pub(crate) struct DataOrder {
     pub stretch: Option<[f64; 2]>,
 }
 
-/// An export that is going on.
-pub(crate) struct DataExport {
-    shared: Arc<Shared>,
-    outcome: Receiver<Result<String>>,
-    thread: Option<JoinHandle<()>>,
-}
-
-/// What window and thread tell each other.
-#[derive(Default)]
-struct Shared {
-    done: AtomicU32,
-    is_cancelled: AtomicBool,
-}
-
-impl DataExport {
-    /// Starts an export of a run that is on its way.
-    pub(crate) fn start(
-        context: &egui::Context,
-        order: DataOrder,
-        run: Receiver<TakenRun>,
-    ) -> Self {
-        let shared = Arc::new(Shared::default());
-        let (outbox, outcome) = channel();
-        let (context, of_thread) = (context.clone(), Arc::clone(&shared));
-        let thread = std::thread::spawn(move || {
-            let written = write(&order, &run, &of_thread, &context);
-            // The window may have closed.
-            let _ = outbox.send(written);
-            context.request_repaint();
-        });
-        Self { shared, outcome, thread: Some(thread) }
-    }
-
-    /// How far it has come, 0 … 1.
-    pub(crate) fn part(&self) -> f32 {
-        self.shared.done.load(Ordering::Relaxed) as f32 / WHOLE as f32
-    }
-
-    /// Ends it after the present step. Frames that are written stay.
-    pub(crate) fn cancel(&self) {
-        self.shared.is_cancelled.store(true, Ordering::Relaxed);
-    }
-
-    /// What became of it, and whether it failed, once it has ended.
-    pub(crate) fn take_outcome(&self) -> Option<(String, bool)> {
-        match self.outcome.try_recv() {
-            Ok(Ok(told)) => Some((told, false)),
-            Ok(Err(error)) => Some((error.to_string(), true)),
-            Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => {
-                Some(("the export ended before it was done".to_owned(), true))
-            }
-        }
-    }
-}
-
-impl Drop for DataExport {
-    fn drop(&mut self) {
-        // The recording is closed before the process may end.
-        self.cancel();
-        let _ = self.thread.take().map(JoinHandle::join);
-    }
-}
-
-impl Shared {
-    fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::Relaxed)
-    }
-
-    /// The run, once the solver's thread has handed it out; nothing where the export is given up before.
-    fn wait_for(&self, run: &Receiver<TakenRun>) -> Result<Option<TakenRun>> {
-        while !self.is_cancelled() {
-            match run.recv_timeout(INTERVAL) {
-                Ok(run) => return Ok(Some(run)),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => {
-                    return Err(Error::value("run", "closed", "open when its data is exported"));
-                }
-            }
-        }
-        Ok(None)
-    }
-}
-
 impl DataOrder {
+    /// Starts an export of a run that is on its way.
+    pub(crate) fn start(self, context: &egui::Context, run: Receiver<TakenRun>) -> Work {
+        Work::start(context, move |telling| write(&self, &run, telling))
+    }
+
     /// The simulated times of a run that are asked for, s.
     ///
     /// # Errors
@@ -143,14 +57,9 @@ impl DataOrder {
     }
 }
 
-fn write(
-    order: &DataOrder,
-    run: &Receiver<TakenRun>,
-    shared: &Shared,
-    context: &egui::Context,
-) -> Result<String> {
+fn write(order: &DataOrder, run: &Receiver<TakenRun>, telling: &Telling) -> Result<String> {
     order.settings.validate("data-every")?;
-    let Some(run) = shared.wait_for(run)? else { return Ok(NOTHING.to_owned()) };
+    let Some(run) = telling.wait_for(run)? else { return Ok(NOTHING.to_owned()) };
     let replay = &run.taken.replay;
     let stretch = order.stretch_of(replay)?;
     let claim = Claim::of(&order.folder, order.overwrite)?;
@@ -164,16 +73,10 @@ fn write(
         recording: None,
     };
     let mut begun_at = None;
-    let mut shown = Instant::now();
     let ended = replay.run(stretch, |simulation, is_within| {
         let from = *begun_at.get_or_insert(simulation.time_secs().max(first_secs));
         let part = (simulation.time_secs() - from) / (last_secs - from).max(f64::MIN_POSITIVE);
-        shared.done.store((WHOLE * part.clamp(0.0, 1.0)) as u32, Ordering::Relaxed);
-        if shown.elapsed() >= INTERVAL {
-            shown = Instant::now();
-            context.request_repaint();
-        }
-        if shared.is_cancelled() {
+        if telling.tell(part).is_break() {
             return Ok(ControlFlow::Break(()));
         }
         if is_within {
@@ -201,6 +104,24 @@ fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&Change]) -> Vec<St
     }
     told.extend(pull.map(|Pull { grain, .. }| format!("grain {grain} from step {since} on")));
     told
+}
+
+/// What the mouse added, removed and drew, and after which steps.
+fn edits(all: &[HandMade]) -> Vec<String> {
+    let told = all.iter().filter_map(|HandMade { after_step, edit }| {
+        let told = match edit {
+            Edit::Add(Disc { position, radius }) => {
+                format!("a grain of radius {radius} m added at {}, {} m", position.x, position.y)
+            }
+            Edit::Remove(grain) => format!("grain {grain} removed"),
+            Edit::Draw { boundary, to } => {
+                format!("boundary {boundary} drawn towards {}, {} m", to.x, to.y)
+            }
+            Edit::LetGo => return None,
+        };
+        Some(format!("{told} after step {after_step}"))
+    });
+    told.collect()
 }
 
 /// What is told where an export was given up at once.
@@ -263,6 +184,10 @@ impl Writing<'_> {
         let pulls = pulls(simulation.pull(), step, &changes);
         if !pulls.is_empty() {
             tell("pulled_by_hand", pulls.join(", "));
+        }
+        let edits = edits(self.replay.edits());
+        if !edits.is_empty() {
+            tell("changed_by_hand", edits.join(", "));
         }
         Ok(about)
     }

@@ -50,7 +50,11 @@ pub(crate) struct ScenePicture {
 }
 
 impl ScenePicture {
-    fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
+    /// Draws it.
+    ///
+    /// # Errors
+    /// Where the renderer cannot draw so large a picture, or fails.
+    pub(super) fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
         let Self { worlds, columns, style, camera, size, .. } = self;
         if let [(snapshot, ..)] = &worlds[..] {
             return draw_scene(renderer, snapshot, style, camera, size[0], size[1]);
@@ -230,7 +234,7 @@ fn column_names(row: Observables) -> std::result::Result<csv::StringRecord, csv:
 }
 
 /// `stem.ending` in `folder`, numbered where there is such a file already.
-fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
+pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
     let numbered = |number: u32| folder.join(format!("{stem}-{number}.{ending}"));
     let plain = folder.join(format!("{stem}.{ending}"));
     if !plain.exists() {

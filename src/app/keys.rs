@@ -32,17 +32,22 @@ pub(super) fn act(context: &Context, state: &mut AppState) {
     }
     take_link(context, state);
     let pressed = |key: Key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-    if pressed(Key::Space) {
-        state.toggle_play();
-    }
-    if pressed(Key::ArrowRight) {
-        state.step();
-    }
-    if pressed(Key::ArrowLeft) {
-        state.step_back();
-    }
-    if pressed(Key::R) {
-        state.reset();
+    // While a start is made there is nothing to play; what was there waits for how that ends.
+    let is_ready = state.frame.loading.is_none();
+    let asked = [Key::Space, Key::ArrowRight, Key::ArrowLeft, Key::R].map(pressed);
+    if let (true, [space, right, left, reset]) = (is_ready, asked) {
+        if space {
+            state.toggle_play();
+        }
+        if right {
+            state.step();
+        }
+        if left {
+            state.step_back();
+        }
+        if reset {
+            state.reset();
+        }
     }
     if pressed(Key::F) {
         state.camera.frame_scene();

@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use super::effort;
 use super::link::Link;
+use super::making::Making;
 use super::session::{Arrangement, Session};
 use super::taken::{LastOpened, Opened};
 use super::tour::Station;
@@ -16,8 +17,6 @@ use crate::sim::Tally;
 use crate::sim::live::{Loader, Progress, Record, Start};
 use crate::world::{Boundary, Gravity};
 
-/// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
-const ORDERS_OF_SETTLING: f64 = 3.5;
 /// Height of the walls that are drawn around a pile, in its own heights.
 const WALL_HEIGHTS: f64 = 1.1;
 
@@ -32,21 +31,10 @@ pub(crate) fn loader(config: Config, last: LastOpened) -> Loader {
     })
 }
 
-/// The scene, with progress told where a new pile has to settle first.
+/// The scene, shown and with progress told where a new pile has to settle first.
 fn settled(config: &Config, tell: &mut dyn FnMut(Progress) -> bool) -> Result<Scene> {
-    let mut part = 0f64;
-    config.scene(|settling| {
-        // Rain falls for a quarter of the limit at most; then the slowing down tells how far it
-        // has come.
-        let rained = 4.0 * settling.time_secs / settling.limit_secs;
-        let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
-        part = part.max(0.5 * rained.min(1.0) + 0.5 * slowed.clamp(0.0, 1.0) * rained.min(1.0));
-        let text = format!(
-            "Settling a new pile: t = {:.2} s, fastest grain {:.0} × rest",
-            settling.time_secs, settling.speed_over_rest
-        );
-        tell(Progress { part: part as f32, text })
-    })
+    let mut making = Making::new();
+    config.scene(|settling| tell(making.look(&settling)))
 }
 
 /// Makes the start of a station of the tour, with its worlds side by side.

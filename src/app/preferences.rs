@@ -46,6 +46,12 @@ pub struct Preferences {
     pub full_speed: bool,
     /// Size of exported pictures, pixels.
     pub picture_size: [u32; 2],
+    /// Pictures in a second of exported videos.
+    pub video_rate_hz: f64,
+    /// Simulated time per time of exported videos.
+    pub video_speed: f64,
+    /// Diameter of grains that the mouse adds, in mean diameters.
+    pub new_grain_diameters: f64,
     /// Where exported files go.
     pub folder: PathBuf,
     /// What recordings are like that are exported.
@@ -73,6 +79,9 @@ impl Default for Preferences {
             speed: 0.2,
             full_speed: false,
             picture_size: [1600, 1000],
+            video_rate_hz: 25.0,
+            video_speed: 1.0,
+            new_grain_diameters: 1.0,
             folder: PathBuf::from("."),
             data: DataChoices::default(),
             scene: Config::default(),

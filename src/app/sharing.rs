@@ -12,8 +12,8 @@ use crate::error::Result;
 use crate::sim::live::{Command, Taken};
 
 /// What is said of a link that does not say all.
-const PULLED: &str = "The link is copied; a grain was pulled by hand, which it does not tell: it makes another run, and a \
-                      session this one.";
+const PULLED: &str = "The link is copied; something was pulled by hand, added or removed, or a wall drawn, which it does not \
+                      tell: it makes another run, and a session this one.";
 
 impl AppState {
     /// Has the link of the present moment of all worlds copied.
@@ -73,7 +73,7 @@ fn linked(runs: Vec<TakenRun>) -> Result<(String, bool)> {
     let worlds: Vec<Taken> = runs.into_iter().map(|run| run.taken).collect();
     let is_pulled = worlds.iter().any(|world| {
         let mut made = world.replay.changes(0, world.simulation.time_secs());
-        made.any(|change| change.controls.pull.is_some())
+        made.any(|change| change.controls.pull.is_some()) || !world.replay.edits().is_empty()
     });
     Ok((link_of(&config, &worlds)?, is_pulled))
 }

@@ -2,14 +2,15 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
 use egui::Rect;
 
 use super::camera::SceneCamera;
 use super::data_desk::DataDesk;
-use super::data_export::DataExport;
 use super::export::{Exporter, STATE_ENDING};
+use super::held::{GrainRef, Grip};
 use super::link::Linking;
 use super::loader::loader;
 use super::notice::Notice;
@@ -21,18 +22,10 @@ use super::spread::Spread;
 use super::step_race::StepRace;
 use super::taken::{LastOpened, TakenRun};
 use super::validation::Validation;
+use super::work::Work;
 use crate::scene::Config;
 use crate::sim::Settings;
 use crate::sim::live::{Command, Controls, Frame, Live, WorldFrame};
-
-/// A grain of one of the worlds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GrainRef {
-    /// Index of the world.
-    pub world: usize,
-    /// Index of the grain.
-    pub grain: usize,
-}
 
 /// The state of the user interface.
 pub struct AppState {
@@ -54,6 +47,8 @@ pub struct AppState {
     pub pinned: Option<GrainRef>,
     /// The grain at the end of the mouse's spring.
     pub grabbed: Option<GrainRef>,
+    /// The wall that the mouse draws.
+    pub(crate) grip: Option<Grip>,
     /// Whether the tour is being taken.
     pub touring: bool,
     /// The panel that is to be opened, where a station asks for one.
@@ -64,6 +59,8 @@ pub struct AppState {
     pub(crate) exporter: Exporter,
     /// What is being done about data and saved runs.
     pub(crate) data: DataDesk,
+    /// The video that is being made.
+    pub(crate) video: Option<Work>,
     /// What was found of published experiments.
     pub(super) validation: Validation,
     /// The file of another such report, as it is typed.
@@ -90,7 +87,7 @@ pub struct AppState {
     pub(super) arriving: Option<Receiver<Arrangement>>,
     notice: Option<Notice>,
     seen_start: u64,
-    seen_refusal: Option<std::sync::Arc<str>>,
+    seen_refusal: Option<Arc<str>>,
 }
 
 impl AppState {
@@ -113,11 +110,13 @@ impl AppState {
             camera: SceneCamera::default(),
             pinned: None,
             grabbed: None,
+            grip: None,
             touring: false,
             opened_panel: None,
             help: false,
             exporter: Exporter::default(),
             data: DataDesk::default(),
+            video: None,
             validation: Validation::of_last_run(),
             report: String::new(),
             other_piles: OtherPiles::new(),
@@ -150,12 +149,17 @@ impl AppState {
 
     /// Whether a file or a recording is being written.
     pub fn is_writing(&self) -> bool {
-        self.exporter.is_busy() || self.data.export.is_some()
+        self.exporter.is_busy() || self.data.export.is_some() || self.video.is_some()
     }
 
     /// Asks for the run of the selected world.
     pub(crate) fn take_run(&mut self) -> Receiver<TakenRun> {
-        TakenRun::ask(&mut self.live, self.selected, &self.last_opened)
+        self.take_run_of(self.selected)
+    }
+
+    /// Asks for the run of a world.
+    pub(crate) fn take_run_of(&mut self, world: usize) -> Receiver<TakenRun> {
+        TakenRun::ask(&mut self.live, world, &self.last_opened)
     }
 
     /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
@@ -176,7 +180,9 @@ impl AppState {
                 self.arrange(arrangement);
             }
         }
-        if self.frame.refusal != self.seen_refusal {
+        // The same words again are another refusal.
+        let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
+        if address(&self.frame.refusal) != address(&self.seen_refusal) {
             self.seen_refusal.clone_from(&self.frame.refusal);
             if let Some(refusal) = self.seen_refusal.clone() {
                 self.warn(refusal.to_string());
@@ -207,7 +213,11 @@ impl AppState {
             Some(Err(error)) => self.say(error.to_string(), true),
             None => {}
         }
-        let outcome = self.data.export.as_ref().and_then(DataExport::take_outcome);
+        if let Some((text, failure)) = self.video.as_ref().and_then(Work::take_outcome) {
+            self.video = None;
+            self.say(text, failure);
+        }
+        let outcome = self.data.export.as_ref().and_then(Work::take_outcome);
         if let Some((text, failure)) = outcome {
             self.data.export = None;
             self.data.told = Some((text.clone(), failure));

@@ -178,6 +178,14 @@ impl ContactList {
         }
     }
 
+    /// Makes room among the bodies for one more of that number, which touches none yet.
+    pub(crate) fn insert_body(&mut self, body: u32) {
+        for contact in &mut self.now.contacts {
+            contact.grain += u32::from(contact.grain >= body);
+            contact.other += u32::from(contact.other >= body);
+        }
+    }
+
     /// Whether its lists are of one length and tell of bodies that exist, of which there are so many, the
     /// first of them grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {

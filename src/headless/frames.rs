@@ -20,6 +20,7 @@ use crate::study::{OnItsWay, go_on as go_on_with};
 pub(super) fn draw(config: &Config, options: &HeadlessOptions, earlier: Earlier) -> Result<()> {
     let size = options.size()?;
     options.style()?;
+    options.video_rate_hz()?;
     let asked = Asked::of(config, options)?;
     let Schedule { times_secs, until_secs } = asked.schedule(config, options)?;
     let data = options.data.settings(asked.scene())?;
@@ -31,7 +32,9 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions, earlier: Earlier)
     let every_secs = options.saving.checkpoint_every;
     let fingerprint = every_secs.map(|_| asked.fingerprint(config, options)).transpose()?;
     let found = left_in(folder.as_ref(), fingerprint.as_deref())?;
-    for (option, path) in [("gif", &options.gif), ("save", &options.saving.save)] {
+    let files =
+        [("gif", &options.gif), ("video", &options.video.video), ("save", &options.saving.save)];
+    for (option, path) in files {
         path.as_deref().map(|path| check_file(option, path)).transpose()?;
     }
     let picture_times_secs = options.picture_times(asked.scene().duration_secs)?;

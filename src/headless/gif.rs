@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Extension, Frame, Repeat};
 use image::RgbaImage;
 
-use super::manifest::PictureEntry;
 use crate::error::{Error, Result};
 use crate::output::{Draft, Texts};
 
@@ -32,28 +31,9 @@ impl Animation {
     ///
     /// # Errors
     /// Names the file and what the system says.
-    fn start(path: &Path) -> Result<Self> {
+    pub(super) fn start(path: &Path) -> Result<Self> {
         let draft = Draft::start(path)?;
         Ok(Self { path: path.to_owned(), encoder: None, draft, pictures: 0, whole: None })
-    }
-
-    /// Starts one that begins with pictures of a folder.
-    ///
-    /// # Errors
-    /// As [`Animation::start`] and [`Animation::add`], and where a picture is no longer there.
-    pub(super) fn start_with(
-        path: &Path,
-        folder: Option<&Path>,
-        pictures: &[PictureEntry],
-        texts: &Texts,
-    ) -> Result<Self> {
-        let mut animation = Self::start(path)?;
-        for PictureEntry { file, .. } in pictures {
-            let path = folder.unwrap_or(Path::new("")).join(file);
-            let image = image::open(&path).map_err(|error| Error::file(&path, error))?;
-            animation.add(image.into_rgba8(), texts)?;
-        }
-        Ok(animation)
     }
 
     /// Adds a picture. The first comes after what the animation says of itself, a comment.

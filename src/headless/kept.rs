@@ -15,7 +15,7 @@ use crate::sim::Snapshot;
 /// States of a run whose colours and widths follow the state: all frames need one scale, and that is
 /// known at the end. They wait in a file that has no name, so that it is gone with the process, unless the
 /// run is to go on after that.
-pub(super) struct KeptStates {
+pub(crate) struct KeptStates {
     path: PathBuf,
     file: File,
     /// Where in the file each state begins, and where the last one ends.
@@ -49,8 +49,8 @@ impl KeptStates {
         if !waits {
             return Ok(None);
         }
-        let beside_gif = options.gif.as_deref().and_then(Path::parent);
-        match (&options.frames, beside_gif) {
+        let beside = options.animation().and_then(Path::parent);
+        match (&options.frames, beside) {
             (Some(folder), _) if outlive => {
                 Self::go_on(&folder.join(WAITING), marks.waiting, style).map(Some)
             }
@@ -62,7 +62,7 @@ impl KeptStates {
 
     /// Starts with none. The file is in `folder`, or where the system has such files if none can be
     /// there.
-    pub(super) fn start(folder: &Path) -> Result<Self> {
+    pub(crate) fn start(folder: &Path) -> Result<Self> {
         let file = tempfile::tempfile_in(folder).or_else(|_| tempfile::tempfile());
         Ok(Self::of(folder, file.map_err(|error| Error::file(folder, error))?))
     }
@@ -87,7 +87,7 @@ impl KeptStates {
     }
 
     /// Number of states.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.places.len() - 1
     }
 
@@ -98,7 +98,7 @@ impl KeptStates {
     }
 
     /// Adds a state that is to be drawn in that style.
-    pub(super) fn add(&mut self, style: &Style, number: usize, snapshot: Snapshot) -> Result<()> {
+    pub(crate) fn add(&mut self, style: &Style, number: usize, snapshot: Snapshot) -> Result<()> {
         self.measure(style, &snapshot);
         let kept = rmp_serde::to_vec_named(&Kept { number, snapshot });
         let kept = kept.map_err(|error| self.refuse(error))?;
@@ -116,14 +116,14 @@ impl KeptStates {
     }
 
     /// Gives the style the scale that all states have in common, but for what it has.
-    pub(super) fn set_scale(&self, style: &mut Style) {
+    pub(crate) fn set_scale(&self, style: &mut Style) {
         let reference = Some(self.force_reference).filter(|&largest| largest > 0.0);
         style.range = style.range.or(self.range);
         style.force_reference = style.force_reference.or(reference);
     }
 
     /// One of the states, by its place among them, with the number of its picture.
-    pub(super) fn get(&mut self, index: usize) -> Result<(usize, Snapshot)> {
+    pub(crate) fn get(&mut self, index: usize) -> Result<(usize, Snapshot)> {
         let place = SeekFrom::Start(self.places[index]);
         self.file.seek(place).map_err(|error| self.refuse(error))?;
         let Kept { number, snapshot } = self.read()?;

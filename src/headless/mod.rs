@@ -1,5 +1,6 @@
 //! Pictures without a window: the paper's figures, or frames of one scene.
 
+mod animations;
 mod begin;
 mod checkpoint;
 mod data;
@@ -15,11 +16,17 @@ mod saving;
 mod studio;
 mod table;
 mod telling;
+mod video;
+mod video_options;
 
 pub(crate) use begin::settled;
 #[cfg(feature = "window")]
 pub(crate) use data::told as told_of_data;
+#[cfg(all(feature = "video", feature = "window"))]
+pub(crate) use kept::KeptStates;
 pub(crate) use options::HeadlessOptions;
+#[cfg(feature = "window")]
+pub(crate) use video_options::{VIDEO_RATES_HZ, check_built as check_video};
 
 use std::path::Path;
 
@@ -49,7 +56,8 @@ pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
         if options.data.data.is_some() { Ok(true) } else { of_scene() }
     };
     if !asks_for_files && !asks_for_data()? {
-        let allowed = "a folder (--frames out/), or give --gif FILE, --data DIR or --save FILE";
+        let allowed =
+            "a folder (--frames out/), or give --gif FILE, --video FILE, --data DIR or --save FILE";
         return Err(Error::value("frames", "missing", allowed));
     }
     if options.overwrite && options.frames.is_none() && options.data.data.is_none() {

@@ -1,9 +1,10 @@
 //! Options of pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::data::DataOptions;
 use super::saving::SavingOptions;
+use super::video_options::VideoOptions;
 use crate::error::{Error, Result};
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
 
@@ -75,6 +76,8 @@ pub(crate) struct HeadlessOptions {
     /// Write the pictures as an animation too, 25 a second
     #[arg(long, value_name = "FILE", help_heading = "Pictures")]
     pub gif: Option<PathBuf>,
+    #[command(flatten)]
+    pub video: VideoOptions,
     /// What to lay over the grains
     #[arg(long, value_name = "WHAT", help_heading = "Pictures", value_delimiter = ',')]
     pub show: Vec<Show>,
@@ -120,7 +123,7 @@ impl HeadlessOptions {
         self.fps.is_some()
             || !self.times.is_empty()
             || self.size.is_some()
-            || self.gif.is_some()
+            || self.animation().is_some()
             || !self.show.is_empty()
             || self.colour.is_some()
             || !self.colour_scale.is_empty()
@@ -134,7 +137,12 @@ impl HeadlessOptions {
 
     /// Whether pictures are drawn at all.
     pub(super) fn draws(&self) -> bool {
-        self.frames.is_some() || self.gif.is_some()
+        self.frames.is_some() || self.animation().is_some()
+    }
+
+    /// A file that moves, if there is to be one.
+    pub(super) fn animation(&self) -> Option<&Path> {
+        self.gif.as_deref().or(self.video.video.as_deref())
     }
 
     /// The size of a picture.
@@ -183,6 +191,14 @@ impl HeadlessOptions {
         Ok(Style { range, ..style })
     }
 
+    /// Pictures per simulated second where no times are given.
+    ///
+    /// # Errors
+    /// Where the speed of a video is none.
+    pub(super) fn pictures_per_sec(&self) -> Result<f64> {
+        Ok(self.fps.unwrap_or(DEFAULT_FPS / self.video.speed()?))
+    }
+
     /// The times of the pictures of a run that lasts `duration_secs`, s, rising.
     ///
     /// # Errors
@@ -198,7 +214,7 @@ impl HeadlessOptions {
             times.sort_by(f64::total_cmp);
             return Ok(times);
         }
-        let fps = self.fps.unwrap_or(DEFAULT_FPS);
+        let fps = self.pictures_per_sec()?;
         let last = (duration_secs * fps * (1.0 + 1e-12)).floor();
         if !(fps > 0.0 && last < MOST_PICTURES) {
             let allowed = format!("> 0, and no more than {MOST_PICTURES} pictures in all");

@@ -53,12 +53,13 @@ impl HeadlessOptions {
         )
     }
 
-    /// What an animation of a run that lasts so long (s) says of itself.
+    /// What an animation of a run that lasts so long (s) says of itself; its command ends with `last_words`.
     pub(super) fn texts_of_animation(
         &self,
         run: &Provenance,
         duration_secs: f64,
         style: &Style,
+        last_words: &[&str],
     ) -> Texts {
         let mut words = vec!["--duration".to_owned(), duration_secs.to_string()];
         if let Some(fps) = self.fps {
@@ -69,7 +70,10 @@ impl HeadlessOptions {
             words = vec!["--times".to_owned(), times.join(",")];
         }
         words.extend(self.words_of_style(style));
-        words.extend(["--gif".to_owned(), "animation.gif".to_owned()]);
+        if let Some(speed) = self.video.video_speed {
+            words.extend(["--video-speed".to_owned(), speed.to_string()]);
+        }
+        words.extend(last_words.iter().map(|&word| word.to_owned()));
         run.texts(None, &words)
     }
 

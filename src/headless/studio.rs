@@ -6,9 +6,9 @@ use std::path::Path;
 use image::RgbaImage;
 
 use super::HeadlessOptions;
+use super::animations::Animations;
 use super::checkpoint::{Checkpoints, Marks};
 use super::data::told;
-use super::gif::Animation;
 use super::kept::KeptStates;
 use super::manifest::{Ended, Manifest, Moment, PictureEntry, RunEntry};
 use super::table::ObservablesTable;
@@ -35,7 +35,7 @@ pub(super) struct Studio<'a> {
     style: Style,
     camera: Camera,
     table: Option<ObservablesTable>,
-    animation: Option<Animation>,
+    animations: Animations,
     /// Colours and widths that follow the state need one scale for all frames, so those frames wait
     /// for the end of the run, unless it is given. All others are drawn as the run comes by.
     kept: Option<KeptStates>,
@@ -77,14 +77,9 @@ impl<'a> Studio<'a> {
             progress: Progress::new(&scene.name, end),
             camera: style.camera(min, max, size.width, size.height),
             table: folder.map(table).transpose()?,
-            animation: options
-                .gif
-                .as_deref()
-                .map(|gif| {
-                    let told = options.texts_of_animation(&provenance, scene.duration_secs, &style);
-                    Animation::start_with(gif, folder, &marks.pictures, &told)
-                })
-                .transpose()?,
+            animations: Animations::start(options, &marks.pictures, |words| {
+                options.texts_of_animation(&provenance, scene.duration_secs, &style, words)
+            })?,
             kept: KeptStates::asked_for(options, &style, &marks, checkpoints.is_some())?,
             style,
             recording: None,
@@ -216,15 +211,12 @@ impl<'a> Studio<'a> {
             let entry = PictureEntry { file, shows: vec![moment] };
             self.manifest.add(entry, &folder.join("manifest.json"))?;
         }
-        match &mut self.animation {
-            Some(animation) => {
-                let duration_secs = self.scene.duration_secs;
-                let told =
-                    self.options.texts_of_animation(&self.provenance, duration_secs, &self.style);
-                animation.add(image, &told)
-            }
-            None => Ok(()),
-        }
+        let (options, scene) = (self.options, self.scene);
+        let (provenance, style) = (&self.provenance, &self.style);
+        let told = |words: &[&str]| {
+            options.texts_of_animation(provenance, scene.duration_secs, style, words)
+        };
+        self.animations.add(image, told)
     }
 
     fn texts(&self, snapshot: &Snapshot) -> Texts {
@@ -238,11 +230,11 @@ impl<'a> Studio<'a> {
     }
 
     fn finish(mut self) -> Result<()> {
-        let animation = self.animation.take().map_or(Ok(false), Animation::finish);
+        let animations = std::mem::take(&mut self.animations).finish();
         self.write_manifest()?;
         // Where the run is complete, nothing is left to go on with.
         if self.manifest.runs[0].ended == Ended::Complete
-            && let (Ok(_), Some(checkpoints)) = (&animation, self.checkpoints.take())
+            && let (Ok(_), Some(checkpoints)) = (&animations, self.checkpoints.take())
         {
             checkpoints.remove()?;
         }
@@ -250,9 +242,7 @@ impl<'a> Studio<'a> {
             let count = counted(self.manifest.pictures.len() as u64, "picture");
             print_line(format_args!("{count} in {}", folder.display()));
         }
-        if let (true, Some(path)) = (animation?, &self.options.gif) {
-            print_line(path.display());
-        }
+        animations?.tell(self.options);
         Ok(())
     }
 }

@@ -14,6 +14,8 @@ mod seal;
 mod signals;
 mod target;
 mod texts;
+#[cfg(feature = "video")]
+mod video;
 
 pub(crate) use counted::counted;
 pub(crate) use draft::{Draft, name_of_whole};
@@ -28,3 +30,5 @@ pub(crate) use progress::{Progress, warn_of_steps};
 pub(crate) use seal::Seal;
 pub(crate) use signals::{Signal, caught_signal, heed_signals};
 pub(crate) use texts::Texts;
+#[cfg(feature = "video")]
+pub(crate) use video::Video;

@@ -1,6 +1,7 @@
 //! What a run says when it goes wrong: in which way, since when, and the one change that is most
 //! likely to help.
 
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::losses::Losses;
@@ -211,9 +212,19 @@ impl Watch {
         self.losses.is_of(grains)
     }
 
-    /// Forgets the last grain, which is taken out of the world.
-    pub(super) fn remove_last_grain(&mut self) {
-        self.losses.remove_last();
+    /// Forgets a grain, which is taken out of the world.
+    pub(super) fn remove_grain(&mut self, grain: usize) {
+        self.losses.remove(grain);
+    }
+
+    /// Watches over one grain more, the last.
+    pub(super) fn add_grain(&mut self, position: DVec2) {
+        self.losses.add(position);
+    }
+
+    /// Walls, whose `features` are these, may go from now on.
+    pub(super) fn let_walls_move(&mut self, features: &[Feature]) {
+        self.losses.let_walls_move(features);
     }
 
     fn has(&self, kind: AlarmKind) -> bool {

@@ -142,11 +142,26 @@ impl Losses {
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
-    /// Forgets the last grain, which is taken out of the world.
-    pub(super) fn remove_last(&mut self) {
-        self.from.pop();
-        self.initial_heights.pop();
-        self.count -= u32::from(self.lost.pop() == Some(true));
+    /// Forgets a grain, which is taken out of the world.
+    pub(super) fn remove(&mut self, grain: usize) {
+        self.from.remove(grain);
+        self.initial_heights.remove(grain);
+        self.count -= u32::from(self.lost.remove(grain));
+    }
+
+    /// Watches over one grain more, the last.
+    pub(super) fn add(&mut self, position: DVec2) {
+        self.from.push(position);
+        self.initial_heights.push(position.y);
+        self.lost.push(false);
+    }
+
+    /// Walls may go from now on: there is no telling any more where the world ends.
+    pub(super) fn let_walls_move(&mut self, features: &[Feature]) {
+        self.world = Edges::default();
+        if self.frames.is_empty() {
+            self.frames = features.iter().map(frame).collect();
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod alarm;
 mod check;
+mod edit;
 mod elasticity;
 pub mod live;
 mod losses;
@@ -23,6 +24,7 @@ mod visits;
 mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
+pub use edit::{Edit, NEW_GRAIN_DIAMETERS, place_of};
 pub use elasticity::SweepElasticity;
 pub(crate) use elasticity::diffusion_of_sweep;
 pub use moment::{ContactState, ContactStatus, GrainState, Moment, OtherBody};

@@ -1,5 +1,6 @@
 //! A running simulation: a world and what is needed to step it.
 
+mod edits;
 mod numbers;
 mod saved;
 
@@ -38,6 +39,8 @@ pub struct Simulation {
     last_stepper: Option<Stepper>,
     watch: Watch,
     pub(super) surroundings: Arc<Surroundings>,
+    /// How often a hand has changed the world.
+    edits: u32,
 }
 
 impl Simulation {
@@ -70,6 +73,7 @@ impl Simulation {
                 contacts: ContactList::default(),
                 walls: Walls::default(),
                 pull: None,
+                is_held: false,
                 time_step_of_impulses_secs: settings.parameters.time_step_secs,
             },
             settings,
@@ -79,6 +83,7 @@ impl Simulation {
             observables: Observables::default(),
             last_stepper: None,
             surroundings,
+            edits: 0,
         };
         simulation.observe_start();
         Ok(simulation)
@@ -281,19 +286,5 @@ impl Simulation {
     /// Simulated time, s.
     pub fn time_secs(&self) -> f64 {
         self.observables.time_secs
-    }
-
-    /// Takes the last grain out of the world. The impulses of all other contacts stay.
-    ///
-    /// # Errors
-    /// Where it is the only one.
-    pub(crate) fn remove_last_grain(&mut self) -> Result<()> {
-        let last = self.state.world.grains.len() - 1;
-        if last == 0 {
-            return Err(Error::value("grains", 1, "more than one where one is taken away"));
-        }
-        self.initial_heights -= self.state.world.grains.positions[last].y;
-        self.watch.remove_last_grain();
-        self.state.remove_last_grain()
     }
 }

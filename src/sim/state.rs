@@ -27,6 +27,8 @@ pub(crate) struct State {
     pub walls: Walls,
     /// A spring on one grain, from the next step on.
     pub pull: Option<Pull>,
+    /// Whether a hand holds a wall: then the last motion is its own.
+    pub is_held: bool,
     /// Δt of the impulses in `contacts`, s.
     pub time_step_of_impulses_secs: f64,
 }
@@ -142,15 +144,32 @@ impl State {
             && grains.angular_velocities.iter().sum::<f64>().is_finite()
     }
 
-    /// Takes the last grain out. The impulses of all other contacts stay.
-    pub(crate) fn remove_last_grain(&mut self) -> Result<()> {
-        let last = self.world.grains.len() - 1;
-        self.world.grains.truncate(last);
-        self.contacts.remove_body(last as u32);
+    /// Takes a grain out. The impulses of all other contacts stay.
+    pub(crate) fn remove_grain(&mut self, grain: usize) -> Result<()> {
+        let number = grain as u32;
+        self.world.grains.remove(grain);
+        self.contacts.remove_body(number);
+        self.look_anew()?;
+        self.pull = self.pull.filter(|pull| pull.grain != number);
+        if let Some(pull) = &mut self.pull {
+            pull.grain -= u32::from(pull.grain > number);
+        }
+        Ok(())
+    }
+
+    /// Goes on with a world that has a grain more, the last of them.
+    pub(crate) fn add_last_grain(&mut self, world: World) -> Result<()> {
+        let number = world.grains.len() as u32 - 1;
+        self.world = world;
+        self.contacts.insert_body(number);
+        self.look_anew()
+    }
+
+    /// Looks for candidates as if there had been none.
+    fn look_anew(&mut self) -> Result<()> {
         let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
         let gap_tolerance = self.candidates.gap_tolerance();
         self.candidates = Candidates::new(&self.world, Reach { skin, gap_tolerance })?;
-        self.pull = self.pull.filter(|pull| (pull.grain as usize) < last);
         Ok(())
     }
 }

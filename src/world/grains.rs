@@ -84,17 +84,20 @@ impl Grains {
     /// Lays out `grains` for the step. `areal_density` in kg/m².
     pub fn new(grains: &[Grain], areal_density: f64) -> Self {
         let mut lists = Self::default();
-        for grain in grains {
-            lists.positions.push(grain.position);
-            lists.velocities.push(grain.velocity);
-            lists.angles.push(0.0);
-            lists.angular_velocities.push(grain.angular_velocity);
-            lists.radii.push(grain.radius);
-            lists.masses.push(areal_density * std::f64::consts::PI * grain.radius * grain.radius);
-            lists.feels_gravity.push(grain.feels_gravity);
-            lists.tones.push(grain.tone);
-        }
+        grains.iter().for_each(|grain| lists.push(grain, areal_density));
         lists
+    }
+
+    /// One more, as the last. `areal_density` in kg/m².
+    pub(crate) fn push(&mut self, grain: &Grain, areal_density: f64) {
+        self.positions.push(grain.position);
+        self.velocities.push(grain.velocity);
+        self.angles.push(0.0);
+        self.angular_velocities.push(grain.angular_velocity);
+        self.radii.push(grain.radius);
+        self.masses.push(areal_density * std::f64::consts::PI * grain.radius * grain.radius);
+        self.feels_gravity.push(grain.feels_gravity);
+        self.tones.push(grain.tone);
     }
 
     /// Checks that there are discs, and that each list says something of each.
@@ -124,16 +127,16 @@ impl Grains {
         }
     }
 
-    /// Leaves the first `count` discs.
-    pub(crate) fn truncate(&mut self, count: usize) {
-        self.positions.truncate(count);
-        self.velocities.truncate(count);
-        self.angles.truncate(count);
-        self.angular_velocities.truncate(count);
-        self.radii.truncate(count);
-        self.masses.truncate(count);
-        self.feels_gravity.truncate(count);
-        self.tones.truncate(count);
+    /// One less; those after it move up.
+    pub(crate) fn remove(&mut self, index: usize) {
+        self.positions.remove(index);
+        self.velocities.remove(index);
+        self.angles.remove(index);
+        self.angular_velocities.remove(index);
+        self.radii.remove(index);
+        self.masses.remove(index);
+        self.feels_gravity.remove(index);
+        self.tones.remove(index);
     }
 
     /// Number of discs.

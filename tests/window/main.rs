@@ -13,7 +13,9 @@ mod compare;
 mod controls;
 mod export_ends;
 mod exports;
+mod hand;
 mod looking;
+mod making;
 mod mouse;
 mod other_piles;
 mod pictures;
@@ -26,6 +28,8 @@ mod sessions;
 mod speed;
 mod tour;
 mod validation;
+#[cfg(feature = "video")]
+mod videos;
 
 #[path = "../data/tables.rs"]
 #[allow(dead_code, reason = "tests of recordings use more of it")]

@@ -2,7 +2,7 @@
 
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 
-use crate::app::data_export::{DataExport, DataOrder};
+use crate::app::data_export::DataOrder;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::data::FormatName;
@@ -158,19 +158,11 @@ fn export(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
         start(ui, state, is_ready);
         return;
     };
-    ui.horizontal(|ui| {
-        // Not where the button was that started it: a second click there is none on this one.
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let hint = "Frames that are written stay.";
-            if ui.button("Stop export").on_hover_text(hint).clicked() {
-                export.cancel();
-            }
-            let bar = ui.add(egui::ProgressBar::new(export.part()).desired_height(14.0));
-            bar.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, "Exporting data")
-            });
-        });
-    });
+    super::work_bar::show(
+        ui,
+        export,
+        ["Exporting data", "Stop export", "Frames that are written stay."],
+    );
 }
 
 fn start(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
@@ -191,5 +183,5 @@ fn start(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
     };
     let run = state.take_run();
     state.data.told = None;
-    state.data.export = Some(DataExport::start(ui.ctx(), order, run));
+    state.data.export = Some(order.start(ui.ctx(), run));
 }

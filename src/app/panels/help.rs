@@ -19,13 +19,16 @@ const KEYS: [(&str, &str); 12] = [
     ("Ctrl Q", "close the window"),
 ];
 
-const MOUSE: [(&str, &str); 6] = [
+const MOUSE: [(&str, &str); 9] = [
     ("drag the ground", "move the scene"),
     ("wheel", "zoom to the cursor"),
     ("double click", "frame the whole scene"),
     ("point at a grain", "its state"),
     ("click a grain", "pin it: its contacts are listed"),
     ("drag a grain", "pull it with a spring"),
+    ("Shift click the ground", "put a grain there, as large as By hand says"),
+    ("Shift click a grain", "take it out"),
+    ("Shift drag a wall", "draw it along while time passes"),
 ];
 
 /// Height of what is around the text, points.

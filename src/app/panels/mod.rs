@@ -2,14 +2,18 @@
 
 #![deny(dead_code, reason = "a panel that nothing shows would not be missed")]
 
+mod by_hand;
 pub(super) mod compare;
 mod data;
 mod grain;
 mod gravity;
+mod hand;
 pub(super) mod help;
+mod making;
 mod past;
 mod physics;
 pub(super) mod picture;
+mod place;
 pub(super) mod plots;
 mod run;
 pub(super) mod scene;
@@ -21,6 +25,7 @@ pub(super) mod status;
 pub(super) mod tour;
 pub(super) mod transport;
 mod validate;
+mod work_bar;
 
 use egui::Ui;
 
@@ -43,6 +48,7 @@ pub(super) const SECTIONS: &[Section] = &[
     Section { id: "physics", title: title_of_physics, open: true, show: physics::show },
     Section { id: "grain", title: grain::title, open: true, show: grain::show },
     Section { id: "run", title: |_| Some("Run".into()), open: true, show: run::show },
+    Section { id: "hand", title: |_| Some("By hand".into()), open: false, show: by_hand::show },
     Section { id: "see", title: |_| Some("See".into()), open: false, show: see::show },
     Section {
         id: "spread",

@@ -9,12 +9,45 @@ use crate::render::{Style, panel_size};
 
 /// Saves the worlds as they are seen, in the size of the preferences.
 pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
-    let style = shared_style(state, context.theme() == egui::Theme::Dark);
-    let count = state.frame.worlds.len();
-    if count == 0 {
+    if state.frame.worlds.is_empty() {
         return;
     }
-    let size = state.preferences.picture_size;
+    let style = shared_style(state, context.theme() == egui::Theme::Dark);
+    let picture = scene_picture(state, style, state.preferences.picture_size, true);
+    let (folder, stem) = (state.preferences.folder.clone(), file_stem(state));
+    state.exporter.submit(context, Export::Scene(Box::new(picture)), &folder, &stem);
+}
+
+/// Saves what was recorded of the worlds as a video, or the stretch of it that data would be exported of.
+#[cfg(feature = "video")]
+pub(crate) fn save_video(context: &egui::Context, state: &mut AppState) {
+    if state.frame.worlds.is_empty() || state.video.is_some() {
+        return;
+    }
+    // Its scales are those of all its pictures.
+    let style = super::scene::own_style(state, context.theme() == egui::Theme::Dark);
+    let size = state.preferences.picture_size.map(|side| side.next_multiple_of(2));
+    let order = crate::app::video_export::VideoOrder {
+        picture: scene_picture(state, style, size, false),
+        slumps: state.slumps(),
+        rate_hz: state.preferences.video_rate_hz,
+        speed: state.preferences.video_speed,
+        stretch: state.data.stretch,
+        folder: state.preferences.folder.clone(),
+        stem: file_stem(state),
+    };
+    let runs = (0..state.frame.worlds.len()).map(|world| state.take_run_of(world)).collect();
+    state.video = Some(order.start(context, runs));
+}
+
+/// What is seen of the worlds, of which there is one at least.
+fn scene_picture(
+    state: &AppState,
+    style: Style,
+    size: [u32; 2],
+    is_of_a_moment: bool,
+) -> ScenePicture {
+    let count = state.frame.worlds.len();
     let window = state.controls.get("scene").map_or(DVec2::splat(500.0), |rect| {
         DVec2::new(f64::from(rect.width()), f64::from(rect.height()))
     });
@@ -29,10 +62,8 @@ pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
     });
     let worlds = worlds.collect();
     let all: Vec<usize> = (0..count).collect();
-    let texts = state.texts_of(&all, true);
-    let picture = ScenePicture { worlds, columns: columns(count), style, camera, size, texts };
-    let (folder, stem) = (state.preferences.folder.clone(), file_stem(state));
-    state.exporter.submit(context, Export::Scene(Box::new(picture)), &folder, &stem);
+    let texts = state.texts_of(&all, is_of_a_moment);
+    ScenePicture { worlds, columns: columns(count), style, camera, size, texts }
 }
 
 /// What came of a world, and below it what came of others: slump, where that tells anything.

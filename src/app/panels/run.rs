@@ -34,6 +34,10 @@ const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     ),
 ];
 
+/// What is said of a command line that does not say all.
+const CHANGED: &str = "The command line is copied; settings changed, or a hand changed something, on the way, which it does \
+                       not tell: it makes another run.";
+
 /// What is typed for a new pile.
 #[derive(Clone, PartialEq)]
 struct Draft {
@@ -77,6 +81,9 @@ fn command_line(ui: &mut Ui, state: &mut AppState) {
             && let Some(line) = state.command_line()
         {
             ui.ctx().copy_text(line);
+            if state.world().is_some_and(|world| !world.is_even) {
+                state.warn(CHANGED);
+            }
         }
         let copy = ui.button("Copy link").on_hover_text(
             "A line of text that opens all worlds as they are now: scene, settings, changes on the way, and the \
@@ -210,8 +217,9 @@ fn speed(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
         ui.label("Speed").on_hover_text("Simulated time per time on the wall.");
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            ui.toggle_value(&mut state.preferences.full_speed, "max")
-                .on_hover_text("As fast as the machine computes.");
+            let full = ui.toggle_value(&mut state.preferences.full_speed, "max");
+            let full = full.on_hover_text("As fast as the machine computes.");
+            state.note_control("max", full.rect);
             let text = match state.preferences.full_speed {
                 true => "      ".to_owned(),
                 false => format!("{:.2}×", state.preferences.speed),

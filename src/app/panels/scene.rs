@@ -1,19 +1,19 @@
 //! The middle of the window: the worlds, and what the mouse does to them.
 
-use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui};
+use egui::{Align2, FontId, Rect, Sense, Stroke, Ui};
 use glam::DVec2;
 
-use super::{gravity, past};
+use super::place::Place;
+use super::{gravity, making, past};
 use crate::app::fill::fill;
+use crate::app::held::GrainRef;
 use crate::app::scene_callback::scene_callback;
-use crate::app::state::{AppState, GrainRef};
+use crate::app::state::AppState;
 use crate::app::theme;
 use crate::render::{
-    Camera, ColourBy, Legend, ScaleBar, Style, automatic_range, force_reference, scene_picture,
+    ColourBy, Legend, ScaleBar, Style, automatic_range, force_reference, scene_picture,
     speed_reference,
 };
-use crate::sim::live::{Command, WorldFrame};
-use crate::sim::{GrainView, Pull};
 
 /// Height of a compared world's title, points.
 const TITLE_HEIGHT: f32 = 22.0;
@@ -28,7 +28,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let style = shared_style(state, dark);
     let palette = style.theme.palette();
     fill(ui, area, theme::color32(palette.ground));
-    if state.frame.worlds.is_empty() || area.width() < 20.0 || area.height() < 20.0 {
+    if area.width() < 20.0 || area.height() < 20.0 {
         return;
     }
     let pixels_per_point = ui.ctx().pixels_per_point();
@@ -36,6 +36,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         let size = rect.size() * pixels_per_point;
         [size.x.round().max(1.0) as u32, size.y.round().max(1.0) as u32]
     };
+    if making::show(ui, state, area, &style, pixels(area)) || state.frame.worlds.is_empty() {
+        return;
+    }
     let [width, height] = pixels(area);
     let strip = style.legend_width(width, height) as f32 / pixels_per_point;
     let (scenes, legend_area) = area.split_left_right_at_x(area.right() - strip);
@@ -55,8 +58,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 
 /// The style of the preferences in the window's theme, with one range for all worlds.
 pub(super) fn shared_style(state: &AppState, dark: bool) -> Style {
-    let theme = if dark { crate::render::Theme::Dark } else { crate::render::Theme::Light };
-    let mut style = Style { theme, ..state.preferences.style.clone() };
+    let mut style = own_style(state, dark);
     if state.compares() {
         let worlds = || state.frame.worlds.iter().map(|world| &world.snapshot);
         if !matches!(style.colour_by, ColourBy::PaperGreys | ColourBy::Coordination) {
@@ -69,6 +71,12 @@ pub(super) fn shared_style(state: &AppState, dark: bool) -> Style {
         style.speed_reference = Some(speeds.fold(0.0, f64::max));
     }
     style
+}
+
+/// The style of the preferences in the window's theme.
+pub(super) fn own_style(state: &AppState, dark: bool) -> Style {
+    let theme = if dark { crate::render::Theme::Dark } else { crate::render::Theme::Light };
+    Style { theme, ..state.preferences.style.clone() }
 }
 
 /// How many of `count` worlds stand in a row.
@@ -137,72 +145,7 @@ fn follow(state: &mut AppState, world: usize) {
     }
 }
 
-/// Where a world is in the window.
-struct Place<'a> {
-    index: usize,
-    cell: Rect,
-    camera: Camera,
-    pixels_per_point: f64,
-    frame: &'a WorldFrame,
-}
-
 impl Place<'_> {
-    fn to_world(&self, at: Pos2) -> DVec2 {
-        let offset = (at - self.cell.center()) * self.pixels_per_point as f32;
-        self.camera.unproject(DVec2::new(f64::from(offset.x), -f64::from(offset.y)))
-    }
-
-    fn to_screen(&self, position: DVec2) -> Pos2 {
-        let [x, y] = self.camera.project(position);
-        self.cell.center() + egui::vec2(x, -y) / self.pixels_per_point as f32
-    }
-
-    fn grain_at(&self, at: Pos2) -> Option<GrainRef> {
-        let point = self.to_world(at);
-        let inside = |grain: &GrainView| grain.position.distance(point) <= grain.radius;
-        let grain = self.frame.snapshot.grains.iter().rposition(inside)?;
-        Some(GrainRef { world: self.index, grain })
-    }
-
-    fn mouse(&self, ui: &Ui, state: &mut AppState, response: &Response) {
-        let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        if response.drag_started_by(PointerButton::Primary) {
-            let pressed = ui.input(|input| input.pointer.press_origin());
-            state.grabbed = pressed.and_then(|at| self.grain_at(at));
-        }
-        let held = state.grabbed.filter(|grabbed| grabbed.world == self.index);
-        if let (Some(held), Some(at)) = (held, pointer) {
-            if response.dragged() {
-                let pull = Pull { grain: held.grain as u32, target: self.to_world(at) };
-                if state.wanted.get(self.index).is_some_and(|wanted| wanted.pull != Some(pull)) {
-                    state.wanted[self.index].pull = Some(pull);
-                    state.live.send(Command::SetPull(self.index, Some(pull)));
-                }
-            }
-        } else if response.dragged() {
-            state.camera.pan(response.drag_delta());
-        }
-        if held.is_some() && !response.dragged() {
-            state.grabbed = None;
-            state.live.send(Command::SetPull(self.index, None));
-        }
-        if response.double_clicked() {
-            state.camera.frame_scene();
-        } else if response.clicked() {
-            state.selected = self.index;
-            let clicked = pointer.and_then(|at| self.grain_at(at));
-            state.pinned = clicked.filter(|grain| state.pinned != Some(*grain));
-        }
-        if let Some(at) = pointer.filter(|_| response.contains_pointer()) {
-            let (scroll, pinch) =
-                ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-            let factor = f64::from(pinch) * (f64::from(scroll) / 200.0).exp();
-            if factor != 1.0 {
-                state.camera.zoom(factor, at - self.cell.center());
-            }
-        }
-    }
-
     /// The same world of the run before, where that had one.
     fn ghost(&self, ui: &Ui, state: &AppState) {
         let Some(run) = past::ghost(state) else { return };
@@ -251,44 +194,6 @@ impl Place<'_> {
                 Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color)
             };
             painter.rect_stroke(self.cell, 0.0, stroke, egui::StrokeKind::Inside);
-        }
-    }
-
-    /// Rings around the grains that are hovered, pinned and grabbed.
-    fn marks(&self, ui: &Ui, state: &AppState, response: &Response) {
-        let painter = ui.painter().with_clip_rect(self.cell);
-        let accent = theme::accent(ui.visuals().dark_mode);
-        let ring = |grain: &GrainView, width: f32, colour: Color32| {
-            let radius = self.camera.pixels(grain.radius) / self.pixels_per_point as f32;
-            painter.circle_stroke(
-                self.to_screen(grain.position),
-                radius,
-                Stroke::new(width, colour),
-            );
-        };
-        let grains = &self.frame.snapshot.grains;
-        if let Some(pinned) = state.pinned.filter(|pinned| pinned.world == self.index) {
-            for partner in super::grain::partners(&self.frame.snapshot, pinned.grain) {
-                ring(&grains[partner], 1.5, accent);
-            }
-            ring(&grains[pinned.grain], 3.0, accent);
-        }
-        if let Some(grabbed) = state.grabbed.filter(|grabbed| grabbed.world == self.index) {
-            let grain = &grains[grabbed.grain];
-            ring(grain, 2.0, accent);
-            if let Some(at) = response.interact_pointer_pos() {
-                let stroke = Stroke::new(2.0, accent);
-                painter.line_segment([self.to_screen(grain.position), at], stroke);
-                painter.circle_filled(at, 4.0, accent);
-            }
-            return;
-        }
-        let hovered = response.hover_pos().and_then(|at| self.grain_at(at));
-        if let Some(hovered) = hovered {
-            ring(&grains[hovered.grain], 1.5, accent);
-            response
-                .clone()
-                .on_hover_ui_at_pointer(|ui| super::grain::describe(ui, self.frame, hovered.grain));
         }
     }
 }

@@ -4,6 +4,7 @@ use egui::{ComboBox, RichText, ThemePreference, Ui};
 
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::headless::{VIDEO_RATES_HZ, check_video};
 use crate::render::ColourBy;
 
 /// What grains can be coloured by, as the panel calls it.
@@ -81,12 +82,48 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
             super::picture::save_picture(ui.ctx(), state);
         }
     });
+    videos(ui, state);
     folder(ui, state);
-    if state.is_writing() {
+    if state.is_writing() && state.video.is_none() {
         ui.horizontal(|ui| {
             ui.spinner();
             ui.label(RichText::new("saving").color(theme::accent(ui.visuals().dark_mode)));
         });
+    }
+}
+
+/// The record as a video.
+fn videos(ui: &mut Ui, state: &mut AppState) {
+    if let Some(video) = &state.video {
+        let hint = "No video is left; what was computed stays in the window.";
+        return super::work_bar::show(ui, video, ["Making a video", "Stop video", hint]);
+    }
+    ui.horizontal(|ui| {
+        let label = ui.label("Video").on_hover_text("Pictures in a second of a video.");
+        let [least, most] = VIDEO_RATES_HZ;
+        let rate = egui::DragValue::new(&mut state.preferences.video_rate_hz).range(least..=most);
+        ui.add(rate.max_decimals(3).suffix(" /s")).labelled_by(label.id);
+        let hint = "Simulated seconds in a second of a video: 1 is the pace of nature.";
+        let label = ui.label("pace ×").on_hover_text(hint);
+        let speed = egui::DragValue::new(&mut state.preferences.video_speed).range(1e-6..=1e6);
+        ui.add(speed.speed(0.01).max_decimals(6)).labelled_by(label.id);
+        save_video(ui, state);
+    });
+}
+
+fn save_video(ui: &mut Ui, state: &mut AppState) {
+    let is_built = check_video("given");
+    let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
+    let save = ui.add_enabled(is_ready && is_built.is_ok(), egui::Button::new("Save video"));
+    state.note_control("Save video", save.rect);
+    let hint = "What was recorded of all worlds, or the stretch that Data names, as AV1 in MP4. The run may go on meanwhile.";
+    let mut save = save.on_hover_text(hint);
+    if let Err(refusal) = is_built {
+        save = save.on_disabled_hover_text(refusal.to_string());
+    }
+    if save.clicked() {
+        #[cfg(feature = "video")]
+        super::picture::save_video(ui.ctx(), state);
     }
 }
 

@@ -29,6 +29,8 @@ struct State<'a> {
     /// Parameters of the next step, as the solver's thread has them.
     parameters: Option<Parameters>,
     worlds: usize,
+    /// Grains of the selected world.
+    grains: usize,
     /// Other piles of the selected world that have come to their end.
     other_piles: usize,
     /// Threads that compute them.
@@ -67,6 +69,7 @@ impl StateFile {
             slump: last.slump,
             parameters: world.map(|world| world.controls.settings.parameters),
             worlds: state.frame.worlds.len(),
+            grains: world.map_or(0, |world| world.snapshot.grains.len()),
             other_piles: state.other_piles.told(state.selected).map_or(0, |told| told.band.count),
             other_threads: state.other_piles.threads(),
             station: if state.touring { state.preferences.tour.at + 1 } else { 0 },

@@ -127,7 +127,14 @@ pub(super) fn settled(
         }
         let motion = Motion::of(&simulation);
         let time_secs = simulation.time_secs();
-        if !progress(Settling { time_secs, limit_secs, speed_over_rest: motion.over_rest() }) {
+        let settling = Settling {
+            simulation: &simulation,
+            rains: false,
+            time_secs,
+            limit_secs,
+            speed_over_rest: motion.over_rest(),
+        };
+        if !progress(settling) {
             return Err(interrupted());
         }
         let goes = match medium {

@@ -56,10 +56,12 @@ pub(super) fn settled(
         }
         let time_secs = simulation.time_secs();
         let speed_over_rest = fastest(&simulation) / (REST_SPEED * speed_unit);
-        if !progress(Settling { time_secs, limit_secs, speed_over_rest }) {
+        let rains = time_secs < raining_secs;
+        let simulation = &simulation;
+        if !progress(Settling { simulation, rains, time_secs, limit_secs, speed_over_rest }) {
             return Err(interrupted());
         }
-        if speed_over_rest > 1.0 || time_secs < raining_secs {
+        if speed_over_rest > 1.0 || rains {
             slow_since_secs = f64::INFINITY;
         } else {
             slow_since_secs = slow_since_secs.min(time_secs);

@@ -15,7 +15,11 @@ pub(super) const REST_SECS: f64 = 0.02;
 
 /// How far a settling has come.
 #[derive(Clone, Copy, Debug)]
-pub struct Settling {
+pub struct Settling<'a> {
+    /// The pile as it is now.
+    pub simulation: &'a Simulation,
+    /// Whether grains may still be falling through the medium of the rain.
+    pub rains: bool,
     /// Simulated time, s.
     pub time_secs: f64,
     /// Simulated time after which it is given up, s.

@@ -4,7 +4,7 @@ use super::progress::Progress;
 use super::start::Start;
 use super::taken::Taken;
 use crate::error::Result;
-use crate::sim::{Pull, Settings};
+use crate::sim::{Edit, Pull, Settings};
 
 /// Makes a start. It runs on the solver's thread, tells of its progress, and gives up with an error
 /// where the callback returns false.
@@ -39,6 +39,8 @@ pub enum Command {
     Change(usize, Settings),
     /// Tie a spring to a grain of a world, or take it away.
     SetPull(usize, Option<Pull>),
+    /// Have a hand change a world from its next step on. What is recorded after this moment is kept as a run of its own.
+    Edit(usize, Edit),
     /// Let time pass: what is recorded is shown, and more is computed at its end. With other settings than those
     /// that were recorded, the run branches off, and what is recorded is kept.
     Play,

@@ -183,6 +183,7 @@ impl Engine {
                     track.simulation.set_pull(pull);
                 }
             }
+            Command::Edit(world, edit) => self.edit(world, edit),
             Command::Play => self.play(),
             Command::Pause => {
                 self.playing = false;
@@ -286,6 +287,7 @@ impl Command {
             self,
             Self::Change(..)
                 | Self::SetPull(..)
+                | Self::Edit(..)
                 | Self::Play
                 | Self::Step
                 | Self::Reset

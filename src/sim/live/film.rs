@@ -67,6 +67,12 @@ impl Film {
         }
     }
 
+    /// Forgets what is stored of later steps, and of this one, which no longer looks as it did.
+    pub(super) fn forget_after(&mut self, last: u64) {
+        self.moments.retain(|moment| step(moment) < last);
+        self.bytes = self.moments.iter().map(bytes).sum();
+    }
+
     /// The last moment that is no later than a simulated time, s.
     pub(super) fn at(&self, secs: f64) -> Option<&Stored> {
         let later = |moment: &Stored| moment.snapshot.observables.time_secs <= secs;

@@ -7,7 +7,9 @@
 
 mod clock;
 mod command;
+mod controls;
 mod curve;
+mod editing;
 mod engine;
 mod film;
 mod frame;
@@ -27,15 +29,15 @@ mod track;
 mod worlds;
 
 pub use command::{Command, Loader, Pace, StartTaker, Taker};
+pub use controls::{Change, Controls, HandMade};
 pub use curve::Curve;
 pub use frame::{Frame, StartInfo, WorldAlarm, WorldFrame};
 pub use handle::Live;
 pub use options::LiveOptions;
 pub use past::{PastRun, PastWorld};
-pub use progress::Progress;
+pub use progress::{Preview, Progress};
 pub use record::{Plan, Record};
 pub(crate) use recording::Recording;
-pub use recording::{Change, Controls};
 pub use replay::Replay;
 pub use start::Start;
 pub use taken::Taken;

@@ -1,5 +1,11 @@
 //! How far long work on the solver's thread has come.
 
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use crate::sim::Snapshot;
+
 /// How far a long preparation has come.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Progress {
@@ -7,4 +13,21 @@ pub struct Progress {
     pub part: f32,
     /// One line.
     pub text: String,
+    /// How what is being made looks, where there is anything to see.
+    pub preview: Option<Preview>,
+}
+
+/// What is being made, at one moment. It is shown, and no more: the worlds stay as they are.
+#[derive(Clone, Debug)]
+pub struct Preview {
+    /// The moment.
+    pub snapshot: Arc<Snapshot>,
+    /// Lower left and upper right corner of what there is to see, m.
+    pub view: [DVec2; 2],
+}
+
+impl PartialEq for Preview {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.snapshot, &other.snapshot)
+    }
 }

@@ -88,7 +88,7 @@ impl Record {
             if !goes_on {
                 break;
             }
-            if !tell(Progress { part, text }) {
+            if !tell(Progress { part, text, preview: None }) {
                 return Err(Error::value("link", "given up", "computed to its end"));
             }
         }

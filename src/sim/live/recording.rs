@@ -9,39 +9,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::sim::{Pull, Settings, Simulation, Tally};
+use super::{Change, Controls, HandMade};
+use crate::sim::{Edit, Settings, Simulation, Tally};
 
 /// Steps between keyframes at first.
 const FIRST_SPACING: u64 = 32;
-
-/// All that can be changed between two steps.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Controls {
-    /// How the next step is taken.
-    pub settings: Settings,
-    /// Spring on a grain.
-    pub pull: Option<Pull>,
-}
-
-impl Controls {
-    /// Those of a simulation's next step.
-    pub(crate) fn of(simulation: &Simulation) -> Self {
-        Self { settings: *simulation.settings(), pull: simulation.pull() }
-    }
-}
-
-/// A moment from which on other controls are in force.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Change {
-    /// The step before the first that they are in force for.
-    pub after_step: u64,
-    /// Simulated time of that step, s.
-    pub time_secs: f64,
-    /// What is in force up to the next change.
-    pub controls: Controls,
-}
 
 /// The recorded part of a run. A clone shares its keyframes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -49,6 +21,8 @@ pub struct Change {
 pub(crate) struct Recording {
     keyframes: Vec<Keyframe>,
     changes: Vec<Change>,
+    /// In their order; a simulation knows how many of them it has seen.
+    edits: Vec<HandMade>,
     spacing: u64,
     budget_bytes: usize,
     end_step: u64,
@@ -75,6 +49,7 @@ impl Recording {
         Self {
             keyframes: vec![Keyframe { simulation: Arc::new(start.clone()), tally }],
             changes: Vec::new(),
+            edits: Vec::new(),
             spacing: FIRST_SPACING,
             budget_bytes,
             end_step: start.observables().step,
@@ -96,11 +71,7 @@ impl Recording {
     /// Notes a state that is about to take a step. What was recorded after it is forgotten.
     pub(crate) fn before_step(&mut self, simulation: &Simulation, tally: &Tally) {
         let step = simulation.observables().step;
-        if self.end_step > step {
-            self.keyframes.retain(|keyframe| keyframe.step() <= step);
-            self.changes.retain(|change| change.after_step < step);
-            self.end_step = step;
-        }
+        self.cut(step, self.edits_of(simulation));
         let controls = Controls::of(simulation);
         if self.changes.last().is_none_or(|last| last.controls != controls) {
             let time_secs = simulation.time_secs();
@@ -112,6 +83,38 @@ impl Recording {
             self.keyframes.push(Keyframe { simulation, tally: *tally });
             self.thin();
         }
+    }
+
+    /// Forgets what came after a step, before which a hand had done so much.
+    fn cut(&mut self, step: u64, edits: usize) {
+        if self.end_step > step {
+            let begun_with = self.start().edits();
+            let is_before = |keyframe: &Keyframe| {
+                keyframe.step() <= step && keyframe.simulation.edits() - begun_with <= edits
+            };
+            self.keyframes.retain(is_before);
+            self.changes.retain(|change| change.after_step < step);
+            self.end_step = step;
+        }
+        self.edits.truncate(edits);
+    }
+
+    /// Notes that a hand has just changed a state. What was recorded after it is forgotten.
+    pub(crate) fn edited(&mut self, simulation: &Simulation, edit: Edit) {
+        let after_step = simulation.observables().step;
+        self.cut(after_step, self.edits_of(simulation).saturating_sub(1));
+        self.end_secs = simulation.time_secs();
+        self.edits.push(HandMade { after_step, edit });
+    }
+
+    /// How much of that a recorded state has seen.
+    fn edits_of(&self, simulation: &Simulation) -> usize {
+        simulation.edits().saturating_sub(self.start().edits())
+    }
+
+    /// What a hand has done to the world.
+    pub(crate) fn edits(&self) -> &[HandMade] {
+        &self.edits
     }
 
     /// Keeps the state at the end of what is recorded, so that it need not be computed again.
@@ -163,6 +166,7 @@ impl Recording {
         last.is_some_and(|last| last <= self.end_step)
             && self.spacing > 0
             && self.keyframes.windows(2).all(rise)
+            && self.edits.is_sorted_by_key(|made| made.after_step)
             && changes.into_iter().all(|pair| pair[0].after_step < pair[1].after_step)
     }
 
@@ -174,7 +178,7 @@ impl Recording {
     /// Whether every recorded step was taken with these settings, and pulled by no hand.
     pub(crate) fn is_all_with(&self, settings: &Settings) -> bool {
         let all_along = Controls { settings: *settings, pull: None };
-        self.changes.iter().all(|change| change.controls == all_along)
+        self.edits.is_empty() && self.changes.iter().all(|change| change.controls == all_along)
     }
 
     /// Whether the next step of a simulation is a recorded one. A hand that is there now and was not then, or
@@ -220,9 +224,14 @@ impl Recording {
         time_secs + 0.5 * time_step_secs >= goal_secs || step >= self.end_step
     }
 
-    /// Gives a recorded state the controls with which its next step was recorded.
+    /// Gives a recorded state the controls with which its next step was recorded, and does what a hand did before it.
     pub(crate) fn restore_controls(&self, simulation: &mut Simulation) {
         let step = simulation.observables().step;
+        let made = self.edits.iter().skip(self.edits_of(simulation));
+        for made in made.take_while(|made| made.after_step <= step) {
+            // They were accepted when they were recorded.
+            let _ = simulation.edit(&made.edit);
+        }
         if let Some(Controls { settings, pull }) = self.controls_after(step).copied() {
             // They were accepted when they were recorded.
             let _ = simulation.change(settings);

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Change, Recording};
+use super::{Change, HandMade, Recording};
 use crate::error::{Error, Result};
 use crate::sim::{RunEnding, Simulation};
 
@@ -29,6 +29,11 @@ impl Replay {
     /// The changes from a step on that steps up to a simulated time were taken with.
     pub fn changes(&self, from_step: u64, until_secs: f64) -> impl Iterator<Item = &Change> {
         self.0.changes(from_step, until_secs)
+    }
+
+    /// What a hand has done to the world, in its order.
+    pub fn edits(&self) -> &[HandMade] {
+        self.0.edits()
     }
 
     /// Computes the moments nearest to two simulated times, and all between them, bit for bit as they were.

@@ -63,7 +63,12 @@ impl Command {
     pub(super) fn is_about_the_moment(&self) -> bool {
         matches!(
             self,
-            Self::Change(..) | Self::SetPull(..) | Self::Step | Self::Take(..) | Self::TakeAll(..)
+            Self::Change(..)
+                | Self::SetPull(..)
+                | Self::Edit(..)
+                | Self::Step
+                | Self::Take(..)
+                | Self::TakeAll(..)
         )
     }
 }

@@ -33,6 +33,7 @@ struct Whole {
     last_stepper: Option<Stepper>,
     watch: Watch,
     surroundings: Arc<Surroundings>,
+    edits: u32,
 }
 
 impl Serialize for Simulation {
@@ -67,6 +68,9 @@ impl Simulation {
         }
         if state.pull.is_some_and(|pull| pull.grain as usize >= grains) {
             return Err(refuse("pull"));
+        }
+        if state.is_held && state.world.motions.is_empty() {
+            return Err(Error::value("hand", "on no wall", "on the wall of the last motion"));
         }
         Ok(self)
     }

@@ -28,7 +28,8 @@ const LIVE_SWEEPS: u32 = 200;
 pub(crate) fn lift_off(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(lift_off_of(trial.level))?;
     simulation.take_steps(BEFORE)?;
-    simulation.remove_last_grain()?;
+    let last = simulation.world().grains.len() - 1;
+    simulation.remove_grain(last)?;
     let world = simulation.world();
     let scale = world.grains.masses[0] * world.gravity.magnitude() * world.mean_diameter;
     let mut energy = 0f64;

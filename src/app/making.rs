@@ -1,0 +1,153 @@
+//! A new pile while it is made: how it looks, how far it is, and how long it may take.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use glam::DVec2;
+
+use crate::scene::Settling;
+use crate::sim::live::{Preview, Progress};
+use crate::sim::{GrainView, Snapshot};
+
+/// Settlings end when the fastest grain is this many orders of magnitude slower than at first.
+const ORDERS_OF_SETTLING: f64 = 3.5;
+/// Least time between two looks at the grains: what is faster no one sees.
+const INTERVAL: Duration = Duration::from_millis(30);
+/// Before this part is done, how long it took says nothing of how long it will take.
+const PART_THAT_TELLS: f64 = 0.05;
+
+/// What is told of a pile that is being made.
+pub(super) struct Making {
+    begun: Instant,
+    looked: Option<Instant>,
+    preview: Option<Preview>,
+    landed: usize,
+    part: f64,
+}
+
+impl Making {
+    /// One that begins now.
+    pub(super) fn new() -> Self {
+        Self { begun: Instant::now(), looked: None, preview: None, landed: 0, part: 0.0 }
+    }
+
+    /// Takes in how far it has come.
+    pub(super) fn look(&mut self, settling: &Settling<'_>) -> Progress {
+        if self.looked.is_none_or(|at| at.elapsed() >= INTERVAL) {
+            self.looked = Some(Instant::now());
+            let snapshot = settling.simulation.snapshot();
+            // One that bounces off has landed all the same.
+            self.landed = self.landed.max(landed(&snapshot));
+            let view = view_of(&snapshot);
+            self.preview = Some(Preview { snapshot: Arc::new(snapshot), view });
+        }
+        // Rain falls for a quarter of the limit at most; then the slowing down tells how far it has come.
+        let rained = (4.0 * settling.time_secs / settling.limit_secs).min(1.0);
+        let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
+        self.part = self.part.max(0.5 * rained + 0.5 * slowed.clamp(0.0, 1.0) * rained);
+        let grains = settling.simulation.world().grains.len();
+        let text = if settling.rains {
+            format!("Raining a new pile: {} of {grains} grains have landed", self.landed)
+        } else {
+            let fastest = settling.speed_over_rest;
+            format!("A new pile of {grains} comes to rest: fastest grain {fastest:.0} × rest")
+        };
+        let left = self.left(self.begun.elapsed().as_secs_f64());
+        Progress { part: self.part as f32, text: text + &left, preview: self.preview.clone() }
+    }
+
+    /// How long it may take, where that can be told, after so many seconds.
+    fn left(&self, elapsed_secs: f64) -> String {
+        if self.part < PART_THAT_TELLS {
+            return String::new();
+        }
+        let left_secs = elapsed_secs * (1.0 - self.part) / self.part;
+        if left_secs < 90.0 {
+            format!(", some {:.0} s left", left_secs.ceil())
+        } else {
+            format!(", some {:.0} min left", (left_secs / 60.0).ceil())
+        }
+    }
+}
+
+/// How many grains touch what is below all of them, or others that do.
+fn landed(snapshot: &Snapshot) -> usize {
+    let count = snapshot.grains.len();
+    let is_below = |way: DVec2| way.y < -0.5 * way.length();
+    let mut partners = vec![Vec::new(); count];
+    let mut next = Vec::new();
+    for contact in &snapshot.contacts {
+        let grain = contact.grain as usize;
+        match contact.other_grain {
+            Some(other) => {
+                partners[grain].push(other as usize);
+                partners[other as usize].push(grain);
+            }
+            // Walls stand beside grains, not below them.
+            None if is_below(contact.to - contact.from) => next.push(grain),
+            None => {}
+        }
+    }
+    let mut has_landed = vec![false; count];
+    while let Some(grain) = next.pop() {
+        if !std::mem::replace(&mut has_landed[grain], true) {
+            next.extend(&partners[grain]);
+        }
+    }
+    has_landed.into_iter().filter(|&it| it).count()
+}
+
+/// Where grains are, with the box and the base below: it shrinks as they come down.
+fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
+    let diameter = snapshot.surroundings.mean_diameter;
+    let ends = |side: DVec2| {
+        let end = |grain: &GrainView| side * grain.position + DVec2::splat(grain.radius);
+        side * snapshot.grains.iter().map(end).fold(DVec2::NEG_INFINITY, DVec2::max)
+    };
+    let (lower, upper) = (ends(DVec2::NEG_ONE), ends(DVec2::ONE));
+    [DVec2::new(lower.x, lower.y.min(0.0)) - diameter, upper + diameter]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{NewPile, settle};
+
+    #[test]
+    fn grains_land_one_after_another_and_the_part_never_falls() {
+        let pile = NewPile { grains: 40, box_width_in_diameters: 8.0, ..NewPile::default() };
+        let mut making = Making::new();
+        let (mut parts, mut landed, mut tops) = (Vec::new(), Vec::new(), Vec::new());
+        settle(&pile, |settling| {
+            // As if each look were the first for a while.
+            making.looked = None;
+            let told = making.look(&settling);
+            let preview = told.preview.expect("something to see");
+            assert_eq!(preview.snapshot.grains.len(), 40);
+            parts.push(told.part);
+            landed.push(making.landed);
+            tops.push(preview.view[1].y);
+            if settling.rains {
+                let said = format!("{} of 40 grains have landed", making.landed);
+                assert!(told.text.contains(&said), "{}", told.text);
+            }
+            true
+        })
+        .expect("a pile");
+        assert!(parts.is_sorted() && parts[0] < 0.1 && parts[parts.len() - 1] > 0.9, "{parts:?}");
+        assert!(landed[0] < 10 && landed.contains(&40) && landed.is_sorted(), "{landed:?}");
+        let some = landed.iter().filter(|&&count| (10..40).contains(&count)).count();
+        assert!(some > 5, "they fall one after another: {landed:?}");
+        assert!(tops[tops.len() - 1] < 0.6 * tops[0], "the view shrinks: {tops:?}");
+    }
+
+    #[test]
+    fn time_is_told_once_something_is_known_of_it() {
+        let mut making = Making::new();
+        making.part = 0.01;
+        assert_eq!(making.left(1.0), "");
+        making.part = 0.25;
+        assert_eq!(making.left(4.0), ", some 12 s left");
+        assert_eq!(making.left(100.0), ", some 5 min left");
+    }
+}

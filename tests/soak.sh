@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Lets the real window run as fast as it can under Xvfb, and checks that its memory does not grow: what is recorded has
+# a budget, and is thinned where that is used up.
+#
+#   tests/soak.sh [SECONDS]        a minute unless another time is given; 3600 is an hour
+#
+# Needs what tests/window.sh needs.
+set -euo pipefail
+
+cd "$(dirname "$0")/.."
+program=${SLUMP:-target/release/slump}
+seconds=${1:-60}
+work=$(mktemp -d)
+state=$work/state.json
+export XDG_CONFIG_HOME=$work/config XDG_CACHE_HOME=$work/cache
+[ -n "${XDG_RUNTIME_DIR:-}" ] || { export XDG_RUNTIME_DIR=$work/runtime; mkdir -m 700 "$XDG_RUNTIME_DIR"; }
+unset WAYLAND_DISPLAY
+
+window=
+server=
+cleanup() {
+    [ -z "$window" ] || kill "$window" 2>/dev/null || true
+    [ -z "$server" ] || kill "$server" 2>/dev/null || true
+    rm -rf "$work"
+}
+trap cleanup EXIT
+
+fail() {
+    echo "soak.sh: $1" >&2
+    exit 1
+}
+
+Xvfb -displayfd 4 -screen 0 1280x800x24 4> "$work/display" > "$work/xvfb.log" 2>&1 &
+server=$!
+for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
+[ -s "$work/display" ] || fail "Xvfb does not start"
+export DISPLAY=:$(cat "$work/display")
+
+value() { python3 -c "import json,sys; s=json.load(open('$state')); print($1)"; }
+wait_for() {
+    for _ in $(seq 300); do
+        if [ -s "$state" ] && [ "$(value "$2" 2>/dev/null)" = True ]; then return; fi
+        kill -0 "$window" 2>/dev/null || fail "the window is gone while waiting for $1"
+        sleep 0.1
+    done
+    fail "waited in vain for $1"
+}
+at() { value "'%d %d' % (lambda c: ((c[0] + c[2]) / 2, (c[1] + c[3]) / 2))(s['controls']['$1'])"; }
+resident_mib() { awk '/^VmRSS/ { print int($2 / 1024) }' "/proc/$window/status"; }
+
+# The pile slumps, comes to rest and goes on: a play that has come to its end goes on beyond it.
+"$program" --reset-ui --bond 20 --dt 2e-3 --max-sweeps 20 --duration 1e6 --export-state "$state" > "$work/log" 2>&1 &
+window=$!
+wait_for "the pile" "s['scene'] == 'pile'"
+xdotool mousemove $(at max) click 1
+xdotool mousemove $(at scene)
+sleep 1
+xdotool search --name Slump windowfocus
+xdotool key space
+wait_for "the first steps" "s['playing'] and s['step'] > 10"
+
+halfway=
+for part in 1 2 3 4 5 6 7 8 9 10; do
+    sleep "$(python3 -c "print($seconds / 10)")"
+    kill -0 "$window" 2>/dev/null || fail "the window is gone"
+    [ "$(value "s['playing']")" = True ] || fail "the run has stopped"
+    echo "$(value "s['step']") steps, $(resident_mib) MiB"
+    [ "$part" -ne 5 ] || halfway=$(resident_mib)
+done
+# Keyframes, film and curves have 256, 64 and 6 MiB.
+[ "$(resident_mib)" -le $((halfway + 340)) ] || fail "more than all budgets together since half of the time"
+[ "$seconds" -lt 600 ] || [ "$(resident_mib)" -le $((halfway + halfway / 10)) ] \
+    || fail "memory grew from $halfway to $(resident_mib) MiB"
+echo "soak.sh: $(value "s['step']") steps in $seconds s, $halfway MiB halfway and $(resident_mib) MiB at the end"

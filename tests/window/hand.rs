@@ -1,0 +1,233 @@
+//! Grains that the mouse adds and takes out, and walls that it draws.
+
+use egui::{Event, Modifiers, PointerButton, Pos2};
+use egui_kittest::kittest::{NodeT, Queryable};
+use glam::DVec2;
+use slump::scene::Config;
+use slump::sim::live::Command;
+use slump::sim::place_of;
+
+use crate::recordings::take_steps;
+use crate::robot::{Robot, bits, pile};
+
+fn press(robot: &mut Robot, at: Pos2, pressed: bool) {
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::SHIFT);
+    robot.harness.event(Event::ModifiersChanged(modifiers));
+    robot.harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+    robot.harness.step();
+}
+
+/// Clicks with Shift held.
+fn shift_click(robot: &mut Robot, at: Pos2) {
+    // Two clicks in quick succession would be a double click.
+    robot.harness.input_mut().time = Some(robot.harness.input().time.unwrap_or(0.0) + 2.0);
+    robot.harness.hover_at(at);
+    press(robot, at, true);
+    press(robot, at, false);
+    robot.harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    robot.settle();
+}
+
+fn count(robot: &Robot) -> usize {
+    robot.world().snapshot.grains.len()
+}
+
+#[test]
+fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
+    let mut robot = Robot::open(pile());
+    take_steps(&mut robot, 10);
+    let (before, grains) = (bits(robot.world()), count(&robot));
+    robot.state_mut().preferences.new_grain_diameters = 1.5;
+    let free = robot.place("scene", 0.5, 0.08);
+    shift_click(&mut robot, free);
+    assert_eq!(count(&robot), grains + 1);
+    let added = robot.world().snapshot.grains[grains];
+    let diameter = robot.world().snapshot.surroundings.mean_diameter;
+    assert!((added.radius - 0.75 * diameter).abs() < 1e-12 && added.velocity == DVec2::ZERO);
+    assert_eq!(bits(robot.world())[..grains], before, "the others stay as they are");
+    assert!(!robot.world().is_even, "no command line makes this");
+
+    // It falls, and its way is recorded.
+    take_steps(&mut robot, 40);
+    let fallen = bits(robot.world());
+    assert!(robot.world().snapshot.grains[grains].position.y < added.position.y - 1e-3);
+    let end = robot.state().frame.recorded_secs();
+    for goal in [0.0, end] {
+        robot.state_mut().live.send(Command::Seek(goal));
+        robot.settle();
+    }
+    assert_eq!(bits(robot.world()), fallen, "computed again, bit for bit");
+    robot.state_mut().live.send(Command::Seek(0.005));
+    robot.settle();
+    assert_eq!(count(&robot), grains, "before, it was not there");
+    robot.state_mut().live.send(Command::Seek(end));
+    robot.settle();
+
+    // On a grain, the click takes that one out.
+    let taken = robot.world().snapshot.grains[60].position;
+    let there = at(&robot, taken);
+    shift_click(&mut robot, there);
+    assert_eq!(count(&robot), grains, "one less");
+    take_steps(&mut robot, 5);
+    assert_eq!(robot.steps(), 55);
+}
+
+#[test]
+fn a_grain_that_finds_no_room_is_refused_with_a_notice() {
+    let mut robot = Robot::open(pile());
+    take_steps(&mut robot, 2);
+    let grains = count(&robot);
+    robot.state_mut().preferences.new_grain_diameters = 5.0;
+    // Just above the heap: its middle is free, and its rim is not.
+    let top = robot
+        .world()
+        .snapshot
+        .grains
+        .iter()
+        .map(|it| it.position.y + it.radius)
+        .fold(0.0, f64::max);
+    let edit = slump::sim::Edit::Add(slump::world::Disc {
+        position: DVec2::new(0.0, top),
+        radius: 0.0125,
+    });
+    robot.state_mut().live.send(Command::Edit(0, edit));
+    robot.settle();
+    assert_eq!(count(&robot), grains);
+    let told = robot.state().notice().expect("a notice").0.text.clone();
+    assert_eq!(told, "place of a new grain is on another one, but must be free");
+}
+
+#[test]
+fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
+    let mut robot = Robot::open(pile());
+    take_steps(&mut robot, 30);
+    robot.state_mut().live.send(Command::Seek(0.01));
+    robot.settle();
+    assert_eq!(robot.steps(), 10);
+    let free = robot.place("scene", 0.5, 0.08);
+    shift_click(&mut robot, free);
+    assert_eq!(robot.state().frame.past.len(), 1, "the run before is kept");
+    assert!((robot.state().frame.recorded_secs() - 0.01).abs() < 1e-9);
+    take_steps(&mut robot, 5);
+    assert_eq!(robot.steps(), 15);
+    // A session brings all of it back.
+    let folder = tempfile::tempdir().expect("a folder");
+    robot.state_mut().preferences.folder = folder.path().to_owned();
+    robot.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::S);
+    robot.harness.step();
+    robot.until("the file", |state| !state.is_writing());
+    let told = robot.state().notice().expect("what became of it").0.text.clone();
+    let path = told.strip_prefix("Saved ").unwrap_or_else(|| panic!("{told}")).to_owned();
+    let now = bits(robot.world());
+    let mut again = Robot::open(Config::of_scene("cradle"));
+    again.state_mut().load_saved(path.as_ref());
+    again.settle();
+    assert_eq!(bits(again.world()), now);
+    again.state_mut().live.send(Command::Seek(0.0));
+    again.settle();
+    let end = again.state().frame.recorded_secs();
+    again.state_mut().live.send(Command::Seek(end));
+    again.settle();
+    assert_eq!(bits(again.world()), now, "and its way");
+
+    // A link says that it does not tell of it.
+    robot.state_mut().copy_link();
+    robot.until("the link", |state| {
+        state.notice().is_some_and(|(notice, _)| notice.text.starts_with("The link is copied"))
+    });
+    let told = robot.state().notice().expect("a notice").0.text.clone();
+    assert!(told.contains("added or removed"), "{told}");
+}
+
+#[test]
+fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut scene = pile().scene(|_| true).expect("a scene");
+    scene.name = "wall".into();
+    scene.grains.truncate(1);
+    scene.grains[0].position = DVec2::new(0.05, 0.02);
+    scene.fixed_discs.clear();
+    scene.gravity = slump::world::Gravity::Uniform { acceleration: DVec2::ZERO };
+    let ends = [DVec2::new(-0.02, 0.0), DVec2::new(-0.02, 0.04)];
+    scene.boundaries = vec![slump::world::Boundary::Segment { from: ends[0], to: ends[1] }];
+    let view = slump::scene::View { min: DVec2::new(-0.04, -0.02), max: DVec2::new(0.06, 0.06) };
+    scene.view = Some(view);
+    let path = folder.path().join("wall.toml");
+    std::fs::write(&path, slump::scene::scene_to_toml(&scene).expect("TOML")).expect("a file");
+    let mut robot = Robot::open(Config::of_scene(path.to_str().expect("UTF-8")));
+    robot.state_mut().preferences.full_speed = true;
+    let place = |robot: &Robot| place_of(&robot.world().snapshot.surroundings.boundaries[0]);
+    assert_eq!(place(&robot), ends[0]);
+
+    let from = at(&robot, DVec2::new(-0.02, 0.02));
+    let to = at(&robot, DVec2::new(0.01, 0.02));
+
+    // While time stands still it says what to do.
+    robot.harness.hover_at(from);
+    press(&mut robot, from, true);
+    robot.harness.hover_at(to);
+    robot.harness.step();
+    robot.harness.step();
+    let told = robot.state().notice().map(|it| it.0.text.clone()).unwrap_or_default();
+    assert!(told.starts_with("Walls go while time passes"), "{told}");
+    robot.state_mut().live.send(Command::Play);
+    robot.until("the wall to come", |state| {
+        let boundaries = &state.world().unwrap().snapshot.surroundings.boundaries;
+        (place_of(&boundaries[0]).x - 0.01).abs() < 1e-3
+    });
+    press(&mut robot, to, false);
+    robot.harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    robot.settle();
+    let there = place(&robot);
+    robot.state_mut().live.send(Command::Pause);
+    take_steps(&mut robot, 20);
+    assert_eq!(place(&robot), there, "it stays");
+    assert!((there.y - ends[0].y).abs() < 1e-3, "and went straight: {there}");
+}
+
+/// Where a place (m) shows that is framed whole.
+fn at(robot: &Robot, point: DVec2) -> Pos2 {
+    let rect = robot.state().controls["scene"];
+    let style = slump::render::Style { legend: false, ..robot.state().preferences.style.clone() };
+    let start = robot.state().frame.start.as_ref().expect("a start");
+    let size = [rect.width() as u32, rect.height() as u32];
+    let camera = style.camera(start.view[0], start.view[1], size[0], size[1]);
+    let [x, y] = camera.project(point);
+    rect.center() + egui::vec2(x, -y)
+}
+
+#[test]
+fn the_panel_says_how_and_how_large() {
+    let mut robot = Robot::open(pile());
+    robot.click("By hand");
+    let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, "New grain");
+    assert_eq!(field.accesskit_node().numeric_value(), Some(1.0));
+    robot.key(egui::Key::H);
+    assert!(robot.harness.query_by_label("Shift drag a wall").is_some(), "the help has it");
+}
+
+#[test]
+fn exported_data_has_the_new_grain_and_says_who_put_it_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut robot = crate::recordings::open(pile(), folder.path(), slump::data::FormatName::ALL);
+    take_steps(&mut robot, 5);
+    let grains = count(&robot);
+    let disc = slump::world::Disc { position: DVec2::new(0.0, 0.2), radius: 2e-3 };
+    robot.state_mut().live.send(Command::Edit(0, slump::sim::Edit::Add(disc)));
+    take_steps(&mut robot, 5);
+    robot.state_mut().live.send(Command::Edit(0, slump::sim::Edit::Remove(3)));
+    take_steps(&mut robot, 1);
+    assert_eq!(count(&robot), grains);
+    crate::recordings::export(&mut robot);
+    let at = |step| {
+        let found = slump::data::read_grains(folder.path(), step).expect("grains");
+        found.grains.len()
+    };
+    assert_eq!(
+        [at(Some(5)), at(Some(6)), at(Some(10)), at(None)],
+        [grains, grains + 1, grains + 1, grains]
+    );
+    let told = &crate::recordings::facts(folder.path())["changed_by_hand"];
+    assert!(told.contains("a grain of radius 0.002 m added at 0, 0.2 m after step 5"), "{told}");
+    assert!(told.ends_with("grain 3 removed after step 10"), "{told}");
+}

@@ -1,0 +1,124 @@
+//! Videos that the window makes of its record.
+
+use std::path::{Path, PathBuf};
+
+use egui_kittest::kittest::{NodeT, Queryable};
+use mp4_atom::{Decode, Ftyp, Ilst, Moov, StszSamples};
+use slump::app::Preferences;
+use slump::sim::live::Command;
+
+use crate::recordings::take_steps;
+use crate::robot::{Robot, pile};
+
+fn open(folder: &Path, size: [u32; 2]) -> Robot {
+    let preferences =
+        Preferences { folder: folder.to_owned(), picture_size: size, ..Preferences::default() };
+    let mut robot = Robot::open_with_gpu(pile(), preferences);
+    robot.click("See");
+    robot
+}
+
+/// Has a video made, and gives the file and what is told of it.
+fn made(robot: &mut Robot) -> (PathBuf, String) {
+    robot.click("Save video");
+    robot.until("the video", |state| !state.is_writing());
+    let told = robot.state().notice().expect("what became of it").0.text.clone();
+    let path = told.strip_prefix("Saved ").and_then(|rest| rest.split(" of ").next());
+    (path.unwrap_or_else(|| panic!("{told}")).into(), told)
+}
+
+fn head(path: &Path) -> Moov {
+    let bytes = std::fs::read(path).expect("a video");
+    let mut rest = &bytes[..];
+    Ftyp::decode(&mut rest).expect("a kind of file");
+    Moov::decode(&mut rest).expect("a head")
+}
+
+fn pictures(moov: &Moov) -> usize {
+    match &moov.trak[0].mdia.minf.stbl.stsz.samples {
+        StszSamples::Different { sizes } => sizes.len(),
+        StszSamples::Identical { count, .. } => *count as usize,
+    }
+}
+
+#[test]
+fn the_record_is_a_video_at_the_pace_of_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A side that is odd is one pixel longer.
+    let mut robot = open(folder.path(), [161, 100]);
+    take_steps(&mut robot, 200);
+    // Where the timeline stands is no matter.
+    robot.state_mut().live.send(Command::Seek(0.05));
+    robot.settle();
+    let (path, told) = made(&mut robot);
+    assert!(told.ends_with(" of 6 pictures"), "0 to 0.2 s at 25 a second: {told}");
+    let moov = head(&path);
+    assert_eq!(pictures(&moov), 6);
+    assert_eq!(moov.trak[0].mdia.mdhd.duration, 6 * 3_600);
+    assert_eq!([moov.trak[0].tkhd.width.integer(), moov.trak[0].tkhd.height.integer()], [162, 100]);
+    let said = moov.udta.and_then(|said| said.meta).expect("metadata");
+    let lines = &said.get::<Ilst>().and_then(|list| list.desc.as_ref()).expect("lines").text;
+    assert!(lines.contains("Command line: slump --headless "), "{lines}");
+    assert!(lines.contains("--duration 0.2"), "{lines}");
+
+    // The same record makes the same file, and ten times slower ten times as many pictures.
+    let (again, _) = made(&mut robot);
+    assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
+    for (label, value) in [("Video", 25.0), ("pace ×", 1.0)] {
+        let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, label);
+        assert_eq!(field.accesskit_node().numeric_value(), Some(value), "{label}");
+    }
+    robot.state_mut().preferences.video_rate_hz = 50.0;
+    robot.state_mut().preferences.video_speed = 0.1;
+    let (slow, _) = made(&mut robot);
+    assert_eq!(pictures(&head(&slow)), 101);
+}
+
+#[test]
+fn compared_worlds_stand_side_by_side_in_one_video() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut robot = open(folder.path(), [240, 120]);
+    robot.state_mut().preferences.style.colour_by = slump::render::ColourBy::Speed;
+    let base = robot.world().controls.settings;
+    // The second steps so far that pictures show some of its moments twice.
+    robot.state_mut().live.send(Command::Compare(vec![base.over(1e-3), base.over(5e-3)]));
+    robot.settle();
+    take_steps(&mut robot, 20);
+    robot.state_mut().preferences.video_rate_hz = 240.0;
+    let (path, _) = made(&mut robot);
+    let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
+    assert!(name.starts_with("slump-pile-2worlds-"), "{name}");
+    assert_eq!(pictures(&head(&path)), 25);
+}
+
+#[test]
+fn a_video_that_is_stopped_leaves_nothing_and_the_run_goes_on_meanwhile() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut robot = open(folder.path(), [640, 400]);
+    take_steps(&mut robot, 300);
+    robot.state_mut().preferences.video_rate_hz = 240.0;
+    robot.state_mut().preferences.video_speed = 0.1;
+    robot.click("Save video");
+    assert!(robot.harness.query_by_label("Save video").is_none(), "one at a time");
+    let before = robot.steps();
+    take_steps(&mut robot, 3);
+    assert!(robot.state().is_writing() && robot.steps() == before + 3, "the run goes on");
+    robot.click("Stop video");
+    robot.until("the end", |state| !state.is_writing());
+    let told = robot.state().notice().expect("what became of it").0.text.clone();
+    assert_eq!(told, "Stopped: there is no video");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+    assert!(robot.harness.query_by_label("Save video").is_some(), "another can be asked for");
+}
+
+#[test]
+fn a_place_that_takes_no_video_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").expect("a file");
+    let mut robot = open(&file.join("below"), [160, 100]);
+    robot.click("Save video");
+    robot.until("the refusal", |state| !state.is_writing());
+    let told = robot.state().notice().expect("a refusal").0.text.clone();
+    assert!(told.contains("folder is") && told.contains("can be written to"), "{told}");
+}
