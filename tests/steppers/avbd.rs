@@ -38,7 +38,8 @@ fn a_disc_of_a_thousand_masses_rests_on_light_ones() {
         assert_close(*force / G, carried, 1e-2, "what a contact carries");
         carried -= mass;
     }
-    assert!(grains.velocities.iter().all(|velocity| velocity.length() < 1e-4));
+    let fastest = grains.velocities.iter().map(|velocity| velocity.length()).fold(0.0, f64::max);
+    assert!(fastest < 0.1 * G * 1e-3, "a tenth of what gravity does in a step: {fastest:e} m/s");
 }
 
 #[test]

@@ -1,15 +1,18 @@
 //! One look a method, the same on every chart: a colour, and dashes after the colours run out. After the dashes
-//! run out too, another colour.
+//! run out too, other colours.
 
 use crate::study::chart::{Layer, Look, PALETTE, Point, Rgb, points};
 
 /// In the place of black, which would come dashed a second time.
 const WINE: Rgb = (136, 34, 85);
+/// In the place of blue, likewise.
+const OLIVE: Rgb = (153, 153, 51);
 
 /// The colour of method number `index` of the registry.
 pub(super) fn colour(index: usize) -> Rgb {
     match index % PALETTE.len() {
         0 if index >= 2 * PALETTE.len() => WINE,
+        1 if index >= 2 * PALETTE.len() => OLIVE,
         place => PALETTE[place],
     }
 }
