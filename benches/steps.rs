@@ -6,7 +6,7 @@ mod common;
 use std::hint::black_box;
 
 use common::timing::{criterion, least_secs};
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPoolBuilder;
 use slump::solver::{Method, SolverSettings, StopTest};
 
 /// Sweeps of every step that is timed.
@@ -16,19 +16,20 @@ const SWEEPS: u32 = 40;
 const DISCS: [usize; 3] = [2_000, 10_000, 50_000];
 
 fn main() {
-    ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
+    ThreadPoolBuilder::new().num_threads(2).build_global().expect("the first pool");
     let named = std::env::var("SLUMP_DISCS").ok();
     let counts: Vec<usize> = match &named {
         Some(text) => text.split(',').map(|count| count.parse().expect("a number")).collect(),
         None => DISCS.to_vec(),
     };
-    let pool = ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
+    // Inside a pool a step is one of several and keeps to its thread.
+    let alone = ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let mut criterion = criterion();
     let mut summary = Vec::new();
     for count in counts {
         let settled = common::with(&common::settled(count), |numbers| numbers.bond = 20.0);
         for stop in [StopTest::RelativeChange, StopTest::Residual] {
-            let mut time = |method: Method, pool: Option<&ThreadPool>| {
+            let mut time = |method: Method, threads: usize| {
                 let mut simulation = settled.clone();
                 // From a cold start to a tolerance that it cannot meet, every step takes all its sweeps.
                 let settings = SolverSettings {
@@ -45,16 +46,15 @@ fn main() {
                     let sweeps = simulation.step().expect("a finite state").sweeps;
                     assert_eq!(black_box(sweeps), SWEEPS);
                 };
-                let threads = if pool.is_some() { 2 } else { 1 };
                 let name = format!("{} on {threads}/{count} discs, {stop:?}", method.name());
-                1e3 * match pool {
-                    Some(pool) => least_secs(&mut criterion, &name, || pool.install(&mut step)),
-                    None => least_secs(&mut criterion, &name, step),
+                1e3 * match threads {
+                    1 => least_secs(&mut criterion, &name, || alone.install(&mut step)),
+                    _ => least_secs(&mut criterion, &name, step),
                 }
             };
-            let plain = time(Method::Nsgs, None);
-            let tiles = time(Method::NsgsParallel, None);
-            let threads = time(Method::NsgsParallel, Some(&pool));
+            let plain = time(Method::Nsgs, 1);
+            let tiles = time(Method::NsgsParallel, 1);
+            let threads = time(Method::NsgsParallel, 2);
             summary.push(format!(
                 "{count} discs, {stop:?}: ms a step of {SWEEPS} sweeps: nsgs {plain:.3}, nsgs-parallel \
                  {tiles:.3}, on two threads {threads:.3}; nsgs / nsgs-parallel {:.2}, two threads / one {:.2}",

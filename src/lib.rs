@@ -38,6 +38,7 @@ pub mod scene;
 pub mod setting;
 pub mod sim;
 pub mod solver;
+mod threads;
 pub mod world;
 
 // The program: public for `main.rs`, tests and benches of this package, and for nobody else.

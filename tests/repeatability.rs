@@ -3,13 +3,13 @@
 mod common;
 
 use common::{
-    G, SMOOTH, assert_close, fixed, parameters, pressed_pile, scene, start, take_steps, tight,
-    to_residual,
+    G, SMOOTH, assert_close, every_way, fixed, moving, parameters, pressed_pile, scene, start,
+    take_steps, tight, to_residual,
 };
 use glam::DVec2;
 use slump::scene::{Scene, paper_pile};
 use slump::sim::Simulation;
-use slump::solver::SolverSettings;
+use slump::solver::{Method, SolverSettings};
 use slump::world::{Disc, Grain, Grains, Physics};
 
 /// Two states with the same bits: `==` would take −0 for 0 and a NaN for a difference.
@@ -53,6 +53,42 @@ fn a_run_repeats_bitwise_alone_and_in_pools_of_threads() {
             assert!(same_bits(&first.world().grains, &inside.world().grains), "{threads} threads");
             assert_eq!(first.observables(), inside.observables(), "{threads} threads");
         }
+    }
+}
+
+#[test]
+fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
+    // Whoever came first has made the pool; on a machine with one core there is nothing to be shared out.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(3).build_global();
+    assert!(rayon::current_num_threads() > 1, "several threads");
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    // Some touch, others come near: a lattice whose discs go this way and that.
+    let at = |k: usize| {
+        let [column, row] = [k % 110, k / 110].map(|number| number as f64);
+        let shift = 0.05 * DVec2::new((k as f64).sin(), (1.7 * k as f64).cos());
+        let velocity = 0.02 * DVec2::new((3.1 * k as f64).cos(), (2.3 * k as f64).sin());
+        moving(0.01 * (DVec2::new(column + 0.5 * row, 0.87 * row) + shift), 0.005, velocity)
+    };
+    for (stepper, method) in every_way() {
+        let parameters = parameters(20.0, 1e-3, 0.3, 0.5);
+        let mut scene =
+            scene(Physics::FULL, -G * DVec2::Y, parameters, (0..110 * 90).map(at).collect());
+        (scene.stepper, scene.solver.method, scene.solver.max_sweeps) = (stepper, method, 3);
+        // What a direct method does is its own; three steps of it would take the time of all the others.
+        if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {
+            continue;
+        }
+        let shared = run(&scene, 3);
+        let by_one = alone.install(|| run(&scene, 3));
+        let what = format!("{stepper} {}", method.name());
+        assert!(
+            shared.contacts().contacts().len() > 9_000,
+            "{what}: contacts of several stretches"
+        );
+        assert_eq!(shared.contacts().contacts(), by_one.contacts().contacts(), "{what}");
+        assert_eq!(shared.contacts().impulses(), by_one.contacts().impulses(), "{what}");
+        assert!(same_bits(&shared.world().grains, &by_one.world().grains), "{what}");
+        assert_eq!(shared.observables(), by_one.observables(), "{what}");
     }
 }
 

@@ -1,72 +1,25 @@
 //! The contacts of one step, with the impulses of the step before where a contact lives on.
 
+mod contact;
+mod kept;
+mod search;
+
 use glam::DVec2;
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 
-use super::approach::approach;
+pub use self::contact::{Contact, ContactMemory, Impulse};
+use self::kept::Kept;
+use self::search::Search;
 use super::candidates::Candidates;
 use super::look_ahead::LookAhead;
 use super::numbering::{Numbering, Other};
 use super::range::Bond;
+use crate::threads;
 use crate::world::World;
 
-/// One touching pair.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
-    /// Grain i.
-    pub grain: u32,
-    /// Body j, numbered through ([`Numbering`]).
-    pub other: u32,
-    /// n, from j to i. On a line its y component is 0.
-    pub normal: DVec2,
-    /// m; negative is overlap.
-    pub gap: f64,
-}
-
-impl Contact {
-    /// The bodies (i, other), which contacts are sorted by.
-    pub(crate) fn pair(&self) -> (u32, u32) {
-        (self.grain, self.other)
-    }
-}
-
-/// The impulses of one contact, N·s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Impulse {
-    /// P_n.
-    pub normal: f64,
-    /// P_t.
-    pub tangential: f64,
-}
-
-/// What a stepping scheme keeps of a contact from one substep to the next, whatever its length. A
-/// method that solves the step's problem neither reads nor writes it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ContactMemory {
-    /// How far the tangential spring is stretched, m; positive as v_t is.
-    pub tangential_displacement: f64,
-    /// N of the last substep, newton.
-    pub normal_force: f64,
-    /// T of the last substep, newton.
-    pub tangential_force: f64,
-    /// Stiffness of the penalty along normal and tangent, N/m.
-    pub stiffness: [f64; 2],
-}
-
-/// What is kept of a contact as long as it lives.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Kept {
-    contacts: Vec<Contact>,
-    impulses: Vec<Impulse>,
-    memories: Vec<ContactMemory>,
-    bonds: Vec<Bond>,
-    /// The step that each was first found in.
-    found_in: Vec<u64>,
-}
+/// Grains whose contacts one thread finds at a time: a hundred microseconds of work.
+const GRAINS_IN_PART: usize = 2048;
 
 /// The contacts of a step, sorted by (i, other), and their impulses. Memory is kept between steps.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -76,6 +29,9 @@ pub struct ContactList {
     /// Memory alone: the next step fills it.
     #[serde(skip)]
     before: Kept,
+    /// Memory alone: what threads find, each of some grains.
+    #[serde(skip)]
+    parts: Vec<Kept>,
     /// Whether pairs with a gap are among the contacts.
     looks_ahead: bool,
     /// The step that contacts are found in from now on.
@@ -246,49 +202,20 @@ impl ContactList {
         &mut self,
         world: &World,
         candidates: &Candidates,
-        keep: impl Fn(&Contact, &mut Bond) -> bool,
+        keep: impl Fn(&Contact, &mut Bond) -> bool + Sync,
     ) {
         std::mem::swap(&mut self.now, &mut self.before);
-        let Self { now, before: old, looks_ahead, step } = self;
-        now.contacts.clear();
-        now.impulses.clear();
-        now.memories.clear();
-        now.bonds.clear();
-        now.found_in.clear();
-        let (grains, numbering) = (&world.grains, Numbering::of(world));
-        let mut before = 0;
-        for index in 0..grains.len() {
-            let (position, radius) = (grains.positions[index], grains.radii[index]);
-            for &other in candidates.of(index) {
-                let body = numbering.other(other);
-                let Some((normal, gap)) =
-                    approach::<AXES>(world, candidates, (position, radius), body)
-                else {
-                    continue;
-                };
-                let contact = Contact { grain: index as u32, other, normal, gap };
-                // Both lists are sorted alike, so one walk over the old one serves all.
-                while before < old.contacts.len() && old.contacts[before].pair() < contact.pair() {
-                    before += 1;
-                }
-                let lives_on =
-                    old.contacts.get(before).is_some_and(|then| then.pair() == contact.pair());
-                let (impulse, memory, mut bond) = if lives_on {
-                    (old.impulses[before], old.memories[before], old.bonds[before])
-                } else {
-                    Default::default()
-                };
-                // What only came near so far is found where it touches.
-                let was_found = lives_on && (bond.alive || !*looks_ahead);
-                if !keep(&contact, &mut bond) {
-                    continue;
-                }
-                now.found_in.push(if was_found { old.found_in[before] } else { *step });
-                now.impulses.push(impulse);
-                now.memories.push(memory);
-                now.bonds.push(bond);
-                now.contacts.push(contact);
-            }
+        let Self { now, before, parts, looks_ahead, step } = self;
+        let search = Search { world, candidates, before, looks_ahead: *looks_ahead, step: *step };
+        let grains = world.grains.len();
+        if grains <= GRAINS_IN_PART || !threads::are_there() {
+            return search.find::<AXES>(0..grains, &keep, now);
         }
+        parts.resize_with(grains.div_ceil(GRAINS_IN_PART), Kept::default);
+        parts.par_iter_mut().enumerate().for_each(|(number, part)| {
+            let first = number * GRAINS_IN_PART;
+            search.find::<AXES>(first..grains.min(first + GRAINS_IN_PART), &keep, part);
+        });
+        now.take_all(parts);
     }
 }

@@ -8,6 +8,7 @@ use crate::world::{Boundary, Disc, Edge};
 /// Smallest and largest new grain, in mean diameters: beyond, the search for neighbours and the conditioning of
 /// steps are those of another scene.
 pub const NEW_GRAIN_DIAMETERS: [f64; 2] = [0.2, 5.0];
+
 /// What a hand does between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

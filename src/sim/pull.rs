@@ -9,8 +9,16 @@ use crate::world::World;
 /// Stiffness per mass of the grain, in units of g/d: one diameter of stretch pulls with this many
 /// times the grain's weight.
 const STIFFNESS: f64 = 40.0;
-/// g that the stiffness refers to on a scene without gravity, m/s².
-pub(super) const GRAVITY_IF_NONE: f64 = 9.8;
+/// g that numbers refer to on a scene without gravity, m/s².
+const GRAVITY_IF_NONE: f64 = 9.8;
+
+/// The g that stiffnesses and speeds are measured in, m/s²: a scene's own, if it has any.
+pub(super) fn gravity_that_scales(world: &World) -> f64 {
+    match world.gravity.magnitude() {
+        0.0 => GRAVITY_IF_NONE,
+        magnitude => magnitude,
+    }
+}
 
 /// A spring from a grain to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,10 +35,7 @@ impl Pull {
     fn added_velocity(self, world: &World, time_step_secs: f64) -> DVec2 {
         let grains = &world.grains;
         let index = self.grain as usize;
-        let g = match world.gravity.magnitude() {
-            0.0 => GRAVITY_IF_NONE,
-            magnitude => magnitude,
-        };
+        let g = gravity_that_scales(world);
         let frequency = (STIFFNESS * g / world.mean_diameter).sqrt();
         let (position, velocity) = (grains.positions[index], grains.velocities[index]);
         let stretch = world.shortest(self.target - position) - time_step_secs * velocity;

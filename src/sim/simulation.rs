@@ -20,6 +20,7 @@ use super::{Alarm, Observables, Pull, Settings};
 use crate::contact::{Candidates, ContactList};
 use crate::error::{Error, Result};
 use crate::solver::{Slots, SolverSettings};
+use crate::threads;
 use crate::world::{Parameters, Physics, World};
 
 /// A world in motion.
@@ -128,7 +129,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`Simulation::step`].
-    pub fn step_by(&mut self, own: &mut impl Advance) -> Result<&Observables> {
+    pub fn step_by(&mut self, own: &mut (impl Advance + Send)) -> Result<&Observables> {
         self.become_of(None);
         self.take_step(1, own);
         self.look()
@@ -142,13 +143,13 @@ impl Simulation {
         }
     }
 
-    fn take_step(&mut self, pieces: u32, advance: &mut impl Advance) {
+    fn take_step(&mut self, pieces: u32, advance: &mut (impl Advance + Send)) {
         let Self { state, settings, slots, observables, initial_heights, .. } = self;
         let parts = state.leanest_model(&settings.parameters);
         let initial_heights = *initial_heights;
         state.contacts.begin_step(observables.step + 1);
         let step = Step { state, settings, pieces, advance, observables, initial_heights };
-        slots.visit(parts, step);
+        threads::together(step.state.world.grains.len(), || slots.visit(parts, step));
         let work_of_crossing = state.world.wrap();
         if let Some(border_work) = &mut observables.border_work {
             *border_work += work_of_crossing;

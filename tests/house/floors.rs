@@ -5,7 +5,7 @@ use super::uses::Uses;
 /// From the ground up; a folder uses only those of the floors below its own.
 const FLOORS: &[&[&str]] = &[
     &["error"],
-    &["setting", "output"],
+    &["setting", "output", "threads"],
     &["world"],
     &["contact"],
     &["solver"],

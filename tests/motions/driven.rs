@@ -3,10 +3,10 @@
 use super::common::{
     LINE, assert_close, fixed, moving, parameters, scene, start, take_steps, tight,
 };
-use super::{goes, level, straight, through_a_file};
+use super::{goes, level, saved_and_read, straight, through_a_file};
 use glam::DVec2;
-use slump::scene::{SavedState, Scene};
-use slump::sim::{OtherBody, Simulation, Tally};
+use slump::scene::Scene;
+use slump::sim::{OtherBody, Simulation};
 use slump::solver::{METHODS, Method};
 use slump::world::{Boundary, Drive, Grain, Motion, Periodic, Physics};
 
@@ -243,9 +243,7 @@ fn a_run_with_a_driven_wall_goes_on_from_a_file_bit_for_bit() {
     let scene = through_a_file(&sheared(0.01));
     let mut run = start(&scene);
     take_steps(&mut run, 50);
-    let state = SavedState::new(scene, run.clone(), Tally::default());
-    let bytes = state.to_bytes().expect("bytes");
-    let read = SavedState::from_bytes(&bytes, "sheared").expect("a state");
+    let read = saved_and_read(&scene, &run);
     assert_eq!(read.as_start().motions, run.world().motions, "a new start takes its speed along");
     let mut read = read.simulation;
     take_steps(&mut run, 50);

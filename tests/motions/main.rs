@@ -24,7 +24,8 @@ mod turning;
 mod views;
 
 use glam::DVec2;
-use slump::scene::{Scene, scene_to_toml};
+use slump::scene::{SavedState, Scene, scene_to_toml};
+use slump::sim::{Simulation, Tally};
 use slump::world::{Boundary, Motion, MotionCourse};
 
 /// Boundaries that go this way.
@@ -45,6 +46,13 @@ fn straight(velocity: DVec2) -> MotionCourse {
 /// The level y = 0.
 fn level() -> Boundary {
     Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }
+}
+
+/// A run as its file keeps it.
+fn saved_and_read(scene: &Scene, run: &Simulation) -> SavedState {
+    let state = SavedState::new(scene.clone(), run.clone(), Tally::default());
+    let bytes = state.to_bytes().expect("bytes");
+    SavedState::from_bytes(&bytes, "a.slump").expect("a state")
 }
 
 /// The scene as its own file says it.

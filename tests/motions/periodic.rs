@@ -4,11 +4,11 @@ use super::common::{
     assert_close, at_rest_and_falling, every_way, fixed, moving, parameters, pressed_pile, random,
     scene, start, take_steps,
 };
-use super::{level, straight, through_a_file};
+use super::{level, saved_and_read, straight, through_a_file};
 use glam::DVec2;
 use rand::RngExt;
-use slump::scene::{SavedState, Scene};
-use slump::sim::{Remedies, Simulation, Stepper, Tally};
+use slump::scene::Scene;
+use slump::sim::{Remedies, Simulation, Stepper};
 use slump::solver::Method;
 use slump::world::{Boundary, Grain, Motion, Periodic, Physics};
 
@@ -217,9 +217,7 @@ fn a_run_goes_on_from_a_file_bit_for_bit_across_a_crossing() {
         let scene = Scene { stepper: *stepper, ..sliding(5.0) };
         let mut run = start(&scene);
         take_steps(&mut run, 40);
-        let state = SavedState::new(scene.clone(), run.clone(), Tally::default());
-        let bytes = state.to_bytes().expect("bytes");
-        let mut read = SavedState::from_bytes(&bytes, "sliding").expect("a state").simulation;
+        let mut read = saved_and_read(&scene, &run).simulation;
         let before = run.world().clone();
         take_steps(&mut run, 60);
         take_steps(&mut read, 60);

@@ -4,13 +4,13 @@ use super::common::{
     LINE, assert_close, every_way, moving, parameters, random, scene, start, take_steps,
 };
 use super::periodic::{at_rest_on_discs, in_cell, sliding};
-use super::{level, straight, through_a_file};
+use super::{level, saved_and_read, straight, through_a_file};
 use glam::DVec2;
 use rand::RngExt;
 use slump::data::{About, FormatName, Recording};
 use slump::granular::measure;
-use slump::scene::{SavedState, Scene};
-use slump::sim::{Simulation, Stepper, Tally};
+use slump::scene::Scene;
+use slump::sim::{Simulation, Stepper};
 use slump::world::{Boundary, Grain, Gravity, Motion, Periodic, Physics};
 
 /// Side of a square cell, m.
@@ -201,9 +201,7 @@ fn a_run_goes_on_from_a_file_bit_for_bit_and_loses_no_grain_that_falls_round() {
         let scene = Scene { stepper: *stepper, ..falling(5.0) };
         let mut run = start(&scene);
         take_steps(&mut run, 400);
-        let state = SavedState::new(scene.clone(), run.clone(), Tally::default());
-        let bytes = state.to_bytes().expect("bytes");
-        let mut read = SavedState::from_bytes(&bytes, "falling").expect("a state").simulation;
+        let mut read = saved_and_read(&scene, &run).simulation;
         take_steps(&mut run, 200);
         take_steps(&mut read, 200);
         assert_eq!(run.world(), read.world(), "{stepper}");

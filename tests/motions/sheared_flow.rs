@@ -1,13 +1,14 @@
 //! Flows between borders that shear: momentum and energy are accounted for, profile and stress are those of the shear, and
 //! files know of the borders.
 
-use super::common::{assert_close, start, take_steps, to_residual};
-use super::sheared::{SIZE, gas, ways};
+use super::common::{assert_close, moving, parameters, scene, start, take_steps, to_residual};
+use super::saved_and_read;
+use super::sheared::{SIZE, cell, gas, ways};
 use glam::DVec2;
 use slump::data::{About, FormatName, Recording, read_grains};
 use slump::granular::measure;
-use slump::scene::SavedState;
-use slump::sim::{Remedies, Simulation, Stepper, Tally};
+use slump::sim::{Remedies, Simulation, Stepper};
+use slump::world::Physics;
 
 #[test]
 fn momentum_less_that_of_the_shear_stays() {
@@ -174,9 +175,7 @@ fn a_run_goes_on_from_a_file_bit_for_bit() {
         (scene.stepper, scene.parameters.bond) = (*stepper, 5.0);
         let mut run = start(&scene);
         take_steps(&mut run, 300);
-        let state = SavedState::new(scene.clone(), run.clone(), Tally::default());
-        let bytes = state.to_bytes().expect("bytes");
-        let mut read = SavedState::from_bytes(&bytes, "sheared").expect("a state").simulation;
+        let mut read = saved_and_read(&scene, &run).simulation;
         take_steps(&mut run, 150);
         take_steps(&mut read, 150);
         assert_eq!(run.world(), read.world(), "{stepper}");
@@ -226,4 +225,28 @@ fn measures_see_the_images_where_they_are() {
     let read = read_grains(&place.join("ovito/grains.dump"), None).expect("grains").grains;
     let places: Vec<DVec2> = read.iter().map(|grain| grain.position).collect();
     assert_eq!(places, run.world().grains.positions);
+}
+
+#[test]
+fn an_image_that_slides_towards_discs_at_rest_is_found() {
+    // Both rest, so that nothing but the border's way says that the pairs that were near are no longer those.
+    for stepper in Stepper::ALL {
+        let at = |x: f64, y: f64| moving(DVec2::new(x, y), 0.01, DVec2::ZERO);
+        let grains = vec![at(0.03, 0.005), at(0.08, SIZE.y - 0.005)];
+        let parameters = parameters(0.0, 1e-4, 0.0, 0.2);
+        let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters, grains);
+        (scene.stepper, scene.periodic) = (*stepper, Some(cell(1.0)));
+        let mut run = start(&scene);
+        // The image goes 0.1 m/s, and after a third of a second it has gone three centimetres and meets the other.
+        take_steps(&mut run, 2000);
+        assert_eq!(run.observables().contacts, 0, "{stepper}: not yet");
+        let mut met = 0;
+        for _ in 0..2500 {
+            take_steps(&mut run, 1);
+            met = met.max(run.observables().contacts);
+        }
+        assert_eq!(met, 1, "{stepper}: they meet");
+        let speeds = &run.world().grains.velocities;
+        assert!(speeds[0].length() > 1e-3 && speeds[1].length() > 1e-3, "{stepper}: {speeds:?}");
+    }
 }

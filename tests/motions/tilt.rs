@@ -2,9 +2,10 @@
 //! two steps, and a run that is saved knows of it.
 
 use super::common::{at_rest_and_falling, every_way, start};
+use super::saved_and_read;
 use glam::DVec2;
-use slump::scene::{SavedState, Scene, built_in};
-use slump::sim::{Simulation, Tally};
+use slump::scene::{Scene, built_in};
+use slump::sim::Simulation;
 use slump::world::{Boundary, Gravity, GravityTurn, TurnCourse};
 
 /// What rests, falls and is bonded, on a floor.
@@ -75,9 +76,7 @@ fn a_run_that_is_tilted_on_the_way_goes_on_from_its_file_bit_for_bit() {
         settings.parameters.tilt = -12.5;
         simulation.change(settings).expect("sound settings");
         step(&mut simulation, 5);
-        let saved = SavedState::new(scene, simulation.clone(), Tally::default());
-        let bytes = saved.to_bytes().expect("bytes");
-        let read = SavedState::from_bytes(&bytes, "a.slump").expect("a state");
+        let read = saved_and_read(&scene, &simulation);
         let mut again = read.simulation.clone();
         for run in [&mut simulation, &mut again] {
             step(run, 10);

@@ -8,6 +8,10 @@ use super::engine::Engine;
 use super::{Command, Frame, LiveOptions};
 use crate::error::{Error, Result};
 
+/// Stack of the solver's thread, bytes: reading a session takes frames of half a megabyte, one for each level of what it
+/// holds, and came to more than the two megabytes that a thread has by itself. What is not used takes no memory.
+const STACK_BYTES: usize = 32 << 20;
+
 /// A run on a thread of its own. Dropped, it ends after the step that it is computing.
 pub struct Live {
     commands: Sender<(u64, Command)>,
@@ -26,6 +30,7 @@ impl Live {
         let engine = Engine::new(inbox, output, options);
         std::thread::Builder::new()
             .name("solver".into())
+            .stack_size(STACK_BYTES)
             .spawn(move || engine.run())
             .map_err(|error| Error::value("solver thread", error, "startable"))?;
         Ok(Self { commands, frames, sent: 0 })

@@ -10,7 +10,7 @@ use glam::DVec2;
 use super::Simulation;
 use crate::error::{Error, Result};
 use crate::sim::edit::{Edit, NEW_GRAIN_DIAMETERS, place_of};
-use crate::sim::pull::GRAVITY_IF_NONE;
+use crate::sim::pull::gravity_that_scales;
 use crate::sim::snapshot::Surroundings;
 use crate::world::{Disc, Grain, Motion, MotionCourse};
 
@@ -134,11 +134,7 @@ impl Simulation {
         if world.motions.iter().any(|motion| motion.boundaries.contains(&boundary)) {
             return refuse("moved by the scene");
         }
-        let gravity = match world.gravity.magnitude() {
-            0.0 => GRAVITY_IF_NONE,
-            magnitude => magnitude,
-        };
-        let speed = SPEED_OF_HAND * (gravity * world.mean_diameter).sqrt();
+        let speed = SPEED_OF_HAND * (gravity_that_scales(&world) * world.mean_diameter).sqrt();
         let way = to - place_of(shape);
         let travel = Some(way.length());
         let course = MotionCourse::Straight { direction: way, speed, travel };

@@ -55,7 +55,11 @@ impl<'a, M: Model> Stage<'a, M> {
 
     /// Begins a step and sets up its problem with the contacts that touch. `rebound` is what the law adds
     /// to v_n of a contact, m/s.
-    pub fn prepare(&mut self, settings: &Settings, rebound: impl Fn(Approach) -> f64 + Copy) {
+    pub fn prepare(
+        &mut self,
+        settings: &Settings,
+        rebound: impl Fn(Approach) -> f64 + Copy + Sync,
+    ) {
         self.prepare_ahead(settings, |_| None, rebound);
     }
 
@@ -65,7 +69,7 @@ impl<'a, M: Model> Stage<'a, M> {
         &mut self,
         settings: &Settings,
         look_ahead: impl FnOnce(&State) -> Option<LookAhead>,
-        rebound: impl Fn(Approach) -> f64 + Copy,
+        rebound: impl Fn(Approach) -> f64 + Copy + Sync,
     ) {
         let Self { state, problem, .. } = self;
         let parameters = &settings.parameters;

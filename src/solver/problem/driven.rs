@@ -41,6 +41,14 @@ pub(crate) struct DrivenBy {
     pub along: [f64; 2],
 }
 
+impl DrivenBy {
+    /// P·b of an impulse along n and t, in its unit.
+    #[inline(always)]
+    pub(crate) fn part_along(&self, [normal, tangential]: [f64; 2]) -> f64 {
+        self.along[0] * normal + self.along[1] * tangential
+    }
+}
+
 /// A row against a wall that is driven.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DrivenRow {

@@ -72,8 +72,7 @@ impl<K: Kinematics> StepProblem<K> {
         for known in &self.driven.rows {
             let number = known.number as usize;
             let row = &self.fixed_rows[number];
-            let [normal, tangential] = self.reduced_impulse(number, row);
-            let along = known.by.along[0] * normal + known.by.along[1] * tangential;
+            let along = known.by.part_along(self.reduced_impulse(number, row));
             let wall = &mut self.driven.walls[known.by.wall as usize];
             wall.now -= wall.response * row.effective_mass * along;
         }

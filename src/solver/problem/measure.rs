@@ -4,7 +4,7 @@ use super::duality::duality_gap;
 use super::held::{Bound, Held, LawNumbers, Opening};
 use super::kinematics::Kinematics;
 use super::model::Model;
-use super::motion::{Motion, ROUNDING, for_each_row};
+use super::motion::{Motion, ROUNDING, sum_of_rows};
 use super::step_problem::{Row, StepProblem};
 use crate::contact::{Lanes, law};
 use crate::solver::friction_model::FrictionModel;
@@ -41,6 +41,15 @@ impl Measures {
         self.duality_gap = self.duality_gap.or(Some(f64::INFINITY));
     }
 
+    /// Counts other rows of the same problem.
+    fn add_rows(&mut self, rows: Self) {
+        self.compressive_contacts += rows.compressive_contacts;
+        self.tensile_contacts += rows.tensile_contacts;
+        self.normal_work += rows.normal_work;
+        self.tangential_work += rows.tangential_work;
+        self.border_work += rows.border_work;
+    }
+
     /// Counts another piece of the same step; the contacts are those at its end.
     pub fn add(&mut self, piece: Self) {
         let Self { residual, model_residual, duality_gap, .. } = piece;
@@ -71,27 +80,25 @@ impl Measures {
 /// something errs. Rows hold p/m_n and P_t/m_n, so each row's terms are
 /// formed in m/s and weighted by m_n.
 pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
-    let mut sums = Sums::default();
-    for_each_row::<M::Kinematics>(problem, |number, row, motion| {
-        sums.add_error::<M>(problem, (number, row), &motion)
-    });
-    sums.residual::<M>(problem)
+    let add_error = |sums: &mut Sums, row: (usize, &Row<_>), motion: Motion| {
+        sums.add_error::<M>(problem, row, &motion);
+    };
+    sum_of_rows(problem, add_error, Sums::add_all).residual::<M>(problem)
 }
 
 /// The same of the model of friction that a problem is solved by: the natural map of its projection
 /// (`problem::held`), over the same scale, so that both can be set side by side.
 pub(crate) fn held_residual<M: Model, H: Held>(problem: &StepProblem<M::Kinematics>) -> f64 {
-    let mut sums = Sums::default();
     let law = LawNumbers::of(problem);
     let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
-    for_each_row::<M::Kinematics>(problem, |number, row, motion| {
+    let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: Motion| {
         let opening = motion.now[0] + row.restitution_velocity;
         let [normal, tangential] = [row.shifted_impulse, row.tangential_impulse];
         let trial = [normal - opening, tangential - compliance * motion.now[1]];
         let allowed = H::project::<M>(law, problem.held[number], trial);
         sums.add::<M>(row, [normal - allowed[0], tangential - allowed[1]], &motion);
-    });
-    sums.residual::<M>(problem)
+    };
+    sum_of_rows(problem, add_error, Sums::add_all).residual::<M>(problem)
 }
 
 /// The natural map's residual of what a problem is solved for: of its model of friction, or the common one.
@@ -137,9 +144,8 @@ pub(crate) fn worst(one: f64, other: f64) -> f64 {
 /// relative velocity. Summed with gravity's this closes the budget to rounding, whatever the solver
 /// left undone. Where j is an image that slides, u is relative to that, and P·(what it slides by) is the border's work.
 pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
-    let mut sums = Sums::default();
-    let mut measures = Measures::default();
-    for_each_row::<M::Kinematics>(problem, |number, row, motion| {
+    type Sum = (Sums, Measures);
+    let visit = |(sums, measures): &mut Sum, (number, row): (usize, &Row<_>), motion: Motion| {
         sums.add_error::<M>(problem, (number, row), &motion);
         let [normal, tangential] = problem.reduced_impulse(number, row);
         let half_mass = 0.5 * row.effective_mass;
@@ -154,6 +160,10 @@ pub(crate) fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measure
             let work = normal * along_normal + tangential * along_tangent;
             measures.border_work += row.effective_mass * work;
         }
+    };
+    let (sums, mut measures) = sum_of_rows(problem, visit, |all: &mut Sum, (sums, measures)| {
+        all.0.add_all(sums);
+        all.1.add_rows(measures);
     });
     if problem.has_moving_walls() {
         let [whole, tangential_part] = problem.surface_works();
@@ -185,9 +195,10 @@ pub(crate) fn errors<M: Model, T: Lanes>(
 
 /// The square of the scale of [`residual`], which is the same during a whole solve.
 pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
-    let mut sums = Sums::default();
-    problem.for_each_velocity(&problem.free, |row, free| sums.add_scale::<M>(row, free));
-    sums.scale
+    let add_scale = |sums: &mut Sums, (_, row): (usize, &Row<_>), motion: Motion| {
+        sums.add_scale::<M>(row, motion.free);
+    };
+    sum_of_rows(problem, add_scale, Sums::add_all).scale
 }
 
 /// [`residual`] from the squares of its error and scale.
@@ -205,6 +216,11 @@ struct Sums {
 }
 
 impl Sums {
+    fn add_all(&mut self, other: Self) {
+        self.error += other.error;
+        self.scale += other.scale;
+    }
+
     #[inline(always)]
     fn add_error<M: Model>(
         &mut self,

@@ -6,6 +6,7 @@ use super::model::Model;
 use super::step_problem::{Row, StepProblem};
 use crate::contact::{Contact, ContactList, Impulse, Numbering, law};
 use crate::solver::settings::SolverSettings;
+use crate::threads;
 use crate::world::World;
 
 /// The numbers that a problem is set up with.
@@ -40,7 +41,7 @@ impl<K: Kinematics> StepProblem<K> {
         contacts: &ContactList,
         numbers: ProblemNumbers,
         settings: &SolverSettings,
-        rebound: impl Fn(Approach) -> f64,
+        rebound: impl Fn(Approach) -> f64 + Sync,
     ) {
         let grains = &world.grains;
         self.friction = numbers.friction;
@@ -52,8 +53,7 @@ impl<K: Kinematics> StepProblem<K> {
         self.mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
         self.masses.clone_from(&grains.masses);
         self.place_bodies(world, numbers.time_step_secs);
-        let numbering = Numbering::of(world);
-        self.order_rows(world, contacts.contacts(), settings);
+        let fixed = self.order_rows(world, contacts.contacts(), settings);
         if contacts.looks_ahead() && self.capture_speed > 0.0 {
             let capture = |&index: &u32| match contacts.is_in_touch(index as usize) {
                 true => self.capture_speed,
@@ -61,52 +61,38 @@ impl<K: Kinematics> StepProblem<K> {
             };
             self.captures.extend(self.contact_of_row.iter().map(capture));
         }
-        self.fixed_rows.clear();
-        self.pair_rows.clear();
-        for at in 0..self.contact_of_row.len() {
+        let [mut fixed_rows, mut pair_rows] =
+            [&mut self.fixed_rows, &mut self.pair_rows].map(std::mem::take);
+        let row = |at: usize| {
             let index = self.contact_of_row[at] as usize;
-            let contact = &contacts.contacts()[index];
-            let (i, normal) = (contact.grain as usize, K::normal_of(world, contact));
-            let j = numbering.other(contact.other).grain();
-            let ([velocity, _], mass, of_other) = match j {
-                None => (K::velocity(normal, &self.before[i]), grains.masses[i], 0.0),
-                Some(j) => {
-                    let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
-                    let velocity = K::relative_velocity(normal, &self.before[i], &self.before[j]);
-                    (velocity, grains.masses[i] * share, share)
-                }
-            };
-            let in_touch = contacts.is_in_touch(index);
-            let rebound = rebound(Approach { velocity, gap: contact.gap, in_touch });
             let start = settings.warm_start.then(|| contacts.impulses()[index]);
-            let (known, capture) = ((contact, normal), self.capture(at));
-            let row = self.row::<M>(known, (mass, of_other), rebound, capture, start);
-            match j {
-                None => self.fixed_rows.push(row),
-                Some(_) => self.pair_rows.push(row),
-            }
-        }
+            self.row::<M>(world, contacts, (at, index), &rebound, start)
+        };
+        threads::fill(&mut fixed_rows, fixed, row);
+        threads::fill(&mut pair_rows, self.contact_of_row.len() - fixed, |at| row(fixed + at));
+        (self.fixed_rows, self.pair_rows) = (fixed_rows, pair_rows);
         self.form_velocities();
         self.hold::<M>(contacts, settings.friction_model);
     }
 
     /// Packs the bodies as they are, and as gravity alone would leave them.
     fn place_bodies(&mut self, world: &World, time_step_secs: f64) {
-        self.before.clear();
-        self.free.clear();
-        for (index, &feels_gravity) in world.grains.feels_gravity.iter().enumerate() {
-            let body = K::body(world, index);
-            self.before.push(body);
-            self.free.push(if feels_gravity {
-                K::accelerated(&body, world, index, time_step_secs)
-            } else {
-                body
-            });
-        }
+        let grains = &world.grains;
+        let Self { before, free, .. } = self;
+        threads::fill(before, grains.len(), |index| K::body(world, index));
+        threads::fill(free, grains.len(), |index| match grains.feels_gravity[index] {
+            true => K::accelerated(&before[index], world, index, time_step_secs),
+            false => before[index],
+        });
     }
 
-    /// Tells which contact stands behind which row.
-    fn order_rows(&mut self, world: &World, contacts: &[Contact], settings: &SolverSettings) {
+    /// Tells which contact stands behind which row, and how many, the first, are with fixed bodies.
+    fn order_rows(
+        &mut self,
+        world: &World,
+        contacts: &[Contact],
+        settings: &SolverSettings,
+    ) -> usize {
         let numbering = Numbering::of(world);
         let other = |index: &u32| numbering.other(contacts[*index as usize].other);
         let is_pair = |index: &u32| other(index).grain().is_some();
@@ -119,21 +105,39 @@ impl<K: Kinematics> StepProblem<K> {
         rows.clear();
         self.sorter.begin(ordering, world);
         self.sorter.append(ordering, (world, contacts), fixed, rows, of_fixed);
+        let fixed = rows.len();
         self.sorter.append(ordering, (world, contacts), pairs, rows, of_pairs);
+        fixed
     }
 
-    /// One row, with the impulses of `start` (N·s) projected on what the contact law allows now.
+    /// The row of a contact by the numbers of both, with the impulses of `start` (N·s) projected on what the contact law
+    /// allows now.
+    #[inline(always)]
     fn row<M: Model<Kinematics = K>>(
         &self,
-        (contact, normal): (&Contact, K::Normal<f64>),
-        (effective_mass, of_other): (f64, f64),
-        restitution_velocity: f64,
-        capture_speed: f64,
+        world: &World,
+        contacts: &ContactList,
+        (at, index): (usize, usize),
+        rebound: &impl Fn(Approach) -> f64,
         start: Option<Impulse>,
     ) -> Row<K> {
+        let (masses, before) = (&world.grains.masses, &self.before);
+        let contact = &contacts.contacts()[index];
+        let (i, normal) = (contact.grain as usize, K::normal_of(world, contact));
+        let (velocity, effective_mass, of_other) =
+            match Numbering::of(world).other(contact.other).grain() {
+                None => (K::velocity(normal, &before[i]), masses[i], 0.0),
+                Some(j) => {
+                    let share = masses[j] / (masses[i] + masses[j]);
+                    let velocity = K::relative_velocity(normal, &before[i], &before[j]);
+                    (velocity, masses[i] * share, share)
+                }
+            };
+        let in_touch = contacts.is_in_touch(index);
+        let restitution_velocity =
+            rebound(Approach { velocity: velocity[0], gap: contact.gap, in_touch });
         let start = start.unwrap_or_default();
-        let normal_impulse = start.normal / effective_mass;
-        let shifted_impulse = law::signorini(normal_impulse + capture_speed);
+        let shifted_impulse = law::signorini(start.normal / effective_mass + self.capture(at));
         let tangential_impulse = if M::FRICTION {
             let bound = self.friction_bound::<M>(shifted_impulse);
             law::coulomb(start.tangential / effective_mass, bound)

@@ -4,10 +4,9 @@ use glam::{DMat3, DVec3};
 
 use super::super::touching::Touching;
 use crate::contact::law;
-use crate::sim::pull::GRAVITY_IF_NONE;
+use crate::sim::pull::gravity_that_scales;
 use crate::sim::stepping::Stage;
 use crate::solver::{Kinematics, Model, Row, StepProblem};
-use crate::world::World;
 
 /// Softest κ, and that of a new contact. Softer: new contacts sink in; stiffer: blocks cannot pass a force on.
 const SOFTEST: f64 = 1.0;
@@ -46,13 +45,8 @@ pub(super) struct Descent {
 }
 
 impl Descent {
-    pub(super) fn new<M: Model>(
-        stage: &Stage<'_, M>,
-        world: &World,
-        friction: f64,
-        substep_secs: f64,
-    ) -> Self {
-        let problem = &*stage.problem;
+    pub(super) fn new<M: Model>(stage: &Stage<'_, M>, substep_secs: f64) -> Self {
+        let (world, problem) = (stage.world(), stage.problem());
         let fixed = problem.fixed_rows.len();
         let mut of_bodies: Vec<(u32, Side)> = Vec::new();
         for (number, row) in problem.rows() {
@@ -65,13 +59,10 @@ impl Descent {
         of_bodies.sort_by_key(|&(body, _)| body);
         let ends = 0..problem.bodies.len() as u32;
         let side_ends = ends.map(|body| of_bodies.partition_point(|side| side.0 <= body)).collect();
-        let g = match world.gravity.magnitude() {
-            0.0 => GRAVITY_IF_NONE,
-            magnitude => magnitude,
-        };
+        let g = gravity_that_scales(world);
         Self {
             substep_secs,
-            friction,
+            friction: problem.friction,
             speed_scale: g * substep_secs,
             margin: MARGIN * world.mean_diameter,
             stiffness: vec![[SOFTEST; 2]; problem.contact_of_row.len()],

@@ -57,8 +57,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let capture_speed = stage.problem.capture_speed / f64::from(substeps);
     let warm_secs = if settings.solver.warm_start { substep_secs } else { 0.0 };
     let mut contacts = touching::all(stage, warm_secs);
-    let mut descent =
-        Descent::new(stage, &stage.state.world, settings.parameters.friction, substep_secs);
+    let mut descent = Descent::new(stage, substep_secs);
     if settings.solver.warm_start {
         descent.stiffen(stage);
     }

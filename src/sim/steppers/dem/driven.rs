@@ -24,8 +24,7 @@ pub(super) fn drive<M: Model>(
     let pushed = || {
         contacts.contacts().iter().zip(pushes).filter_map(|(contact, &(mass, impulse, _))| {
             let by = walls.surface(world, contact)?.driven?;
-            let along = by.along[0] * impulse[0] + by.along[1] * impulse[1];
-            Some((by.wall as usize, mass * along))
+            Some((by.wall as usize, mass * by.part_along(impulse)))
         })
     };
     for (wall, along) in pushed() {

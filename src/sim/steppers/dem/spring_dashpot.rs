@@ -35,7 +35,7 @@
 //! With k_t = k m_t/m_n and γ_t = γ m_t/m_n the tangential mode is as fast as the normal one.
 
 use super::super::mean_pair::MeanPair;
-use crate::sim::pull::GRAVITY_IF_NONE;
+use crate::sim::pull::gravity_that_scales;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
 /// Overlap that the weight of a whole pile makes, in d. Smaller: stiffer and dearer, h ∝ its root;
@@ -110,10 +110,7 @@ fn stiffness_for_weight(world: &World, axes: u8) -> f64 {
     let masses = &world.grains.masses;
     let count = masses.len() as f64;
     let column = if axes == 1 { count } else { count.sqrt() };
-    let g = match world.gravity.magnitude() {
-        0.0 => GRAVITY_IF_NONE,
-        magnitude => magnitude,
-    };
+    let g = gravity_that_scales(world);
     let load = column * g * masses.iter().sum::<f64>() / count;
     load / (STATIC_OVERLAP * world.mean_diameter)
 }

@@ -24,16 +24,10 @@ impl Touching {
 
     /// Pushes its wall back by the impulses λ (m/s) on a grain of that mass, if that is driven.
     #[inline(always)]
-    pub(super) fn push_back(
-        &self,
-        walls: &mut [DrivenWall],
-        mass: f64,
-        [normal, tangential]: [f64; 2],
-    ) {
+    pub(super) fn push_back(&self, walls: &mut [DrivenWall], mass: f64, impulse: [f64; 2]) {
         if let Some(DrivenRow { by, .. }) = self.driven {
             let wall = &mut walls[by.wall as usize];
-            let along = by.along[0] * normal + by.along[1] * tangential;
-            wall.now -= wall.response * mass * along;
+            wall.now -= wall.response * mass * by.part_along(impulse);
         }
     }
 }
@@ -88,8 +82,7 @@ pub(super) fn correct_works<K: Kinematics>(
     for (row, contact) in problem.fixed_rows.iter().zip(contacts) {
         if let Some(DrivenRow { by, .. }) = contact.driven {
             let wall = &walls[by.wall as usize];
-            let [normal, tangential] = contact.impulse;
-            let along = by.along[0] * normal + by.along[1] * tangential;
+            let along = by.part_along(contact.impulse);
             let gained = wall.now - wall.before;
             works.add_of_driven_wall(-0.5 * row.effective_mass * along * gained);
         }

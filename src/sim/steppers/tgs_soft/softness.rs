@@ -11,7 +11,7 @@
 
 use super::super::touching::Touching;
 use crate::contact::law;
-use crate::sim::pull::GRAVITY_IF_NONE;
+use crate::sim::pull::gravity_that_scales;
 use crate::solver::{Kinematics, Model};
 use crate::world::{Parameters, World};
 
@@ -40,10 +40,7 @@ pub(super) struct Softness {
 impl Softness {
     pub(super) fn new(world: &World, parameters: &Parameters, substep_secs: f64) -> Self {
         let diameter = world.mean_diameter;
-        let g = match world.gravity.magnitude() {
-            0.0 => GRAVITY_IF_NONE,
-            magnitude => magnitude,
-        };
+        let g = gravity_that_scales(world);
         let highest = FREQUENCY_PER_SUBSTEP / substep_secs;
         let frequency = std::f64::consts::TAU * highest.min(FREQUENCY * (g / diameter).sqrt());
         let damping = 2.0 * DAMPING_RATIO + substep_secs * frequency;

@@ -24,6 +24,7 @@ use super::shared::update::{Change, Law};
 use crate::solver::ordering::Ordering;
 use crate::solver::problem::{Model, StepProblem, residual_of, squared_residual_scale};
 use crate::solver::settings::{SolverSettings, StopTest};
+use crate::threads;
 
 /// What there is to know of it.
 pub(super) const INFO: MethodInfo = MethodInfo {
@@ -38,9 +39,8 @@ pub(super) const INFO: MethodInfo = MethodInfo {
     takes_shear: false,
 };
 
-/// Blocks from which on threads are woken, once a sweep: some 130 µs of work, several times what waking costs.
-/// With fewer, two threads were slower than one at 10,000 grains.
-const WORTH_THREADS: usize = 8192;
+/// Blocks from which on tiles are shared out: 60 µs of work a sweep. With half of it two threads were slower than one.
+const WORTH_THREADS: usize = 4096;
 
 /// What is kept between steps.
 #[derive(Clone, Debug, Default)]
@@ -48,8 +48,8 @@ pub(super) struct BlockMemory {
     layout: Layout,
     /// What the tiles changed.
     changes: Vec<Change>,
-    /// How much the tiles err.
-    squared_errors: Vec<f64>,
+    /// What the tiles come to, of whatever is summed: squared errors or impulses.
+    sums: Vec<f64>,
 }
 
 /// Solves a prepared problem by sweeps.
@@ -69,8 +69,6 @@ fn solve_at<M: Model>(
     settings: &SolverSettings,
 ) -> SolveReport {
     match Tiled::<M>::new(level, problem, memory) {
-        // Inside the pool a tile is handed out without a call from outside it each time.
-        Some(mut tiled) if tiled.threads => rayon::scope(|_| tiled.run(settings)),
         Some(mut tiled) => tiled.run(settings),
         None => nsgs::solve::<M>(problem, &mut (), settings),
     }
@@ -99,14 +97,17 @@ impl<'a, M: Model> Tiled<'a, M> {
         memory.layout.fill(problem)?;
         let tiles = memory.layout.tiles.len();
         memory.changes.resize(tiles, Change::default());
-        memory.squared_errors.resize(tiles, 0.0);
+        memory.sums.resize(tiles, 0.0);
         let blocks = blocks_of(&memory.layout.tiles);
-        let threads = tiles > 1 && blocks >= WORTH_THREADS && rayon::current_num_threads() > 1;
+        let threads = tiles > 1 && blocks >= WORTH_THREADS && threads::are_there();
         let law = Law::of(problem);
         Some(Self { level, threads, law, problem, memory, squared_scale: None })
     }
 
     fn run(&mut self, settings: &SolverSettings) -> SolveReport {
+        if self.threads {
+            threads::rouse();
+        }
         let sweep = |tiled: &mut Self, sweeps| {
             if !is_tested(sweeps, settings) {
                 tiled.sweep::<false>();
@@ -154,31 +155,38 @@ impl<'a, M: Model> Tiled<'a, M> {
     fn squared_error(&mut self) -> f64 {
         let Self { level, threads, problem, memory, .. } = self;
         let (level, law) = (*level, [problem.friction, problem.capture_speed]);
-        let BlockMemory { layout, squared_errors, .. } = &mut **memory;
+        let BlockMemory { layout, sums, .. } = &mut **memory;
         let Layout { tiles, blocks, slots, singles_between, .. } = layout;
         let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
         let add_up = |(blocks, singles): (&mut [Block], usize), slots: &mut [Slot]| {
             let blocks = (&*blocks, singles);
             dispatch!(level, simd => squared_error::<_, M>(simd, law, blocks, slots))
         };
-        for_each_tile(*threads, tiles, in_tiles, slots, squared_errors, &add_up);
-        squared_errors.iter().sum::<f64>() + add_up((between, *singles_between), slots)
+        for_each_tile(*threads, tiles, in_tiles, slots, sums, &add_up);
+        sums.iter().sum::<f64>() + add_up((between, *singles_between), slots)
     }
 
     /// Σ P², (N·s)².
     fn squared_impulses(&mut self) -> f64 {
-        let StepProblem { captures, capture_speed, .. } = &*self.problem;
-        let Layout { blocks, places, .. } = &self.memory.layout;
+        let Self { threads, problem, memory, .. } = self;
+        let StepProblem { captures, capture_speed, .. } = &**problem;
+        let BlockMemory { layout, sums, .. } = &mut **memory;
+        let Layout { tiles, blocks, slots, places, .. } = layout;
         let the_same = [*capture_speed; LANES];
+        if captures.is_empty() {
+            let add_up = |(blocks, _): (&mut [Block], usize), _: &mut [Slot]| {
+                blocks.iter().map(|block| block.squared_impulses(the_same)).sum::<f64>()
+            };
+            let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
+            for_each_tile(*threads, tiles, in_tiles, slots, sums, &add_up);
+            return sums.iter().sum::<f64>() + add_up((between, 0), slots);
+        }
         let of_block = |(block, place): (&Block, &std::ops::Range<u32>)| {
-            if captures.is_empty() {
-                return block.squared_impulses(the_same);
-            }
             let first = place.start as usize;
             let capture = |lane: usize| *captures.get(first + lane).unwrap_or(capture_speed);
             block.squared_impulses(std::array::from_fn::<_, LANES, _>(capture))
         };
-        blocks.iter().zip(places).map(of_block).sum()
+        blocks.iter().zip(&*places).map(of_block).sum()
     }
 
     /// Gives rows and bodies what became of them.

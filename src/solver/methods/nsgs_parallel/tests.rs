@@ -167,28 +167,33 @@ fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
     let mut one_by_one = start.clone();
     let expected = [(); 8].map(|()| nsgs::sweep::<Full, true>(&mut one_by_one));
     let (mut sums, mut residuals) = (Vec::new(), Vec::new());
-    for threads in [1, 2, 4] {
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    for several in [1, 2, 4] {
+        let pool = ThreadPoolBuilder::new().num_threads(several).build().expect("threads");
         for level in levels() {
             let mut problem = start.clone();
             let mut memory = BlockMemory::default();
-            let changes = pool.install(|| {
-                let tiled = Tiled::<Full>::new(level, &mut problem, &mut memory);
-                let mut tiled = tiled.expect("colours");
-                assert_eq!(tiled.threads, threads > 1, "there are several tiles");
-                let changes = [(); 8].map(|()| tiled.sweep::<true>());
-                let residual = tiled.residual();
-                tiled.store();
-                let between = memory.layout.blocks.len() - blocks_of(&memory.layout.tiles);
-                assert!(between > 100, "contacts between tiles");
-                assert!(
-                    memory.layout.tiles.iter().all(|tile| tile.blocks > 100 && tile.singles > 10)
-                );
-                (changes, residual)
+            let (changes, residual) = pool.install(|| {
+                threads::share(|| {
+                    let tiled = Tiled::<Full>::new(level, &mut problem, &mut memory);
+                    let mut tiled = tiled.expect("colours");
+                    assert_eq!(tiled.threads, several > 1, "there are several tiles");
+                    let changes = [(); 8].map(|()| tiled.sweep::<true>());
+                    let residual = tiled.residual();
+                    tiled.store();
+                    let between = memory.layout.blocks.len() - blocks_of(&memory.layout.tiles);
+                    assert!(between > 100, "contacts between tiles");
+                    assert!(
+                        memory
+                            .layout
+                            .tiles
+                            .iter()
+                            .all(|tile| tile.blocks > 100 && tile.singles > 10)
+                    );
+                    (changes, residual)
+                })
             });
-            let (changes, residual) = changes;
             residuals.push(residual.to_bits());
-            assert!(bits(&problem) == bits(&one_by_one), "{level:?}, {threads} threads");
+            assert!(bits(&problem) == bits(&one_by_one), "{level:?}, {several} threads");
             for (change, expected) in changes.iter().zip(&expected) {
                 assert!((change.squared / expected.squared - 1.0).abs() < 1e-12);
                 assert!((change.absolute / expected.absolute - 1.0).abs() < 1e-12);
