@@ -29,8 +29,9 @@ thread_local! {
 /// is on a thread of a pool already is one of several that share it, and is left alone: waiting for a part of its
 /// work a thread takes up whatever it finds, and might come back from a whole run of another.
 pub(crate) fn together<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
-    let several = rayon::current_num_threads() > 1;
-    if count < WORTH_IT || !several || rayon::current_thread_index().is_some() {
+    // A small step asks for no pool: asking makes it.
+    let is_alone = || rayon::current_thread_index().is_some() || rayon::current_num_threads() == 1;
+    if count < WORTH_IT || is_alone() {
         return work();
     }
     rayon::scope(|_| {
@@ -89,10 +90,14 @@ fn are_worth_it(count: usize) -> bool {
 
 /// Fills a list with so many items, each by its number. What it held before goes; its memory stays.
 pub(crate) fn fill<T: Send>(list: &mut Vec<T>, count: usize, item: impl Fn(usize) -> T + Sync) {
+    list.clear();
+    if list.capacity() < count {
+        // With room for what the next steps may find, so that none allocates once a pile is at rest.
+        list.reserve(count.next_power_of_two());
+    }
     if are_worth_it(count) {
         (0..count).into_par_iter().with_min_len(STRETCH / 4).map(&item).collect_into_vec(list);
     } else {
-        list.clear();
         list.extend((0..count).map(item));
     }
 }

@@ -1,8 +1,12 @@
 //! How well steps are solved: what the window begins with, and what else is one click away.
 
+use glam::DVec2;
+
 use crate::scene::{Config, Scene};
+use crate::sim::Surroundings;
 use crate::solver::{Fallback, Method, SolverChanges, SolverSettings};
 use crate::study::PILE_SOLVER;
+use crate::world::Periodic;
 
 /// Piles of more grains begin with sweeps that are counted, so that they move before one's eyes.
 const MOST_SOLVED_GRAINS: usize = 2_000;
@@ -16,6 +20,19 @@ pub(super) struct Effort {
     pub hint: &'static str,
     /// What it is.
     pub settings: SolverSettings,
+}
+
+impl Effort {
+    /// What it is where borders shear or a force drives a wall: by the method next to its own that knows of them.
+    pub(super) fn among(&self, surroundings: &Surroundings) -> SolverSettings {
+        let info = self.settings.method.info();
+        let shears = surroundings.periodic.is_some_and(Periodic::is_sheared);
+        let is_driven = surroundings.moving.iter().any(|motion| motion.force != DVec2::ZERO);
+        if (shears && !info.takes_shear) || (is_driven && !info.takes_drives) {
+            return self.settings.by(Method::Nsgs);
+        }
+        self.settings
+    }
 }
 
 /// So well that tighter solutions tell no other mean (`RESULTS.md`, speed against accuracy).
@@ -85,5 +102,20 @@ mod tests {
             scene.simulation().expect("a sound scene");
         }
         assert!(TRUSTED.settings.falls_back(), "by its method");
+    }
+
+    #[test]
+    fn every_effort_is_taken_by_every_scene() {
+        let plain = built_in("pile").expect("a scene").simulation().expect("a sound scene");
+        assert_eq!(FAST.among(&plain.snapshot().surroundings), FAST.settings);
+        for name in crate::scene::SCENES.iter().map(|scene| scene.name) {
+            let mut run = built_in(name).expect("a scene").simulation().expect("a sound scene");
+            let uses_method = run.settings().stepper.uses_method();
+            for effort in EFFORTS.iter().filter(|_| uses_method) {
+                let solver = effort.among(&run.snapshot().surroundings);
+                run.set_solver(solver).unwrap_or_else(|error| panic!("{name}: {error}"));
+                assert_eq!(solver.max_sweeps, effort.settings.max_sweeps, "{name}");
+            }
+        }
     }
 }

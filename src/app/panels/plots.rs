@@ -53,53 +53,69 @@ fn means_something(state: &AppState, quantity: &Quantity<Observables>) -> bool {
     quantity.name != "slump" || state.slumps()
 }
 
+/// Points that a head in one row takes.
+const WIDE_HEAD: f32 = 480.0;
+
 fn header(ui: &mut Ui, state: &mut AppState) {
+    let is_narrow = ui.available_width() < WIDE_HEAD;
     ui.horizontal(|ui| {
         ui.label(RichText::new("Plots").heading());
-        for quantity in QUANTITIES {
-            if !means_something(state, quantity) {
-                continue;
-            }
-            let mut shown = is_shown(state, quantity);
-            if ui.toggle_value(&mut shown, quantity.name).changed() {
-                let chosen = &mut state.preferences.quantities;
-                chosen.retain(|name| name != quantity.name);
-                chosen.extend(shown.then(|| quantity.name.to_owned()));
-            }
+        if !is_narrow {
+            switches(ui, state);
         }
-        let chosen = &mut state.preferences.chosen_plot;
-        ui.toggle_value(&mut chosen.on, "y over x")
-            .on_hover_text("Any quantity that steps measure against any other.");
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let stem = format!("{}-curves", super::picture::file_stem(state));
-            let folder = state.preferences.folder.clone();
-            let all: Vec<usize> = (0..state.frame.worlds.len()).collect();
-            if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
-                let data = data(ui, state);
-                let size = state.preferences.picture_size;
-                let picture = PlotPicture { data, size, dark: ui.visuals().dark_mode };
-                let export = Export::Plots(Box::new(picture), state.texts_of(&all, false));
-                state.exporter.submit(ui.ctx(), export, &folder, &stem);
-            }
-            if ui.button("CSV").on_hover_text("Save all observables of all worlds; a text beside the table says what they are of.").clicked() {
-                let curves = state.frame.worlds.iter().map(|world| world.curve.clone()).collect();
-                let export = Export::Curves(curves, state.texts_of(&all, false));
-                state.exporter.submit(ui.ctx(), export, &folder, &stem);
-            }
-            if state.frame.worlds.iter().any(|world| world.curve.stride() > 1) {
-                let stride = state.frame.worlds.iter().map(|world| world.curve.stride()).max();
-                let text = format!("every {}th step", stride.unwrap_or(1));
-                ui.label(RichText::new(text).small().weak());
-            }
-            // In the room that is left between both ends.
-            let between = egui::Layout::left_to_right(egui::Align::Center);
-            ui.with_layout(between, |ui| others(ui, state));
-        });
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| files(ui, state));
     });
+    if is_narrow {
+        ui.horizontal_wrapped(|ui| switches(ui, state));
+    }
     let chosen = &mut state.preferences.chosen_plot;
     if chosen.on {
         ui.horizontal(|ui| chosen.choose(ui));
     }
+}
+
+/// What is drawn.
+fn switches(ui: &mut Ui, state: &mut AppState) {
+    for quantity in QUANTITIES {
+        if !means_something(state, quantity) {
+            continue;
+        }
+        let mut shown = is_shown(state, quantity);
+        if ui.toggle_value(&mut shown, quantity.name).changed() {
+            let chosen = &mut state.preferences.quantities;
+            chosen.retain(|name| name != quantity.name);
+            chosen.extend(shown.then(|| quantity.name.to_owned()));
+        }
+    }
+    let chosen = &mut state.preferences.chosen_plot;
+    ui.toggle_value(&mut chosen.on, "y over x")
+        .on_hover_text("Any quantity that steps measure against any other.");
+}
+
+/// From the right: what saves the plots, how they were thinned, and in the room that is left the other piles.
+fn files(ui: &mut Ui, state: &mut AppState) {
+    let stem = format!("{}-curves", super::picture::file_stem(state));
+    let folder = state.preferences.folder.clone();
+    let all: Vec<usize> = (0..state.frame.worlds.len()).collect();
+    if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
+        let data = data(ui, state);
+        let size = state.preferences.picture_size;
+        let picture = PlotPicture { data, size, dark: ui.visuals().dark_mode };
+        let export = Export::Plots(Box::new(picture), state.texts_of(&all, false));
+        state.exporter.submit(ui.ctx(), export, &folder, &stem);
+    }
+    let hint = "Save all observables of all worlds; a text beside the table says what they are of.";
+    if ui.button("CSV").on_hover_text(hint).clicked() {
+        let curves = state.frame.worlds.iter().map(|world| world.curve.clone()).collect();
+        let export = Export::Curves(curves, state.texts_of(&all, false));
+        state.exporter.submit(ui.ctx(), export, &folder, &stem);
+    }
+    if state.frame.worlds.iter().any(|world| world.curve.stride() > 1) {
+        let stride = state.frame.worlds.iter().map(|world| world.curve.stride()).max();
+        let text = format!("every {}th step", stride.unwrap_or(1));
+        ui.label(RichText::new(text).small().weak());
+    }
+    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| others(ui, state));
 }
 
 /// The switch of the other piles, and what they say beside the selected world.

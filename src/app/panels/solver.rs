@@ -10,7 +10,7 @@ use crate::app::theme;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
 use crate::sim::live::WorldFrame;
-use crate::sim::{Observables, REMEDIES, Remedies, Settings};
+use crate::sim::{Observables, REMEDIES, Remedies, Settings, Surroundings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
 /// Shows the panel.
@@ -22,6 +22,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let before = wanted.settings;
     let mut settings = before;
     if before.stepper.uses_method() {
+        if let Some(world) = state.world() {
+            effort_buttons(ui, &mut settings.solver, &world.snapshot.surroundings);
+        }
         method_controls(ui, &mut settings, &start.settings);
     }
     if before.stepper.reads("warm-start") {
@@ -54,7 +57,6 @@ fn about(name: &str) -> &'static About {
 
 /// How a step's problem is solved, and when that is done.
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
-    effort_buttons(ui, &mut settings.solver);
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
         ui.label("Method").on_hover_text("How the impulses of a step are found.");
         method_box(ui, "method", &mut settings.solver);
@@ -105,9 +107,11 @@ fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
 }
 
 /// Care and speed, one click away.
-fn effort_buttons(ui: &mut Ui, solver: &mut SolverSettings) {
+fn effort_buttons(ui: &mut Ui, solver: &mut SolverSettings, surroundings: &Surroundings) {
     ui.horizontal(|ui| {
-        for Effort { name, hint, settings } in EFFORTS {
+        for effort in EFFORTS {
+            let Effort { name, hint, .. } = effort;
+            let settings = effort.among(surroundings);
             let button = egui::Button::selectable(*solver == settings, name);
             if ui.add(button).on_hover_text(hint).clicked() {
                 *solver = settings;

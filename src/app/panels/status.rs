@@ -7,7 +7,6 @@ use crate::app::state::AppState;
 use crate::app::theme;
 use crate::sim::AlarmKind;
 use crate::sim::live::{WorldAlarm, WorldFrame};
-use crate::solver::SolverSettings;
 
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -107,7 +106,7 @@ fn messages(ui: &mut Ui, state: &mut AppState) {
 fn alarm(state: &AppState) -> Option<String> {
     let newest = |index: usize| {
         let world = state.frame.worlds.get(index)?;
-        let is_news = |alarm: &&WorldAlarm| !is_asked_for(alarm, &world.controls.settings.solver);
+        let is_news = |alarm: &&WorldAlarm| !is_asked_for(alarm, world);
         let alarms = || world.alarms.iter().filter(is_news).rev();
         let alarm = alarms().find(|alarm| !alarm.is_earlier).or_else(|| alarms().next())?;
         Some(if state.compares() {
@@ -121,6 +120,7 @@ fn alarm(state: &AppState) -> Option<String> {
 
 /// Whether an alarm says what was chosen with open eyes: so many sweeps a step, solved or not. How many steps were
 /// not solved is told beside it in any case.
-fn is_asked_for(alarm: &WorldAlarm, solver: &SolverSettings) -> bool {
-    alarm.kind == AlarmKind::SweepLimit && *solver == FAST.settings
+fn is_asked_for(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
+    let fast = FAST.among(&world.snapshot.surroundings);
+    alarm.kind == AlarmKind::SweepLimit && world.controls.settings.solver == fast
 }

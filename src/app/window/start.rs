@@ -17,7 +17,7 @@ use crate::scene::{Config, SavedState};
 
 /// Size of a new window, points.
 const SIZE: [f64; 2] = [1280.0, 800.0];
-const LEAST_SIZE: [f64; 2] = [720.0, 480.0];
+const LEAST_SIZE: [f64; 2] = [640.0, 480.0];
 
 /// What is opened first.
 pub(super) enum First {
