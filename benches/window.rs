@@ -5,6 +5,7 @@
 //! ```text
 //! cargo bench --bench window
 //! cargo bench --bench window -- others     # what the world in front loses to other piles alone
+//! cargo bench --bench window -- frames     # frames, steps and pauses of small and large scenes alone
 //! ```
 
 mod common;
@@ -13,8 +14,9 @@ use std::time::{Duration, Instant};
 
 use slump::app::{AppState, Canvas, Preferences, SOFTWARE_FRAME_INTERVAL, theme, ui};
 use slump::scene::Config;
-use slump::sim::live::{Command, Live, LiveOptions, Pace, Start};
+use slump::sim::live::{Command, Frame, Live, LiveOptions, Pace, Start};
 use slump::sim::{Simulation, Tally};
+use slump::solver::{Fallback, Method, SolverSettings, StopTest};
 
 /// Pixels of the window.
 const SIZE: [u32; 2] = [1280, 800];
@@ -69,6 +71,25 @@ impl Window {
         }
     }
 
+    /// How long a run takes to stand still after it is told to, ms: median and worst. Nothing is drawn meanwhile.
+    fn pauses(&mut self) -> [f64; 2] {
+        let mut millis: Vec<f64> = (0..CHANGES)
+            .map(|_| {
+                self.state.live.send(Command::Play);
+                std::thread::sleep(Duration::from_millis(57));
+                let start = Instant::now();
+                let told = self.state.live.send(Command::Pause);
+                let stands = |frame: &Frame| frame.acknowledged >= told && !frame.playing;
+                while !stands(self.state.live.latest()) {
+                    std::thread::sleep(Duration::from_micros(100));
+                }
+                1e3 * start.elapsed().as_secs_f64()
+            })
+            .collect();
+        millis.sort_by(f64::total_cmp);
+        [millis[CHANGES / 2], millis[CHANGES - 1]]
+    }
+
     /// The newest step that the solver has handed out.
     fn newest_step(&mut self) -> u64 {
         let frame = self.state.live.latest();
@@ -112,6 +133,9 @@ fn main() {
     if std::env::args().any(|argument| argument == "others") {
         return beside_other_piles();
     }
+    if std::env::args().any(|argument| argument == "frames") {
+        return frames();
+    }
     frames();
     steps();
     latency();
@@ -153,8 +177,8 @@ fn beside_other_piles() {
 }
 
 fn frames() {
-    for count in [138, 10_000] {
-        let simulation = if count == 138 { pile() } else { common::settled(count) };
+    for count in [138, 10_000, 50_000] {
+        let simulation = if count == 138 { pile() } else { large(count) };
         let mut window = Window::open(simulation);
         window.state.live.send(Command::Play);
         window.wait();
@@ -168,7 +192,24 @@ fn frames() {
         let steps = (window.steps() - first) as f64 / secs;
         let name = window.canvas.name();
         println!("{count} discs: {:.0} frames/s, {steps:.1} steps/s ({name})", drawn as f64 / secs);
+        let [median, worst] = window.pauses();
+        println!("{count} discs: pause to standstill: median {median:.1} ms, worst {worst:.1} ms");
     }
+}
+
+/// Discs that settle, solved as the window does by itself where they are so many: forty sweeps by all cores.
+fn large(count: usize) -> Simulation {
+    let mut simulation = common::settled(count);
+    let settings = SolverSettings {
+        method: Method::NsgsParallel,
+        stop: StopTest::Residual,
+        tolerance: 1e-6,
+        max_sweeps: 40,
+        fallback: Fallback::None,
+        ..*simulation.solver()
+    };
+    simulation.set_solver(settings).expect("proper settings");
+    simulation
 }
 
 fn steps() {
