@@ -72,7 +72,7 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
     for (stepper, method) in every_way() {
         let parameters = parameters(20.0, 1e-3, 0.3, 0.5);
         let mut scene =
-            scene(Physics::FULL, -G * DVec2::Y, parameters, (0..110 * 90).map(at).collect());
+            scene(Physics::FULL, -G * DVec2::Y, parameters, (0..110 * 160).map(at).collect());
         (scene.stepper, scene.solver.method, scene.solver.max_sweeps) = (stepper, method, 3);
         // What a direct method does is its own; three steps of it would take the time of all the others.
         if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {
