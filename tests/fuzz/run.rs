@@ -5,7 +5,7 @@ use slump::error::Error;
 use slump::scene::Scene;
 use slump::sim::{AlarmKind, Observables, Simulation};
 use slump::solver::StopTest;
-use slump::world::Boundary;
+use slump::world::{Boundary, Periodic};
 
 const STEPS: u32 = 50;
 /// Of its radius, what a grain may be beyond a wall before anyone looks.
@@ -117,6 +117,12 @@ fn is_far(scene: &Scene, place: DVec2) -> bool {
     fixed.extend(scene.grains.iter().map(|grain| grain.position));
     let min = fixed.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let max = fixed.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+    // A cell whose borders wrap belongs to the box: a wide one has a world as wide, and as high.
+    let Periodic { x, y, .. } = scene.periodic.unwrap_or_default();
+    let [left, right] = x.unwrap_or([min.x, max.x]);
+    let [below, above] = y.unwrap_or([min.y, max.y]);
+    let min = min.min(DVec2::new(left, below));
+    let max = max.max(DVec2::new(right, above));
     let room = FAR_IN_SIDES * ((max - min).max_element() + scene.mean_diameter);
     !((min - room).cmple(place).all() && (max + room).cmpge(place).all())
 }

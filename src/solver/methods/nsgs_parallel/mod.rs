@@ -52,6 +52,21 @@ pub(super) struct BlockMemory {
     sums: Vec<f64>,
 }
 
+impl BlockMemory {
+    /// Adds up what blocks come to with their slots, tile by tile, then that of those between tiles.
+    fn sum(
+        &mut self,
+        threads: bool,
+        add_up: impl Fn((&mut [Block], usize), &mut [Slot]) -> f64 + Sync,
+    ) -> f64 {
+        let Self { layout, sums, .. } = self;
+        let Layout { tiles, blocks, slots, singles_between, .. } = layout;
+        let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
+        for_each_tile(threads, tiles, in_tiles, slots, sums, &add_up);
+        sums.iter().sum::<f64>() + add_up((between, *singles_between), slots)
+    }
+}
+
 /// Solves a prepared problem by sweeps.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
@@ -153,40 +168,29 @@ impl<'a, M: Model> Tiled<'a, M> {
     }
 
     fn squared_error(&mut self) -> f64 {
-        let Self { level, threads, problem, memory, .. } = self;
-        let (level, law) = (*level, [problem.friction, problem.capture_speed]);
-        let BlockMemory { layout, sums, .. } = &mut **memory;
-        let Layout { tiles, blocks, slots, singles_between, .. } = layout;
-        let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
-        let add_up = |(blocks, singles): (&mut [Block], usize), slots: &mut [Slot]| {
+        let (level, law) = (self.level, [self.problem.friction, self.problem.capture_speed]);
+        self.memory.sum(self.threads, |(blocks, singles), slots| {
             let blocks = (&*blocks, singles);
             dispatch!(level, simd => squared_error::<_, M>(simd, law, blocks, slots))
-        };
-        for_each_tile(*threads, tiles, in_tiles, slots, sums, &add_up);
-        sums.iter().sum::<f64>() + add_up((between, *singles_between), slots)
+        })
     }
 
     /// Σ P², (N·s)².
     fn squared_impulses(&mut self) -> f64 {
-        let Self { threads, problem, memory, .. } = self;
-        let StepProblem { captures, capture_speed, .. } = &**problem;
-        let BlockMemory { layout, sums, .. } = &mut **memory;
-        let Layout { tiles, blocks, slots, places, .. } = layout;
-        let the_same = [*capture_speed; LANES];
+        let StepProblem { captures, capture_speed, .. } = &*self.problem;
         if captures.is_empty() {
-            let add_up = |(blocks, _): (&mut [Block], usize), _: &mut [Slot]| {
-                blocks.iter().map(|block| block.squared_impulses(the_same)).sum::<f64>()
-            };
-            let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
-            for_each_tile(*threads, tiles, in_tiles, slots, sums, &add_up);
-            return sums.iter().sum::<f64>() + add_up((between, 0), slots);
+            let the_same = [*capture_speed; LANES];
+            return self.memory.sum(self.threads, |(blocks, _), _| {
+                blocks.iter().map(|block| block.squared_impulses(the_same)).sum()
+            });
         }
+        let Layout { blocks, places, .. } = &self.memory.layout;
         let of_block = |(block, place): (&Block, &std::ops::Range<u32>)| {
             let first = place.start as usize;
             let capture = |lane: usize| *captures.get(first + lane).unwrap_or(capture_speed);
             block.squared_impulses(std::array::from_fn::<_, LANES, _>(capture))
         };
-        blocks.iter().zip(&*places).map(of_block).sum()
+        blocks.iter().zip(places).map(of_block).sum()
     }
 
     /// Gives rows and bodies what became of them.
