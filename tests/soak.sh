@@ -10,50 +10,17 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${SLUMP:-target/release/slump}
 seconds=${1:-60}
-work=$(mktemp -d)
-state=$work/state.json
-export XDG_CONFIG_HOME=$work/config XDG_CACHE_HOME=$work/cache
-[ -n "${XDG_RUNTIME_DIR:-}" ] || { export XDG_RUNTIME_DIR=$work/runtime; mkdir -m 700 "$XDG_RUNTIME_DIR"; }
-unset WAYLAND_DISPLAY
+. tests/display.sh
 
-window=
-server=
-cleanup() {
-    [ -z "$window" ] || kill "$window" 2>/dev/null || true
-    [ -z "$server" ] || kill "$server" 2>/dev/null || true
-    rm -rf "$work"
-}
-trap cleanup EXIT
-
-fail() {
-    echo "soak.sh: $1" >&2
-    exit 1
-}
-
-Xvfb -displayfd 4 -screen 0 1280x800x24 4> "$work/display" > "$work/xvfb.log" 2>&1 &
-server=$!
-for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
-[ -s "$work/display" ] || fail "Xvfb does not start"
-export DISPLAY=:$(cat "$work/display")
-
-value() { python3 -c "import json,sys; s=json.load(open('$state')); print($1)"; }
-wait_for() {
-    for _ in $(seq 300); do
-        if [ -s "$state" ] && [ "$(value "$2" 2>/dev/null)" = True ]; then return; fi
-        kill -0 "$window" 2>/dev/null || fail "the window is gone while waiting for $1"
-        sleep 0.1
-    done
-    fail "waited in vain for $1"
-}
-at() { value "'%d %d' % (lambda c: ((c[0] + c[2]) / 2, (c[1] + c[3]) / 2))(s['controls']['$1'])"; }
+screen 1280x800
 resident_mib() { awk '/^VmRSS/ { print int($2 / 1024) }' "/proc/$window/status"; }
 
 # The pile slumps, comes to rest and goes on: a play that has come to its end goes on beyond it.
 "$program" --reset-ui --bond 20 --dt 2e-3 --max-sweeps 20 --duration 1e6 --export-state "$state" > "$work/log" 2>&1 &
 window=$!
 wait_for "the pile" "s['scene'] == 'pile'"
-xdotool mousemove $(at max) click 1
-xdotool mousemove $(at scene)
+xdotool mousemove $(at max 0.5) click 1
+xdotool mousemove $(at scene 0.5)
 sleep 1
 xdotool search --name Slump windowfocus
 xdotool key space

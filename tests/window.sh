@@ -17,26 +17,7 @@ cd "$(dirname "$0")/.."
 program=${SLUMP:-target/release/slump}
 shots=${1:-target/window}
 mkdir -p "$shots"
-work=$(mktemp -d)
-state=$work/state.json
-export XDG_CONFIG_HOME=$work/config XDG_CACHE_HOME=$work/cache
-[ -n "${XDG_RUNTIME_DIR:-}" ] || { export XDG_RUNTIME_DIR=$work/runtime; mkdir -m 700 "$XDG_RUNTIME_DIR"; }
-unset WAYLAND_DISPLAY
-
-window=
-server=
-cleanup() {
-    [ -z "$window" ] || kill "$window" 2>/dev/null || true
-    [ -z "$server" ] || kill "$server" 2>/dev/null || true
-    rm -rf "$work"
-}
-trap cleanup EXIT
-
-fail() {
-    echo "window.sh: $1" >&2
-    [ ! -s "$work/log" ] || sed 's/^/    /' "$work/log" >&2
-    exit 1
-}
+. tests/display.sh
 
 # Without a display, one sentence says what is missing.
 if env -u DISPLAY "$program" --reset-ui > /dev/null 2> "$work/log"; then
@@ -45,33 +26,7 @@ fi
 grep -q -- "--headless" "$work/log" || fail "a missing display is not explained"
 [ "$(wc -l < "$work/log")" -eq 1 ] || fail "a missing display takes more than one sentence"
 
-# screen WIDTHxHEIGHT: a display of that size in place of the one before, by any number that is free.
-screen() {
-    [ -z "$server" ] || kill "$server" 2>/dev/null || true
-    rm -f "$work/display"
-    Xvfb -displayfd 4 -screen 0 "$1x24" 4> "$work/display" > "$work/xvfb.log" 2>&1 &
-    server=$!
-    for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
-    [ -s "$work/display" ] || fail "Xvfb does not start"
-    export DISPLAY=:$(cat "$work/display")
-}
 screen 1280x800
-
-# value EXPRESSION: a value of the exported state; s is the state.
-value() { python3 -c "import json,sys; s=json.load(open('$state')); print($1)"; }
-
-# wait_for WHAT EXPRESSION: until the expression is true.
-wait_for() {
-    for _ in $(seq 300); do
-        if [ -s "$state" ] && [ "$(value "$2" 2>/dev/null)" = True ]; then return; fi
-        kill -0 "$window" 2>/dev/null || fail "the window is gone while waiting for $1"
-        sleep 0.1
-    done
-    fail "waited in vain for $1"
-}
-
-# at CONTROL PART: the pixel at a part of the width of a control.
-at() { value "'%d %d' % (lambda c: (c[0] + $2 * (c[2] - c[0]), (c[1] + c[3]) / 2))(s['controls']['$1'])"; }
 
 "$program" --reset-ui --bond 20 --dt 1e-3 --frames "$work/out" --export-state "$state" > "$work/log" 2>&1 &
 window=$!

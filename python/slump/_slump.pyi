@@ -52,6 +52,7 @@ class _Settings(TypedDict):
     friction_model: Literal["coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
     fallback: Literal["of-method", "none", "tresca"]
+    islands: bool
     push_out: bool
     max_travel: float
     calm_unsolved: bool
@@ -80,6 +81,7 @@ class _Changes(TypedDict, total=False):
     friction_model: Literal["coulomb", "tresca", "associated", "desaxce"] | None
     model_solves: int | None
     fallback: Literal["of-method", "none", "tresca"] | None
+    islands: bool | None
     push_out: bool | None
     max_travel: float | None
     calm_unsolved: bool | None
@@ -108,6 +110,7 @@ class _Attributes:
     friction_model: Literal["coulomb", "tresca", "associated", "desaxce"]
     model_solves: int
     fallback: Literal["of-method", "none", "tresca"]
+    islands: bool
     push_out: bool
     max_travel: float
     calm_unsolved: bool

@@ -7,6 +7,7 @@ mod contact_list;
 mod corners;
 mod features;
 mod grid;
+mod joined;
 mod lanes;
 pub(crate) mod law;
 mod look_ahead;
@@ -23,6 +24,7 @@ pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
 pub(crate) use features::Feature;
 #[doc(hidden)]
 pub use grid::Grid;
+pub(crate) use joined::JoinedGrains;
 pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;

@@ -1,8 +1,7 @@
-//! Sets of grains that contacts join. Bodies that no grain moves join none: what lies on one floor is not one cluster.
-
-use ena::unify::{InPlaceUnificationTable, UnifyKey};
+//! Sets of grains that contacts join, and how large they are.
 
 use super::network::Network;
+use crate::contact::JoinedGrains;
 
 pub(super) struct Clusters {
     pub count: u32,
@@ -10,40 +9,17 @@ pub(super) struct Clusters {
     pub largest: u32,
 }
 
-/// A grain in the table of sets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Member(u32);
-
-impl UnifyKey for Member {
-    type Value = ();
-
-    fn index(&self) -> u32 {
-        self.0
-    }
-
-    fn from_index(index: u32) -> Self {
-        Self(index)
-    }
-
-    fn tag() -> &'static str {
-        "grain"
-    }
-}
-
 impl Clusters {
     pub(super) fn of(network: &Network) -> Self {
-        let mut sets = InPlaceUnificationTable::<Member>::new();
-        for _ in network.grains {
-            sets.new_key(());
-        }
+        let mut sets = JoinedGrains::apart(network.grains.len());
         for link in &network.links {
             if let Some(other) = link.other {
-                sets.union(Member(link.grain as u32), Member(other as u32));
+                sets.join(link.grain as u32, other as u32);
             }
         }
         let mut sizes = vec![0; network.grains.len()];
         for (index, _) in network.grains() {
-            sizes[sets.find(Member(index as u32)).0 as usize] += 1;
+            sizes[sets.of(index as u32) as usize] += 1;
         }
         Self {
             count: sizes.iter().filter(|&&size| size > 0).count() as u32,

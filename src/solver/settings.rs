@@ -150,6 +150,14 @@ settings! {
                 ..Control::PLAIN
             }),
         }
+        /// Solve grains that no contact joins to each other by themselves.
+        #[serde(default, skip_serializing_if = "is_default")]
+        islands: bool = false, {
+            name: "islands",
+            value_name: "BOOL",
+            help: "Whether grains that no contact joins to the others are solved by themselves, and fall back \
+                   by themselves: pays where a scene has several heaps",
+        }
     }
 }
 
@@ -180,6 +188,7 @@ impl SolverSettings {
             friction_model: FrictionModel::Coulomb,
             model_solves: 1,
             fallback: Fallback::None,
+            islands: false,
         }
     }
 
@@ -190,7 +199,11 @@ impl SolverSettings {
     /// Names the field, its value and what it may be.
     pub(crate) fn validate(&self) -> Result<()> {
         self.validate_each()?;
-        let Self { method, friction_model, model_solves, .. } = *self;
+        let Self { method, friction_model, model_solves, islands, .. } = *self;
+        if islands && !method.takes_islands() {
+            let allowed = format!("false where solver is {method}, which works by tiles");
+            return Err(Error::value("islands", islands, allowed));
+        }
         if friction_model != FrictionModel::Coulomb && !method.info().takes_models {
             let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
             let takers: Vec<_> = takers.collect();
@@ -229,9 +242,10 @@ impl SolverSettings {
         Self { friction_model: FrictionModel::Coulomb, model_solves: 1, ..self }
     }
 
-    /// The same by another method, under Coulomb's law where that takes no other.
+    /// The same by another method, under Coulomb's law where that takes no other, and of all islands together where it
+    /// takes none by itself.
     pub fn by(self, method: Method) -> Self {
-        let by_it = Self { method, ..self };
+        let by_it = Self { method, islands: self.islands && method.takes_islands(), ..self };
         if method.info().takes_models { by_it } else { by_it.with_coulombs_law() }
     }
 }

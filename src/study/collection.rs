@@ -25,6 +25,7 @@ pub(super) const ADVANCE: SolverSettings = SolverSettings {
     friction_model: FrictionModel::Coulomb,
     model_solves: 1,
     fallback: Fallback::None,
+    islands: false,
 };
 
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.

@@ -40,6 +40,7 @@ pub(crate) const PILE_SOLVER: SolverSettings = SolverSettings {
     friction_model: FrictionModel::Coulomb,
     model_solves: 1,
     fallback: Fallback::OfMethod,
+    islands: false,
 };
 
 /// All runs, dearest first.

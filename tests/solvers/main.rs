@@ -6,5 +6,6 @@ mod common;
 mod colours;
 mod contact_system;
 mod detection;
+mod islands;
 mod methods;
 mod solver_properties;

@@ -7,6 +7,7 @@ mod apgd;
 mod auto;
 mod info;
 mod interior_point;
+mod islands;
 mod jacobi;
 mod method;
 mod newton;
@@ -17,10 +18,10 @@ mod report;
 mod shared;
 
 use std::fmt;
-use std::marker::PhantomData;
 
 pub(crate) use self::auto::picked;
 pub use self::info::{MethodInfo, MethodOrder};
+use self::islands::IslandMemory;
 pub use self::method::Method;
 #[doc(hidden)]
 pub use self::nsgs::sweep;
@@ -31,6 +32,7 @@ pub(crate) use self::shared::contact_system::Vectors;
 pub use self::shared::contact_system::{ContactSystem, Pairs};
 pub(super) use self::shared::iterate::sweep_until_settled;
 use super::friction_model::FrictionModel;
+use super::ordering::Ordering;
 use super::problem::{Kinematics, Model, StepProblem};
 use super::settings::SolverSettings;
 use crate::setting::{Kind, Settable, Value, Word};
@@ -51,7 +53,7 @@ macro_rules! methods {
         #[derive(Clone, Debug, Default)]
         pub struct Memory<K: Kinematics> {
             $($module: $memory,)*
-            kinematics: PhantomData<K>,
+            islands: IslandMemory<K>,
         }
 
         impl Method {
@@ -91,6 +93,11 @@ impl Method {
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         self.info().name
+    }
+
+    /// Whether it can be had island by island: tiles that threads share are laid over all of a problem.
+    pub(super) fn takes_islands(self) -> bool {
+        self.info().order != MethodOrder::Always(Ordering::Coloured)
     }
 
     /// Whether the order of the settings tells the method in which order to sweep.
@@ -155,11 +162,20 @@ pub fn solve<M: Model>(
         // An earlier solve of the same problem fell back.
         problem.forget_bounds();
     }
-    let report = solve_by_method::<M>(problem, memory, settings);
+    // Walls that a force drives join what they touch.
+    let islands = settings.islands && !problem.is_driven() && memory.islands.divide(problem);
+    let report = if islands {
+        memory.islands.solve::<M>(problem, settings)
+    } else {
+        solve_by_method::<M>(problem, memory, settings)
+    };
     // What solves bounds of friction knows of no walls that a force drives.
     let falls_back = M::FRICTION && settings.falls_back() && !problem.is_driven();
     if report.converged || !falls_back {
         return report;
+    }
+    if islands {
+        return memory.islands.fall_back::<M>(problem);
     }
     interior_point::fall_back::<M>(problem, &mut memory.interior_point, report)
 }

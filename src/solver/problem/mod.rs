@@ -5,6 +5,7 @@ mod driven_walls;
 mod duality;
 mod groups;
 mod held;
+mod islands;
 pub(super) mod kinematics;
 mod measure;
 mod model;
@@ -18,6 +19,7 @@ mod tiles;
 
 pub(crate) use self::driven::{DrivenBy, DrivenRow, DrivenWall};
 pub(crate) use self::held::{Bound, Held, LawNumbers, Opening};
+pub(crate) use self::islands::{Island, Islands};
 pub use self::kinematics::Kinematics;
 pub use self::kinematics::line::{Line, LineBody};
 pub use self::kinematics::plane::{Plane, PlaneBody, SpinningPlane};

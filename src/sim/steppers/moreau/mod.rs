@@ -32,6 +32,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
         "friction-model",
         "model-solves",
         "fallback",
+        "islands",
     ],
     takes_drives: true,
     ..StepperInfo::WHOLE

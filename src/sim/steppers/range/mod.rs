@@ -53,6 +53,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
         "max-sweeps",
         "warm-start",
         "fallback",
+        "islands",
     ],
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.
