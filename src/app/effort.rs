@@ -1,7 +1,5 @@
 //! How well steps are solved: what the window begins with, and what else is one click away.
 
-use glam::DVec2;
-
 use crate::scene::{Config, Scene};
 use crate::sim::Surroundings;
 use crate::solver::{Fallback, Method, SolverChanges, SolverSettings};
@@ -27,7 +25,7 @@ impl Effort {
     pub(super) fn among(&self, surroundings: &Surroundings) -> SolverSettings {
         let info = self.settings.method.info();
         let shears = surroundings.periodic.is_some_and(Periodic::is_sheared);
-        let is_driven = surroundings.moving.iter().any(|motion| motion.force != DVec2::ZERO);
+        let is_driven = surroundings.moving.iter().any(|motion| motion.is_driven);
         if (shears && !info.takes_shear) || (is_driven && !info.takes_drives) {
             return self.settings.by(Method::Nsgs);
         }
@@ -108,8 +106,18 @@ mod tests {
     fn every_effort_is_taken_by_every_scene() {
         let plain = built_in("pile").expect("a scene").simulation().expect("a sound scene");
         assert_eq!(FAST.among(&plain.snapshot().surroundings), FAST.settings);
-        for name in crate::scene::SCENES.iter().map(|scene| scene.name) {
-            let mut run = built_in(name).expect("a scene").simulation().expect("a sound scene");
+        let mut scenes: Vec<_> = crate::scene::SCENES
+            .iter()
+            .map(|scene| built_in(scene.name).expect("a scene"))
+            .collect();
+        let mut unforced = built_in("shear").expect("a scene");
+        let drives = unforced.motions.iter_mut().filter_map(|motion| motion.drive.as_mut());
+        let forces = drives.map(|drive| (drive.force, drive.pressure) = (Some(0.0), None));
+        assert!(forces.count() > 0, "a wall that nothing but grains pushes is driven, too");
+        scenes.push(unforced);
+        for scene in scenes {
+            let name = &scene.name;
+            let mut run = scene.simulation().expect("a sound scene");
             let uses_method = run.settings().stepper.uses_method();
             for effort in EFFORTS.iter().filter(|_| uses_method) {
                 let solver = effort.among(&run.snapshot().surroundings);

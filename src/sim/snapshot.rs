@@ -60,7 +60,10 @@ pub struct MotionView {
     pub pivot: DVec2,
     /// Of a surface that goes round it, m/s, along the outward normal turned by +90°.
     pub surface_speed: f64,
-    /// What drives it, N.
+    /// Whether a force drives it, be it none for the moment.
+    #[serde(default)]
+    pub is_driven: bool,
+    /// That force, N.
     pub force: DVec2,
 }
 
@@ -82,6 +85,7 @@ impl MotionView {
                 angular_velocity: course.spin,
                 pivot: course.pivot,
                 surface_speed: motion.surface_speed,
+                is_driven: drive.is_some(),
                 force: drive
                     .map_or(DVec2::ZERO, |drive| drive.force_in(world.periodic) * drive.axis()),
             }

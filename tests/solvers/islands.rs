@@ -1,16 +1,13 @@
 //! Heaps that do not touch: solved island by island, each is what it would be without the others.
 
 use glam::DVec2;
-use slump::contact::ContactList;
 use slump::scene::Scene;
-use slump::sim::{ProblemVisitor, Simulation};
-use slump::solver::{
-    Fallback, FrictionModel, METHODS, Memory, Method, Model, Ordering, SolveReport, SolverSettings,
-    StepProblem, StopTest, solve,
-};
+use slump::sim::Simulation;
+use slump::solver::{Fallback, FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 use slump::world::{Grain, Physics};
 
 use super::common::{G, parameters, pressed_pile, scene, start, take_steps};
+use super::methods::SolveTwice;
 
 const DIAMETER: f64 = 5e-3;
 
@@ -113,23 +110,6 @@ fn one_island_is_the_whole_to_the_last_bit() {
     }
 }
 
-/// How a problem is solved island by island, and how one sweep over all of it goes from there.
-struct ThenOneSweep(SolverSettings);
-
-impl ProblemVisitor for ThenOneSweep {
-    type Output = [SolveReport; 2];
-
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Self::Output {
-        let mut memory = Memory::default();
-        let one = SolverSettings { islands: false, max_sweeps: 1, ..self.0 };
-        [self.0, one].map(|settings| solve::<M>(problem, &mut memory, &settings))
-    }
-}
-
 #[test]
 fn where_each_island_passes_a_test_the_whole_does() {
     for stop in StopTest::ALL {
@@ -137,7 +117,8 @@ fn where_each_island_passes_a_test_the_whole_does() {
         let mut simulation = start(&Scene { solver: settings, ..heaps(&SIZES) });
         let mut solved = 0;
         for _ in 0..20 {
-            let [by_islands, sweep] = simulation.next_problem(ThenOneSweep(settings));
+            let one_sweep = SolverSettings { islands: false, max_sweeps: 1, ..settings };
+            let [by_islands, sweep] = simulation.next_problem(SolveTwice(settings, one_sweep));
             if by_islands.converged && by_islands.sweeps > 3 {
                 solved += 1;
                 assert!(sweep.converged, "{stop:?} {sweep:?} after {by_islands:?}");

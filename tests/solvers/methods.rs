@@ -124,7 +124,7 @@ impl ProblemVisitor for Solve {
 }
 
 /// How a problem is solved by the first settings, and then by the second from there.
-struct SolveTwice(SolverSettings, SolverSettings);
+pub struct SolveTwice(pub SolverSettings, pub SolverSettings);
 
 impl ProblemVisitor for SolveTwice {
     type Output = [SolveReport; 2];
