@@ -3,25 +3,14 @@
 mod common;
 
 use common::{
-    G, SMOOTH, assert_close, every_way, fixed, moving, parameters, pressed_pile, scene, start,
-    take_steps, tight, to_residual,
+    G, SMOOTH, assert_close, bits, every_way, fixed, moving, parameters, pressed_pile, scene,
+    start, take_steps, tight, to_residual,
 };
 use glam::DVec2;
 use slump::scene::{Scene, paper_pile};
 use slump::sim::Simulation;
 use slump::solver::{Method, SolverSettings};
-use slump::world::{Disc, Grain, Grains, Physics};
-
-/// Two states with the same bits: `==` would take −0 for 0 and a NaN for a difference.
-fn same_bits(a: &Grains, b: &Grains) -> bool {
-    let bits = |grains: &Grains| {
-        let vectors = grains.positions.iter().chain(&grains.velocities);
-        let numbers = grains.angles.iter().chain(&grains.angular_velocities);
-        let vectors = vectors.flat_map(|vector| vector.to_array()).map(f64::to_bits);
-        vectors.chain(numbers.map(|number| number.to_bits())).collect::<Vec<u64>>()
-    };
-    bits(a) == bits(b)
-}
+use slump::world::{Disc, Grain, Physics};
 
 fn collapse() -> Scene {
     let mut scene = paper_pile().expect("the shipped state");
@@ -41,7 +30,7 @@ fn a_run_repeats_bitwise_alone_and_in_pools_of_threads() {
     let first = run(&collapse(), 200);
     assert!(first.observables().slump > 0.02, "the pile has moved");
     let again = run(&collapse(), 200);
-    assert!(same_bits(&first.world().grains, &again.world().grains));
+    assert!(bits(&first) == bits(&again));
     assert_eq!(first.observables(), again.observables());
     for threads in [1, 4] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -50,7 +39,7 @@ fn a_run_repeats_bitwise_alone_and_in_pools_of_threads() {
             (0..3).into_par_iter().map(|_| run(&collapse(), 200)).collect()
         });
         for inside in runs {
-            assert!(same_bits(&first.world().grains, &inside.world().grains), "{threads} threads");
+            assert!(bits(&first) == bits(&inside), "{threads} threads");
             assert_eq!(first.observables(), inside.observables(), "{threads} threads");
         }
     }
@@ -87,7 +76,7 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
         );
         assert_eq!(shared.contacts().contacts(), by_one.contacts().contacts(), "{what}");
         assert_eq!(shared.contacts().impulses(), by_one.contacts().impulses(), "{what}");
-        assert!(same_bits(&shared.world().grains, &by_one.world().grains), "{what}");
+        assert!(bits(&shared) == bits(&by_one), "{what}");
         assert_eq!(shared.observables(), by_one.observables(), "{what}");
     }
 }
@@ -99,7 +88,7 @@ fn a_clone_goes_on_as_the_original_does() {
     let mut clone = original.clone();
     take_steps(&mut original, 200);
     take_steps(&mut clone, 200);
-    assert!(same_bits(&original.world().grains, &clone.world().grains));
+    assert!(bits(&original) == bits(&clone));
     assert_eq!(original.contacts().impulses(), clone.contacts().impulses());
     assert_eq!(original.observables(), clone.observables());
 }

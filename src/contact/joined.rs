@@ -2,6 +2,8 @@
 
 use ena::unify::{InPlaceUnificationTable, UnifyKey};
 
+use super::Contact;
+
 /// A grain in the table of sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Member(u32);
@@ -42,4 +44,17 @@ impl JoinedGrains {
     pub(crate) fn of(&mut self, grain: u32) -> u32 {
         self.0.find(Member(grain)).0
     }
+}
+
+/// Contacts of the set of grains that has most of them, among so many grains.
+pub(crate) fn most_contacts_joined(contacts: &[Contact], grains: usize) -> usize {
+    let mut sets = JoinedGrains::apart(grains);
+    for contact in contacts.iter().filter(|contact| (contact.other as usize) < grains) {
+        sets.join(contact.grain, contact.other);
+    }
+    let mut counts = vec![0; grains];
+    for contact in contacts {
+        counts[sets.of(contact.grain) as usize] += 1;
+    }
+    counts.into_iter().max().unwrap_or(0)
 }

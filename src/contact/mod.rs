@@ -24,7 +24,7 @@ pub use contact_list::{Contact, ContactList, ContactMemory, Impulse};
 pub(crate) use features::Feature;
 #[doc(hidden)]
 pub use grid::Grid;
-pub(crate) use joined::JoinedGrains;
+pub(crate) use joined::{JoinedGrains, most_contacts_joined};
 pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;

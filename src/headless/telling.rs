@@ -56,8 +56,9 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
 /// Says on stderr which method `auto` took at last.
 pub(super) fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
     if scene.solver.method == Method::Auto {
-        let contacts = simulation.contacts().contacts().len();
+        let contacts = simulation.contacts_together();
         let name = simulation.picked_method().name();
-        note_line(format_args!("auto took {name} for {contacts} contacts"));
+        let of = if scene.solver.islands { " of the largest island" } else { "" };
+        note_line(format_args!("auto took {name} for {contacts} contacts{of}"));
     }
 }

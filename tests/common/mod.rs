@@ -129,6 +129,17 @@ pub fn start(scene: &Scene) -> Simulation {
     scene.simulation().expect("a proper scene")
 }
 
+/// Where grains are and how they move, bit by bit: `==` would take −0 for 0 and a NaN for a difference.
+pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
+    let grains = &simulation.world().grains;
+    let of = |k: usize| {
+        let [at, velocity] = [grains.positions[k], grains.velocities[k]];
+        let turn = [grains.angles[k], grains.angular_velocities[k]];
+        [at.x, at.y, velocity.x, velocity.y, turn[0], turn[1]].map(f64::to_bits)
+    };
+    (0..grains.len()).map(of).collect()
+}
+
 /// Takes `count` steps.
 pub fn take_steps(simulation: &mut Simulation, count: usize) {
     for _ in 0..count {

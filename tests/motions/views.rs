@@ -2,12 +2,13 @@
 //! piston; on left and right.
 
 use super::common::{
-    assert_close, at_rest_and_falling, every_way, fixed, parameters, pressed_pile, scene, start,
+    assert_close, at_rest_and_falling, bits, every_way, fixed, parameters, pressed_pile, scene,
+    start,
 };
 use super::{belt, goes, level, straight};
 use glam::DVec2;
 use slump::scene::Scene;
-use slump::sim::{Remedies, Simulation, Stepper};
+use slump::sim::{Remedies, Stepper};
 use slump::solver::Method;
 use slump::world::{Boundary, Disc, Grain, Gravity, Motion, MotionCourse, Physics};
 
@@ -83,13 +84,6 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
         }
     }
     assert!(differences.is_empty(), "{differences:?}");
-}
-
-fn bits(simulation: &Simulation) -> Vec<u64> {
-    let grains = &simulation.world().grains;
-    let vectors = grains.positions.iter().chain(&grains.velocities);
-    let numbers = vectors.flat_map(|it| it.to_array()).chain(grains.angular_velocities.clone());
-    numbers.map(f64::to_bits).collect()
 }
 
 /// Two walls of a box with grains between them that come nearer, then stay.

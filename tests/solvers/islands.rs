@@ -6,7 +6,7 @@ use slump::sim::Simulation;
 use slump::solver::{Fallback, FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 use slump::world::{Grain, Physics};
 
-use super::common::{G, parameters, pressed_pile, scene, start, take_steps};
+use super::common::{G, bits, parameters, pressed_pile, scene, start, take_steps};
 use super::methods::SolveTwice;
 
 const DIAMETER: f64 = 5e-3;
@@ -68,16 +68,6 @@ fn after_steps(scene: &Scene, solver: SolverSettings, steps: usize) -> Simulatio
     simulation
 }
 
-/// Where the grains of a simulation are and how they move, bit by bit.
-fn bits(simulation: &Simulation) -> Vec<[u64; 5]> {
-    let grains = &simulation.world().grains;
-    let of = |k: usize| {
-        let [at, velocity] = [grains.positions[k], grains.velocities[k]];
-        [at.x, at.y, velocity.x, velocity.y, grains.angular_velocities[k]].map(f64::to_bits)
-    };
-    (0..grains.len()).map(of).collect()
-}
-
 fn methods() -> impl Iterator<Item = Method> {
     METHODS.iter().map(|info| info.method).filter(|&method| method != Method::NsgsParallel)
 }
@@ -97,6 +87,22 @@ fn each_heap_moves_bitwise_as_it_would_alone() {
         }
     }
     assert!(felt >= 12, "heaps felt each other's tests in {felt} of 16 ways that know no islands");
+}
+
+#[test]
+fn auto_is_told_by_the_largest_island() {
+    let settings = |islands| SolverSettings {
+        method: Method::Auto,
+        islands,
+        ..island_by_island(Method::Nsgs, StopTest::Residual)
+    };
+    let heaps = heaps(&(0..16).map(|place| (place, 50)).collect::<Vec<_>>());
+    let [by_islands, whole] =
+        [true, false].map(|islands| after_steps(&heaps, settings(islands), 3));
+    let [most, all] = [&by_islands, &whole].map(|it| it.contacts_together());
+    assert!(all > 1_000 && most < 200, "{most} of {all} contacts");
+    assert_eq!(by_islands.picked_method(), Method::Newton);
+    assert_eq!(whole.picked_method(), Method::Nncg);
 }
 
 #[test]

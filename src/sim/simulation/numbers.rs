@@ -1,6 +1,7 @@
 //! What the numbers of a simulation's settings come to in its world.
 
 use super::Simulation;
+use crate::contact::most_contacts_joined;
 use crate::sim::Settings;
 use crate::sim::steppers::FractureWork;
 use crate::solver::{Method, picked};
@@ -12,11 +13,26 @@ impl Simulation {
         (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)
     }
 
-    /// The method that solves a problem as large as that of the last step: that of the settings, or the one that
-    /// `auto` picks.
+    /// The method that solves a problem as large as that of the last step, or as its largest island where islands are
+    /// solved by themselves: that of the settings, or the one that `auto` picks.
     pub fn picked_method(&self) -> Method {
-        let is_driven = self.state.world.motions.iter().any(|motion| motion.drive.is_some());
-        picked(&self.settings.solver, self.state.contacts.contacts().len(), is_driven)
+        picked(&self.settings.solver, self.contacts_together(), self.is_driven())
+    }
+
+    /// Contacts of the largest problem that the method was given in the last step: all, or those of the largest
+    /// island.
+    pub fn contacts_together(&self) -> usize {
+        let contacts = self.state.contacts.contacts();
+        if self.settings.solver.islands && !self.is_driven() {
+            most_contacts_joined(contacts, self.state.world.grains.len())
+        } else {
+            contacts.len()
+        }
+    }
+
+    /// Whether a force drives a wall.
+    fn is_driven(&self) -> bool {
+        self.state.world.motions.iter().any(|motion| motion.drive.is_some())
     }
 
     /// The longest substep, s, with which the springs of the next step are surely stable; none
