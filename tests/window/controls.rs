@@ -1,7 +1,7 @@
 //! Sliders, fields, buttons and keys reach the solver's thread.
 
 use egui_kittest::kittest::Queryable;
-use slump::scene::Config;
+use slump::scene::{Config, Deposition, Origin};
 
 use crate::robot::{File, Robot, bits, pile};
 
@@ -228,4 +228,29 @@ fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
     });
     let line = robot.state().command_line().expect("a command line");
     assert!(line.contains("--grains 600") && line.contains("--deposition drop-and-roll"), "{line}");
+}
+
+#[test]
+fn a_large_pile_that_is_swept_is_offered_what_is_certain() {
+    let origin = Origin {
+        grains: Some(2_100),
+        box_width: Some(61.0),
+        deposition: Some(Deposition::DropAndRoll),
+        ..Origin::default()
+    };
+    let mut robot = Robot::open(Config { origin, ..Config::default() });
+    for section in ["Physics", "Run", "Solver"] {
+        robot.click(section);
+    }
+    let offered = "Certified solves each step";
+    assert!(robot.harness.query_by_label_contains(offered).is_none(), "no step yet");
+    robot.state_mut().step();
+    robot.settle();
+    assert!(robot.harness.query_by_label_contains(offered).is_some(), "after 40 sweeps");
+    robot.click("Certified");
+    robot.state_mut().step();
+    robot.settle();
+    let last = robot.world().snapshot.observables;
+    assert!(last.converged && last.duality_gap.is_some_and(|gap| gap < 1e-6), "{last:?}");
+    assert!(robot.harness.query_by_label_contains(offered).is_none(), "taken");
 }

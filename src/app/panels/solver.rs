@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::effort::{EFFORTS, Effort};
+use crate::app::effort::{EFFORTS, Effort, offer};
 use crate::app::method_box::method_box;
 use crate::app::setting_control;
 use crate::app::state::AppState;
@@ -23,7 +23,12 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let mut settings = before;
     if before.stepper.uses_method() {
         if let Some(world) = state.world() {
-            effort_buttons(ui, &mut settings.solver, &world.snapshot.surroundings);
+            let snapshot = &world.snapshot;
+            effort_buttons(ui, &mut settings.solver, &snapshot.surroundings);
+            let (grains, last) = (snapshot.grains.len(), &snapshot.observables);
+            if let Some(offered) = offer(&before.solver, grains, last, world.step_ms) {
+                ui.label(RichText::new(offered).small().weak());
+            }
         }
         method_controls(ui, &mut settings, &start.settings);
     }
@@ -113,7 +118,9 @@ fn effort_buttons(ui: &mut Ui, solver: &mut SolverSettings, surroundings: &Surro
             let Effort { name, hint, .. } = effort;
             let settings = effort.among(surroundings);
             let button = egui::Button::selectable(*solver == settings, name);
-            if ui.add(button).on_hover_text(hint).clicked() {
+            let added = ui.add_enabled(effort.is_to_be_had(surroundings), button);
+            let added = added.on_disabled_hover_text("Not where a force drives a wall.");
+            if added.on_hover_text(hint).clicked() {
                 *solver = settings;
             }
         }
