@@ -1,12 +1,15 @@
 //! The program as a user starts it: what it writes, and what it says of bad input.
 
+#[path = "common/tested.rs"]
+mod tested;
+
 use std::path::Path;
 
 use assert_cmd::Command;
 use tempfile::TempDir;
 
 fn slump() -> Command {
-    Command::new(assert_cmd::cargo::cargo_bin!("slump"))
+    Command::new(tested::program())
 }
 
 fn folder() -> TempDir {
@@ -196,13 +199,10 @@ fn pictures_are_drawn_without_any_gpu() {
     assert!(manifest.contains("\"renderer\": \"cpu\""), "{manifest}");
 }
 
-#[cfg(not(feature = "window"))]
 #[test]
+#[ignore = "SLUMP_PROGRAM is to name a program built with --no-default-features"]
 fn a_build_without_window_or_gpu_says_which_feature_brings_it() {
     assert!(refusal(&[]).contains("no window: build it with the feature window"));
-    if cfg!(feature = "gpu") {
-        return;
-    }
     let folder = folder();
     let out = folder.path().to_str().expect("UTF-8");
     let frames = ["--headless", "--scene", "collision", "--frames", out, "--renderer"];

@@ -1,6 +1,9 @@
 //! Where results go: links, pipes, devices, streams that are closed, names that are not UTF-8.
 #![cfg(unix)]
 
+#[path = "common/tested.rs"]
+mod tested;
+
 use std::ffi::{OsStr, OsString};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};
@@ -13,7 +16,7 @@ use tempfile::TempDir;
 const PROBLEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/problems/bond_0.json");
 
 fn slump() -> Command {
-    Command::new(assert_cmd::cargo::cargo_bin!("slump"))
+    Command::new(tested::program())
 }
 
 fn folder() -> TempDir {

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn slump(arguments: &[&str], out: &Path) -> Command {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
+    let mut command = Command::new(crate::tested::program());
     command.args(["--headless", "--size", "64x36", "--renderer", "cpu"]).args(arguments);
     command.arg("--frames").arg(out);
     command

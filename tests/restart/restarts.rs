@@ -105,7 +105,7 @@ fn a_saved_run_is_an_initial_state_in_its_own_scene() {
     let folder = folder();
     let (state, next) = (folder.path().join("walls.slump"), folder.path().join("next.slump"));
     let saved = |path: &Path, more: &[&str]| {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
+        let mut command = Command::new(crate::tested::program());
         command.args(["--headless", "--save"]).arg(path).args(more);
         command
     };

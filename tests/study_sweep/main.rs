@@ -1,6 +1,8 @@
 //! Sweeps as a user starts them: results, resuming, parts, and what is said of a bad study file.
 
 mod damage;
+#[path = "../common/tested.rs"]
+mod tested;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -20,7 +22,7 @@ dt = { from = 2e-5, to = 1e-3, count = 8, scale = 'log' }
 ";
 
 fn slump() -> Command {
-    Command::new(assert_cmd::cargo::cargo_bin!("slump"))
+    Command::new(tested::program())
 }
 
 fn folder() -> TempDir {

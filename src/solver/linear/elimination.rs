@@ -139,9 +139,13 @@ impl Elimination {
         for place in 0..bodies {
             let range = self.starts[place] as usize..self.starts[place + 1] as usize;
             for first in range.clone() {
+                // What comes later than both is among the later neighbours of the first of them, and both lists rise.
+                let mut block = self.starts[self.later[first] as usize] as usize;
                 for second in first + 1..range.end {
-                    let block = self.block(self.later[first], self.later[second]) as u32;
-                    self.targets.push(block);
+                    while self.later[block] < self.later[second] {
+                        block += 1;
+                    }
+                    self.targets.push(block as u32);
                 }
             }
         }
