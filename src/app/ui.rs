@@ -66,7 +66,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
 fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
     transport::release_button(ui, state);
     if !state.touring {
-        if let Some(hint) = state.world().map(|world| hint::what_to_try(&world.controls.settings)) {
+        // Other scenes say under their name what there is to watch.
+        let heap = state.world().filter(|_| state.slumps());
+        if let Some(hint) = heap.map(|world| hint::what_to_try(&world.controls.settings)) {
             ui.label(RichText::new(hint).small().weak());
         }
         tour::resume_button(ui, state);
