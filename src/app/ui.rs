@@ -67,8 +67,8 @@ fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
     transport::release_button(ui, state);
     if !state.touring {
         // Other scenes say under their name what there is to watch.
-        let heap = state.world().filter(|_| state.slumps());
-        if let Some(hint) = heap.map(|world| hint::what_to_try(&world.controls.settings)) {
+        let world = state.world().filter(|_| state.shows_pile());
+        if let Some(hint) = world.map(|world| hint::what_to_try(&world.controls.settings)) {
             ui.label(RichText::new(hint).small().weak());
         }
         tour::resume_button(ui, state);
