@@ -248,11 +248,6 @@ impl AppState {
         self.frame.start.as_ref().is_some_and(|start| start.slumps)
     }
 
-    /// Whether what is open is the paper's pile, of whichever grains.
-    pub(crate) fn shows_pile(&self) -> bool {
-        self.frame.start.as_ref().is_some_and(|start| start.name == Config::DEFAULT_SCENE)
-    }
-
     /// Whether worlds are compared.
     pub(crate) fn compares(&self) -> bool {
         self.frame.worlds.len() > 1

@@ -6,6 +6,7 @@ use super::fill::fill;
 use super::panels::{SECTIONS, Section, help, plots, scene, status, tour, transport};
 use super::state::AppState;
 use super::{drop, hint, keys};
+use crate::scene::Config;
 
 /// Width of the sidebar, points.
 const SIDEBAR: f32 = 296.0;
@@ -67,7 +68,8 @@ fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
     transport::release_button(ui, state);
     if !state.touring {
         // Other scenes say under their name what there is to watch.
-        let world = state.world().filter(|_| state.shows_pile());
+        let is_pile = state.frame.start.as_ref().is_some_and(|it| it.name == Config::DEFAULT_SCENE);
+        let world = state.world().filter(|_| is_pile);
         if let Some(hint) = world.map(|world| hint::what_to_try(&world.controls.settings)) {
             ui.label(RichText::new(hint).small().weak());
         }
