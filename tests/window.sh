@@ -87,6 +87,9 @@ xdotool mousemove $(at "Save video" 0.5) click 1
 wait_for "the video" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*.mp4') != []"
 import -window root "$shots/window-video.png"
 head -c 64 "$work"/out/slump-pile-*.mp4 | grep -q ftypisom || fail "the video is none"
+xdotool mousemove $(at "Save GIF" 0.5) click 1
+wait_for "the animation" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*.gif') != []"
+head -c 6 "$work"/out/slump-pile-*.gif | grep -q GIF89a || fail "the animation is none"
 for section in see run physics; do
     xdotool mousemove $(at $section 0.3) click 1
     sleep 1

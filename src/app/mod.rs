@@ -15,6 +15,8 @@ mod drop;
 mod effort;
 mod export;
 mod fill;
+mod film_export;
+mod film_file;
 mod graphics;
 mod held;
 mod hint;
@@ -47,8 +49,6 @@ pub mod theme;
 pub mod tour;
 mod ui;
 mod validation;
-#[cfg(feature = "video")]
-mod video_export;
 mod window;
 mod work;
 mod world_curve;

@@ -10,6 +10,7 @@ use egui::Rect;
 use super::camera::SceneCamera;
 use super::data_desk::DataDesk;
 use super::export::{Exporter, STATE_ENDING};
+use super::film_file::FilmFormat;
 use super::held::{GrainRef, Grip};
 use super::link::Linking;
 use super::loader::loader;
@@ -59,8 +60,8 @@ pub struct AppState {
     pub(crate) exporter: Exporter,
     /// What is being done about data and saved runs.
     pub(crate) data: DataDesk,
-    /// The video that is being made.
-    pub(crate) video: Option<Work>,
+    /// The video or the animation that is being made.
+    pub(crate) film: Option<(FilmFormat, Work)>,
     /// What was found of published experiments.
     pub(super) validation: Validation,
     /// The file of another such report, as it is typed.
@@ -116,7 +117,7 @@ impl AppState {
             help: false,
             exporter: Exporter::default(),
             data: DataDesk::default(),
-            video: None,
+            film: None,
             validation: Validation::of_last_run(),
             report: String::new(),
             other_piles: OtherPiles::new(),
@@ -149,7 +150,7 @@ impl AppState {
 
     /// Whether a file or a recording is being written.
     pub fn is_writing(&self) -> bool {
-        self.exporter.is_busy() || self.data.export.is_some() || self.video.is_some()
+        self.exporter.is_busy() || self.data.export.is_some() || self.film.is_some()
     }
 
     /// Asks for the run of the selected world.
@@ -213,8 +214,8 @@ impl AppState {
             Some(Err(error)) => self.say(error.to_string(), true),
             None => {}
         }
-        if let Some((text, failure)) = self.video.as_ref().and_then(Work::take_outcome) {
-            self.video = None;
+        if let Some((text, failure)) = self.film.as_ref().and_then(|film| film.1.take_outcome()) {
+            self.film = None;
             self.say(text, failure);
         }
         let outcome = self.data.export.as_ref().and_then(Work::take_outcome);

@@ -5,12 +5,13 @@ use std::path::Path;
 use image::RgbaImage;
 
 use super::HeadlessOptions;
-use super::gif::Animation;
 use super::manifest::PictureEntry;
 use super::video::VideoFile;
 use crate::error::{Error, Result};
-use crate::output::{Texts, print_line};
+use crate::output::{Animation, Texts, print_line};
 
+/// Pictures a second of a GIF, which viewers keep up with.
+const GIF_RATE_HZ: f64 = 25.0;
 /// What ends the command that makes one of them again.
 const GIF_WORDS: [&str; 2] = ["--gif", "animation.gif"];
 const VIDEO_WORDS: [&str; 2] = ["--video", "video.mp4"];
@@ -35,8 +36,9 @@ impl Animations {
     ) -> Result<Self> {
         let (size, rate_hz) = (options.size()?, options.video_rate_hz()?);
         let start = |path: &Path| VideoFile::start(path, [size.width, size.height], rate_hz);
+        let animate = |path: &Path| Animation::start(path, GIF_RATE_HZ);
         let mut animations = Self {
-            gif: options.gif.as_deref().map(Animation::start).transpose()?,
+            gif: options.gif.as_deref().map(animate).transpose()?,
             video: options.video.video.as_deref().map(start).transpose()?,
         };
         if animations.gif.is_none() && animations.video.is_none() {

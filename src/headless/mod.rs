@@ -7,7 +7,6 @@ mod data;
 mod figures;
 mod folder;
 mod frames;
-mod gif;
 mod kept;
 mod manifest;
 mod options;
@@ -22,7 +21,7 @@ mod video_options;
 pub(crate) use begin::settled;
 #[cfg(feature = "window")]
 pub(crate) use data::told as told_of_data;
-#[cfg(all(feature = "video", feature = "window"))]
+#[cfg(feature = "window")]
 pub(crate) use kept::KeptStates;
 pub(crate) use options::HeadlessOptions;
 #[cfg(feature = "window")]

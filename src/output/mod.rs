@@ -1,6 +1,7 @@
 //! What all long work shares: files that are whole or not there, words on streams that may be closed,
 //! signals that ask for an end, and how far it has come.
 
+mod animation;
 mod counted;
 mod draft;
 mod files;
@@ -17,6 +18,7 @@ mod texts;
 #[cfg(feature = "video")]
 mod video;
 
+pub(crate) use animation::Animation;
 pub(crate) use counted::counted;
 pub(crate) use draft::{Draft, name_of_whole};
 pub(crate) use files::{

@@ -9,6 +9,7 @@
 //! ```
 
 mod alarms;
+mod animations;
 mod compare;
 mod controls;
 mod export_ends;

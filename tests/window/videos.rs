@@ -64,7 +64,7 @@ fn the_record_is_a_video_at_the_pace_of_time() {
     // The same record makes the same file, and ten times slower ten times as many pictures.
     let (again, _) = made(&mut robot);
     assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
-    for (label, value) in [("Video", 25.0), ("pace ×", 1.0)] {
+    for (label, value) in [("Film", 25.0), ("pace ×", 1.0)] {
         let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, label);
         assert_eq!(field.accesskit_node().numeric_value(), Some(value), "{label}");
     }

@@ -4,6 +4,8 @@ use glam::DVec2;
 
 use super::scene::{columns, shared_style, view};
 use crate::app::export::{Export, ScenePicture, stem};
+use crate::app::film_export::FilmOrder;
+use crate::app::film_file::FilmFormat;
 use crate::app::state::AppState;
 use crate::render::{Style, panel_size};
 
@@ -18,16 +20,16 @@ pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
     state.exporter.submit(context, Export::Scene(Box::new(picture)), &folder, &stem);
 }
 
-/// Saves what was recorded of the worlds as a video, or the stretch of it that data would be exported of.
-#[cfg(feature = "video")]
-pub(crate) fn save_video(context: &egui::Context, state: &mut AppState) {
-    if state.frame.worlds.is_empty() || state.video.is_some() {
+/// Saves what was recorded of the worlds as moving pictures, or the stretch of it that data would be exported of.
+pub(crate) fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) {
+    if state.frame.worlds.is_empty() || state.film.is_some() {
         return;
     }
     // Its scales are those of all its pictures.
     let style = super::scene::own_style(state, context.theme() == egui::Theme::Dark);
-    let size = state.preferences.picture_size.map(|side| side.next_multiple_of(2));
-    let order = crate::app::video_export::VideoOrder {
+    let size = format.size(state.preferences.picture_size);
+    let order = FilmOrder {
+        format,
         picture: scene_picture(state, style, size, false),
         slumps: state.slumps(),
         rate_hz: state.preferences.video_rate_hz,
@@ -37,7 +39,7 @@ pub(crate) fn save_video(context: &egui::Context, state: &mut AppState) {
         stem: file_stem(state),
     };
     let runs = (0..state.frame.worlds.len()).map(|world| state.take_run_of(world)).collect();
-    state.video = Some(order.start(context, runs));
+    state.film = Some((format, order.start(context, runs)));
 }
 
 /// What is seen of the worlds, of which there is one at least.

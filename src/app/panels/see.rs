@@ -2,8 +2,10 @@
 
 use egui::{ComboBox, RichText, ThemePreference, Ui};
 
+use crate::app::film_file::FilmFormat;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::error::Result;
 use crate::headless::{VIDEO_RATES_HZ, check_video};
 use crate::render::ColourBy;
 
@@ -82,9 +84,9 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
             super::picture::save_picture(ui.ctx(), state);
         }
     });
-    videos(ui, state);
+    films(ui, state);
     folder(ui, state);
-    if state.is_writing() && state.video.is_none() {
+    if state.is_writing() && state.film.is_none() {
         ui.horizontal(|ui| {
             ui.spinner();
             ui.label(RichText::new("saving").color(theme::accent(ui.visuals().dark_mode)));
@@ -92,38 +94,56 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
     }
 }
 
-/// The record as a video.
-fn videos(ui: &mut Ui, state: &mut AppState) {
-    if let Some(video) = &state.video {
-        let hint = "No video is left; what was computed stays in the window.";
-        return super::work_bar::show(ui, video, ["Making a video", "Stop video", hint]);
+/// The record as a video or an animation.
+fn films(ui: &mut Ui, state: &mut AppState) {
+    if let Some((format, work)) = &state.film {
+        let name = format.name();
+        let hint = format!("No {name} is left; what was computed stays in the window.");
+        let words = [&format!("Making a {name}"), &format!("Stop {name}"), &hint];
+        return super::work_bar::show(ui, work, words.map(String::as_str));
     }
     ui.horizontal(|ui| {
-        let label = ui.label("Video").on_hover_text("Pictures in a second of a video.");
+        let hint = "Pictures in a second of a video or a GIF, which has at most 50.";
+        let label = ui.label("Film").on_hover_text(hint);
         let [least, most] = VIDEO_RATES_HZ;
         let rate = egui::DragValue::new(&mut state.preferences.video_rate_hz).range(least..=most);
         ui.add(rate.max_decimals(3).suffix(" /s")).labelled_by(label.id);
-        let hint = "Simulated seconds in a second of a video: 1 is the pace of nature.";
+        let hint = "Simulated seconds in a second of it: 1 is the pace of nature.";
         let label = ui.label("pace ×").on_hover_text(hint);
         let speed = egui::DragValue::new(&mut state.preferences.video_speed).range(1e-6..=1e6);
         ui.add(speed.speed(0.01).max_decimals(6)).labelled_by(label.id);
+    });
+    ui.horizontal(|ui| {
         save_video(ui, state);
+        let hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and larger files.";
+        if save_button(ui, state, "Save GIF", Ok(())).on_hover_text(hint).clicked() {
+            super::picture::save_film(ui.ctx(), state, FilmFormat::Gif);
+        }
     });
 }
 
 fn save_video(ui: &mut Ui, state: &mut AppState) {
-    let is_built = check_video("given");
-    let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
-    let save = ui.add_enabled(is_ready && is_built.is_ok(), egui::Button::new("Save video"));
-    state.note_control("Save video", save.rect);
     let hint = "What was recorded of all worlds, or the stretch that Data names, as AV1 in MP4. The run may go on meanwhile.";
-    let mut save = save.on_hover_text(hint);
-    if let Err(refusal) = is_built {
-        save = save.on_disabled_hover_text(refusal.to_string());
-    }
+    let save = save_button(ui, state, "Save video", check_video("given")).on_hover_text(hint);
     if save.clicked() {
         #[cfg(feature = "video")]
-        super::picture::save_video(ui.ctx(), state);
+        super::picture::save_film(ui.ctx(), state, FilmFormat::Video);
+    }
+}
+
+/// A button that is there where the record is, and says why where this build cannot make what it asks for.
+fn save_button(
+    ui: &mut Ui,
+    state: &mut AppState,
+    name: &'static str,
+    is_built: Result<()>,
+) -> egui::Response {
+    let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
+    let save = ui.add_enabled(is_ready && is_built.is_ok(), egui::Button::new(name));
+    state.note_control(name, save.rect);
+    match is_built {
+        Ok(()) => save,
+        Err(refusal) => save.on_disabled_hover_text(refusal.to_string()),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::effort::{EFFORTS, Effort, offer};
+use crate::app::effort::{CERTIFIED, EFFORTS, Effort, offer};
 use crate::app::method_box::method_box;
 use crate::app::setting_control;
 use crate::app::state::AppState;
@@ -26,7 +26,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
             let snapshot = &world.snapshot;
             effort_buttons(ui, &mut settings.solver, &snapshot.surroundings);
             let (grains, last) = (snapshot.grains.len(), &snapshot.observables);
-            if let Some(offered) = offer(&before.solver, grains, last, world.step_ms) {
+            let is_to_be_had = CERTIFIED.is_to_be_had(&snapshot.surroundings);
+            let offered = offer(&before.solver, grains, last, world.step_ms);
+            if let Some(offered) = offered.filter(|_| is_to_be_had) {
                 ui.label(RichText::new(offered).small().weak());
             }
         }

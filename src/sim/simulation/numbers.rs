@@ -16,7 +16,7 @@ impl Simulation {
     /// The method that solves a problem as large as that of the last step, or as its largest island where islands are
     /// solved by themselves: that of the settings, or the one that `auto` picks.
     pub fn picked_method(&self) -> Method {
-        picked(&self.settings.solver, self.contacts_together(), self.is_driven())
+        picked(&self.settings.solver, || self.contacts_together(), self.is_driven())
     }
 
     /// Contacts of the largest problem that the method was given in the last step: all, or those of the largest

@@ -52,12 +52,16 @@ pub(super) fn solve<M: Model>(
 }
 
 /// The method that solves a problem of so many contacts, with walls that a force drives or without: that of the
-/// settings, unless they leave it to `auto`.
-pub(crate) fn picked(settings: &SolverSettings, contacts: usize, is_driven: bool) -> Method {
+/// settings, unless they leave it to `auto`. Contacts are counted only then, since to find islands takes time.
+pub(crate) fn picked(
+    settings: &SolverSettings,
+    contacts: impl FnOnce() -> usize,
+    is_driven: bool,
+) -> Method {
     if settings.method != Method::Auto {
         return settings.method;
     }
-    match pick(settings.stop, contacts, is_driven) {
+    match pick(settings.stop, contacts(), is_driven) {
         Pick::Nsgs => Method::Nsgs,
         Pick::Newton => Method::Newton,
         Pick::Nncg => Method::Nncg,
@@ -87,12 +91,12 @@ mod tests {
     #[test]
     fn auto_picks_by_size_and_stop_and_nothing_else_is_changed() {
         let auto = SolverSettings { method: Method::Auto, ..SolverSettings::default() };
-        assert_eq!(picked(&auto, 270, false), Method::Newton);
-        assert_eq!(picked(&auto, 270, true), Method::Nncg);
-        assert_eq!(picked(&auto, 5_000, false), Method::Nncg);
+        assert_eq!(picked(&auto, || 270, false), Method::Newton);
+        assert_eq!(picked(&auto, || 270, true), Method::Nncg);
+        assert_eq!(picked(&auto, || 5_000, false), Method::Nncg);
         let of_a_sweep = SolverSettings { stop: StopTest::ImpulsePerMass, ..auto };
-        assert_eq!(picked(&of_a_sweep, 2, false), Method::Nsgs);
+        assert_eq!(picked(&of_a_sweep, || 2, false), Method::Nsgs);
         let said = SolverSettings { method: Method::Jacobi, ..auto };
-        assert_eq!(picked(&said, 270, false), Method::Jacobi);
+        assert_eq!(picked(&said, || 270, false), Method::Jacobi);
     }
 }

@@ -7,17 +7,21 @@ use std::path::{Path, PathBuf};
 use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Extension, Frame, Repeat};
 use image::RgbaImage;
 
+use super::{Draft, Texts};
 use crate::error::{Error, Result};
-use crate::output::{Draft, Texts};
 
-/// Time that each picture is shown, in hundredths of a second: 25 pictures a second, which viewers keep up with.
-const PICTURE_CENTISECS: u16 = 4;
+/// Hundredths of a second in a second, the unit in which a file says how long a picture is shown.
+const CENTISECS: f64 = 100.0;
+/// Viewers take what is shorter for a mistake and show it for a tenth of a second.
+const LEAST_CENTISECS: f64 = 2.0;
 /// The encoder's own scale from 1 (slowest, best colours) to 30.
 const ENCODER_SPEED: i32 = 10;
 
 /// An animation that is there once it is finished.
-pub(super) struct Animation {
+pub(crate) struct Animation {
     path: PathBuf,
+    /// Time that each picture is shown.
+    picture_centisecs: u16,
     /// Two handles of one file: the encoder keeps the one that it writes to.
     encoder: Option<Encoder<File>>,
     draft: Draft,
@@ -27,20 +31,31 @@ pub(super) struct Animation {
 }
 
 impl Animation {
-    /// Starts an animation.
+    /// Pictures a second of an animation that comes nearest to so many, since a file counts in hundredths of a second.
+    #[cfg(feature = "window")]
+    pub(crate) fn nearest_rate_hz(rate_hz: f64) -> f64 {
+        CENTISECS / f64::from(Self::centisecs(rate_hz))
+    }
+
+    fn centisecs(rate_hz: f64) -> u16 {
+        (CENTISECS / rate_hz).round().max(LEAST_CENTISECS) as u16
+    }
+
+    /// Starts an animation of so many pictures a second, or of [`Self::nearest_rate_hz`].
     ///
     /// # Errors
     /// Names the file and what the system says.
-    pub(super) fn start(path: &Path) -> Result<Self> {
+    pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
         let draft = Draft::start(path)?;
-        Ok(Self { path: path.to_owned(), encoder: None, draft, pictures: 0, whole: None })
+        let (path, picture_centisecs) = (path.to_owned(), Self::centisecs(rate_hz));
+        Ok(Self { path, picture_centisecs, encoder: None, draft, pictures: 0, whole: None })
     }
 
     /// Adds a picture. The first comes after what the animation says of itself, a comment.
     ///
     /// # Errors
     /// Names the file and what the encoder says; the pictures before stay.
-    pub(super) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
+    pub(crate) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
         let added = self.encode(image, texts);
         let file = self.draft.file();
         match (added, self.whole) {
@@ -79,7 +94,7 @@ impl Animation {
             }
         };
         let mut frame = Frame::from_rgba_speed(width, height, &mut image, ENCODER_SPEED);
-        (frame.delay, frame.dispose) = (PICTURE_CENTISECS, DisposalMethod::Background);
+        (frame.delay, frame.dispose) = (self.picture_centisecs, DisposalMethod::Background);
         encoder.write_frame(&frame)
     }
 
@@ -87,7 +102,7 @@ impl Animation {
     ///
     /// # Errors
     /// Names the file and what the system says.
-    pub(super) fn finish(self) -> Result<bool> {
+    pub(crate) fn finish(self) -> Result<bool> {
         // The encoder writes the end of the file when it is dropped.
         drop(self.encoder);
         if self.pictures == 0 {

@@ -1,4 +1,4 @@
-//! Videos of what the window has computed: all of it is computed once more, bit for bit, by a thread of its own,
+//! Videos and animations of what the window has computed: all of it is computed once more, bit for bit, by a thread of its own,
 //! and drawn at equal times.
 
 use std::ops::ControlFlow;
@@ -6,23 +6,24 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
 
 use super::export::{ScenePicture, free_path};
+use super::film_file::FilmFormat;
 use super::taken::TakenRun;
 use super::work::{Telling, Work};
 use crate::error::Result;
 use crate::headless::KeptStates;
-use crate::output::{Video, check_writable, counted};
+use crate::output::{check_writable, counted};
 use crate::render::{Renderer, RendererChoice, Style, speed_reference};
 use crate::sim::{Simulation, Snapshot};
 
 /// Computing the moments is this part of the work, and drawing and encoding them is the rest.
 const PART_OF_MOMENTS: f64 = 0.3;
-/// What is told where a video is given up.
-const STOPPED: &str = "Stopped: there is no video";
 /// More pictures than this are a mistake rather than a wish.
 const MOST_PICTURES: f64 = 1e5;
 
-/// What a video is to show.
-pub(crate) struct VideoOrder {
+/// What a video or an animation is to show.
+pub(crate) struct FilmOrder {
+    /// What it is to be.
+    pub format: FilmFormat,
     /// How all pictures look; its moments are those of the present.
     pub picture: ScenePicture,
     /// Whether slump tells anything of the scene.
@@ -39,17 +40,18 @@ pub(crate) struct VideoOrder {
     pub stem: String,
 }
 
-impl VideoOrder {
-    /// Starts a video of runs that are on their way, one a world.
+impl FilmOrder {
+    /// Starts one of runs that are on their way, one a world.
     pub(crate) fn start(self, context: &egui::Context, runs: Vec<Receiver<TakenRun>>) -> Work {
         Work::start(context, move |telling| {
+            let stopped = format!("Stopped: there is no {}", self.format.name());
             let mut taken = Vec::new();
             for run in &runs {
-                let Some(run) = telling.wait_for(run)? else { return Ok(STOPPED.to_owned()) };
+                let Some(run) = telling.wait_for(run)? else { return Ok(stopped) };
                 taken.push(run);
             }
             let made = self.write(&taken, telling)?;
-            Ok(made.map_or_else(|| STOPPED.to_owned(), |(path, pictures)| told(&path, pictures)))
+            Ok(made.map_or(stopped, |(path, pictures)| told(&path, pictures)))
         })
     }
 
@@ -60,8 +62,8 @@ impl VideoOrder {
         let Some(mut moments) = self.moments(runs, &times, telling)? else { return Ok(None) };
         let mut style = self.picture.style.clone();
         moments.set_scales(&mut style);
-        let path = free_path(&self.folder, &self.stem, "mp4");
-        let mut video = Video::start(&path, self.picture.size, self.rate_hz)?;
+        let path = free_path(&self.folder, &self.stem, self.format.ending());
+        let mut film = self.format.start(&path, self.picture.size, self.rate_hz())?;
         let mut renderer = Renderer::new(RendererChoice::Auto)?;
         let (count, slumps) = (times.len(), self.slumps);
         let mut picture = ScenePicture { style, ..self.picture };
@@ -75,10 +77,15 @@ impl VideoOrder {
                 *note = slump(&snapshot, slumps);
                 *shown = snapshot.into();
             }
-            video.add(&picture.draw(&mut renderer)?)?;
+            film.add(picture.draw(&mut renderer)?, &picture.texts)?;
         }
-        video.finish(&picture.texts)?;
+        film.finish(&picture.texts)?;
         Ok(Some((path, count)))
+    }
+
+    /// Pictures a second that the file can have.
+    fn rate_hz(&self) -> f64 {
+        self.format.nearest_rate_hz(self.rate_hz)
     }
 
     /// The simulated times of the pictures, s.
@@ -88,13 +95,13 @@ impl VideoOrder {
             replays().map(|replay| replay.start().time_secs()).fold(f64::INFINITY, f64::min);
         let last = replays().map(|replay| replay.end_secs()).fold(first, f64::max);
         let [from, until] = self.stretch.unwrap_or([first, last]);
-        let each = self.speed / self.rate_hz;
+        let each = self.speed / self.rate_hz();
         let count = ((until.min(last) - from.max(first)) / each * (1.0 + 1e-12)).floor();
         if !(0.0..MOST_PICTURES).contains(&count) {
             let found =
-                format!("{} s at {} pictures a second", until - from, self.rate_hz / self.speed);
+                format!("{} s at {} pictures a second", until - from, self.rate_hz() / self.speed);
             let allowed = format!("one picture at least and no more than {MOST_PICTURES}");
-            return Err(crate::error::Error::value("video", found, allowed));
+            return Err(crate::error::Error::value(self.format.name(), found, allowed));
         }
         Ok((0..=count as u64).map(|number| from.max(first) + number as f64 * each).collect())
     }
@@ -151,7 +158,7 @@ fn slump(snapshot: &Snapshot, slumps: bool) -> String {
     if slumps { format!("Δy {:.3}", snapshot.observables.slump) } else { String::new() }
 }
 
-/// The moments that a video shows, on disk: all of them have one scale of colours, and that is known at the end.
+/// The moments that a film shows, on disk: all of them have one scale of colours, and that is known at the end.
 struct Moments {
     kept: KeptStates,
     style: Style,
