@@ -11,25 +11,26 @@ use crate::study::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet, poin
 const MARGINS: [f64; 2] = [0.02, 0.04];
 
 pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
-    let rows = workshop.rows("range-regimes")?;
-    let steps = rows.values(|config| config.parameters.time_step_secs);
+    let mut rows = workshop.rows("range-regimes")?;
+    rows.0.extend(workshop.rows("range-size")?.0);
     let bonds = rows.values(|config| config.parameters.bond);
     let choices = choices(&rows);
-    let all: Vec<Vec<Place>> = choices.iter().map(|one| places(one, &bonds, &steps)).collect();
+    let all: Vec<Vec<Place>> = choices.iter().map(places).collect();
     let x = Axis::linear("", -0.5, choices.len() as f64 - 0.5);
     let ticks = (0..choices.len()).map(|index| (index as f64, (index + 1).to_string()));
     let x = Axis { ticks: ticks.collect(), ..x };
-    let title =
-        format!("Slump at Δt = {:e} s less that at {:e} s", steps[steps.len() - 1], steps[0]);
+    let steps = choices.first().map(steps_of).unwrap_or_default();
+    let [least, most] = [steps.first(), steps.last()].map(|step| step.copied().unwrap_or(f64::NAN));
+    let title = format!("Slump at Δt = {most:e} s less that at {least:e} s");
     let y = Axis::linear("difference of slump", -0.2, 0.2);
     let mut chart = Chart::new(title.replace("e-", "e−"), x, y);
     chart.legend = Corner::UpperRight;
     let zero = points([(-0.5, 0.0), (choices.len() as f64 - 0.5, 0.0)]);
     chart.layers.push(Layer::quiet("none", zero, PALETTE[0], Look::Dashes(2)));
     for (index, &bond) in bonds.iter().enumerate() {
-        let largest = |place: &&Place| place.at == (bond, steps[steps.len() - 1]);
         let of_choice = |(number, places): (usize, &Vec<Place>)| {
-            places.iter().find(largest).map(|place| place.comparison().point(number as f64))
+            let of_bond = places.iter().rfind(|place| place.at.0 == bond);
+            of_bond.map(|place| place.comparison().point(number as f64))
         };
         let points = all.iter().enumerate().filter_map(of_choice).collect();
         let colour = PALETTE[1 + index % (PALETTE.len() - 1)];
@@ -37,10 +38,16 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         chart.layers.push(layer.beside(2 * index, 2 * bonds.len()));
     }
     let mut sheet = Sheet::of(chart);
-    let named =
-        choices.iter().enumerate().map(|(index, one)| format!("{}: {}", index + 1, one.name));
+    let named = choices.iter().enumerate().map(|(index, one)| {
+        let other = steps_of(one).first().copied().filter(|&first| first != least);
+        let told = other.map_or_else(String::new, |first| format!(" (less that at {first:e} s)"));
+        format!("{}: {}{told}", index + 1, one.name)
+    });
     sheet.caption = vec![
-        format!("Means over {} states with 95 % intervals, state by state.", rows.seeds().len()),
+        format!(
+            "Means over up to {} states with 95 % intervals, state by state.",
+            rows.seeds().len()
+        ),
         named.collect::<Vec<_>>().join("; "),
     ];
     sheet.caption.extend(workshop.note());
@@ -60,8 +67,15 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     Ok(Figure { name: "range-regimes", sheet, claims, table: Some(table) })
 }
 
-/// Every Bond at every Δt but the smallest, against that.
-fn places(choice: &Choice<'_>, bonds: &[f64], steps: &[f64]) -> Vec<Place> {
+/// The Δt of a choice, rising.
+fn steps_of(choice: &Choice<'_>) -> Vec<f64> {
+    choice.rows.values(|config| config.parameters.time_step_secs)
+}
+
+/// Every Bond of a choice at every of its Δt but the smallest, against that.
+fn places(choice: &Choice<'_>) -> Vec<Place> {
+    let steps = steps_of(choice);
+    let bonds = choice.rows.values(|config| config.parameters.bond);
     let of = |bond: f64, step: f64| {
         choice.rows.such_that(|config| {
             config.parameters.bond == Some(bond) && config.parameters.time_step_secs == Some(step)
@@ -72,7 +86,8 @@ fn places(choice: &Choice<'_>, bonds: &[f64], steps: &[f64]) -> Vec<Place> {
         at: (bond, step),
         pairs: pairs(&of(bond, steps[0]), &of(bond, step)),
     };
-    bonds.iter().flat_map(|&bond| steps[1..].iter().map(move |&step| place(bond, step))).collect()
+    let later = || steps.iter().skip(1);
+    bonds.iter().flat_map(|&bond| later().map(move |&step| place(bond, step))).collect()
 }
 
 /// That slump does not depend on Δt with that choice.
@@ -80,7 +95,8 @@ fn of_choice(choice: &Choice<'_>, places: &[Place]) -> Claim {
     let grains = choice.rows.0.iter().filter_map(|(config, _)| config.origin.grains).max();
     let margin = MARGINS[usize::from(grains.is_some_and(|grains| grains > 138))];
     let said = format!(
-        "Beyond the paper: under range slump is that at the smallest Δt, within {margin}, with {}",
+        "Beyond the paper: under range slump is that at Δt = {:e} s, within {margin}, with {}",
+        steps_of(choice).first().copied().unwrap_or(f64::NAN),
         choice.name
     );
     claim(said, places, margin)

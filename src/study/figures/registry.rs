@@ -39,7 +39,11 @@ pub(super) const FIGURES: [FigureInfo; 20] = [
         make: pile_series::tolerance,
     },
     FigureInfo { name: "range", studies: &["range"], make: range::make },
-    FigureInfo { name: "range-regimes", studies: &["range-regimes"], make: range_regimes::make },
+    FigureInfo {
+        name: "range-regimes",
+        studies: &["range-regimes", "range-size"],
+        make: range_regimes::make,
+    },
     FigureInfo { name: "dry", studies: &["dry"], make: dry::make },
     FigureInfo { name: "cohesion", studies: &["cohesion"], make: cohesion::make },
     FigureInfo { name: "friction", studies: &["friction"], make: friction::make },

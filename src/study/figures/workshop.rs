@@ -11,7 +11,7 @@ use crate::study::table::alarms_of;
 use crate::study::{Outcome, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
 /// The studies that are shipped.
-const STUDIES: [(&str, &str); 17] = [
+const STUDIES: [(&str, &str); 18] = [
     ("pile", include_str!("../../../assets/studies/pile.toml")),
     ("pile-compressive", include_str!("../../../assets/studies/pile-compressive.toml")),
     ("pile-choices", include_str!("../../../assets/studies/pile-choices.toml")),
@@ -25,6 +25,7 @@ const STUDIES: [(&str, &str); 17] = [
     ("pile-tolerance", include_str!("../../../assets/studies/pile-tolerance.toml")),
     ("range", include_str!("../../../assets/studies/range.toml")),
     ("range-regimes", include_str!("../../../assets/studies/range-regimes.toml")),
+    ("range-size", include_str!("../../../assets/studies/range-size.toml")),
     ("dry", include_str!("../../../assets/studies/dry.toml")),
     ("cohesion", include_str!("../../../assets/studies/cohesion.toml")),
     ("friction", include_str!("../../../assets/studies/friction.toml")),
