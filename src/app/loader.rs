@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::scene::{Config, SavedState, Scene};
 use crate::sim::Tally;
 use crate::sim::live::{Loader, Progress, Record, Start};
-use crate::world::{Boundary, Gravity};
+use crate::world::{Boundary, Disc, Gravity};
 
 /// Height of the walls that are drawn around a pile, in its own heights.
 const WALL_HEIGHTS: f64 = 1.1;
@@ -118,11 +118,15 @@ fn start(scene: &Scene) -> Result<Start> {
 }
 
 /// Whether grains lie on level ground that stays, and may spread: of others Δy_G, which goes by heights above y = 0,
-/// says nothing.
+/// says nothing. Nor does it of what hangs from a disc that is fixed.
 fn slumps(scene: &Scene) -> bool {
     let is_down = |gravity: &Gravity| matches!(gravity, Gravity::Uniform { acceleration } if acceleration.x == 0.0 && acceleration.y < 0.0);
     let is_level = |boundary: &Boundary| matches!(boundary, Boundary::HalfSpace { normal, .. } if normal.x == 0.0 && normal.y > 0.0);
+    let lowest_of_grains = scene.grains.iter().map(|grain| grain.position.y).reduce(f64::min);
+    let lies_on = |disc: &Disc| lowest_of_grains.is_some_and(|lowest| disc.position.y < lowest);
+    let has_ground = !scene.boundaries.is_empty() || scene.fixed_discs.iter().any(lies_on);
     scene.physics.axes == 2
+        && has_ground
         && is_down(&scene.gravity)
         && scene.gravity_turn.is_none()
         && scene.motions.is_empty()
@@ -154,7 +158,9 @@ mod tests {
     fn slump_tells_of_piles_and_heaps_and_of_nothing_that_falls_or_is_pushed() {
         let told = |name: &str| slumps(&built_in(name).unwrap());
         assert!(told("pile"));
-        for name in ["cradle", "moving-walls", "drum", "vibrated", "thin-wall", "newtons-cradle"] {
+        for name in
+            ["cradle", "moving-walls", "drum", "vibrated", "thin-wall", "newtons-cradle", "chain"]
+        {
             assert!(!told(name), "{name}");
         }
         let hourglass =
