@@ -14,8 +14,11 @@ use crate::error::{Error, Result};
 const CENTISECS: f64 = 100.0;
 /// Viewers take what is shorter for a mistake and show it for a tenth of a second.
 const LEAST_CENTISECS: f64 = 2.0;
-/// The encoder's own scale from 1 (slowest, best colours) to 30.
-const ENCODER_SPEED: i32 = 10;
+/// The encoder looks at every n-th pixel when it chooses colours: at so many pixels, and at all of a small picture, in
+/// which a legend of colours has few.
+const LOOKED_AT: u32 = 100_000;
+/// It looks at one in ten at least.
+const MOST_PASSED: u32 = 10;
 
 /// An animation that is there once it is finished.
 pub(crate) struct Animation {
@@ -93,7 +96,8 @@ impl Animation {
                 none.insert(encoder)
             }
         };
-        let mut frame = Frame::from_rgba_speed(width, height, &mut image, ENCODER_SPEED);
+        let every = (image.width() * image.height() / LOOKED_AT).clamp(1, MOST_PASSED);
+        let mut frame = Frame::from_rgba_speed(width, height, &mut image, every as i32);
         (frame.delay, frame.dispose) = (self.picture_centisecs, DisposalMethod::Background);
         encoder.write_frame(&frame)
     }
@@ -115,4 +119,41 @@ impl Animation {
 fn too_large() -> EncodingError {
     std::io::Error::new(std::io::ErrorKind::InvalidInput, "a side has more than 65,535 pixels")
         .into()
+}
+
+#[cfg(test)]
+mod tests {
+    use image::codecs::gif::GifDecoder;
+    use image::{AnimationDecoder, Rgba};
+
+    use super::*;
+
+    /// A legend has few of the pixels of a picture and most of its colours.
+    #[test]
+    fn a_legend_of_colours_keeps_them_in_a_picture_of_any_size() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("legend.gif");
+        for side in [160u32, 480, 960] {
+            let height = side * 5 / 8;
+            let picture = RgbaImage::from_fn(side, height, |x, y| {
+                let part = (255 * y / height) as u8;
+                let is_grain = (x / 20 + y / 20) % 3 == 0;
+                let edge = (x % 20 * 12) as u8;
+                Rgba(match x * 80 / side {
+                    74 => [255 - part, part / 2, part, 255],
+                    0..60 if is_grain => [edge, edge, edge, 255],
+                    _ => [255; 4],
+                })
+            });
+            let mut animation = Animation::start(&path, 25.0).expect("a place");
+            animation.add(picture.clone(), &Texts::default()).expect("a picture");
+            assert!(animation.finish().expect("an animation"));
+            let file = std::io::BufReader::new(File::open(&path).expect("a file"));
+            let frames = GifDecoder::new(file).expect("a GIF").into_frames();
+            let frames = frames.collect_frames().expect("pictures");
+            let channels = picture.as_raw().iter().zip(frames[0].buffer().as_raw());
+            let largest = channels.map(|(one, other)| one.abs_diff(*other)).max();
+            assert!(largest < Some(12), "{side}: {largest:?}");
+        }
+    }
 }
