@@ -1,5 +1,5 @@
-//! Videos and animations of what the window has computed: all of it is computed once more, bit for bit, by a thread of its own,
-//! and drawn at equal times.
+//! Videos and animations of what the window has computed: all of it is computed once more, bit for bit, by a thread
+//! of its own, and drawn at equal times.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub(crate) struct FilmOrder {
     pub picture: ScenePicture,
     /// Whether slump tells anything of the scene.
     pub slumps: bool,
-    /// Pictures a second.
+    /// Pictures a second, as many as the format can have.
     pub rate_hz: f64,
     /// Simulated seconds in a second.
     pub speed: f64,
@@ -63,7 +63,7 @@ impl FilmOrder {
         let mut style = self.picture.style.clone();
         moments.set_scales(&mut style);
         let path = free_path(&self.folder, &self.stem, self.format.ending());
-        let mut film = self.format.start(&path, self.picture.size, self.rate_hz())?;
+        let mut film = self.format.start(&path, self.picture.size, self.rate_hz)?;
         let mut renderer = Renderer::new(RendererChoice::Auto)?;
         let (count, slumps) = (times.len(), self.slumps);
         let mut picture = ScenePicture { style, ..self.picture };
@@ -79,13 +79,8 @@ impl FilmOrder {
             }
             film.add(picture.draw(&mut renderer)?, &picture.texts)?;
         }
-        film.finish(&picture.texts)?;
+        film.finish()?;
         Ok(Some((path, count)))
-    }
-
-    /// Pictures a second that the file can have.
-    fn rate_hz(&self) -> f64 {
-        self.format.nearest_rate_hz(self.rate_hz)
     }
 
     /// The simulated times of the pictures, s.
@@ -95,11 +90,11 @@ impl FilmOrder {
             replays().map(|replay| replay.start().time_secs()).fold(f64::INFINITY, f64::min);
         let last = replays().map(|replay| replay.end_secs()).fold(first, f64::max);
         let [from, until] = self.stretch.unwrap_or([first, last]);
-        let each = self.speed / self.rate_hz();
+        let each = self.speed / self.rate_hz;
         let count = ((until.min(last) - from.max(first)) / each * (1.0 + 1e-12)).floor();
         if !(0.0..MOST_PICTURES).contains(&count) {
             let found =
-                format!("{} s at {} pictures a second", until - from, self.rate_hz() / self.speed);
+                format!("{} s at {} pictures a second", until - from, self.rate_hz / self.speed);
             let allowed = format!("one picture at least and no more than {MOST_PICTURES}");
             return Err(crate::error::Error::value(self.format.name(), found, allowed));
         }

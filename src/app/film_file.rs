@@ -5,13 +5,13 @@ use std::path::Path;
 use image::RgbaImage;
 
 use crate::error::Result;
+use crate::headless::VideoFile;
 use crate::output::{Animation, Texts};
 
 /// What the record is made into.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FilmFormat {
     /// AV1 in MP4.
-    #[cfg(feature = "video")]
     Video,
     /// An animation that repeats, with at most 256 colours a picture.
     Gif,
@@ -21,7 +21,6 @@ impl FilmFormat {
     /// What it is called.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            #[cfg(feature = "video")]
             Self::Video => "video",
             Self::Gif => "GIF",
         }
@@ -30,16 +29,14 @@ impl FilmFormat {
     /// How names of its files end.
     pub(super) fn ending(self) -> &'static str {
         match self {
-            #[cfg(feature = "video")]
             Self::Video => "mp4",
             Self::Gif => "gif",
         }
     }
 
     /// Pictures a second that it can have, nearest to so many.
-    pub(super) fn nearest_rate_hz(self, rate_hz: f64) -> f64 {
+    pub(crate) fn nearest_rate_hz(self, rate_hz: f64) -> f64 {
         match self {
-            #[cfg(feature = "video")]
             Self::Video => rate_hz,
             Self::Gif => Animation::nearest_rate_hz(rate_hz),
         }
@@ -48,7 +45,6 @@ impl FilmFormat {
     /// A size (px) that it can have, nearest above.
     pub(crate) fn size(self, size: [u32; 2]) -> [u32; 2] {
         match self {
-            #[cfg(feature = "video")]
             Self::Video => size.map(|side| side.next_multiple_of(2)),
             Self::Gif => size,
         }
@@ -56,12 +52,8 @@ impl FilmFormat {
 
     /// Starts a file of pictures of that size (px) that follow each other by so many a second.
     pub(super) fn start(self, path: &Path, size: [u32; 2], rate_hz: f64) -> Result<FilmFile> {
-        let _ = size;
         Ok(match self {
-            #[cfg(feature = "video")]
-            Self::Video => {
-                FilmFile::Video(Box::new(crate::output::Video::start(path, size, rate_hz)?))
-            }
+            Self::Video => FilmFile::Video(Box::new(VideoFile::start(path, size, rate_hz)?)),
             Self::Gif => FilmFile::Gif(Animation::start(path, rate_hz)?),
         })
     }
@@ -69,8 +61,7 @@ impl FilmFormat {
 
 /// A file that is being made, and is there once it is finished.
 pub(super) enum FilmFile {
-    #[cfg(feature = "video")]
-    Video(Box<crate::output::Video>),
+    Video(Box<VideoFile>),
     Gif(Animation),
 }
 
@@ -78,19 +69,16 @@ impl FilmFile {
     /// Adds a picture; `texts` is what the file says of itself.
     pub(super) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
         match self {
-            #[cfg(feature = "video")]
-            Self::Video(video) => video.add(&image),
+            Self::Video(video) => video.add(&image, texts),
             Self::Gif(gif) => gif.add(image, texts),
         }
     }
 
-    /// Ends it and gives it its name.
-    pub(super) fn finish(self, texts: &Texts) -> Result<()> {
-        let _ = texts;
+    /// Ends it and gives it its name. Whether there is one: none has no picture.
+    pub(super) fn finish(self) -> Result<bool> {
         match self {
-            #[cfg(feature = "video")]
-            Self::Video(video) => video.finish(texts).map(|_| ()),
-            Self::Gif(gif) => gif.finish().map(|_| ()),
+            Self::Video(video) => video.finish(),
+            Self::Gif(gif) => gif.finish(),
         }
     }
 }

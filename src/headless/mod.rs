@@ -25,6 +25,8 @@ pub(crate) use data::told as told_of_data;
 pub(crate) use kept::KeptStates;
 pub(crate) use options::HeadlessOptions;
 #[cfg(feature = "window")]
+pub(crate) use video::VideoFile;
+#[cfg(feature = "window")]
 pub(crate) use video_options::{VIDEO_RATES_HZ, check_built as check_video};
 
 use std::path::Path;

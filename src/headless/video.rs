@@ -44,43 +44,43 @@ impl HeadlessOptions {
 
 /// A video of a run, and what it says of itself.
 #[cfg(feature = "video")]
-pub(super) struct VideoFile {
+pub(crate) struct VideoFile {
     video: crate::output::Video,
     texts: Texts,
 }
 
 #[cfg(feature = "video")]
 impl VideoFile {
-    pub(super) fn start(path: &Path, size: [u32; 2], rate_hz: f64) -> Result<Self> {
+    pub(crate) fn start(path: &Path, size: [u32; 2], rate_hz: f64) -> Result<Self> {
         let video = crate::output::Video::start(path, size, rate_hz)?;
         Ok(Self { video, texts: Texts::default() })
     }
 
-    pub(super) fn add(&mut self, image: &RgbaImage, texts: &Texts) -> Result<()> {
+    pub(crate) fn add(&mut self, image: &RgbaImage, texts: &Texts) -> Result<()> {
         self.texts.clone_from(texts);
         self.video.add(image)
     }
 
-    pub(super) fn finish(self) -> Result<bool> {
+    pub(crate) fn finish(self) -> Result<bool> {
         self.video.finish(&self.texts)
     }
 }
 
 /// What a build without videos has in its place, which it never comes to.
 #[cfg(not(feature = "video"))]
-pub(super) struct VideoFile;
+pub(crate) struct VideoFile;
 
 #[cfg(not(feature = "video"))]
 impl VideoFile {
-    pub(super) fn start(path: &Path, _: [u32; 2], _: f64) -> Result<Self> {
+    pub(crate) fn start(path: &Path, _: [u32; 2], _: f64) -> Result<Self> {
         check_built(path.display()).map(|()| Self)
     }
 
-    pub(super) fn add(&mut self, _: &RgbaImage, _: &Texts) -> Result<()> {
+    pub(crate) fn add(&mut self, _: &RgbaImage, _: &Texts) -> Result<()> {
         Ok(())
     }
 
-    pub(super) fn finish(self) -> Result<bool> {
+    pub(crate) fn finish(self) -> Result<bool> {
         Ok(false)
     }
 }

@@ -11,24 +11,27 @@ use slump::app::Preferences;
 use crate::recordings::take_steps;
 use crate::robot::{Robot, pile};
 
-fn open(folder: &Path) -> Robot {
-    let preferences = Preferences {
-        folder: folder.to_owned(),
-        picture_size: [161, 100],
-        ..Preferences::default()
-    };
+/// A window whose pictures are so large.
+pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
+    let preferences =
+        Preferences { folder: folder.to_owned(), picture_size: size, ..Preferences::default() };
     let mut robot = Robot::open_with_gpu(pile(), preferences);
     robot.click("See");
     robot
 }
 
-/// Has an animation made, and gives its file.
-fn made(robot: &mut Robot) -> PathBuf {
-    robot.click("Save GIF");
-    robot.until("the animation", |state| !state.is_writing());
+/// Has a button make a file of moving pictures, and gives it and what is told of it.
+pub(crate) fn made(robot: &mut Robot, button: &str) -> (PathBuf, String) {
+    robot.click(button);
+    robot.until("the file", |state| !state.is_writing());
     let told = robot.state().notice().expect("what became of it").0.text.clone();
     let path = told.strip_prefix("Saved ").and_then(|rest| rest.split(" of ").next());
-    path.unwrap_or_else(|| panic!("{told}")).into()
+    (path.unwrap_or_else(|| panic!("{told}")).into(), told)
+}
+
+/// Has an animation made, and gives its file.
+fn animation(robot: &mut Robot) -> PathBuf {
+    made(robot, "Save GIF").0
 }
 
 fn pictures(path: &Path) -> Vec<Frame> {
@@ -53,9 +56,9 @@ fn difference(one: &RgbaImage, other: &RgbaImage) -> f64 {
 #[test]
 fn the_record_is_an_animation_at_the_pace_of_time() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut robot = open(folder.path());
+    let mut robot = open(folder.path(), [161, 100]);
     take_steps(&mut robot, 200);
-    let path = made(&mut robot);
+    let path = animation(&mut robot);
     let frames = pictures(&path);
     assert_eq!(frames.len(), 6, "0 to 0.2 s at 25 a second");
     for frame in &frames {
@@ -68,7 +71,7 @@ fn the_record_is_an_animation_at_the_pace_of_time() {
     let bytes = std::fs::read(&path).expect("an animation");
     let said = String::from_utf8_lossy(&bytes);
     assert!(said.contains("Command line: slump --headless "), "no command line");
-    assert!(bytes == std::fs::read(made(&mut robot)).unwrap());
+    assert!(bytes == std::fs::read(animation(&mut robot)).unwrap());
 }
 
 /// What a file cannot say is not asked of it: pictures follow each other by whole hundredths of a second, and by no
@@ -76,12 +79,12 @@ fn the_record_is_an_animation_at_the_pace_of_time() {
 #[test]
 fn an_animation_keeps_its_pace_where_it_cannot_have_the_pictures_asked_for() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut robot = open(folder.path());
+    let mut robot = open(folder.path(), [161, 100]);
     take_steps(&mut robot, 200);
     for (rate_hz, pictures_made, each_ms) in [(240.0, 11, 20.0), (60.0, 11, 20.0), (30.0, 7, 30.0)]
     {
         robot.state_mut().preferences.video_rate_hz = rate_hz;
-        let frames = pictures(&made(&mut robot));
+        let frames = pictures(&animation(&mut robot));
         assert_eq!(frames.len(), pictures_made, "{rate_hz}");
         assert!(frames.iter().all(|frame| shown_ms(frame) == each_ms), "{rate_hz}");
     }
@@ -90,8 +93,7 @@ fn an_animation_keeps_its_pace_where_it_cannot_have_the_pictures_asked_for() {
 #[test]
 fn an_animation_that_is_stopped_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut robot = open(folder.path());
-    robot.state_mut().preferences.picture_size = [640, 400];
+    let mut robot = open(folder.path(), [640, 400]);
     take_steps(&mut robot, 300);
     robot.state_mut().preferences.video_speed = 0.01;
     robot.click("Save GIF");

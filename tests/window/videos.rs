@@ -4,27 +4,14 @@ use std::path::{Path, PathBuf};
 
 use egui_kittest::kittest::{NodeT, Queryable};
 use mp4_atom::{Decode, Ftyp, Ilst, Moov, StszSamples};
-use slump::app::Preferences;
 use slump::sim::live::Command;
 
+use crate::animations::{self, open};
 use crate::recordings::take_steps;
-use crate::robot::{Robot, pile};
+use crate::robot::Robot;
 
-fn open(folder: &Path, size: [u32; 2]) -> Robot {
-    let preferences =
-        Preferences { folder: folder.to_owned(), picture_size: size, ..Preferences::default() };
-    let mut robot = Robot::open_with_gpu(pile(), preferences);
-    robot.click("See");
-    robot
-}
-
-/// Has a video made, and gives the file and what is told of it.
 fn made(robot: &mut Robot) -> (PathBuf, String) {
-    robot.click("Save video");
-    robot.until("the video", |state| !state.is_writing());
-    let told = robot.state().notice().expect("what became of it").0.text.clone();
-    let path = told.strip_prefix("Saved ").and_then(|rest| rest.split(" of ").next());
-    (path.unwrap_or_else(|| panic!("{told}")).into(), told)
+    animations::made(robot, "Save video")
 }
 
 fn head(path: &Path) -> Moov {

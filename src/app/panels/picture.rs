@@ -32,7 +32,7 @@ pub(crate) fn save_film(context: &egui::Context, state: &mut AppState, format: F
         format,
         picture: scene_picture(state, style, size, false),
         slumps: state.slumps(),
-        rate_hz: state.preferences.video_rate_hz,
+        rate_hz: format.nearest_rate_hz(state.preferences.video_rate_hz),
         speed: state.preferences.video_speed,
         stretch: state.data.stretch,
         folder: state.preferences.folder.clone(),

@@ -126,7 +126,6 @@ fn save_video(ui: &mut Ui, state: &mut AppState) {
     let hint = "What was recorded of all worlds, or the stretch that Data names, as AV1 in MP4. The run may go on meanwhile.";
     let save = save_button(ui, state, "Save video", check_video("given")).on_hover_text(hint);
     if save.clicked() {
-        #[cfg(feature = "video")]
         super::picture::save_film(ui.ctx(), state, FilmFormat::Video);
     }
 }
