@@ -84,6 +84,29 @@ fn the_static_pull_off_force_is_the_cohesion_at_every_time_step() {
 }
 
 #[test]
+fn a_bond_that_holds_a_load_at_rest_asks_for_no_substeps_and_breaks_where_its_strength_ends() {
+    // Longer than the time of a break, 0.7 ms: what is cut here is cut into four.
+    let time_step_secs = 1e-3;
+    // More than half of the strength, so that only standing still tells it from a bond that is about to break.
+    let load = 0.75 * BOND * G;
+    let mut simulation = pair(time_step_secs, 0.3 * (2.0 * work()).sqrt(), load, LINE);
+    take_steps(&mut simulation, 1);
+    assert!(simulation.observables().sweeps > 4, "one in which a bond so loaded opens is cut");
+    take_steps(&mut simulation, 20);
+    assert!(simulation.observables().sweeps < 4, "one that stands is not");
+
+    // C₀ in the grain's weight, which is its load.
+    let mut parameters = *simulation.parameters();
+    while parameters.bond > 0.5 && simulation.world().grains.velocities[0].x < 1e-3 {
+        parameters.bond *= 0.999;
+        simulation.set_parameters(parameters).expect("a Bond number");
+        take_steps(&mut simulation, 1);
+    }
+    let strength = parameters.bond;
+    assert!((0.99..1.0).contains(&strength), "it let go at {strength} of its load");
+}
+
+#[test]
 fn a_load_that_breaks_a_bond_gives_it_just_its_work() {
     for time_step_secs in TIME_STEPS {
         for factor in [1.1, 2.0, 5.0] {

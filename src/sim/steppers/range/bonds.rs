@@ -12,7 +12,9 @@
 //!
 //! **Restless bonds.** One broken bond loads the next, and a step hands a load on by one bond only; a
 //! long step tells of loads their mean alone. So a step says whether a bond is seen in it that would
-//! break if it were half as strong, and a long one is then given up (`range`).
+//! break if it were half as strong, and a long one is then given up (`range`). What stands is not restless,
+//! whatever load its bonds carry: where nothing moves by more than a part of δ_c, the mean of a load is
+//! the load.
 
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +33,10 @@ const MOST_ROUNDS: u32 = 8;
 
 /// Strength, in that of a bond, at which a bond that would break is restless.
 const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
+
+/// How far what stands may go in a step, in δ_c. Larger: a load that comes slowly is not seen rising; smaller: what a
+/// solver's tolerance leaves of motion is taken for motion.
+const STANDING_IN_DEBONDING_DISTANCES: f64 = 1e-3;
 
 /// Part of a bound by which it has to fall to be worth another solution.
 const FALL: f64 = 1e-6;
@@ -74,6 +80,7 @@ pub(super) fn solve_range<M: Model>(
     let numbers = StepNumbers::of(stage.world(), settings);
     let Memory { shocks, lowered, restless, .. } = remembered;
     let Stage { state, problem, memory, .. } = stage;
+    let fastest = state.fastest();
     let contacts = &mut state.contacts;
     let mut round = 0;
     loop {
@@ -82,8 +89,7 @@ pub(super) fn solve_range<M: Model>(
         let bonds = contacts.bonds();
         let limits = Limits { bonds, shocks, numbers };
         if round == 1 {
-            limits.lowered::<M>(problem, STRENGTH_OF_RESTLESS_BONDS, lowered);
-            *restless |= !lowered.is_empty();
+            *restless |= limits.is_restless::<M>(problem, fastest, lowered);
             if !may_break && *restless {
                 let bonds = BondEnergies::default();
                 return Solved { report, of_shocks, bonds, done: false };
@@ -203,6 +209,33 @@ struct Limits<'a> {
 }
 
 impl Limits<'_> {
+    /// Whether bonds are about to break in a step that has been solved, at whose beginning the fastest grain or
+    /// wall had that speed (m/s).
+    fn is_restless<M: Model>(
+        &self,
+        problem: &StepProblem<M::Kinematics>,
+        fastest: f64,
+        lowered: &mut Vec<(usize, f64)>,
+    ) -> bool {
+        self.lowered::<M>(problem, STRENGTH_OF_RESTLESS_BONDS, lowered);
+        if lowered.is_empty() || !self.stands(problem, fastest) {
+            return !lowered.is_empty();
+        }
+        self.lowered::<M>(problem, 1.0, lowered);
+        !lowered.is_empty()
+    }
+
+    /// Whether nothing moved when the step began, and no pair moves apart or along in it.
+    fn stands<K: Kinematics>(&self, problem: &StepProblem<K>, fastest: f64) -> bool {
+        let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
+        let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;
+        let mut speed = fastest;
+        for_each_row(problem, |_, _, motion| {
+            speed = motion.now.into_iter().fold(speed, |most, now| most.max(now.abs()));
+        });
+        speed <= still
+    }
+
     /// Finds rows with bounds (m/s) below those that they have: bonds that do not live to the end of the
     /// step, were they of `strength` times their own.
     fn lowered<M: Model>(

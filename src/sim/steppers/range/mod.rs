@@ -4,7 +4,7 @@
 //! **Substeps.** Two things ask for them.
 //!
 //! * A step is long against the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile whose
-//!   bonds are not is stepped at full length. Where the step before was cut and bonds were restless to
+//!   bonds are not, or that stands, is stepped at full length. Where the step before was cut and bonds were restless to
 //!   its end, or bonded pairs circle fast (`range::turning`), the next one is cut without being tried. Where sixteen substeps are too long for a break, the
 //!   step says so, and which one would not be (`sim::alarm`).
 //! * Grains go far. A contact's normal is that of the beginning of the step, so the constraint
