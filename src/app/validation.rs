@@ -11,11 +11,11 @@ use crate::study::Verdict;
 pub(super) const COMMAND: &str = "slump validate --quick --out validation";
 /// Where that leaves it.
 const USUAL: &str = "validation/quantities.json";
-/// What that command wrote, as it is shipped, …
+/// What the full pass wrote, as it is shipped, …
 const SHIPPED: &str = include_str!("../../assets/validation/quantities.json");
 /// … and when and where.
 const SHIPPED_FROM: &str =
-    "shipped, by slump validate --quick on 2026-11-22 and 23, two shared cores";
+    "shipped, by slump validate --time-steps 1e-3 on 2026-11-23, two shared cores";
 /// What a report must be, for messages.
 const FORM: &str = "the quantities.json that slump validate wrote";
 

@@ -24,7 +24,7 @@ fn a_report_is_read_into_the_panel_and_what_is_none_is_refused() {
         robot.click(section);
     }
     // The first start has a report.
-    assert!(robot.harness.query_by_label_contains("shipped, by slump validate --quick").is_some());
+    assert!(robot.harness.query_by_label_contains("shipped, by slump validate").is_some());
     assert!(robot.harness.query_by_label_contains("packing: ").is_some());
     // A folder is as good as the file in it.
     let type_path = |robot: &mut Robot, path: &std::path::Path| {

@@ -4,7 +4,7 @@
 //! grains of mass m, and P in units of m g/d, η = Bond/(2P).
 
 use super::experiment::{Case, Cases, Experiment, Found, values, with};
-use super::plane_shear::{Layer, PRESSURE, size, takes_drives};
+use super::plane_shear::{Layer, PRESSURE, balance, size, takes_drives};
 use super::quantity::{Provenance, Quantity};
 use super::way::Way;
 use crate::study::statistics::mean;
@@ -88,5 +88,6 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
             [f64::NEG_INFINITY, -0.1, -0.02],
             "Rognon et al. 2006: strong cohesion dilates further",
         ),
+        balance(found, ("strength", &system)),
     ]
 }

@@ -7,6 +7,13 @@
 //!
 //! γ̇ is the slope of the velocity over the height away from the plates, at which grains slip. T and N are the means of
 //! both plates.
+//!
+//! What is not steady in a layer of height H dies away over (H/d)² I²/(π² T/N) heights of shear, since what hands the
+//! momentum on is T = (T/N) P: eleven to eighteen at H = 37 d and I = 0.2. So layers begin with the profile that they
+//! are to have, linear from plate to plate, are sheared for three of those before they are watched, and held to what a
+//! steady flow must do: pull at both plates alike.
+
+use std::f64::consts::PI;
 
 use glam::DVec2;
 
@@ -45,8 +52,12 @@ pub(super) const PRESSURE: f64 = 1.0;
 const DENSE: f64 = 0.79;
 /// How long the plate takes to press loose grains together, s.
 const PRESSING_SECS: f64 = 0.5;
-/// How far a layer is sheared, and then again while it is watched, in heights of it.
+/// How far a layer is sheared at the least, and then again while it is watched, in heights of it.
 const STRAINS: [f64; 2] = [1.5, 3.0];
+/// How many of the times in which what is not steady dies away a layer is sheared besides, for [`SLOWEST`].
+const TIMES_TO_STEADY: f64 = 3.0;
+/// T/N of a layer in which it dies away slowly.
+const SLOWEST: f64 = 0.4;
 /// Moments that are looked at.
 const MOMENTS: u32 = 250;
 /// Each so many of them solid fractions are taken.
@@ -102,7 +113,7 @@ impl Layer {
 
     /// Its height when pressed together, in diameters.
     fn height(&self) -> f64 {
-        let area = 0.25 * std::f64::consts::PI * self.grains();
+        let area = 0.25 * PI * self.grains();
         area / (DENSE * f64::from(self.cell.wide))
     }
 
@@ -111,10 +122,16 @@ impl Layer {
         self.inertial / inertial_secs()
     }
 
+    /// How far it is sheared until its flow is steady, in heights of it (see the module).
+    fn strains_to_steady(&self) -> f64 {
+        let times = (self.height() * self.inertial).powi(2) / (PI * PI * SLOWEST);
+        STRAINS[0] + TIMES_TO_STEADY * times
+    }
+
     /// Its run, told from others by a number and its seed.
     pub(super) fn case(self, (name, value): (&'static str, f64), way: Way) -> Case {
         let at = vec![(name, value), ("grains", self.grains()), ("seed", self.seed as f64)];
-        let secs = PRESSING_SECS + (STRAINS[0] + STRAINS[1]) / self.rate();
+        let secs = PRESSING_SECS + (self.strains_to_steady() + STRAINS[1]) / self.rate();
         let cost = self.grains() * secs / way.time_step_secs;
         Case { at, cost, run: Box::new(move || self.run(way)) }
     }
@@ -125,6 +142,10 @@ impl Layer {
         scene.parameters.friction = FRICTION;
         scene.parameters.restitution = RESTITUTION;
         scene.parameters.bond = self.bond;
+        let top = scene.fixed_discs.iter().fold(0.0, |top: f64, disc| top.max(disc.position.y));
+        for grain in &mut scene.grains {
+            grain.velocity.x = speed * grain.position.y / top;
+        }
         way.take(&mut scene);
         scene
     }
@@ -132,22 +153,25 @@ impl Layer {
     /// Shears it until it is steady, and then watches it.
     pub(super) fn run(&self, way: Way) -> Result<Measured> {
         let mut trial = Trial::start(&self.scene(way))?;
-        let begin_secs = PRESSING_SECS + STRAINS[0] / self.rate();
+        let begin_secs = PRESSING_SECS + self.strains_to_steady() / self.rate();
         let watched_secs = STRAINS[1] / self.rate();
-        let (mut forces, mut rates, mut solid_fractions) = (DVec2::ZERO, vec![], vec![]);
+        let (mut forces, mut rates, mut solid_fractions) = ([DVec2::ZERO; 2], vec![], vec![]);
         for moment in 1..=MOMENTS {
             let part = f64::from(moment) / f64::from(MOMENTS);
             trial.run_until(begin_secs + part * watched_secs, |_| ())?;
             let state = trial.simulation.moment();
-            forces += on_plates(&state, u32::from(self.cell.wide));
+            let now = on_plates(&state, u32::from(self.cell.wide));
+            forces.iter_mut().zip(now).for_each(|(force, now)| *force += now);
             rates.push(rate(&state));
             if moment.is_multiple_of(MOMENTS_OF_CELLS) {
                 solid_fractions.push(solid_fraction(&state));
             }
         }
+        let [lower, upper] = forces;
         Ok(trial.measured([
             ("inertial", mean(&rates).mean * inertial_secs()),
-            ("friction", forces.x / forces.y),
+            ("friction", (upper.x - lower.x) / (lower.y - upper.y)),
+            ("imbalance", (upper.x + lower.x) / (upper.x - lower.x)),
             ("solid_fraction", mean(&solid_fractions).mean),
             ("overlap", trial.simulation.observables().mean_overlap),
         ]))
@@ -159,16 +183,15 @@ fn inertial_secs() -> f64 {
     (DIAMETER / (GRAVITY * PRESSURE)).sqrt()
 }
 
-/// T and N of the two plates together, N.
-fn on_plates(moment: &Moment, of_plate: u32) -> DVec2 {
+/// What the lower plate does to the grains, and the upper one, N.
+fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     let on = |is_upper: bool| -> DVec2 {
         let of_it = moment.contacts.iter().filter(|contact| {
             matches!(contact.other, OtherBody::FixedDisc(disc) if (disc >= of_plate) == is_upper)
         });
         of_it.map(|contact| contact.force()).sum()
     };
-    let [lower, upper] = [on(false), on(true)];
-    DVec2::new(upper.x - lower.x, lower.y - upper.y)
+    [on(false), on(true)]
 }
 
 /// The heights between which a layer is looked at, m.
@@ -192,7 +215,7 @@ fn solid_fraction(moment: &Moment) -> f64 {
     let (mut discs, mut cells) = (0.0, 0.0);
     for (grain, measures) in moment.grains.iter().zip(&measure(moment).grains) {
         if (low..high).contains(&grain.position.y) && measures.solid_fraction.is_finite() {
-            discs += std::f64::consts::PI * grain.radius * grain.radius;
+            discs += PI * grain.radius * grain.radius;
             cells += measures.cell_area;
         }
     }
@@ -238,5 +261,22 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
         ),
         quantity("φ, extended to I = 0", &densest, [0.79, 0.81, 0.84], "da Cruz et al. 2005: 0.81"),
         quantity("slope of φ in I", &dilations, [-0.5, -0.3, -0.1], "da Cruz et al. 2005: −0.3"),
+        balance(found, ("inertial", &system)),
     ]
+}
+
+/// How much more the upper plate pulls than the lower one in the layers with the largest value of a number, over both
+/// pulls: where a flow is not steady yet, one plate has still to set it going.
+pub(super) fn balance(found: &[Found], (name, system): (&str, &str)) -> Quantity {
+    let most = values(found, name).last().copied().unwrap_or(f64::NAN);
+    let imbalances: Vec<f64> =
+        with(found, name, most).map(|one| one.reading("imbalance")).collect();
+    let source = (Provenance::Exact, "a steady flow gains no momentum");
+    Quantity::new(
+        "T of the plates: their difference over their sum",
+        system,
+        mean(&imbalances),
+        [-0.05, 0.0, 0.05],
+        source,
+    )
 }
