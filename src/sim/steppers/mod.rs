@@ -91,6 +91,7 @@ impl Memory {
 
     /// Sets up the first problem that the method gets in the next step; where no method gets any, the
     /// problem that the step is judged by.
+    #[inline(never)]
     pub(super) fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
             Stepper::Moreau => moreau::set_up_with_impacts(stage, settings),

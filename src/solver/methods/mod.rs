@@ -150,6 +150,8 @@ impl fmt::Display for Method {
 /// assert!(simulation.next_problem(Left(Method::Newton)) < 1e-3);
 /// # Ok::<(), slump::error::Error>(())
 /// ```
+// Compiled once, with the library, for all models there are: who calls it with one of them compiles none of it anew.
+#[inline(never)]
 pub fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     memory: &mut Memory<M::Kinematics>,

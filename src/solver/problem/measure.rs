@@ -79,6 +79,7 @@ impl Measures {
 /// is 0 where nothing moves and nothing errs beyond rounding, and infinite where nothing would move and
 /// something errs. Rows hold p/m_n and P_t/m_n, so each row's terms are
 /// formed in m/s and weighted by m_n.
+#[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
     let add_error = |sums: &mut Sums, row: (usize, &Row<_>), motion: Motion| {
         sums.add_error::<M>(problem, row, &motion);
