@@ -85,38 +85,56 @@ fn the_paper_s_law_tells_nothing_of_bonds() {
     assert!(!serde_json::to_string(now).expect("numbers").contains("bond_"));
 }
 
-#[test]
-fn methods_agree_on_steps_with_bonds() {
-    let mut scene = pile(20.0, 2e-4, Method::Newton);
-    scene.solver.tolerance = 1e-9;
+/// How many steps of a pile that falls together Newton's method and another have both solved, of those that were looked
+/// at, and in how many of these the velocities after them are alike.
+fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
+    let parameters =
+        Parameters { restitution: 0.1, restitution_threshold: 2.0, friction, ..range(20.0, 2e-4) };
+    let solver =
+        SolverSettings { method: Method::Newton, max_sweeps: 20_000, tolerance: 1e-9, ..tight() };
+    let scene =
+        Scene { stepper: Stepper::Range, solver, ..pressed_pile(60, 0.3, seed, parameters) };
     let mut simulation = start(&scene);
-    let methods = [Method::Nsgs, Method::Nncg, Method::NsgsParallel];
-    let mut solved = [0; 3];
-    const MOMENTS: u32 = 12;
+    let mut counts = [0; 2];
     for _ in 0..MOMENTS {
         take_steps(&mut simulation, 10);
-        let next = |method| {
+        let [reference, found] = [Method::Newton, method].map(|method| {
             let mut copy = simulation.clone();
-            copy.set_solver(SolverSettings { method, ..scene.solver }).expect("fine");
+            copy.set_solver(SolverSettings { method, ..solver }).expect("fine");
             take_steps(&mut copy, 1);
             copy
-        };
-        let reference = next(Method::Newton);
-        for (count, method) in solved.iter_mut().zip(methods) {
-            let found = next(method);
-            if !(found.observables().converged && reference.observables().converged) {
-                continue;
-            }
-            *count += 1;
-            let [found, reference] =
-                [&found, &reference].map(|simulation| &simulation.world().grains.velocities);
-            let off = found.iter().zip(reference).map(|(a, b)| (*a - *b).length());
-            let off = off.fold(0.0, f64::max);
-            assert!(off < 1e-5, "{method:?}: {off} m/s off, and both have solved it");
+        });
+        if !(found.observables().converged && reference.observables().converged) {
+            continue;
+        }
+        let [found, reference] =
+            [&found, &reference].map(|simulation| &simulation.world().grains.velocities);
+        let off = found.iter().zip(reference).map(|(a, b)| (*a - *b).length());
+        counts[0] += 1;
+        counts[1] += u32::from(off.fold(0.0, f64::max) < 1e-5);
+    }
+    counts
+}
+
+/// Steps that are looked at in each pile.
+const MOMENTS: u32 = 12;
+
+/// Not in all: Coulomb's law may have several solutions, and then it hangs on the method which is found; and where shocks have
+/// more contacts than they need, how their impulses are shared out decides which bond goes first. Who solves another
+/// law has next to none alike.
+#[test]
+fn methods_agree_on_nearly_all_steps_with_bonds() {
+    for method in [Method::Nsgs, Method::Nncg, Method::NsgsParallel] {
+        for (friction, least_share) in [(0.0, 0.95), (0.5, 0.8)] {
+            let counts = (1..=8).map(|seed| solved_and_alike(seed, friction, method));
+            let [solved, alike] =
+                counts.fold([0; 2], |sum, more| [0, 1].map(|at| sum[at] + more[at]));
+            // What is left unsolved within the sweeps allowed tells nothing of agreement.
+            assert!(2 * solved > 8 * MOMENTS, "{method:?}, μ = {friction}: {solved} solved");
+            let share = f64::from(alike) / f64::from(solved);
+            assert!(share >= least_share, "{method:?}, μ = {friction}: {alike} of {solved} alike");
         }
     }
-    // What is left unsolved within the sweeps allowed tells nothing of agreement.
-    assert!(solved.iter().all(|&count| 2 * count > MOMENTS), "{solved:?} of {MOMENTS}");
 }
 
 #[test]

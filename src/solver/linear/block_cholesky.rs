@@ -6,24 +6,16 @@
 //! > D_k = L_k L_kᵀ,  W_kb = L_k⁻¹ U_kb,  U_ab ← U_ab − W_kaᵀ W_kb for all later neighbours a ≤ b of k,
 //!
 //! and A = WᵀW in the end, W having L_kᵀ on its diagonal. That is half the work and half the memory of the
-//! unsymmetric factors, and a positive definite matrix needs no pivoting. Diagonal blocks are factorised and not
-//! inverted: one that is stiff along one direction and soft along another loses half of all digits in an
-//! inverse.
+//! unsymmetric factors, and a positive definite matrix needs no pivoting. Places with the same later neighbours, a
+//! supernode, are taken together: each block that they change is fetched once and changed by all of them, which are at
+//! hand (C. C. Ashcraft, R. G. Grimes, 1989). Diagonal blocks are factorised and not inverted: one that is stiff along
+//! one direction and soft along another loses half of all digits in an inverse.
+
+use std::ops::Range;
 
 use super::block_lu::Block;
 use super::elimination::Elimination;
-
-/// Rows of a block are as long as a vector register, so that a row is one operation.
-const WIDTH: usize = 4;
-
-/// A block whose columns from D on are 0.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-struct Padded<const D: usize>([[f64; WIDTH]; D]);
-
-impl<const D: usize> Padded<D> {
-    const ZERO: Self = Self([[0.0; WIDTH]; D]);
-}
+use super::padded::{Padded, add, cholesky, less_products, solve_lower, subtract_product};
 
 /// A symmetric matrix, then its factors. Memory is kept between matrices.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +24,8 @@ pub(crate) struct SymmetricBlockMatrix<const D: usize> {
     diagonal: Vec<Padded<D>>,
     /// Block (a, b) for each pair a < b of neighbours, numbered as in [`Elimination::later`].
     upper: Vec<Padded<D>>,
+    /// What the rows of a supernode have outside of it, column by column.
+    panel: Vec<Padded<D>>,
 }
 
 impl<const D: usize> SymmetricBlockMatrix<D> {
@@ -59,7 +53,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
     /// Factorises in place.
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx") {
+        if std::arch::is_x86_feature_detected!("avx") && std::arch::is_x86_feature_detected!("fma")
+        {
             // SAFETY: the processor has just been asked.
             unsafe { self.factorise_with_avx(elimination) };
             return;
@@ -69,36 +64,109 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
 
     /// The same operations in the same order, and so bitwise the same result, four at a time.
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx")]
+    #[target_feature(enable = "avx,fma")]
     fn factorise_with_avx(&mut self, elimination: &Elimination) {
         self.factorise_each(elimination);
     }
 
     #[inline(always)]
     fn factorise_each(&mut self, elimination: &Elimination) {
-        let Self { diagonal, upper } = self;
         let mut targets = &elimination.targets[..];
-        for place in 0..diagonal.len() {
-            let factor = cholesky(&diagonal[place]);
-            diagonal[place] = factor;
-            let range = elimination.starts[place] as usize..elimination.starts[place + 1] as usize;
-            for block in &mut upper[range.clone()] {
-                solve_lower(&factor, block);
+        for supernode in elimination.supernodes.windows(2) {
+            let places = supernode[0] as usize..supernode[1] as usize;
+            for place in places.clone() {
+                self.factorise_place(elimination, place, places.end);
+                if place + 1 < places.end {
+                    targets = &targets[pairs(elimination.row(place).len())..];
+                }
             }
-            for first in range.clone() {
-                let of_first = upper[first];
-                subtract_product(
-                    &mut diagonal[elimination.later[first] as usize],
-                    &of_first,
-                    &of_first,
-                );
-                let others = first + 1..range.end;
-                // There is a target for every pair, in this very order.
-                let (of_these, rest) = targets.split_at(others.len());
-                targets = rest;
-                for (second, &target) in others.zip(of_these) {
-                    let of_second = upper[second];
-                    subtract_product(&mut upper[target as usize], &of_first, &of_second);
+            let outside = elimination.row(places.end - 1);
+            let (of_these, rest) = targets.split_at(pairs(outside.len()));
+            targets = rest;
+            if places.len() == 1 {
+                self.subtract_row(elimination, outside, of_these);
+            } else {
+                self.subtract_supernode(elimination, places, of_these);
+            }
+        }
+    }
+
+    /// Factorises a place's row, and takes from the rest of its supernode, up to `end`, what that changes there.
+    #[inline(always)]
+    fn factorise_place(&mut self, elimination: &Elimination, place: usize, end: usize) {
+        let Self { diagonal, upper, .. } = self;
+        let factor = cholesky(&diagonal[place]);
+        diagonal[place] = factor;
+        let row = elimination.row(place);
+        for block in &mut upper[row.clone()] {
+            solve_lower(&factor, block);
+        }
+        // Rows of a supernode end alike.
+        let (done, ahead) = upper.split_at_mut(row.end);
+        for (later, first) in (place + 1..end).zip(row.clone()) {
+            let of_first = &done[first];
+            subtract_product(&mut diagonal[later], of_first, of_first);
+            let begin = elimination.row(later).start - row.end;
+            for (to, of_second) in ahead[begin..].iter_mut().zip(&done[first + 1..]) {
+                subtract_product(to, of_first, of_second);
+            }
+        }
+    }
+
+    /// What a place changes that is a supernode by itself.
+    #[inline(always)]
+    fn subtract_row(&mut self, elimination: &Elimination, row: Range<usize>, targets: &[u32]) {
+        let Self { diagonal, upper, .. } = self;
+        // There is a target for every pair, in this very order.
+        let mut targets = targets.iter();
+        for first in row.clone() {
+            let of_first = upper[first];
+            let on_first = &mut diagonal[elimination.later[first] as usize];
+            subtract_product(on_first, &of_first, &of_first);
+            for (second, &target) in (first + 1..row.end).zip(&mut targets) {
+                let of_second = upper[second];
+                subtract_product(&mut upper[target as usize], &of_first, &of_second);
+            }
+        }
+    }
+
+    /// What a supernode changes outside of itself: each block once, by all places.
+    #[inline(always)]
+    fn subtract_supernode(
+        &mut self,
+        elimination: &Elimination,
+        places: Range<usize>,
+        mut targets: &[u32],
+    ) {
+        let Self { diagonal, upper, panel } = self;
+        let outside = elimination.row(places.end - 1);
+        // One later neighbour after the other, for each what all places have with it.
+        panel.clear();
+        for edge in outside.clone() {
+            let back = outside.end - edge;
+            panel.extend(places.clone().map(|place| upper[elimination.row(place).end - back]));
+        }
+        let with = |edge: usize| &panel[(edge - outside.start) * places.len()..][..places.len()];
+        for first in outside.clone() {
+            let of_first = with(first);
+            let on_first = &mut diagonal[elimination.later[first] as usize];
+            [*on_first] = less_products([*on_first], of_first, [of_first]);
+            // There is a target for every pair, in this very order.
+            let (of_these, rest) = targets.split_at(outside.end - first - 1);
+            targets = rest;
+            for (second, of_these) in (first + 1..).step_by(3).zip(of_these.chunks(3)) {
+                if let Ok(three) = <[u32; 3]>::try_from(of_these) {
+                    let blocks = three.map(|target| upper[target as usize]);
+                    let others = [with(second), with(second + 1), with(second + 2)];
+                    let blocks = less_products(blocks, of_first, others);
+                    for (target, block) in three.into_iter().zip(blocks) {
+                        upper[target as usize] = block;
+                    }
+                    continue;
+                }
+                for (second, &target) in (second..).zip(of_these) {
+                    let block = &mut upper[target as usize];
+                    [*block] = less_products([*block], of_first, [with(second)]);
                 }
             }
         }
@@ -147,58 +215,9 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
     }
 }
 
-#[inline(always)]
-fn add<const D: usize>(to: &mut Padded<D>, block: &Block<D>) {
-    for (entries, numbers) in to.0.iter_mut().zip(block) {
-        for (entry, number) in entries.iter_mut().zip(numbers) {
-            *entry += number;
-        }
-    }
-}
-
-/// L with D = L Lᵀ, the inverses of its diagonal entries on its diagonal.
-#[inline(always)]
-fn cholesky<const D: usize>(block: &Padded<D>) -> Padded<D> {
-    let mut factor = Padded::ZERO;
-    for row in 0..D {
-        for column in 0..=row {
-            let mut entry = block.0[row][column];
-            for inner in 0..column {
-                entry -= factor.0[row][inner] * factor.0[column][inner];
-            }
-            factor.0[row][column] =
-                if column < row { entry * factor.0[column][column] } else { 1.0 / entry.sqrt() };
-        }
-    }
-    factor
-}
-
-/// L⁻¹ of a block.
-#[inline(always)]
-fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
-    for row in 0..D {
-        let mut entries = block.0[row];
-        for inner in 0..row {
-            for (entry, earlier) in entries.iter_mut().zip(block.0[inner]) {
-                *entry -= factor.0[row][inner] * earlier;
-            }
-        }
-        block.0[row] = entries.map(|entry| entry * factor.0[row][row]);
-    }
-}
-
-/// from − aᵀb.
-#[inline(always)]
-fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Padded<D>) {
-    let mut result = *from;
-    for (factors, entries) in a.0.iter().zip(&b.0) {
-        for (to, factor) in result.0.iter_mut().zip(factors) {
-            for column in 0..WIDTH {
-                to[column] -= factor * entries[column];
-            }
-        }
-    }
-    *from = result;
+/// Of so many things.
+fn pairs(count: usize) -> usize {
+    count * count.saturating_sub(1) / 2
 }
 
 #[cfg(test)]
@@ -208,7 +227,7 @@ mod tests {
     /// Springs of random directions and strengths between the bodies of a grid, and unit masses.
     #[test]
     fn a_grid_of_springs_is_solved_to_rounding() {
-        let side = 7u32;
+        let side = 15u32;
         let bodies = side * side;
         let pairs: Vec<(u32, u32)> = (0..bodies)
             .flat_map(|k| {
@@ -219,6 +238,13 @@ mod tests {
             .collect();
         let mut elimination = Elimination::default();
         elimination.analyse(bodies as usize, pairs.iter().copied());
+        let supernodes = elimination.supernodes.windows(2);
+        assert!(
+            supernodes
+                .map(|ends| ends[0] as usize..ends[1] as usize)
+                .any(|places| { places.len() > 2 && elimination.row(places.end - 1).len() > 4 }),
+            "one that changes blocks by threes and single ones"
+        );
         let mut random = 1u64;
         let mut number = || {
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

@@ -6,6 +6,8 @@
 
 use smallvec::SmallVec;
 
+use super::postorder::Postorder;
+
 /// Neighbours of a body. A disc has seldom more than six at first, and elimination seldom doubles
 /// them; more go to the heap.
 type Neighbours = SmallVec<[u32; 12]>;
@@ -26,6 +28,10 @@ pub(crate) struct Elimination {
     /// For each place, for each pair a < b of its later neighbours in lexicographic order: the block
     /// of (a, b).
     pub targets: Vec<u32>,
+    /// Where the supernodes begin, and the number of places: places in a row of which each has the later neighbours of
+    /// the next one, and that one itself.
+    pub supernodes: Vec<u32>,
+    postorder: Postorder,
     neighbours: Vec<Neighbours>,
     merged: Neighbours,
     by_degree: Vec<Vec<u32>>,
@@ -49,6 +55,7 @@ impl Elimination {
             list.dedup();
         }
         self.order(bodies);
+        self.rearrange();
         self.structure(bodies);
     }
 
@@ -57,6 +64,12 @@ impl Elimination {
         let (start, end) = (self.starts[a as usize], self.starts[a as usize + 1]);
         let row = &self.later[start as usize..end as usize];
         start as usize + row.partition_point(|&place| place < b)
+    }
+
+    /// The blocks of a place with its later neighbours.
+    #[inline(always)]
+    pub(super) fn row(&self, place: usize) -> std::ops::Range<usize> {
+        self.starts[place] as usize..self.starts[place + 1] as usize
     }
 
     fn order(&mut self, bodies: usize) {
@@ -90,6 +103,21 @@ impl Elimination {
                 degree = degree.min(self.neighbours[neighbour as usize].len());
             }
             self.neighbours[at] = clique;
+        }
+    }
+
+    /// Puts the places into postorder.
+    fn rearrange(&mut self) {
+        let Self { body_at, place_of, neighbours, postorder, .. } = self;
+        // What a body had as neighbours when it was eliminated comes later than it.
+        postorder.arrange(body_at.iter().map(|&body| {
+            let later = &neighbours[body as usize];
+            (later.iter().map(|&body| place_of[body as usize]).min(), later.len())
+        }));
+        let before = std::mem::take(body_at);
+        body_at.extend(postorder.reversed.iter().rev().map(|&place| before[place as usize]));
+        for (place, &body) in body_at.iter().enumerate() {
+            place_of[body as usize] = place as u32;
         }
     }
 
@@ -135,6 +163,17 @@ impl Elimination {
             self.later[start..].sort_unstable();
             self.starts.push(self.later.len() as u32);
         }
+        self.supernodes.clear();
+        for place in 0..bodies {
+            let follows = place > 0 && {
+                let [first, second, end] = [place - 1, place, place + 1].map(|at| self.starts[at]);
+                end - second + 1 == second - first && self.later[first as usize] == place as u32
+            };
+            if !follows {
+                self.supernodes.push(place as u32);
+            }
+        }
+        self.supernodes.push(bodies as u32);
         self.targets.clear();
         for place in 0..bodies {
             let range = self.starts[place] as usize..self.starts[place + 1] as usize;
@@ -174,6 +213,30 @@ mod tests {
             let block = elimination.block(a.min(b), a.max(b));
             assert_eq!(elimination.later[block], a.max(b));
         }
+        for place in 0..(side * side) as usize {
+            // A subtree is finished before the next one begins.
+            let parent = elimination.later[elimination.row(place)].first();
+            let children =
+                |at: usize| elimination.later[elimination.row(at)].first() == Some(&(place as u32));
+            let before = place.checked_sub(1).filter(|_| (0..place).any(children));
+            assert!(before.is_none_or(children), "{place} comes right after one of its children");
+            assert!(parent.is_none_or(|&parent| parent as usize > place));
+        }
+        let rows: Vec<usize> = (0..elimination.supernodes.len() - 1)
+            .flat_map(|at| {
+                let places =
+                    elimination.supernodes[at] as usize..elimination.supernodes[at + 1] as usize;
+                places.clone().map(move |place| places.end - 1 - place)
+            })
+            .collect();
+        for (place, &within) in rows.iter().enumerate() {
+            let row = &elimination.later[elimination.row(place)];
+            let end = (place + within) as usize;
+            let inside: Vec<u32> = (place as u32 + 1..=end as u32).collect();
+            assert_eq!(row[..within], inside, "the rest of its supernode");
+            assert_eq!(row[within..], elimination.later[elimination.row(end)], "and what that has");
+        }
+        assert_eq!(rows.len(), (side * side) as usize);
         let mut targets = elimination.targets.iter();
         for place in 0..(side * side) as usize {
             let range = elimination.starts[place] as usize..elimination.starts[place + 1] as usize;

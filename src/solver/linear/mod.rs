@@ -3,6 +3,8 @@
 mod block_cholesky;
 mod block_lu;
 mod elimination;
+mod padded;
+mod postorder;
 
 pub(super) use self::block_cholesky::SymmetricBlockMatrix;
 pub(super) use self::block_lu::{Block, BlockMatrix};

@@ -8,7 +8,7 @@ use super::{Figure, Workshop};
 use crate::error::Result;
 use crate::scene::Config;
 use crate::solver::{Fallback, FrictionModel, SolverChanges, StopTest};
-use crate::study::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet};
+use crate::study::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet};
 use crate::study::statistics::mean;
 
 /// How steps are solved.
@@ -135,7 +135,7 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
          so often."
             .into(),
     ];
-    let mut sheet = Sheet { size: (560 * charts.len().max(2) as u32, 600), charts, caption };
+    let mut sheet = Sheet { size: (760 * charts.len().max(2) as u32, 640), charts, caption };
     sheet.caption.extend(workshop.note());
     let of_size = |size: &Size<'_>| {
         let claim = |(_, effort): (usize, Effort)| {
@@ -162,6 +162,7 @@ fn chart(size: &Size<'_>) -> Chart {
     let reach = all.iter().map(|(_, comparisons)| widest(comparisons)).fold(0.0, f64::max);
     let y = Axis::linear("difference of slump", -1.05 * reach, 1.05 * reach);
     let mut chart = Chart::new(format!("{} grains", size.grains), x, y);
+    chart.legend = Corner::LowerLeft;
     for (index, &bond) in bonds.iter().enumerate() {
         let here = all.iter().flat_map(|(at, comparisons)| {
             let of_bond = comparisons.iter().filter(|one| one.bond == bond);
