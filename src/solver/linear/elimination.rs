@@ -231,7 +231,7 @@ mod tests {
             .collect();
         for (place, &within) in rows.iter().enumerate() {
             let row = &elimination.later[elimination.row(place)];
-            let end = (place + within) as usize;
+            let end = place + within;
             let inside: Vec<u32> = (place as u32 + 1..=end as u32).collect();
             assert_eq!(row[..within], inside, "the rest of its supernode");
             assert_eq!(row[within..], elimination.later[elimination.row(end)], "and what that has");
