@@ -13,8 +13,8 @@ mod common;
 use std::time::{Duration, Instant};
 
 use slump::app::{AppState, Canvas, Preferences, SOFTWARE_FRAME_INTERVAL, theme, ui};
-use slump::scene::Config;
-use slump::sim::live::{Command, Frame, Live, LiveOptions, Pace, Start};
+use slump::config::Config;
+use slump::live::{Command, Frame, Live, LiveOptions, Pace, Start};
 use slump::sim::{Simulation, Tally};
 use slump::solver::{Fallback, Method, SolverSettings, StopTest};
 

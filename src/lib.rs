@@ -26,20 +26,17 @@
 // They panic where a stream is closed or full: `output` has lines that do not.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
-pub mod contact;
-pub mod data;
-pub mod error;
-pub mod granular;
+pub use slump_core::{contact, error, scene, setting, sim, solver, world};
+pub use slump_data::{config, data, granular, interchange};
+#[doc(hidden)]
+pub use slump_studies as study;
+
+use slump_data::output;
+
+mod film;
 mod headless;
-pub mod interchange;
-mod output;
+pub mod live;
 pub mod render;
-pub mod scene;
-pub mod setting;
-pub mod sim;
-pub mod solver;
-mod threads;
-pub mod world;
 
 // The program: public for `main.rs`, tests and benches of this package, and for nobody else.
 #[cfg(feature = "window")]
@@ -47,5 +44,3 @@ pub mod world;
 pub mod app;
 #[doc(hidden)]
 pub mod cli;
-#[doc(hidden)]
-pub mod study;

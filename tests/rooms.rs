@@ -5,7 +5,8 @@ mod common;
 use std::path::Path;
 
 use common::{parameters, pressed_pile};
-use slump::scene::{Scene, read_scene};
+use slump::config::read_scene;
+use slump::scene::Scene;
 use slump::setting::{About, Kind, Value};
 use slump::sim::{Observables, REMEDIES, Settings, Stepper};
 

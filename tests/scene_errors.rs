@@ -7,11 +7,9 @@ use std::path::Path;
 use common::{G, fixed, moving, parameters, random, scene};
 use glam::DVec2;
 use rand::RngExt;
+use slump::config::{parse_discs, read_scene, scene_to_toml, write_discs};
 use slump::error::Error;
-use slump::scene::{
-    GrainSource, NewPile, SCENES, Scene, built_in, collision, parse_discs, read_scene,
-    scene_to_toml, settle, write_discs,
-};
+use slump::scene::{GrainSource, NewPile, SCENES, Scene, built_in, collision, settle};
 use slump::world::{Boundary, Grain, Gravity, Physics};
 
 /// A scene without fault, in the plane.

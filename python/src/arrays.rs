@@ -4,7 +4,7 @@ use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use slump::data::{Table, Values};
+use slump_data::data::{Table, Values};
 
 /// Rows of `N` numbers, one below the other.
 pub(crate) fn rows<const N: usize>(

@@ -11,8 +11,9 @@ use crate::initial::discs;
 use crate::json::{data_of, text_of};
 use crate::options::{Given, all_names};
 use crate::run::Run;
-use slump::error::with_allowed;
-use slump::scene::{Config, Ground, SavedState, Scene, Settling};
+use slump_core::error::with_allowed;
+use slump_core::scene::{Scene, Settling};
+use slump_data::config::{Config, Ground, SavedState};
 
 /// What a scene must be that is given as a dictionary, for messages.
 const FORM: &str = "a scene as slump.scene(name) gives it";

@@ -1,7 +1,7 @@
 //! The program's errors as exceptions of the same sentence.
 
 use pyo3::PyErr;
-use slump::error::Error;
+use slump_core::error::Error;
 
 /// Classes of the package, which are made in Python.
 mod classes {

@@ -7,8 +7,8 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::errors::{InputError, refused};
-use slump::data::{RecordedGrains, Values, grains_of};
-use slump::error::Error;
+use slump_core::error::Error;
+use slump_data::data::{RecordedGrains, Values, grains_of};
 
 /// What a start is called in messages.
 const INITIAL: &str = "initial";

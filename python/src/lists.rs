@@ -4,10 +4,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::options::keyword;
-use slump::scene::{Config, SCENES};
-use slump::setting::Kind;
-use slump::sim::{Settings, Stepper};
-use slump::solver::METHODS;
+use slump_core::scene::SCENES;
+use slump_core::setting::Kind;
+use slump_core::sim::{Settings, Stepper};
+use slump_core::solver::METHODS;
+use slump_data::config::Config;
 
 fn lines<'py>(
     py: Python<'py>,

@@ -6,9 +6,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyInt, PyString};
 
 use crate::errors::exception;
-use slump::scene::Config;
-use slump::setting::Value;
-use slump::sim::Settings;
+use slump_core::setting::Value;
+use slump_core::sim::Settings;
+use slump_data::config::Config;
 
 /// What is given of options, by their names on the command line.
 #[derive(Default)]

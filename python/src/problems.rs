@@ -12,8 +12,8 @@ use crate::arrays::rows;
 use crate::errors::{exception, refused};
 use crate::forks::shared_out;
 use crate::json::text_of;
-use slump::interchange::{ProblemFile, Solution, solve_file};
-use slump::solver::{METHODS, Method, SolverSettings, StopTest};
+use slump_core::solver::{METHODS, Method, SolverSettings, StopTest};
+use slump_data::interchange::{ProblemFile, Solution, solve_file};
 
 /// Between two looks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(20);

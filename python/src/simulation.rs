@@ -11,9 +11,9 @@ use crate::errors::{exception, refused};
 use crate::json::parsed;
 use crate::run::Run;
 use crate::{beginning, options, stepping};
-use slump::data::{DataSettings, FormatName};
-use slump::interchange::problem_file_of;
-use slump::sim::AlarmKind;
+use slump_core::sim::AlarmKind;
+use slump_data::data::{DataSettings, FormatName};
+use slump_data::interchange::problem_file_of;
 
 /// A scene in motion.
 ///

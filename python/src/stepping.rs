@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use crate::errors::{SlumpWarning, exception, refused};
 use crate::forks::shared_out;
 use crate::simulation::Simulation;
-use slump::sim::AlarmKind;
+use slump_core::sim::AlarmKind;
 
 /// Takes so many steps, and calls `callback` with the simulation after each `every` of them.
 ///

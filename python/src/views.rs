@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{columns, first_row, list, rows};
 use crate::json::data_of;
 use crate::simulation::Simulation;
-use slump::data::Table;
+use slump_data::data::Table;
 
 #[pymethods]
 impl Simulation {

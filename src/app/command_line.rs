@@ -1,8 +1,8 @@
 //! The command line that computes what a world shows, and what files of the window say of themselves.
 
 use super::state::AppState;
+use crate::config::{Config, Provenance, asked_time_secs, joined, words_up_to};
 use crate::output::Texts;
-use crate::scene::{Config, Provenance, asked_time_secs, joined, words_up_to};
 
 /// What is said of a run that no command line makes.
 const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \

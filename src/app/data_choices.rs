@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::{DataSettings, FormatName};
+use crate::data::{DEFAULT_FORMAT, DataSettings, FormatName};
 
 /// What outlives the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,7 +26,7 @@ impl Default for DataChoices {
             folder: PathBuf::from("data"),
             every_secs: 0.01,
             each_step: false,
-            formats: vec![FormatName::DEFAULT],
+            formats: vec![DEFAULT_FORMAT],
         }
     }
 }

@@ -7,10 +7,11 @@ use std::sync::mpsc::Receiver;
 
 use super::taken::{Opened, TakenRun};
 use super::work::{Telling, Work};
-use crate::data::{About, Claim, DataSettings, Recording, Times};
+use crate::config::about_run;
+use crate::data::{About, Claim, DataSettings, Recording, Times, formats_of};
 use crate::error::{Error, Result};
 use crate::headless::told_of_data;
-use crate::sim::live::{Change, HandMade, Replay};
+use crate::live::{Change, HandMade, Replay};
 use crate::sim::{Edit, Pull, RunEnding, Simulation};
 use crate::world::Disc;
 
@@ -156,7 +157,7 @@ impl Writing<'_> {
     }
 
     fn start(&self, claim: Claim, simulation: &Simulation) -> Result<Recording> {
-        let formats = self.order.settings.formats();
+        let formats = formats_of(&self.order.settings)?;
         let recording = Recording::start_in(claim, &formats, &self.about(simulation)?)?;
         Ok(match self.order.settings.every_secs {
             Some(secs) => recording.at(Times::Every(secs), simulation),
@@ -174,7 +175,7 @@ impl Writing<'_> {
         let settings = changes
             .iter()
             .map(|change| (change.after_step, change.time_secs, change.controls.settings));
-        let mut about = scene.about_run(&settings.collect::<Vec<_>>())?;
+        let mut about = about_run(&scene, &settings.collect::<Vec<_>>())?;
         let mut tell = |name: &str, said: String| about.facts.push((name.to_owned(), said));
         tell("exported", format!("from the window, from step {step} to {} s", self.until_secs));
         let start = self.replay.start().observables();

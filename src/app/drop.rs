@@ -7,7 +7,7 @@ use egui::Context;
 use super::export::STATE_ENDING;
 use super::session::SESSION_ENDING;
 use super::state::AppState;
-use crate::scene::{Config, Origin};
+use crate::config::{Config, Origin};
 
 /// Opens the last file that was dropped in this frame.
 pub(super) fn take_files(context: &Context, state: &mut AppState) {

@@ -1,6 +1,7 @@
 //! How well steps are solved: what the window begins with, and what else is one click away.
 
-use crate::scene::{Config, Scene};
+use crate::config::Config;
+use crate::scene::Scene;
 use crate::sim::{Observables, Surroundings};
 use crate::solver::{Fallback, FrictionModel, Method, SolverChanges, SolverSettings};
 use crate::study::PILE_SOLVER;

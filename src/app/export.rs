@@ -7,11 +7,12 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use crate::error::{Error, Result};
 use image::RgbaImage;
 
-use crate::output::{Texts, check_writable, write_file, write_png};
+use crate::config::SavedState;
+use crate::live::Curve;
+use crate::output::{Texts, check_writable, write_file};
 use crate::render::{Camera, Panel, Renderer, RendererChoice, Style, draw_scene, draw_worlds};
-use crate::scene::SavedState;
-use crate::sim::live::Curve;
 use crate::sim::{Observables, Settings, Snapshot};
+use crate::study::png::write_png;
 use crate::world::Parameters;
 
 use super::number::written;

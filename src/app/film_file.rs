@@ -5,8 +5,9 @@ use std::path::Path;
 use image::RgbaImage;
 
 use crate::error::Result;
+use crate::film::Animation;
 use crate::headless::VideoFile;
-use crate::output::{Animation, Texts};
+use crate::output::Texts;
 
 /// What the record is made into.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

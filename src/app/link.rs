@@ -10,10 +10,10 @@
 use std::sync::mpsc::Receiver;
 
 use super::taken::TakenRun;
+use crate::config::{Config, Origin, words_of};
 use crate::error::{Error, Result};
-use crate::scene::{Config, Origin, words_of};
+use crate::live::{Change, Plan, Taken};
 use crate::sim::Settings;
-use crate::sim::live::{Change, Plan, Taken};
 
 /// What links begin with.
 pub(crate) const LINK_START: &str = "slump://";

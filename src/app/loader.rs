@@ -11,10 +11,11 @@ use super::making::Making;
 use super::session::{Arrangement, Session};
 use super::taken::{LastOpened, Opened};
 use super::tour::Station;
+use crate::config::{Config, SavedState};
 use crate::error::Result;
-use crate::scene::{Config, SavedState, Scene};
+use crate::live::{Loader, Progress, Record, Start};
+use crate::scene::Scene;
 use crate::sim::Tally;
-use crate::sim::live::{Loader, Progress, Record, Start};
 use crate::world::{Boundary, Disc, Gravity};
 
 /// Height of the walls that are drawn around a pile, in its own heights.

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 
+use crate::live::{Preview, Progress};
 use crate::scene::Settling;
-use crate::sim::live::{Preview, Progress};
 use crate::sim::{GrainView, Snapshot};
 
 /// Settlings end when the fastest grain is this many orders of magnitude slower than at first.

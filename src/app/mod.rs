@@ -2,7 +2,7 @@
 //!
 //! `ui` is a function of [`AppState`] alone and knows neither window nor GPU; the private module
 //! `window` runs it on a screen. The simulation itself runs on the thread of
-//! [`crate::sim::live`].
+//! [`crate::live`].
 
 mod camera;
 mod canvas;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Options of the window. The scene, its physics and its solver are in [`crate::scene::Config`].
+/// Options of the window. The scene, its physics and its solver are in [`crate::config::Config`].
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 pub(crate) struct WindowOptions {
     /// Forget the window's layout, theme and last scene

@@ -1,7 +1,7 @@
 //! What the buttons and keys of a run ask of it.
 
 use super::state::AppState;
-use crate::sim::live::Command;
+use crate::live::Command;
 
 impl AppState {
     /// Releases, plays or pauses.

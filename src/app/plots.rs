@@ -8,8 +8,8 @@ use egui_plot::{
 
 use super::chosen_plot::ChosenPlot;
 use super::world_curve::WorldCurve;
+use crate::live::Curve;
 use crate::render::numbers::{decimal, si_prefix, ticks};
-use crate::sim::live::Curve;
 use crate::sim::{Beside, Observables, Quantity};
 
 /// Least width of a plot, points: below it fewer are shown in a row.

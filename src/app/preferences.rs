@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 use super::chosen_plot::ChosenPlot;
 use super::data_choices::DataChoices;
 use super::tour::Tour;
+use crate::config::Config;
 use crate::error::Result;
 use crate::headless::HeadlessOptions;
+use crate::live::Pace;
 use crate::render::{Style, Theme};
-use crate::scene::Config;
 use crate::sim::QUANTITIES;
-use crate::sim::live::Pace;
 
 /// Choices that outlive the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

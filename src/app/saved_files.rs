@@ -11,9 +11,9 @@ use super::session::{Arrangement, SESSION_ENDING, Session, SessionOrder};
 use super::state::AppState;
 use super::storage::Stored;
 use super::taken::Opened;
+use crate::config::SavedState;
 use crate::error::{Error, Result};
-use crate::scene::SavedState;
-use crate::sim::live::{Command, Start};
+use crate::live::{Command, Start};
 
 impl AppState {
     /// Opens a saved run, to go on with it.

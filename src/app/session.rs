@@ -12,10 +12,11 @@ use serde::{Deserialize, Serialize};
 use super::camera::SceneCamera;
 use super::storage::Stored;
 use super::taken::{LastOpened, Opened};
+use crate::config::Config;
 use crate::error::{Error, Result};
+use crate::live::Start;
 use crate::output::{Seal, write_file};
-use crate::scene::{Config, Scene};
-use crate::sim::live::Start;
+use crate::scene::Scene;
 
 /// What files begin with.
 const SEAL: Seal = Seal {

@@ -9,7 +9,7 @@ use super::loader::loader_of_link;
 use super::state::AppState;
 use super::taken::TakenRun;
 use crate::error::Result;
-use crate::sim::live::{Command, Taken};
+use crate::live::{Command, Taken};
 
 /// What is said of a link that does not say all.
 const PULLED: &str = "The link is copied; something was pulled by hand, added or removed, or a wall drawn, which it does not \

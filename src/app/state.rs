@@ -24,9 +24,9 @@ use super::step_race::StepRace;
 use super::taken::{LastOpened, TakenRun};
 use super::validation::Validation;
 use super::work::Work;
-use crate::scene::Config;
+use crate::config::Config;
+use crate::live::{Command, Controls, Frame, Live, WorldFrame};
 use crate::sim::Settings;
-use crate::sim::live::{Command, Controls, Frame, Live, WorldFrame};
 
 /// The state of the user interface.
 pub struct AppState {

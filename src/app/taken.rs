@@ -3,8 +3,9 @@
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::scene::{Config, Scene};
-use crate::sim::live::{Command, Live, Taken};
+use crate::config::Config;
+use crate::live::{Command, Live, Taken};
+use crate::scene::Scene;
 
 /// What a run began with.
 #[derive(Debug)]

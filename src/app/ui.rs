@@ -6,7 +6,7 @@ use super::fill::fill;
 use super::panels::{SECTIONS, Section, help, plots, scene, status, tour, transport};
 use super::state::AppState;
 use super::{drop, hint, keys};
-use crate::scene::Config;
+use crate::config::Config;
 
 /// Width of the sidebar, points.
 const SIDEBAR: f32 = 296.0;

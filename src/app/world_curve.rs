@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::Color32;
 
 use super::other_piles::Band;
-use crate::sim::live::Curve;
+use crate::live::Curve;
 
 /// What is plotted of a world.
 #[derive(Clone, Debug)]

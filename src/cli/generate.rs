@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::config::{parser_of, write_discs};
 use crate::error::Result;
 use crate::output::{Progress, check_file, note_line, print_line, write_file};
-use crate::scene::{Deposition, NewPile, Settled, Settling, deposit, write_discs};
+use crate::scene::{Deposition, NewPile, Settled, Settling, deposit};
 
 /// Arguments of `slump generate`.
 #[derive(clap::Args)]
@@ -19,7 +20,7 @@ pub(super) struct GenerateCommand {
     #[arg(long, default_value_t = NewPile::default().seed)]
     seed: u64,
     /// How the grains are put in place
-    #[arg(long, value_name = "WAY", value_enum, default_value_t)]
+    #[arg(long, value_name = "WAY", default_value_t, value_parser = parser_of::<Deposition>())]
     deposition: Deposition,
     /// The file to write
     #[arg(long, value_name = "FILE")]

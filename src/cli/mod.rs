@@ -15,9 +15,9 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+use crate::config::refusal_of;
 use crate::error::{Error, Result};
 use crate::output::{lost_stdout, note_line, note_printed};
-use crate::setting::refusal_of;
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::config::{Config, parser_of};
 use crate::error::Result;
 use crate::headless::settled;
 use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use crate::output::{Progress, check_file, print_line, warn_of_steps, write_file};
-use crate::scene::{Config, parser_of};
 use crate::solver::{Method, SolverSettings, StopTest};
 
 /// What to do with a problem.

@@ -2,11 +2,11 @@
 
 #[cfg(feature = "window")]
 use crate::app::WindowOptions;
+use crate::config::Config;
 #[cfg(not(feature = "window"))]
 use crate::error::Error;
 use crate::error::Result;
 use crate::headless::HeadlessOptions;
-use crate::scene::Config;
 
 /// Arguments of `slump`.
 #[derive(clap::Args)]

@@ -1,9 +1,9 @@
 //! `slump scene`: a scene, with changes, as a file.
 
+use crate::config::{Config, scene_to_toml};
 use crate::error::Result;
 use crate::headless::settled;
 use crate::output::print_text;
-use crate::scene::{Config, scene_to_toml};
 
 /// Arguments of `slump scene`.
 #[derive(clap::Args)]

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 
+use crate::config::parser_of;
 use crate::error::Result;
-use crate::scene::parser_of;
 use crate::solver::Method;
 use crate::study::{ValidateOptions, experiment_names, validate};
 

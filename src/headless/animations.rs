@@ -8,7 +8,8 @@ use super::HeadlessOptions;
 use super::manifest::PictureEntry;
 use super::video::VideoFile;
 use crate::error::{Error, Result};
-use crate::output::{Animation, Texts, print_line};
+use crate::film::Animation;
+use crate::output::{Texts, print_line};
 
 /// Pictures a second of a GIF, which viewers keep up with.
 const GIF_RATE_HZ: f64 = 25.0;

@@ -5,9 +5,10 @@ use super::HeadlessOptions;
 use super::checkpoint::{Beginning, Marks};
 use super::manifest::Instant;
 use super::saving::SavingOptions;
+use crate::config::{Config, SavedState};
 use crate::error::{Error, Result};
 use crate::output::{Progress, caught_signal};
-use crate::scene::{Config, SavedState, Scene, Settling};
+use crate::scene::{Scene, Settling};
 use crate::sim::Tally;
 
 /// What is asked for, read and checked, but for grains that have to settle.

@@ -11,9 +11,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::manifest::{Instant, PictureEntry};
+use crate::config::SavedState;
 use crate::error::{Error, Result};
 use crate::output::remove_if_there;
-use crate::scene::{SavedState, Scene};
+use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 
 /// Name of a checkpoint.

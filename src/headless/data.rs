@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::data::{Claim, DataSettings, FormatName, Recording, Times};
+use crate::config::{about, parser_of};
+use crate::data::{Claim, DataSettings, FormatName, Recording, Times, formats_of};
 use crate::error::{Error, Result};
 use crate::output::counted;
 use crate::scene::Scene;
@@ -29,7 +30,8 @@ pub(crate) struct DataOptions {
         value_name = "FORMAT",
         help_heading = "Data",
         requires = "headless",
-        value_delimiter = ','
+        value_delimiter = ',',
+        value_parser = parser_of::<FormatName>()
     )]
     pub data_format: Vec<FormatName>,
 }
@@ -93,7 +95,7 @@ impl RecordingPlan {
         simulation: &Simulation,
         picture_times: &[f64],
     ) -> Result<Recording> {
-        let mut about = scene.about()?;
+        let mut about = about(scene)?;
         let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
         let command = words.collect::<Vec<_>>().join(" ").replace(char::is_control, " ");
         about.facts.insert(1, ("command".to_owned(), command));
@@ -101,7 +103,7 @@ impl RecordingPlan {
             Some(secs) => Times::Every(secs),
             None => Times::At(picture_times.to_vec()),
         };
-        let formats = self.settings.formats();
+        let formats = formats_of(&self.settings)?;
         let step = simulation.observables().step;
         let recording = match self.claim {
             Some(claim) => Recording::start_in(claim, &formats, &about)?,

@@ -15,10 +15,11 @@ use super::provenance::texts_of_panel;
 use super::table::ObservablesTable;
 use super::telling::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
 use crate::error::Result;
-use crate::output::{Progress, Texts, caught_signal, counted, note_line, print_line, write_png};
+use crate::output::{Progress, Texts, caught_signal, counted, note_line, print_line};
 use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::View;
 use crate::sim::{Observables, Snapshot};
+use crate::study::png::write_png;
 use crate::study::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, Recorded,
     Recorder, paper_runs, record,

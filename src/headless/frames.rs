@@ -9,10 +9,10 @@ use super::data::RecordingPlan;
 use super::folder::{Earlier, RunFolder};
 use super::studio::Studio;
 use super::telling::interrupted;
+use crate::config::{Config, SavedState};
 use crate::error::Result;
 use crate::output::{caught_signal, check_file, note_line, warn_of_steps};
 use crate::render::{Renderer, RendererChoice};
-use crate::scene::{Config, SavedState};
 use crate::sim::Observables;
 use crate::study::{OnItsWay, go_on as go_on_with};
 

@@ -32,9 +32,9 @@ pub(crate) use video_options::{VIDEO_RATES_HZ, check_built as check_video};
 use std::path::Path;
 
 use self::folder::Earlier;
+use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::output::heed_signals;
-use crate::scene::Config;
 
 /// Draws the paper's snapshots into a folder, with whatever renderer there is.
 ///

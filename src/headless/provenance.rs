@@ -3,10 +3,11 @@
 use clap::ValueEnum;
 
 use super::HeadlessOptions;
+use crate::config::{Config, Provenance, asked_time_secs, words_of, words_up_to};
 use crate::error::Result;
 use crate::output::Texts;
 use crate::render::Style;
-use crate::scene::{Config, Provenance, Scene, asked_time_secs, words_of, words_up_to};
+use crate::scene::Scene;
 use crate::sim::Snapshot;
 
 /// What a panel of a figure says of itself, of a scene that is built in.

@@ -15,12 +15,14 @@ use super::table::ObservablesTable;
 use super::telling::{
     go_on, interrupted, tell_of_alarms, tell_of_picked_method, tell_of_unconverged_steps,
 };
+use crate::config::{Provenance, SavedState, asked_time_secs};
 use crate::data::Recording;
 use crate::error::{Error, Result};
-use crate::output::{Progress, Signal, Texts, caught_signal, counted, print_line, write_png};
+use crate::output::{Progress, Signal, Texts, caught_signal, counted, print_line};
 use crate::render::{Camera, Renderer, Style, draw_scene};
-use crate::scene::{Provenance, SavedState, Scene, View, asked_time_secs};
+use crate::scene::{Scene, View};
 use crate::sim::{Observables, Simulation, Snapshot, Tally};
+use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
 /// Name of the run in the manifest.

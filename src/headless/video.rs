@@ -45,14 +45,14 @@ impl HeadlessOptions {
 /// A video of a run, and what it says of itself.
 #[cfg(feature = "video")]
 pub(crate) struct VideoFile {
-    video: crate::output::Video,
+    video: crate::film::Video,
     texts: Texts,
 }
 
 #[cfg(feature = "video")]
 impl VideoFile {
     pub(crate) fn start(path: &Path, size: [u32; 2], rate_hz: f64) -> Result<Self> {
-        let video = crate::output::Video::start(path, size, rate_hz)?;
+        let video = crate::film::Video::start(path, size, rate_hz)?;
         Ok(Self { video, texts: Texts::default() })
     }
 

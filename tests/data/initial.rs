@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use slump::config::{Config, Origin};
 use slump::data::{FormatName, RecordedGrains, read_grains};
-use slump::scene::{Config, Origin, Scene};
+use slump::scene::Scene;
 use slump::sim::{Moment, Simulation};
 
 use super::tables::{csv, parquet};
@@ -145,9 +146,9 @@ fn scene_files_take_grains_out_of_recordings() {
     scene.source = Some(slump::scene::GrainSource::Data { path: "data".into(), step: Some(40) });
     scene.grains.clear();
     let path = folder.path().join("scene.toml");
-    let toml = slump::scene::scene_to_toml(&scene).expect("TOML");
+    let toml = slump::config::scene_to_toml(&scene).expect("TOML");
     std::fs::write(&path, toml).expect("a file");
-    let read = slump::scene::read_scene(&path).expect("a scene");
+    let read = slump::config::read_scene(&path).expect("a scene");
     assert_eq!(bits_of_moment(&simulation(&read).moment()), bits_of_moment(&moments[3]));
 }
 

@@ -110,7 +110,7 @@ fn scene_files_ask_for_recordings() {
         every_secs: Some(0.02),
         formats: vec![slump::data::FormatName::Parquet, slump::data::FormatName::Csv],
     });
-    let toml = slump::scene::scene_to_toml(&cradle).expect("TOML");
+    let toml = slump::config::scene_to_toml(&cradle).expect("TOML");
     assert!(toml.contains("[data]\nfolder = \"out\"\nevery_secs = 0.02\n"), "{toml}");
     std::fs::write(&scene, toml).expect("a file");
     let output = run(&["--scene", text(&scene), "--dt", "1e-3"]);

@@ -61,7 +61,7 @@ fn what_goes_on_is_what_was_never_stopped() {
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
         drop(recording);
         let mut simulation = saved;
-        let about = pile.about().expect("facts");
+        let about = slump::config::about(&pile).expect("facts");
         let mut recording =
             Recording::go_on(&path, &formats, &about, stopped_at).expect("it goes on");
         assert_eq!(recording.frames(), stopped_at / 2);
@@ -89,7 +89,7 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     cut("frames.csv", 2);
     let mut simulation = pile.simulation().expect("a scene");
     simulation.take_steps(25).expect("a finite state");
-    let about = pile.about().expect("facts");
+    let about = slump::config::about(&pile).expect("facts");
     let mut recording = Recording::go_on(&torn, &formats, &about, 25).expect("it goes on");
     record(&mut recording, &mut simulation, 15, 2);
     recording.finish().expect("a recording");

@@ -1,9 +1,8 @@
 //! Piles that have come to rest.
 
 use glam::DVec2;
-use slump::scene::{
-    Config, Deposition, NewPile, Scene, Settled, deposit, pile_of, read_scene, settle,
-};
+use slump::config::{Config, read_scene};
+use slump::scene::{Deposition, NewPile, Scene, Settled, deposit, pile_of, settle};
 use slump::sim::Simulation;
 use slump::world::{Boundary, Grain};
 
@@ -146,7 +145,7 @@ fn options_and_scene_files_ask_for_the_same_pile() {
     let asked = Config::of_options(options).and_then(|config| config.scene(|_| true));
     let asked = asked.expect("a scene");
     let scene = Scene { grains: Vec::new(), ..asked.clone() };
-    let text = slump::scene::scene_to_toml(&scene).expect("TOML");
+    let text = slump::config::scene_to_toml(&scene).expect("TOML");
     let (head, arrays) = text.split_at(text.find("[[").expect("the base"));
     let source =
         "[source]\nfrom = \"new-pile\"\ngrains = 40\nbox_width_in_diameters = 9.0\nseed = 2\n";

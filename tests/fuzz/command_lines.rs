@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use arbitrary::{Result, Unstructured};
 use assert_cmd::Command;
+use slump::config::read_scene;
 use slump::interchange::ProblemFile;
-use slump::scene::read_scene;
 
 use super::parsers::is_legible;
 use super::scenes::scene_text;

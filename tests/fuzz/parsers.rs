@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use slump::config::{Config, Origin, scene_to_toml};
 use slump::error::{Error, Result};
 use slump::interchange::{ProblemFile, problem_file_at, solve_file};
-use slump::scene::{Config, GrainSource, NewPile, Origin, built_in, scene_to_toml};
+use slump::scene::{GrainSource, NewPile, built_in};
 use slump::solver::{METHODS, SolverSettings, StopTest};
 use slump::study::Study;
 

@@ -2,7 +2,8 @@
 
 use arbitrary::{Result, Unstructured};
 use glam::DVec2;
-use slump::scene::{Scene, built_in, read_scene, scene_to_toml};
+use slump::config::{read_scene, scene_to_toml};
+use slump::scene::{Scene, built_in};
 use slump::sim::{Remedies, Stepper};
 use slump::solver::{Fallback, FrictionModel, METHODS, Ordering, SolverSettings, StopTest};
 use slump::world::{

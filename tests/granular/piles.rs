@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use glam::DVec2;
+use slump::config::read_scene;
 use slump::granular::{GrainMeasures, PileMeasures, measure};
-use slump::scene::{Scene, built_in, read_scene};
+use slump::scene::{Scene, built_in};
 use slump::sim::{Moment, OtherBody, Simulation};
 use slump::solver::Method;
 use slump::world::{Boundary, Grain, Gravity, Physics};

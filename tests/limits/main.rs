@@ -11,7 +11,8 @@ use std::time::Duration;
 
 use assert_cmd::Command;
 use glam::DVec2;
-use slump::scene::{Config, Origin, Scene, collision};
+use slump::config::{Config, Origin};
+use slump::scene::{Scene, collision};
 use slump::world::Grain;
 use tempfile::TempDir;
 

@@ -1,6 +1,7 @@
 //! Every message says what is allowed.
 
-use slump::scene::{collision, scene_to_toml};
+use slump::config::scene_to_toml;
+use slump::scene::collision;
 
 use super::{folder, refusal};
 

@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::time::Instant;
 
+use slump::config::{Config, read_scene, scene_to_toml};
 use slump::error::Result;
-use slump::scene::{Config, GrainSource, NewPile, built_in, read_scene, scene_to_toml, settle};
+use slump::scene::{GrainSource, NewPile, built_in, settle};
 use slump::study::Study;
 
 use super::{folder, run, write};

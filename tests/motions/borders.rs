@@ -50,7 +50,7 @@ fn a_recording_says_where_the_borders_are_and_is_a_start() {
     let scene = sliding(0.0);
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("run");
-    let about: About = scene.about().expect("facts");
+    let about: About = slump::config::about(&scene).expect("facts");
     let mut recording = Recording::start(&place, FormatName::ALL, &about, false).expect("a start");
     let mut run = start(&scene);
     take_steps(&mut run, 100);

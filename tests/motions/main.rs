@@ -24,7 +24,8 @@ mod turning;
 mod views;
 
 use glam::DVec2;
-use slump::scene::{SavedState, Scene, scene_to_toml};
+use slump::config::{SavedState, scene_to_toml};
+use slump::scene::Scene;
 use slump::sim::{Simulation, Tally};
 use slump::world::{Boundary, Motion, MotionCourse};
 

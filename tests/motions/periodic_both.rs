@@ -238,7 +238,7 @@ fn measures_and_recordings_know_of_both_borders() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("run");
-    let about: About = scene.about().expect("facts");
+    let about: About = slump::config::about(&scene).expect("facts");
     let mut recording = Recording::start(&place, FormatName::ALL, &about, false).expect("a start");
     recording.add(run.moment()).expect("a frame");
     recording.finish().expect("an end");

@@ -211,7 +211,7 @@ fn measures_see_the_images_where_they_are() {
     assert_close(one.area, SIZE.x * SIZE.y, 1e-9, "cells fill the cell");
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("run");
-    let about: About = scene.about().expect("facts");
+    let about: About = slump::config::about(&scene).expect("facts");
     let mut recording = Recording::start(&place, FormatName::ALL, &about, false).expect("a start");
     recording.add(run.moment()).expect("a frame");
     recording.finish().expect("an end");

@@ -1,6 +1,7 @@
 //! Files of states that are none, are damaged, or are of another version.
 
-use slump::scene::{SavedState, built_in};
+use slump::config::SavedState;
+use slump::scene::built_in;
 use slump::sim::Tally;
 
 use super::{bytes_of, read};

@@ -11,7 +11,8 @@ mod restarts;
 mod runs;
 mod states;
 
-use slump::scene::{SavedState, Scene};
+use slump::config::SavedState;
+use slump::scene::Scene;
 use slump::sim::{Simulation, Tally};
 
 /// A state in bytes: all that it is, so that equal bytes are one state.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-use slump::scene::SavedState;
+use slump::config::SavedState;
 use tempfile::TempDir;
 
 use super::program::{contents, folder, manifest, refusal, slump, succeed};

@@ -1,7 +1,8 @@
 //! What the window says of a run that goes wrong, and the button that mends what can be mended.
 
 use egui_kittest::kittest::Queryable;
-use slump::scene::{Config, SCENES, SceneGroup};
+use slump::config::Config;
+use slump::scene::{SCENES, SceneGroup};
 use slump::sim::{AlarmKind, Stepper};
 use slump::solver::{Fallback, Method, SolverChanges, StopTest};
 

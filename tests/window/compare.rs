@@ -1,7 +1,7 @@
 //! Worlds side by side.
 
+use slump::live::Command;
 use slump::sim::Stepper;
-use slump::sim::live::Command;
 use slump::solver::FrictionModel;
 
 use crate::robot::{Robot, pile};

@@ -1,7 +1,8 @@
 //! Sliders, fields, buttons and keys reach the solver's thread.
 
 use egui_kittest::kittest::Queryable;
-use slump::scene::{Config, Deposition, Origin};
+use slump::config::{Config, Origin};
+use slump::scene::Deposition;
 
 use crate::robot::{File, Robot, bits, pile};
 
@@ -169,7 +170,7 @@ fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
     );
     assert!(!robot.state().frame.playing);
     assert!(robot.harness.query_by_label_contains("no longer finite").is_some());
-    robot.state_mut().live.send(slump::sim::live::Command::Seek(1e-3));
+    robot.state_mut().live.send(slump::live::Command::Seek(1e-3));
     robot.settle();
     assert!(robot.world().failure.is_none());
     assert_eq!(robot.steps(), 1);
@@ -194,7 +195,7 @@ fn gravity_is_tilted_while_the_pile_runs_and_the_record_knows() {
     };
     assert!(mean_x(&robot) > 0.0, "the pile slides to the right");
     for secs in [0.002, end_secs] {
-        robot.state_mut().live.send(slump::sim::live::Command::Seek(secs));
+        robot.state_mut().live.send(slump::live::Command::Seek(secs));
         robot.settle();
     }
     assert_eq!(bits(robot.world()), end);

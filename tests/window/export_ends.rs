@@ -1,9 +1,9 @@
 //! How exports end: while the run goes on, stopped, refused, and where a run blew up.
 
 use egui_kittest::kittest::Queryable;
+use slump::config::Config;
 use slump::data::{FormatName, read_grains};
-use slump::scene::Config;
-use slump::sim::live::Command as Live;
+use slump::live::Command as Live;
 
 use crate::recordings::{export, facts, headless, open, said_in, take_steps};
 use crate::robot::pile;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use slump::config::Config;
 use slump::data::FormatName;
-use slump::scene::Config;
-use slump::sim::live::Command as Live;
+use slump::live::Command as Live;
 use slump::sim::{Pull, Simulation};
 
 use crate::recordings::{assert_same, export, facts, headless, open, said_in, take_steps};
@@ -20,8 +20,11 @@ fn the_window_exports_what_data_writes() {
         let mut config = Config::of_scene(scene);
         config.origin.duration = Some(duration_secs);
         config.parameters.time_step_secs = Some(1e-3);
-        let formats: Vec<_> =
-            FormatName::ALL.iter().copied().filter(|format| format.check().is_ok()).collect();
+        let formats: Vec<_> = FormatName::ALL
+            .iter()
+            .copied()
+            .filter(|format| slump::data::check_format(*format).is_ok())
+            .collect();
         let mut robot = open(config, &exported, &formats);
         let steps = (duration_secs * 1e3).round() as u64;
         take_steps(&mut robot, steps);
@@ -54,7 +57,7 @@ fn frames_are_at_the_times_that_data_has_them_at() {
     let mut config = Config::of_scene("cradle");
     config.origin.duration = Some(0.05);
     config.parameters.time_step_secs = Some(1e-3);
-    let mut robot = open(config, &exported, &[FormatName::DEFAULT]);
+    let mut robot = open(config, &exported, &[slump::data::DEFAULT_FORMAT]);
     robot.state_mut().preferences.data.each_step = false;
     robot.state_mut().preferences.data.every_secs = 0.0073;
     take_steps(&mut robot, 50);

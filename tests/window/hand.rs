@@ -3,8 +3,8 @@
 use egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec2;
-use slump::scene::Config;
-use slump::sim::live::Command;
+use slump::config::Config;
+use slump::live::Command;
 use slump::sim::place_of;
 
 use crate::recordings::take_steps;
@@ -153,7 +153,7 @@ fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
     let view = slump::scene::View { min: DVec2::new(-0.04, -0.02), max: DVec2::new(0.06, 0.06) };
     scene.view = Some(view);
     let path = folder.path().join("wall.toml");
-    std::fs::write(&path, slump::scene::scene_to_toml(&scene).expect("TOML")).expect("a file");
+    std::fs::write(&path, slump::config::scene_to_toml(&scene).expect("TOML")).expect("a file");
     let mut robot = Robot::open(Config::of_scene(path.to_str().expect("UTF-8")));
     robot.state_mut().preferences.full_speed = true;
     let place = |robot: &Robot| place_of(&robot.world().snapshot.surroundings.boundaries[0]);

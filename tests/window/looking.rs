@@ -2,7 +2,7 @@
 
 use egui_kittest::kittest::Queryable;
 use slump::app::GrainRef;
-use slump::scene::Config;
+use slump::config::Config;
 
 use crate::robot::{Robot, pile};
 

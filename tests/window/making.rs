@@ -1,7 +1,8 @@
 //! New piles, seen while they are made.
 
 use egui_kittest::kittest::Queryable;
-use slump::scene::{Config, NewPile};
+use slump::config::Config;
+use slump::scene::NewPile;
 
 use crate::recordings::take_steps;
 use crate::robot::{Robot, bits, pile};

@@ -2,7 +2,7 @@
 
 use egui_kittest::kittest::Queryable;
 use slump::app::GrainRef;
-use slump::scene::Config;
+use slump::config::Config;
 
 use crate::robot::{Robot, pile};
 
@@ -19,7 +19,7 @@ fn one_grain() -> (tempfile::TempDir, Config) {
         max: glam::DVec2::new(0.01, 0.03),
     });
     let path = folder.path().join("one.toml");
-    std::fs::write(&path, slump::scene::scene_to_toml(&scene).unwrap()).unwrap();
+    std::fs::write(&path, slump::config::scene_to_toml(&scene).unwrap()).unwrap();
     let config = Config::of_scene(path.to_str().expect("a path"));
     (folder, config)
 }

@@ -4,9 +4,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
-use slump::scene::{Config, NewPile, Scene, settle};
+use slump::config::Config;
+use slump::live::Command;
+use slump::scene::{NewPile, Scene, settle};
 use slump::sim::Settings;
-use slump::sim::live::Command;
 
 use crate::robot::Robot;
 
@@ -86,7 +87,7 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_eq!(kept.len(), 8, "initial states are kept");
 
     // The run itself changes nothing of it, and the number stands beside its own.
-    robot.state_mut().live.send(Command::SetPace(slump::sim::live::Pace::Max));
+    robot.state_mut().live.send(Command::SetPace(slump::live::Pace::Max));
     robot.state_mut().live.send(Command::Play);
     robot.until("the end", |state| !state.frame.playing && state.frame.time_secs() > 0.09);
     robot.settle();

@@ -9,7 +9,7 @@ use compare::{Difference, Tolerance, difference_image};
 use image::RgbaImage;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use slump::app::{GrainRef, Preferences};
-use slump::scene::Config;
+use slump::config::Config;
 
 use crate::robot::Robot;
 

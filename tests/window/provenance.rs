@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use slump::app::Preferences;
-use slump::scene::Config;
-use slump::sim::live;
+use slump::config::Config;
+use slump::live;
 
 use crate::robot::Robot;
 

@@ -1,6 +1,6 @@
 //! The recording gives back what was computed, bit for bit.
 
-use slump::sim::live::{Command, Live, LiveOptions, Pace, Start};
+use slump::live::{Command, Live, LiveOptions, Pace, Start};
 use slump::sim::{Pull, Tally};
 use slump::sim::{Settings, Stepper};
 

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use slump::app::DataChoices;
+use slump::config::Config;
 use slump::data::{FormatName, read_grains};
-use slump::scene::Config;
 
 use crate::robot::Robot;
 use crate::tables::parquet;

@@ -6,8 +6,8 @@ use egui::{Event, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, HarnessBuilder};
 use slump::app::{AppState, Preferences, theme, ui};
-use slump::scene::Config;
-use slump::sim::live::{Live, LiveOptions, WorldFrame};
+use slump::config::Config;
+use slump::live::{Live, LiveOptions, WorldFrame};
 
 /// Longer than anything that these tests wait for takes.
 const PATIENCE: Duration = Duration::from_secs(60);

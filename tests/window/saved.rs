@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use egui_kittest::kittest::Queryable;
-use slump::scene::{Config, SavedState, built_in};
-use slump::sim::live::Command as Live;
+use slump::config::{Config, SavedState};
+use slump::live::Command as Live;
+use slump::scene::built_in;
 use slump::sim::{Stepper, Tally};
 
 use crate::recordings::take_steps;

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use slump::app::AppState;
-use slump::scene::Config;
-use slump::sim::live::Command;
+use slump::config::Config;
+use slump::live::Command;
 use slump::sim::{Pull, Stepper};
 
 use crate::recordings::take_steps;
@@ -12,7 +12,7 @@ use crate::robot::{Robot, bits, pile};
 
 /// All that is recorded of a window's worlds, and where they are.
 fn shown(robot: &Robot) -> Vec<(u64, f64, Vec<[u64; 6]>)> {
-    let of_world = |world: &slump::sim::live::WorldFrame| {
+    let of_world = |world: &slump::live::WorldFrame| {
         (world.snapshot.observables.step, world.recorded_secs, bits(world))
     };
     robot.state().frame.worlds.iter().map(of_world).collect()

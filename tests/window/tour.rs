@@ -2,9 +2,9 @@
 
 use slump::app::tour::STATIONS;
 use slump::app::{AppState, Preferences};
-use slump::scene::Config;
+use slump::config::Config;
+use slump::live::{Command, Pace, WorldFrame};
 use slump::sim::Observables;
-use slump::sim::live::{Command, Pace, WorldFrame};
 
 use crate::robot::Robot;
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui_kittest::kittest::{NodeT, Queryable};
 use mp4_atom::{Decode, Ftyp, Ilst, Moov, StszSamples};
-use slump::sim::live::Command;
+use slump::live::Command;
 
 use crate::animations::{self, open};
 use crate::recordings::take_steps;

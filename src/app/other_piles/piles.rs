@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use crate::app::taken::Opened;
+use crate::config::Config;
 use crate::error::Result;
-use crate::scene::{Config, NewPile, Scene, built_in};
+use crate::scene::{NewPile, Scene, built_in};
 use crate::sim::Settings;
 use crate::world::Grain;
 

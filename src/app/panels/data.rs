@@ -5,7 +5,7 @@ use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use crate::app::data_export::DataOrder;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::data::FormatName;
+use crate::data::{FormatName, check_format};
 
 /// Shortest and longest simulated time between two frames, s.
 const EVERY: [f64; 2] = [1e-9, 1e9];
@@ -80,7 +80,7 @@ fn order(ui: &mut Ui, state: &mut AppState) {
         for (index, &format) in FormatName::ALL.iter().enumerate() {
             let (name, hint) = words(format);
             let mut is_wanted = choices.has(format);
-            let is_built = format.check();
+            let is_built = check_format(format);
             let check = egui::Checkbox::new(&mut is_wanted, name);
             // What this build has not may still be taken away.
             let is_enabled = is_built.is_ok() || choices.has(format);

@@ -4,9 +4,9 @@ use egui::ScrollArea;
 use egui::{RichText, Ui};
 
 use crate::app::state::AppState;
+use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
-use crate::sim::live::WorldFrame;
 
 /// Its heading, where a grain is pinned.
 pub(super) fn title(state: &AppState) -> Option<String> {

@@ -8,7 +8,7 @@ use super::place::Place;
 use crate::app::held::Grip;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::sim::live::Command;
+use crate::live::Command;
 use crate::sim::{Edit, Pull, place_of};
 use crate::world::{Boundary, Disc, Edge};
 

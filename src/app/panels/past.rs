@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::compare::title_among;
 use crate::app::state::AppState;
-use crate::sim::live::{Command, Controls, PastRun, PastWorld};
+use crate::live::{Command, Controls, PastRun, PastWorld};
 
 /// Grains of a ghost at the most: more outlines would hide what is in front.
 const MOST_OUTLINES: usize = 3_000;

@@ -6,9 +6,9 @@ use glam::DVec2;
 use crate::app::held::GrainRef;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::live::WorldFrame;
 use crate::render::Camera;
 use crate::sim::GrainView;
-use crate::sim::live::WorldFrame;
 
 /// Where a world is in the window.
 pub(super) struct Place<'a> {

@@ -8,7 +8,7 @@ use crate::app::plots::{PlotData, draw};
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::app::world_curve::WorldCurve;
-use crate::sim::live::Command;
+use crate::live::Command;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 
 /// Shows the panel.

@@ -6,8 +6,9 @@ use super::past;
 use crate::app::effort;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::scene::{Config, Deposition, NewPile, Origin, SCENES, SceneGroup};
-use crate::sim::live::{Command, Controls};
+use crate::config::{Config, Origin};
+use crate::live::{Command, Controls};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
 use crate::solver::SolverChanges;
 
 /// Most grains that the panel offers; the command line takes more.

@@ -7,9 +7,9 @@ use crate::app::method_box::method_box;
 use crate::app::setting_control;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::live::WorldFrame;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
-use crate::sim::live::WorldFrame;
 use crate::sim::{Observables, REMEDIES, Remedies, Settings, Surroundings};
 use crate::solver::{Method, SolverSettings, StopTest};
 

@@ -5,8 +5,8 @@ use egui::{Align, Label, Layout, RichText, Ui};
 use crate::app::effort::FAST;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::live::{WorldAlarm, WorldFrame};
 use crate::sim::AlarmKind;
-use crate::sim::live::{WorldAlarm, WorldFrame};
 
 /// Shows the bar.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {

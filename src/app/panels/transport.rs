@@ -4,7 +4,7 @@ use egui::{Button, RichText, Slider, Ui};
 
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::sim::live::Command;
+use crate::live::Command;
 
 /// The one button that nobody can miss.
 pub(crate) fn release_button(ui: &mut Ui, state: &mut AppState) {

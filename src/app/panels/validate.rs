@@ -5,7 +5,7 @@ use egui::{CollapsingHeader, Color32, RichText, TextEdit, Ui};
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::app::validation::{COMMAND, Found, Measured, Published, Validation, scene_of};
-use crate::scene::Config;
+use crate::config::Config;
 use crate::study::Verdict;
 
 /// Shows the panel.

@@ -6,7 +6,7 @@ use super::stations::STATIONS;
 use crate::app::loader::loader_of_station;
 use crate::app::preferences::Preferences;
 use crate::app::state::AppState;
-use crate::sim::live::Command;
+use crate::live::Command;
 
 impl AppState {
     /// Goes to a station of the tour.

@@ -12,8 +12,8 @@ use crate::app::options::WindowOptions;
 use crate::app::preferences::Preferences;
 use crate::app::session::Session;
 use crate::app::state::AppState;
+use crate::config::{Config, SavedState};
 use crate::error::{Error, Result};
-use crate::scene::{Config, SavedState};
 
 /// Size of a new window, points.
 const SIZE: [f64; 2] = [1280.0, 800.0];

@@ -1,0 +1,307 @@
+//! Everything that a scene says.
+
+use std::fmt::Arguments;
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::pile::tone_in_layers;
+use super::{DataSettings, NewPile};
+use crate::error::{Error, Result};
+use crate::sim::{Remedies, Settings, Simulation, Stepper};
+use crate::solver::SolverSettings;
+use crate::world::{
+    Boundary, Disc, Grain, Grains, Gravity, GravityTurn, Motion, Parameters, Periodic, Physics,
+    TurningGravity, World, check_motions,
+};
+
+/// A scene, built-in or from a TOML file, which says the same things by the same names.
+/// Plain data, checked where a simulation is made of it ([`Scene::validate`]).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Its name.
+    pub name: String,
+    /// The diameter d that lengths are measured in, m.
+    pub mean_diameter: f64,
+    /// σ of the discs, kg/m².
+    #[serde(default = "one")]
+    pub areal_density: f64,
+    /// Pairs touch below this gap, m: 0 but for rounding.
+    #[serde(default)]
+    pub gap_tolerance: f64,
+    /// Simulated time of a run, s.
+    pub duration_secs: f64,
+    /// The physics to compute.
+    pub physics: Physics,
+    /// The field that accelerates the grains.
+    pub gravity: Gravity,
+    /// How it turns, if it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity_turn: Option<GravityTurn>,
+    /// Left and right borders that are one line, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<Periodic>,
+    /// The way to step, with its contact law.
+    #[serde(default)]
+    pub stepper: Stepper,
+    /// Numbers that may change during a run.
+    pub parameters: Parameters,
+    /// How well each step is solved.
+    #[serde(default)]
+    pub solver: SolverSettings,
+    /// Remedies for known failures.
+    #[serde(default, skip_serializing_if = "Remedies::is_none")]
+    pub remedies: Remedies,
+    /// What its pictures show; chosen from the grains' start where it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub view: Option<View>,
+    /// Where the grains come from, unless they are listed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<GrainSource>,
+    /// What is recorded of its runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub data: Option<DataSettings>,
+    /// Fixed shapes.
+    #[serde(default)]
+    pub boundaries: Vec<Boundary>,
+    /// Fixed discs.
+    #[serde(default)]
+    pub fixed_discs: Vec<Disc>,
+    /// How some of these shapes and discs move by themselves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub motions: Vec<Motion>,
+    /// The moving discs.
+    #[serde(default)]
+    pub grains: Vec<Grain>,
+}
+
+/// A rectangle of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct View {
+    /// Lower left corner, m.
+    pub min: DVec2,
+    /// Upper right corner, m.
+    pub max: DVec2,
+}
+
+/// Where the grains of a scene come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "from", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum GrainSource {
+    /// A CSV of discs.
+    Csv {
+        /// Its path; in a scene file, relative to that file.
+        path: std::path::PathBuf,
+    },
+    /// A recording, or a table of discs in any of its formats.
+    Data {
+        /// Its path; in a scene file, relative to that file.
+        path: std::path::PathBuf,
+        /// The step whose grains are taken; the last where none is given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        step: Option<u64>,
+    },
+    /// A new pile: grains put into a box over a rough base and left to come to rest.
+    #[serde(alias = "rain")]
+    NewPile(NewPile),
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Farther than this many of its radii from the origin a disc's place is rounded by more than a
+/// ten-thousandth of one, and soon to where others are as well.
+const FARTHEST_IN_RADII: f64 = 1e15;
+
+/// Names are put together where there is something to tell: a study asks this of every disc of every run.
+fn positive(field: Arguments<'_>, value: f64, unit: &str) -> Result<()> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(Error::value(field.to_string(), value, format!("a finite number > 0{unit}")))
+    }
+}
+
+fn within_reach(field: Arguments<'_>, place: DVec2, radius: f64) -> Result<()> {
+    let farthest = FARTHEST_IN_RADII * radius;
+    if place.abs().max_element() <= farthest {
+        return Ok(());
+    }
+    let allowed = format!("within {farthest} m of the origin, {FARTHEST_IN_RADII} radii");
+    Err(Error::value(field.to_string(), place, allowed))
+}
+
+impl Scene {
+    /// How it is stepped.
+    pub fn settings(&self) -> Settings {
+        let Self { stepper, parameters, solver, remedies, .. } = *self;
+        Settings { stepper, parameters, solver, remedies }
+    }
+
+    /// Has it stepped otherwise.
+    pub fn set_settings(&mut self, settings: Settings) {
+        let Settings { stepper, parameters, solver, remedies } = settings;
+        (self.stepper, self.parameters, self.solver, self.remedies) =
+            (stepper, parameters, solver, remedies);
+    }
+
+    /// Checks all that the scene says, but for the shapes of its boundaries.
+    ///
+    /// # Errors
+    /// Names the first field outside its range.
+    pub fn validate(&self) -> Result<()> {
+        self.physics.validate()?;
+        self.settings().validate()?;
+        positive(format_args!("areal_density"), self.areal_density, " kg/m²")?;
+        positive(format_args!("duration"), self.duration_secs, " s")?;
+        positive(format_args!("mean_diameter"), self.mean_diameter, " m")?;
+        self.parameters.check_steps("duration", self.duration_secs)?;
+        if self.grains.is_empty() {
+            return Err(Error::value("grains", 0, "at least one disc"));
+        }
+        for (index, grain) in self.grains.iter().enumerate() {
+            positive(format_args!("grains[{index}].radius"), grain.radius, " m")?;
+            let finite = grain.position.is_finite()
+                && grain.velocity.is_finite()
+                && grain.angular_velocity.is_finite();
+            if !finite {
+                let found = format!("{grain:?}");
+                return Err(Error::value(format!("grains[{index}]"), found, "finite throughout"));
+            }
+            within_reach(format_args!("grains[{index}].position"), grain.position, grain.radius)?;
+        }
+        for (index, disc) in self.fixed_discs.iter().enumerate() {
+            positive(format_args!("fixed_discs[{index}].radius"), disc.radius, " m")?;
+            if !disc.position.is_finite() {
+                let field = format!("fixed_discs[{index}].position");
+                return Err(Error::value(field, disc.position, "finite"));
+            }
+            within_reach(
+                format_args!("fixed_discs[{index}].position"),
+                disc.position,
+                disc.radius,
+            )?;
+        }
+        let magnitude = self.gravity.magnitude();
+        if !(magnitude >= 0.0 && magnitude.is_finite()) {
+            return Err(Error::value("gravity", magnitude, "a finite norm ≥ 0 m/s²"));
+        }
+        if let Gravity::Attraction { centre, .. } = self.gravity
+            && !centre.is_finite()
+        {
+            return Err(Error::value("gravity.centre", centre, "finite"));
+        }
+        if let Some(turn) = &self.gravity_turn {
+            turn.check(&self.gravity, self.physics)?;
+        }
+        if let Some(View { min, max }) = self.view
+            && !(min.cmplt(max).all() && (max - min).is_finite())
+        {
+            let allowed = "finite, with min below and left of max";
+            return Err(Error::value("view", format!("{min} to {max}"), allowed));
+        }
+        if let Some(data) = &self.data {
+            data.validate("data.every_secs")?;
+        }
+        if self.physics.axes == 1 {
+            self.validate_line()?;
+        }
+        self.validate_motions()
+    }
+
+    /// Bodies that move and borders that wrap.
+    fn validate_motions(&self) -> Result<()> {
+        let bodies = (&*self.boundaries, self.fixed_discs.len());
+        check_motions(&self.motions, bodies, self.physics.axes, self.periodic)?;
+        self.settings().check_drives(&self.motions)?;
+        self.settings().check_tilt(&self.gravity, self.physics)?;
+        self.settings().check_shear(self.periodic)?;
+        let Some(periodic) = self.periodic else { return Ok(()) };
+        let radii = self.grains.iter().map(|grain| grain.radius);
+        let radii = radii.chain(self.fixed_discs.iter().map(|disc| disc.radius));
+        let lengths = [radii.fold(0.0, f64::max), self.mean_diameter];
+        let bodies = (&*self.boundaries, self.fixed_discs.len(), &*self.motions);
+        periodic.check(bodies, &self.gravity, self.physics, lengths)
+    }
+
+    /// A scene on a line must lie on the line.
+    fn validate_line(&self) -> Result<()> {
+        let allowed = "on the x axis where physics.axes is 1";
+        let off_line = |grain: &Grain| grain.position.y != 0.0 || grain.velocity.y != 0.0;
+        if let Some(index) = self.grains.iter().position(off_line) {
+            let field = format!("grains[{index}]");
+            return Err(Error::value(field, self.grains[index].position, allowed));
+        }
+        if let Some(index) = self.fixed_discs.iter().position(|disc| disc.position.y != 0.0) {
+            let field = format!("fixed_discs[{index}]");
+            return Err(Error::value(field, self.fixed_discs[index].position, allowed));
+        }
+        if let Some(index) = self.boundaries.iter().position(|shape| !shape.is_across_line()) {
+            let field = format!("boundaries[{index}]");
+            let allowed = "a half-space across the x axis where physics.axes is 1";
+            return Err(Error::value(field, format!("{:?}", self.boundaries[index]), allowed));
+        }
+        Ok(())
+    }
+
+    /// What pictures of this scene show: its own view, or the grains' start with room to spread by
+    /// the grains' height on either side.
+    pub fn view(&self) -> View {
+        if let Some(view) = self.view {
+            return view;
+        }
+        let mut min = DVec2::INFINITY;
+        let mut max = DVec2::NEG_INFINITY;
+        for grain in &self.grains {
+            min = min.min(grain.position - grain.radius);
+            max = max.max(grain.position + grain.radius);
+        }
+        if let Some(periodic) = self.periodic {
+            let room = 0.5 * self.mean_diameter * periodic.axes();
+            let [min, max] = periodic.borders_or([min, max]);
+            return self.with_fixed_discs_beside(View { min: min - room, max: max + room });
+        }
+        let room = DVec2::new(if self.physics.axes == 1 { 0.0 } else { max.y - min.y }, 0.0);
+        self.with_fixed_discs_beside(View { min: min - room, max: max + room })
+    }
+
+    /// A view of the grains and, of what never moves, the part beside them.
+    fn with_fixed_discs_beside(&self, View { mut min, mut max }: View) -> View {
+        for disc in &self.fixed_discs {
+            if (min.x..max.x).contains(&disc.position.x) {
+                min.y = min.y.min(disc.position.y - disc.radius);
+                max.y = max.y.max(disc.position.y + disc.radius);
+            }
+        }
+        View { min, max }
+    }
+
+    /// The same with these grains, told apart by the layers that they lie in.
+    pub fn with_settled(mut self, grains: Vec<Grain>) -> Self {
+        self.grains = grains;
+        tone_in_layers(&mut self.grains, self.mean_diameter);
+        self
+    }
+
+    /// Sets the scene up at t = 0.
+    ///
+    /// # Errors
+    /// Names the first field outside its range.
+    pub fn simulation(&self) -> Result<Simulation> {
+        self.validate()?;
+        let world = World {
+            grains: Grains::new(&self.grains, self.areal_density),
+            fixed_discs: self.fixed_discs.clone(),
+            boundaries: self.boundaries.clone(),
+            motions: self.motions.clone(),
+            gravity: self.gravity,
+            gravity_turn: TurningGravity::of(self.gravity, self.gravity_turn.as_ref()),
+            periodic: self.periodic,
+            mean_diameter: self.mean_diameter,
+        };
+        Simulation::new(world, self.physics, self.settings(), self.gap_tolerance)
+    }
+}

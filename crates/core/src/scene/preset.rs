@@ -1,0 +1,54 @@
+//! Settings that go together.
+
+use super::Scene;
+use crate::setting::{Group, words};
+use crate::sim::{REMEDIES, Remedies, Settings};
+use crate::solver::{Method, SolverSettings, StopTest};
+
+/// Gap below which grains touch, in d: contacts that a step opens by its rounding live on.
+const GAP_TOLERANCE: f64 = 1e-3;
+/// Contacts slower than this many g·Δt do not bounce: nearly every step then has a solution.
+const RESTITUTION_THRESHOLD: f64 = 2.0;
+/// Residual that steps are solved to.
+const TOLERANCE: f64 = 1e-8;
+const MAX_SWEEPS: u32 = 5_000;
+
+words! {
+    /// Settings that go together.
+    pub enum Preset {
+        /// Every known remedy.
+        Robust = "robust", "Every known remedy: hard scenes hold, and the paper's effects of the time step are gone";
+    }
+}
+
+impl Preset {
+    /// Changes a scene.
+    pub fn apply(self, scene: &mut Scene) {
+        scene.gap_tolerance = scene.gap_tolerance.max(GAP_TOLERANCE * scene.mean_diameter);
+        let mut settings = scene.settings();
+        self.apply_to_settings(&mut settings);
+        scene.set_settings(settings);
+    }
+
+    /// Changes what can be changed during a run.
+    pub fn apply_to_settings(self, settings: &mut Settings) {
+        let Self::Robust = self;
+        let threshold = &mut settings.parameters.restitution_threshold;
+        *threshold = threshold.max(RESTITUTION_THRESHOLD);
+        settings.solver = SolverSettings {
+            method: Method::Newton,
+            stop: StopTest::Residual,
+            tolerance: TOLERANCE,
+            max_sweeps: MAX_SWEEPS,
+            warm_start: true,
+            ..settings.solver
+        };
+        settings.remedies = Remedies::default();
+        for remedy in &REMEDIES {
+            if let Some(value) = remedy.robust {
+                settings.remedies.set(remedy.name, value);
+            }
+        }
+        *settings = settings.with_only_what_is_taken();
+    }
+}

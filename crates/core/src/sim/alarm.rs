@@ -1,0 +1,240 @@
+//! What a run says when it goes wrong: in which way, since when, and the one change that is most
+//! likely to help.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::losses::Losses;
+use super::{Observables, Settings};
+use crate::contact::Feature;
+use crate::error::legible;
+use crate::solver::Method;
+use crate::world::{Physics, World};
+
+/// Steps in a row at the sweep limit that raise an alarm. Fewer: single hard steps, which do no
+/// harm, would raise it.
+const STEPS_AT_LIMIT: u32 = 100;
+/// Overlap of a contact that raises an alarm, in d: the paper's own curves end at 0.06.
+const LARGEST_OVERLAP: f64 = 0.05;
+
+/// A way to go wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AlarmKind {
+    /// A position or velocity is no longer a number.
+    NotFinite,
+    /// A grain went through a wall or the ground, or far away.
+    GrainLost,
+    /// A hundred steps in a row ended at the sweep limit, or stalled before it.
+    SweepLimit,
+    /// A contact overlaps by more than 5 % of d.
+    Overlap,
+    /// Bonds were about to break in a step that is too long to see it, under the law `range`.
+    BreakUnseen,
+}
+
+impl AlarmKind {
+    /// All kinds.
+    pub const ALL: [Self; 5] =
+        [Self::NotFinite, Self::GrainLost, Self::SweepLimit, Self::Overlap, Self::BreakUnseen];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NotFinite => "not-finite",
+            Self::GrainLost => "grain-lost",
+            Self::SweepLimit => "sweep-limit",
+            Self::Overlap => "overlap",
+            Self::BreakUnseen => "break-unseen",
+        }
+    }
+}
+
+/// Something went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Alarm {
+    /// In which way.
+    pub kind: AlarmKind,
+    /// The first step that showed it.
+    pub step: u64,
+    /// Simulated time of that step, s.
+    pub time_secs: f64,
+    /// The longest time step that would do, s, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_time_step_secs: Option<f64>,
+}
+
+impl Alarm {
+    /// What happened, since when, and what is most likely to help, in one sentence.
+    pub fn message(&self, settings: &Settings) -> String {
+        let what = match self.kind {
+            AlarmKind::NotFinite => "the state is no longer finite",
+            AlarmKind::GrainLost => "a grain has gone through a wall or left the world",
+            AlarmKind::SweepLimit => "100 steps in a row were not solved to their tolerance",
+            AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
+            AlarmKind::BreakUnseen => "bonds break faster than the substeps of a step can follow",
+        };
+        let Self { step, time_secs, .. } = self;
+        let advice = self.advice(settings);
+        legible(&format!("{what} (step {step}, t = {time_secs:.4} s): {advice}"))
+    }
+
+    /// What is wrong with a state that no step has led to yet.
+    pub fn of_start(observables: &Observables) -> Option<Self> {
+        let Observables { step, time_secs, max_overlap, .. } = *observables;
+        let overlaps = step == 0 && max_overlap > LARGEST_OVERLAP;
+        overlaps.then_some(Self {
+            kind: AlarmKind::Overlap,
+            step,
+            time_secs,
+            longest_time_step_secs: None,
+        })
+    }
+
+    /// The change that is most likely to help.
+    fn advice(&self, settings: &Settings) -> String {
+        let Settings { stepper, parameters, solver, .. } = settings;
+        let smaller = self.longest_time_step_secs.map_or_else(
+            || format!("try a time step below {} s", parameters.time_step_secs),
+            |secs| format!("try a time step of at most {:e} s", rounded_down(secs)),
+        );
+        match self.kind {
+            AlarmKind::NotFinite if stepper.reads("substeps") && parameters.substeps > 0 => {
+                format!(
+                    "try more than {} substeps, or 0 for as many as are stable",
+                    parameters.substeps
+                )
+            }
+            AlarmKind::Overlap if self.step == 0 => {
+                "it begins so; the remedy push-out takes overlap away".into()
+            }
+            AlarmKind::NotFinite
+            | AlarmKind::GrainLost
+            | AlarmKind::Overlap
+            | AlarmKind::BreakUnseen => smaller,
+            AlarmKind::SweepLimit
+                if parameters.restitution_threshold == 0.0 && parameters.restitution > 0.0 =>
+            {
+                "try a restitution threshold of 2: wedged contacts ask for bounces that contradict \
+                 each other"
+                    .into()
+            }
+            AlarmKind::SweepLimit if solver.method != Method::Newton => "try method newton".into(),
+            AlarmKind::SweepLimit => {
+                format!("try a tolerance above {:e}", solver.tolerance)
+            }
+        }
+    }
+}
+
+/// A number > 0 to two digits, not above itself.
+fn rounded_down(number: f64) -> f64 {
+    let unit = 10f64.powf(number.log10().floor() - 1.0);
+    let below = (number / unit).floor() * unit;
+    // As it is written, without the rounding of the product.
+    format!("{below:.1e}").parse().unwrap_or(below)
+}
+
+/// What watches over a simulation. Part of it, so that a moment that is computed anew tells the same.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Watch {
+    unfinished_in_a_row: u32,
+    alarms: Vec<Alarm>,
+    losses: Losses,
+}
+
+impl Watch {
+    /// Watches over a world, whose boundaries are `features`, from now on.
+    pub(super) fn new(world: &World, features: &[Feature], physics: Physics) -> Self {
+        Self { losses: Losses::new(world, features, physics), ..Self::default() }
+    }
+
+    /// The alarms so far, one of a kind.
+    pub(super) fn alarms(&self) -> &[Alarm] {
+        &self.alarms
+    }
+
+    /// Whether that grain is lost.
+    pub(super) fn is_lost(&self, grain: usize) -> bool {
+        self.losses.is_lost(grain)
+    }
+
+    /// Looks at the state after a step, and leaves grains that are lost out of its slump; `features`
+    /// are those of the boundaries where they are now.
+    pub(super) fn look(
+        &mut self,
+        world: &World,
+        (features, walls_move): (&[Feature], bool),
+        observables: &mut Observables,
+        finite: bool,
+    ) {
+        self.unfinished_in_a_row =
+            if observables.converged { 0 } else { self.unfinished_in_a_row + 1 };
+        if finite {
+            self.losses.look(world, features, walls_move);
+        }
+        observables.lost_grains = self.losses.count();
+        if observables.lost_grains > 0 {
+            observables.slump = self.losses.slump(world);
+            self.raise(AlarmKind::GrainLost, observables);
+        }
+        if !finite {
+            observables.converged = false;
+            self.raise(AlarmKind::NotFinite, observables);
+            return;
+        }
+        if self.unfinished_in_a_row >= STEPS_AT_LIMIT {
+            self.raise(AlarmKind::SweepLimit, observables);
+        }
+        if observables.max_overlap > LARGEST_OVERLAP {
+            self.raise(AlarmKind::Overlap, observables);
+        }
+    }
+
+    /// Tells of a step that was too long for its bonds, where one was: `longest_secs` is the longest that is not.
+    pub(super) fn look_at_length(&mut self, longest_secs: Option<f64>, observables: &Observables) {
+        let Some(longest_secs) = longest_secs else { return };
+        if !self.has(AlarmKind::BreakUnseen) {
+            let Observables { step, time_secs, .. } = *observables;
+            let longest_time_step_secs = Some(longest_secs);
+            self.alarms.push(Alarm {
+                kind: AlarmKind::BreakUnseen,
+                step,
+                time_secs,
+                longest_time_step_secs,
+            });
+        }
+    }
+
+    /// Whether it watches over so many grains.
+    pub(super) fn is_of(&self, grains: usize) -> bool {
+        self.losses.is_of(grains)
+    }
+
+    /// Forgets a grain, which is taken out of the world.
+    pub(super) fn remove_grain(&mut self, grain: usize) {
+        self.losses.remove(grain);
+    }
+
+    /// Watches over one grain more, the last.
+    pub(super) fn add_grain(&mut self, position: DVec2) {
+        self.losses.add(position);
+    }
+
+    /// Walls, whose `features` are these, may go from now on.
+    pub(super) fn let_walls_move(&mut self, features: &[Feature]) {
+        self.losses.let_walls_move(features);
+    }
+
+    fn has(&self, kind: AlarmKind) -> bool {
+        self.alarms.iter().any(|alarm| alarm.kind == kind)
+    }
+
+    fn raise(&mut self, kind: AlarmKind, observables: &Observables) {
+        if !self.has(kind) {
+            let Observables { step, time_secs, .. } = *observables;
+            self.alarms.push(Alarm { kind, step, time_secs, longest_time_step_secs: None });
+        }
+    }
+}

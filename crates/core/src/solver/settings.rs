@@ -1,0 +1,251 @@
+//! How well a step is to be solved.
+
+use super::friction_model::{Fallback, FrictionModel};
+use super::methods::{METHODS, Method};
+use super::ordering::Ordering;
+use crate::error::{Error, Result};
+use crate::setting::{Group, settings, words};
+
+words! {
+    /// What the tolerance of a solver refers to.
+    #[derive(Default)]
+    pub enum StopTest {
+        /// ‖ΔP‖₂ of a sweep (of an iteration, for methods without sweeps) ≤ tolerance · ‖P‖₂, over normal
+        /// and tangential impulses; dimensionless.
+        #[default]
+        RelativeChange = "relative-change", "‖ΔP‖ of a sweep over ‖P‖";
+        /// Σ|ΔP| of a sweep ≤ tolerance · mean grain mass; m/s. Tested after every sweep.
+        ImpulsePerMass = "impulse-per-mass", "sum of |ΔP| of a sweep over the mean mass, m/s";
+        /// The common residual ≤ tolerance; dimensionless.
+        Residual = "residual", "the residual that judges all methods";
+    }
+}
+
+settings! {
+    /// Method, stopping test and limits. Plain data, checked where a simulation takes them on.
+    ///
+    /// The default is for watching a pile: ten times looser than the figures of the paper are solved. A
+    /// step that needs more than the limit has, as a rule, no solution to converge to: restitution asks
+    /// wedged contacts for what their neighbours forbid.
+    pub struct SolverSettings, changes SolverChanges, heading "Solver" {
+        /// The method.
+        method: Method = Method::Nsgs, {
+            name: "solver",
+            value_name: "NAME",
+            help: "Method that solves each step",
+            control: Some(Control {
+                label: "Method",
+                hint: "How the impulses of a step are found.",
+                ..Control::PLAIN
+            }),
+        }
+        /// The order of a sweep.
+        #[serde(default, skip_serializing_if = "is_default")]
+        ordering: Ordering = Ordering::Interleaved, {
+            name: "ordering",
+            value_name: "ORDER",
+            help: "In which order a sweep visits the contacts",
+            control: Some(Control {
+                label: "Order",
+                hint: "In which order a sweep visits contacts.",
+                ..Control::PLAIN
+            }),
+        }
+        /// What `tolerance` refers to.
+        #[serde(default)]
+        stop: StopTest = StopTest::RelativeChange, {
+            name: "stop",
+            value_name: "TEST",
+            help: "What the tolerance refers to",
+            control: Some(Control {
+                label: "Stops on",
+                hint: "What the tolerance refers to.",
+                ..Control::PLAIN
+            }),
+        }
+        /// In the unit of `stop`.
+        tolerance: f64 = 1e-6, {
+            name: "tolerance",
+            value_name: "X",
+            help: "How well each step is solved, in the unit of the stopping test",
+            allowed: "a finite number > 0",
+            holds: |value| value > 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "Tolerance",
+                hint: "How well each step is solved; the answer depends on it.",
+                range: [1e-12, 1e-1],
+                logarithmic: true,
+                ..Control::PLAIN
+            }),
+        }
+        /// A step that needs more sweeps, or iterations of a method without sweeps, is reported as not
+        /// converged.
+        max_sweeps: u32 = 5_000, {
+            name: "max-sweeps",
+            value_name: "N",
+            help: "A step that needs more sweeps is reported as not converged",
+            allowed: "at least 1",
+            holds: |value| value > 0,
+            control: Some(Control {
+                label: "Sweep limit",
+                hint: "A step that needs more sweeps (or iterations) is reported as not converged.",
+                range: [1.0, 100_000.0],
+                logarithmic: true,
+                ..Control::PLAIN
+            }),
+        }
+        /// Start from the impulses of the step before.
+        warm_start: bool = true, {
+            name: "warm-start",
+            value_name: "BOOL",
+            help: "Whether each step starts from the impulses of the one before",
+            control: Some(Control {
+                label: "Warm start",
+                hint: "Each step starts from the impulses of the one before.",
+                ..Control::PLAIN
+            }),
+        }
+        /// What is asked of friction.
+        #[serde(default, skip_serializing_if = "is_default")]
+        friction_model: FrictionModel = FrictionModel::Coulomb, {
+            name: "friction-model",
+            value_name: "MODEL",
+            help: "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
+                   `slump list` says what each gets wrong",
+            needs: Needs::Friction,
+            control: Some(Control {
+                label: "Friction",
+                hint: "What a step asks of friction: Coulomb's law, or a convex problem in its place.",
+                ..Control::PLAIN
+            }),
+        }
+        /// How often a step is solved under a model of friction, what the model holds taken anew each time.
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        model_solves: u32 = 1, {
+            name: "model-solves",
+            value_name: "N",
+            help: "How often each step is solved under tresca or desaxce, what they hold taken anew each \
+                   time: 1 is the cheapest, more come nearer to Coulomb's law",
+            allowed: "between 1 and 1000",
+            holds: |value| (1..=1000).contains(&value),
+            needs: Needs::Friction,
+            control: Some(Control {
+                label: "Solves a step",
+                hint: "How often a step is solved, friction's bounds taken anew each time: more come nearer \
+                       to Coulomb's law.",
+                range: [1.0, 16.0],
+                ..Control::PLAIN
+            }),
+        }
+        /// What becomes of a step that is not solved under Coulomb's law.
+        #[serde(default, skip_serializing_if = "is_default")]
+        fallback: Fallback = Fallback::OfMethod, {
+            name: "fallback",
+            value_name: "MODEL",
+            help: "What becomes of a step that is not solved under Coulomb's law",
+            needs: Needs::Friction,
+            control: Some(Control {
+                label: "Falls back on",
+                hint: "What becomes of a step that is not solved under Coulomb's law.",
+                ..Control::PLAIN
+            }),
+        }
+        /// Solve grains that no contact joins to each other by themselves.
+        #[serde(default, skip_serializing_if = "is_default")]
+        islands: bool = false, {
+            name: "islands",
+            value_name: "BOOL",
+            help: "Whether grains that no contact joins to the others are solved by themselves, and fall back \
+                   by themselves: pays where a scene has several heaps",
+        }
+    }
+}
+
+/// What came after the first scene files is written where it is not left at its default.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+fn one() -> u32 {
+    1
+}
+
+fn is_one(value: &u32) -> bool {
+    *value == 1
+}
+
+impl SolverSettings {
+    /// Solving to a common residual, whatever the step's own settings: under Coulomb's law, from the impulses that
+    /// there are.
+    pub const fn to_residual(method: Method, tolerance: f64, max_sweeps: u32) -> Self {
+        Self {
+            method,
+            ordering: Ordering::Interleaved,
+            stop: StopTest::Residual,
+            tolerance,
+            max_sweeps,
+            warm_start: true,
+            friction_model: FrictionModel::Coulomb,
+            model_solves: 1,
+            fallback: Fallback::None,
+            islands: false,
+        }
+    }
+
+    /// Checks the numbers against their ranges, and whether method, model of friction and number of solves go
+    /// together.
+    ///
+    /// # Errors
+    /// Names the field, its value and what it may be.
+    pub fn validate(&self) -> Result<()> {
+        self.validate_each()?;
+        let Self { method, friction_model, model_solves, islands, .. } = *self;
+        if islands && !method.takes_islands() {
+            let allowed = format!("false where solver is {method}, which works by tiles");
+            return Err(Error::value("islands", islands, allowed));
+        }
+        if friction_model != FrictionModel::Coulomb && !method.info().takes_models {
+            let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
+            let takers: Vec<_> = takers.collect();
+            let allowed = format!(
+                "coulomb where solver is {method}: other models go with {}",
+                takers.join(" and ")
+            );
+            return Err(Error::value("friction-model", friction_model, allowed));
+        }
+        if model_solves > 1 && !friction_model.is_taken_anew() {
+            let allowed = format!(
+                "1 where friction-model is {friction_model}: tresca and desaxce alone hold what can be taken anew"
+            );
+            return Err(Error::value("model-solves", model_solves, allowed));
+        }
+        Ok(())
+    }
+
+    /// Whether a step that is not solved under Coulomb's law is solved under bounds of friction.
+    pub fn falls_back(&self) -> bool {
+        self.friction_model == FrictionModel::Coulomb
+            && match self.fallback {
+                Fallback::OfMethod => self.method == Method::Auto,
+                Fallback::None => false,
+                Fallback::Tresca => true,
+            }
+    }
+
+    /// Whether steps may be solved under another model of friction than Coulomb's law.
+    pub(crate) fn may_solve_models(&self) -> bool {
+        self.friction_model != FrictionModel::Coulomb || self.falls_back()
+    }
+
+    /// The same under Coulomb's law.
+    pub(crate) fn with_coulombs_law(self) -> Self {
+        Self { friction_model: FrictionModel::Coulomb, model_solves: 1, ..self }
+    }
+
+    /// The same by another method, under Coulomb's law where that takes no other, and of all islands together where it
+    /// takes none by itself.
+    pub fn by(self, method: Method) -> Self {
+        let by_it = Self { method, islands: self.islands && method.takes_islands(), ..self };
+        if method.info().takes_models { by_it } else { by_it.with_coulombs_law() }
+    }
+}

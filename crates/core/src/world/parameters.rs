@@ -1,0 +1,277 @@
+//! The numbers of the contact laws and the time step, which may change between any two steps.
+
+use crate::error::{Error, Result};
+use crate::setting::{Group, settings, words};
+
+words! {
+    /// Which part of the normal force bounds friction (the paper leaves both readings open).
+    #[derive(Default)]
+    pub enum FrictionCone {
+        /// |T| ≤ μ (N + C₀): the cone's apex is at −C₀.
+        #[default]
+        Shifted = "shifted", "|T| ≤ μ (N + C₀): the cone's apex is at −C₀";
+        /// |T| ≤ μ max(N, 0).
+        Compressive = "compressive", "|T| ≤ μ max(N, 0)";
+    }
+}
+
+/// δ_c where none is given, in mean diameters.
+pub const DEBONDING_DISTANCE: f64 = 0.01;
+
+/// More substeps than this are a mistake: a single step of a pile would take many seconds.
+pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
+
+/// More steps than this take months, of the smallest scene.
+const MOST_STEPS: f64 = 1e12;
+/// Below this a time step is what is odd about too many steps.
+const SMALL_TIME_STEP_SECS: f64 = 1e-7;
+
+settings! {
+    /// Numbers that may change between any two steps. Plain data, checked where a simulation takes them on.
+    ///
+    /// The default is the paper's scheme at Δt = 1e-3 s, with contacts that neither pull, bounce nor rub.
+    pub struct Parameters, changes ParameterChanges, heading "Physics" {
+        /// Bond number: C₀ = Bond · m_ij · g (paper eq. 10).
+        bond: f64 = 0.0, {
+            name: "bond",
+            value_name: "BOND",
+            help: "Bond number: cohesion force over effective weight, at least 0",
+            allowed: "a finite number ≥ 0",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "Bond",
+                symbol: "Bond",
+                hint: "Cohesion: a contact pulls with up to so many times the weight of its effective mass \
+                       m_i·m_j/(m_i + m_j), which for two equal discs is half a disc's, and on a base a whole one's.",
+                range: [0.0, 200.0],
+                ..Control::PLAIN
+            }),
+        }
+        /// Δt, s.
+        time_step_secs: f64 = 1e-3, {
+            name: "dt",
+            value_name: "SECONDS",
+            help: "Time step, seconds",
+            allowed: "a finite number of seconds > 0",
+            holds: |value| value > 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "Δt, time step",
+                symbol: "Δt",
+                unit: "s",
+                hint: "One step of the computation; cohesion cancels the opening speed Bond·g·Δt \
+                       in each.",
+                range: [1e-5, 1e-2],
+                logarithmic: true,
+            }),
+        }
+        /// ρ, 0 … 1.
+        restitution: f64 = 0.0, {
+            name: "rho",
+            value_name: "RHO",
+            help: "Restitution, 0 to 1",
+            allowed: "between 0 and 1",
+            holds: |value| (0.0..=1.0).contains(&value),
+            control: Some(Control {
+                label: "ρ, restitution",
+                symbol: "ρ",
+                hint: "Part of the approach speed with which grains bounce apart.",
+                ..Control::PLAIN
+            }),
+        }
+        /// μ.
+        friction: f64 = 0.0, {
+            name: "mu",
+            value_name: "MU",
+            help: "Friction, at least 0",
+            allowed: "a finite number ≥ 0",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            needs: Needs::Friction,
+            control: Some(Control {
+                label: "μ, friction",
+                symbol: "μ",
+                hint: "Largest tangential force, in units of the normal force plus cohesion.",
+                range: [0.0, 2.0],
+                ..Control::PLAIN
+            }),
+        }
+        /// Which part of the normal force bounds friction.
+        #[serde(default)]
+        cone: FrictionCone = FrictionCone::Shifted, {
+            name: "cone",
+            value_name: "CONE",
+            help: "Which part of the normal force bounds friction",
+            needs: Needs::Friction,
+        }
+        /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
+        ///
+        /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step
+        /// then has no solution. Below about 2 g·Δt it stands for no bounce that anyone could see.
+        #[serde(default)]
+        restitution_threshold: f64 = 0.0, {
+            name: "restitution-threshold",
+            value_name: "X",
+            help: "Contacts slower than this many g·dt do not bounce; 0 in the paper's scheme, 2 lets \
+                   nearly every step be solved",
+            allowed: "a finite number ≥ 0",
+            holds: |value| value >= 0.0 && value.is_finite(),
+        }
+        /// δ_c of the law `range`, in mean diameters. Within the largest no third grain fits between
+        /// two bonded ones.
+        #[serde(default = "default_debonding_distance")]
+        debonding_distance: f64 = DEBONDING_DISTANCE, {
+            name: "debonding-distance",
+            value_name: "D",
+            help: "Debonding distance of the stepper range, in mean diameters",
+            allowed: "above 0 and at most 0.1 diameters",
+            holds: |value| value > 0.0 && value <= 0.1,
+            needs: Needs::Cohesion,
+            control: Some(Control {
+                label: "δc, debonding distance",
+                symbol: "δc",
+                unit: "d",
+                hint: "How far a bond is opened before it breaks, in mean diameters.",
+                range: [1e-3, 0.1],
+                logarithmic: true,
+            }),
+        }
+        /// By which angle uniform gravity is turned against how the scene has it, degrees, positive anticlockwise.
+        #[serde(default, skip_serializing_if = "is_none_given")]
+        tilt: f64 = 0.0, {
+            name: "tilt",
+            value_name: "DEGREES",
+            help: "Angle by which gravity is turned against how the scene has it, degrees: above 0 towards the right \
+                   where it points down",
+            allowed: "between -180 and 180 degrees",
+            holds: |value| (-180.0..=180.0).contains(&value),
+            needs: Needs::Direction,
+            control: Some(Control {
+                label: "Tilt",
+                symbol: "tilt",
+                unit: "°",
+                hint: "Turns gravity, as if all that is fixed were tilted the other way: above 0 to the right.",
+                range: [-45.0, 45.0],
+                ..Control::PLAIN
+            }),
+        }
+        /// k of the stepper `dem`, N/m; 0 leaves it to the stepper, which takes it from the weight of the pile.
+        #[serde(default, skip_serializing_if = "is_none_given")]
+        stiffness: f64 = 0.0, {
+            name: "stiffness",
+            value_name: "K",
+            help: "Stiffness of the springs of the stepper dem, N/m; 0 takes it from the pile's weight",
+            allowed: "a finite number of N/m ≥ 0; 0 takes it from the pile's weight",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "k, stiffness",
+                symbol: "k",
+                unit: "N/m",
+                hint: "Force by overlap: a softer bond takes more work to break. 0 takes the stiffness at which \
+                       the pile's own weight makes an overlap of 1e-3 d.",
+                range: [0.0, 1e5],
+                logarithmic: true,
+            }),
+        }
+        /// ζ of the stepper `dem`: of a contact by itself, in critical damping; 0 takes that which ρ asks for.
+        /// Nothing is lost by that: no damping is ρ = 1.
+        #[serde(default, skip_serializing_if = "is_none_given")]
+        damping_ratio: f64 = 0.0, {
+            name: "damping-ratio",
+            value_name: "ZETA",
+            help: "Damping ratio of the contacts of the stepper dem, in place of rho; 0 takes it from rho",
+            allowed: "a finite number ≥ 0; 0 takes it from rho",
+            holds: |value| value >= 0.0 && value.is_finite(),
+            control: Some(Control {
+                label: "ζ, damping ratio",
+                symbol: "ζ",
+                hint: "Dashpot of a contact by itself, in that of critical damping, in place of ρ. 0 takes what ρ \
+                       asks for.",
+                range: [0.0, 2.0],
+                ..Control::PLAIN
+            }),
+        }
+        /// Substeps of a stepper that cuts every step; 0 leaves their number to it.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        substeps: u32 = 0, {
+            name: "substeps",
+            value_name: "N",
+            help: "Substeps of a step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable",
+            allowed: "at most 100000; 0 leaves it to the stepper",
+            holds: |value| value <= MAX_SUBSTEPS,
+            control: Some(Control {
+                label: "Substeps",
+                symbol: "substeps",
+                hint: "Substeps of each step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable.",
+                range: [0.0, 100.0],
+                ..Control::PLAIN
+            }),
+        }
+    }
+}
+
+fn default_debonding_distance() -> f64 {
+    DEBONDING_DISTANCE
+}
+
+fn is_zero(count: &u32) -> bool {
+    *count == 0
+}
+
+fn is_none_given(number: &f64) -> bool {
+    *number == 0.0
+}
+
+impl Parameters {
+    /// Checks every number against its range.
+    ///
+    /// # Errors
+    /// Names the first field outside its range, its value and the range.
+    pub(crate) fn validate(&self) -> Result<()> {
+        self.validate_each()
+    }
+
+    /// The same numbers with another Δt, s.
+    pub fn over(self, time_step_secs: f64) -> Self {
+        Self { time_step_secs, ..self }
+    }
+
+    /// Steps that a simulated time takes.
+    pub fn steps_in(&self, secs: f64) -> u64 {
+        (secs / self.time_step_secs).round() as u64
+    }
+
+    /// Checks that a simulated time (s) takes no more steps than anyone can wait for.
+    ///
+    /// # Errors
+    /// Names `field`, which says the time, or Δt where that is the odd one of the two.
+    pub fn check_steps(&self, field: &str, secs: f64) -> Result<()> {
+        let steps = secs / self.time_step_secs;
+        if steps <= MOST_STEPS {
+            return Ok(());
+        }
+        let (least, most) = (secs / MOST_STEPS, MOST_STEPS * self.time_step_secs);
+        let asked = format!("which asks for {steps:.1e} steps");
+        Err(if self.time_step_secs < SMALL_TIME_STEP_SECS {
+            let found = format!("{} s where {field} is {secs} s, {asked}", self.time_step_secs);
+            Error::value("dt", found, format!("at least {least:e} s: no more than 1e12 steps"))
+        } else {
+            let found = format!("{secs} s where dt is {} s, {asked}", self.time_step_secs);
+            Error::value(field, found, format!("at most {most:e} s: no more than 1e12 steps"))
+        })
+    }
+
+    /// ρ v_n^{n−1}, m/s, of a contact with that normal velocity at the beginning of the step.
+    pub fn restitution_velocity(&self, normal_velocity: f64, gravity_magnitude: f64) -> f64 {
+        let least = self.restitution_threshold * gravity_magnitude * self.time_step_secs;
+        if normal_velocity.abs() < least { 0.0 } else { self.restitution * normal_velocity }
+    }
+
+    /// Bond·Δt/√(d/g), dimensionless (paper §3.3).
+    pub fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
+        self.bond * self.time_step_secs / (mean_diameter / gravity_magnitude).sqrt()
+    }
+
+    /// Bond·g·Δt, m/s: the opening speed that one step of cohesion cancels (paper eq. 9).
+    pub fn capture_speed(&self, gravity_magnitude: f64) -> f64 {
+        self.bond * gravity_magnitude * self.time_step_secs
+    }
+}

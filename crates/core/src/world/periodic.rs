@@ -1,0 +1,207 @@
+//! A cell whose opposite borders are one and the same line: what leaves it on one side comes back on the other.
+//! Where its borders shear (`shearing`), the cells above and below slide.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+/// Borders that wrap: left and right, below and above, or both. All that a scene has is there again a period to either
+/// side, without end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Periodic {
+    /// x of the left and of the right border, m; none where they do not wrap.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x: Option<[f64; 2]>,
+    /// y of the lower and of the upper border, m; none where they do not wrap.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y: Option<[f64; 2]>,
+    /// γ̇, 1/s: the cell above goes along x with γ̇ times the height of a cell, relative to this one.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub shear_rate: f64,
+    /// By how much the cell above is off this one along x now, m; up to a width to either side at the start.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub shift: f64,
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+impl Periodic {
+    /// Left and right borders alone, m.
+    pub const fn along_x(x: [f64; 2]) -> Self {
+        Self { x: Some(x), y: None, shear_rate: 0.0, shift: 0.0 }
+    }
+
+    /// All four borders, m.
+    pub const fn along_both(x: [f64; 2], y: [f64; 2]) -> Self {
+        Self { x: Some(x), y: Some(y), shear_rate: 0.0, shift: 0.0 }
+    }
+
+    /// Width and height of the cell, m, each where its borders wrap.
+    pub fn periods(self) -> [Option<f64>; 2] {
+        [self.x, self.y].map(|borders| borders.map(period))
+    }
+
+    /// 1 along each axis whose borders wrap, and 0 along the others.
+    pub(crate) fn axes(self) -> DVec2 {
+        DVec2::from(self.periods().map(|period| if period.is_some() { 1.0 } else { 0.0 }))
+    }
+
+    /// Corners of an upright box, m, with the borders in place of its sides along each axis that wraps.
+    pub fn borders_or(self, [low, high]: [DVec2; 2]) -> [DVec2; 2] {
+        let [left, right] = self.x.unwrap_or([low.x, high.x]);
+        let [below, above] = self.y.unwrap_or([low.y, high.y]);
+        [DVec2::new(left, below), DVec2::new(right, above)]
+    }
+
+    /// The image of a place that lies in the cell, the left and the lower border included, m. What is there stays to the
+    /// last bit.
+    pub fn wrap(self, place: DVec2) -> DVec2 {
+        let x = match self.is_sheared() {
+            true => place.x - self.lean(self.cells_above(place.y)),
+            false => place.x,
+        };
+        DVec2::new(wrapped(self.x, x), wrapped(self.y, place.y))
+    }
+
+    /// The shortest way between two places that are apart by `offset`, or by it and some periods, m. One that is
+    /// shorter than half a period stays to the last bit.
+    #[inline]
+    pub fn shortest(self, offset: DVec2) -> DVec2 {
+        let offset = if self.is_sheared() { self.upright(offset) } else { offset };
+        DVec2::new(shortest(self.x, offset.x), shortest(self.y, offset.y))
+    }
+
+    /// How many whole periods along each axis the shortest way leaves out of an offset, m; 0 where nothing wraps.
+    pub(crate) fn whole(self, offset: DVec2) -> DVec2 {
+        let offset = if self.is_sheared() { self.upright(offset) } else { offset };
+        DVec2::new(periods_in(self.x, offset.x), periods_in(self.y, offset.y))
+    }
+
+    /// By how much a shape is to be moved (m) for its other images that reach into the cell, where it reaches from
+    /// one corner of an upright box to the other; a shape that lies in the cell but for rounding has none.
+    pub fn images(self, [low, high]: [DVec2; 2]) -> impl Iterator<Item = DVec2> {
+        let middle = 0.5 * (low.x + high.x);
+        let along_y = reaching(self.y, [low.y, high.y]).into_iter().flatten();
+        let all = along_y.flat_map(move |y| {
+            let lean = self.lean_into_cell(middle, y);
+            let along_x = reaching(self.x, [low.x + lean, high.x + lean]).into_iter().flatten();
+            along_x.map(move |x| DVec2::new(lean + x, y))
+        });
+        all.filter(|by| *by != DVec2::ZERO)
+    }
+
+    /// By how much a place is to be moved (m) for itself and its images a period to either side.
+    pub fn around(self) -> impl Iterator<Item = DVec2> {
+        let [along_x, along_y] =
+            self.periods().map(|period| [Some(0.0), period, period.map(|by| -by)]);
+        along_y.into_iter().flatten().flat_map(move |y| {
+            let lean = self.lean_of(y);
+            along_x.into_iter().flatten().map(move |x| DVec2::new(lean + x, y))
+        })
+    }
+
+    /// The image of a place that is nearest to another one, m.
+    pub fn near(self, place: DVec2, other: DVec2) -> DVec2 {
+        if self.is_sheared() {
+            return other - self.shortest(other - place);
+        }
+        let along = |borders: Option<[f64; 2]>, [place, other]: [f64; 2]| match borders {
+            None => place,
+            Some(borders) => {
+                let period = period(borders);
+                place + period * ((other - place) / period).round()
+            }
+        };
+        DVec2::new(along(self.x, [place.x, other.x]), along(self.y, [place.y, other.y]))
+    }
+}
+
+pub(super) fn period([low, high]: [f64; 2]) -> f64 {
+    high - low
+}
+
+/// Whole periods in an offset, to the nearest; 0 where nothing wraps.
+#[inline]
+pub(super) fn periods_in(borders: Option<[f64; 2]>, offset: f64) -> f64 {
+    borders.map_or(0.0, |borders| (offset / period(borders)).round())
+}
+
+pub(super) fn wrapped(borders: Option<[f64; 2]>, at: f64) -> f64 {
+    let Some([low, high]) = borders.filter(|[low, high]| !(*low..*high).contains(&at)) else {
+        return at;
+    };
+    let wrapped = at - (high - low) * ((at - low) / (high - low)).floor();
+    // Rounding may end on the upper border, which is the lower one. What is no number stays none.
+    if wrapped >= high || wrapped < low { low } else { wrapped }
+}
+
+#[inline]
+pub(super) fn shortest(borders: Option<[f64; 2]>, offset: f64) -> f64 {
+    borders.map_or(offset, |borders| {
+        let period = period(borders);
+        offset - period * (offset / period).round()
+    })
+}
+
+/// Ways along an axis for what reaches so far: none, and those of its images that reach between the borders.
+fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3] {
+    let over = borders.map_or([None; 2], |[low, high]| {
+        let period = high - low;
+        let rounding = 1e-9 * period;
+        [(from < low - rounding).then_some(period), (to > high + rounding).then_some(-period)]
+    });
+    [Some(0.0), over[0], over[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CELL: Periodic = Periodic::along_x([-0.3, 0.7]);
+    const BOTH: Periodic = Periodic { y: Some([2.0, 4.0]), ..CELL };
+
+    #[test]
+    fn a_place_is_wrapped_into_the_cell_and_one_inside_keeps_its_bits() {
+        for (x, wrapped) in
+            [(-0.3, -0.3), (0.1, 0.1), (0.7, -0.3), (0.8, -0.2), (-5.4, 0.6), (9.0, 0.0)]
+        {
+            let found = CELL.wrap(DVec2::new(x, 2.0));
+            assert!((found.x - wrapped).abs() < 1e-14 && found.y == 2.0, "{x}: {found}");
+            assert!((-0.3..0.7).contains(&found.x));
+        }
+        let inside = 0.123_456_789;
+        assert_eq!(CELL.wrap(DVec2::new(inside, 0.0)).x.to_bits(), inside.to_bits());
+        // A hair left of the border is the right border but for rounding.
+        let hair = CELL.wrap(DVec2::new(f64::from_bits((-0.3f64).to_bits() + 1), 0.0));
+        assert!((-0.3..0.7).contains(&hair.x));
+        assert!(CELL.wrap(DVec2::NAN).x.is_nan());
+        let found = BOTH.wrap(DVec2::new(0.8, 1.5));
+        assert!(found.distance(DVec2::new(-0.2, 3.5)) < 1e-14, "{found}");
+    }
+
+    #[test]
+    fn the_shortest_way_is_that_to_the_nearest_image() {
+        for (offset, shortest) in [(0.4, 0.4), (0.6, -0.4), (-0.9, 0.1), (3.2, 0.2)] {
+            let found = CELL.shortest(DVec2::new(offset, 7.0));
+            assert!((found.x - shortest).abs() < 1e-14 && found.y == 7.0, "{offset}: {found}");
+            let found = BOTH.shortest(DVec2::new(offset, -2.0 * offset));
+            let shortest = DVec2::new(shortest, -2.0 * shortest);
+            assert!(found.distance(shortest) < 1e-14, "{offset}: {found}");
+        }
+    }
+
+    #[test]
+    fn what_reaches_over_a_corner_has_three_images() {
+        let reach = |from: f64, to: f64| [DVec2::splat(from), DVec2::splat(to)];
+        let images: Vec<DVec2> =
+            CELL.images(reach(-0.4, 0.0)).chain(CELL.images(reach(0.6, 0.8))).collect();
+        assert_eq!(images, [DVec2::X, DVec2::NEG_X]);
+        assert_eq!(CELL.images(reach(-0.3, 0.7)).count(), 0);
+        let corner = [DVec2::new(0.6, 1.9), DVec2::new(0.8, 2.1)];
+        let images: Vec<DVec2> = BOTH.images(corner).collect();
+        assert_eq!(images, [DVec2::NEG_X, DVec2::new(0.0, 2.0), DVec2::new(-1.0, 2.0)]);
+        assert_eq!((CELL.around().count(), BOTH.around().count()), (3, 9));
+    }
+}

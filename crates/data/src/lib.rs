@@ -1,0 +1,14 @@
+//! What Slump's runs leave behind: what is measured of grains and piles, recordings in files that other programs
+//! read, problem files, and what a user asks of a run.
+
+#![warn(missing_docs, unreachable_pub)]
+// They panic where a stream is closed or full: `output` has lines that do not.
+#![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
+
+use slump_core::{contact, error, number, scene, setting, sim, solver, world};
+
+pub mod config;
+pub mod data;
+pub mod granular;
+pub mod interchange;
+pub mod output;

@@ -1,0 +1,157 @@
+//! The law `range` beside the paper's: slump against Δt under both, slump against Bond under `range`
+//! at all Δt, and what a simulated second costs at which error.
+
+use std::time::Instant;
+
+use super::agreement::{self, slumps};
+use super::figure::slump_point;
+use super::workshop::Rows;
+use super::{Claim, Figure, Workshop};
+use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
+use crate::config::Origin;
+use crate::error::Result;
+use crate::sim::Stepper;
+use crate::statistics::mean;
+
+/// The steppers whose laws are compared.
+const LAWS: [Stepper; 2] = [Stepper::Moreau, Stepper::Range];
+
+/// Bonds whose curves against Δt are drawn.
+const SHOWN_BONDS: [f64; 5] = [0.0, 10.0, 15.0, 20.0, 100.0];
+
+/// A mean overlap that no run is to pass, in diameters.
+const MOST_OVERLAP: f64 = 1e-3;
+
+/// The run that is timed, s of simulated time at this Bond.
+const TIMED: (f64, f64) = (0.3, 20.0);
+
+pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
+    let rows = workshop.rows("range")?;
+    let of_law = LAWS.map(|law| rows.such_that(|config| config.stepper == Some(law)));
+    let steps = rows.values(|config| config.parameters.time_step_secs);
+    let mut charts: Vec<Chart> = LAWS
+        .iter()
+        .zip(&of_law)
+        .map(|(law, rows)| against_step(law.name(), rows, &steps))
+        .collect();
+    charts.push(against_bond(&of_law[1], &steps));
+    charts.push(cost(&of_law, &steps, workshop.quick)?);
+    let mut sheet = Sheet { size: (2000, 760), charts, caption: Vec::new() };
+    sheet.caption = vec![format!(
+        "Means over {} initial states of 138 grains with 95 % intervals. Error: mean over the Bonds of the \
+         difference of slump from that at Δt = {:e} s; a dot for each larger Δt.",
+        rows.seeds().len(),
+        steps[0]
+    )];
+    sheet.caption.extend(workshop.note());
+    let named = [(LAWS[0].name(), &of_law[0]), (LAWS[1].name(), &of_law[1])];
+    let mut claims = Vec::from(named.map(|(name, rows)| agreement::claim(name, rows, &steps)));
+    let overlaps = of_law[1].outcomes(|outcome| outcome.mean_overlap);
+    let largest = overlaps.into_iter().fold(0.0, f64::max);
+    claims.push(Claim::new(
+        format!("Beyond the paper: under range the mean overlap stays below {MOST_OVERLAP} d"),
+        format!("largest mean overlap of a run {largest:.1e} d").replace("e-", "e−"),
+        (largest < MOST_OVERLAP).into(),
+    ));
+    Ok(Figure { name: "range", sheet, claims, table: Some(agreement::table(&named, &steps)) })
+}
+
+/// Those of the values that lie on an axis: the panels are too narrow for more.
+fn ticks(values: &[f64], from: f64, to: f64) -> Vec<(f64, String)> {
+    let written = |value: f64| {
+        let plain = if value < 1e-2 { format!("{value:e}") } else { value.to_string() };
+        (value, plain.replace('-', "−"))
+    };
+    let on_axis = values.iter().copied().filter(|value| (from..=to).contains(value));
+    on_axis.map(written).collect()
+}
+
+fn against_step(law: &str, rows: &Rows<'_>, steps: &[f64]) -> Chart {
+    let x = Axis::log("Δt (s)", 0.8 * steps[0], 1.3 * steps[steps.len() - 1]);
+    let x = Axis { ticks: ticks(&[2e-4, 1e-3, 5e-3], steps[0], steps[steps.len() - 1]), ..x };
+    let mut chart = Chart::new(format!("Law {law}"), x, Axis::linear("slump Δy_G", 0.0, 0.7));
+    let bonds = rows.values(|config| config.parameters.bond);
+    let shown = bonds.into_iter().filter(|bond| SHOWN_BONDS.contains(bond));
+    for (index, bond) in shown.enumerate() {
+        let means = steps.iter().map(|&step| slump_point(step, &slumps(rows, bond, step)));
+        let colour = PALETTE[index % PALETTE.len()];
+        let curve =
+            Layer::curve(format!("Bond {bond}"), means.collect(), colour, Look::LineAndDots);
+        chart.layers.push(curve.beside(index, SHOWN_BONDS.len()));
+    }
+    chart
+}
+
+fn against_bond(rows: &Rows<'_>, steps: &[f64]) -> Chart {
+    let bonds = rows.values(|config| config.parameters.bond);
+    let most = bonds[bonds.len() - 1];
+    let x = Axis::linear("Bond", -0.03 * most, 1.05 * most);
+    let y = Axis::linear("slump Δy_G", 0.0, 0.7);
+    let mut chart = Chart::new("Law range, every Δt", x, y);
+    for (index, &step) in steps.iter().enumerate() {
+        let means = bonds.iter().map(|&bond| slump_point(bond, &slumps(rows, bond, step)));
+        let colour = PALETTE[index % PALETTE.len()];
+        let name = format!("Δt {step:e} s").replace("e-", "e−");
+        let curve = Layer::curve(name, means.collect(), colour, Look::LineAndDots);
+        chart.layers.push(curve.beside(index, steps.len()));
+    }
+    chart
+}
+
+/// Wall-clock seconds of one thread for a simulated second against the error, a point a Δt.
+fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
+    let mut curves = Vec::new();
+    for (law, rows) in LAWS.into_iter().zip(of_law) {
+        let bonds = rows.values(|config| config.parameters.bond);
+        let mut points = Vec::new();
+        for &step in &steps[1..] {
+            let differences = bonds.iter().map(|&bond| {
+                let at = |step| mean(&slumps(rows, bond, step)).mean;
+                (at(step) - at(steps[0])).abs()
+            });
+            let error = differences.sum::<f64>() / bonds.len() as f64;
+            let secs = seconds_per_second(rows, law, step, quick)?;
+            points.push(Point { x: error, y: secs, interval: None });
+        }
+        curves.push((law.name(), points));
+    }
+    let all = || curves.iter().flat_map(|(_, points)| points);
+    let span = |number: fn(&Point) -> f64, room: f64| {
+        let numbers = || all().map(number).filter(|number| *number > 0.0);
+        let low = numbers().fold(f64::INFINITY, f64::min);
+        (low / room, numbers().fold(0.0, f64::max) * room)
+    };
+    let ((left, right), (low, high)) = (span(|point| point.x, 1.5), span(|point| point.y, 2.0));
+    let x = Axis::log("error of the slump", left, right);
+    let x = Axis { ticks: ticks(&[3e-3, 1e-2, 3e-2, 1e-1], left, right), ..x };
+    let mut chart =
+        Chart::new("Cost at equal error", x, Axis::log("seconds per simulated second", low, high));
+    chart.legend = Corner::UpperRight;
+    for ((name, points), colour) in curves.into_iter().zip([PALETTE[6], PALETTE[1]]) {
+        chart.layers.push(Layer::curve(name, points, colour, Look::Dots(6)));
+    }
+    Ok(chart)
+}
+
+/// Times one state of the study.
+fn seconds_per_second(rows: &Rows<'_>, law: Stepper, step: f64, quick: bool) -> Result<f64> {
+    let (duration, bond) = TIMED;
+    let like = rows.such_that(|config| config.parameters.time_step_secs == Some(step));
+    let Some((config, _)) = like.0.first() else { return Ok(f64::NAN) };
+    // The state that is shipped: no pile is settled for this.
+    let mut config = (*config).clone();
+    config.origin = Origin { seed: None, duration: Some(duration), ..config.origin };
+    config.parameters.bond = Some(bond);
+    config.stepper = Some(law);
+    let scene = config.without_settling()?;
+    let mut least = f64::INFINITY;
+    for _ in 0..if quick { 1 } else { 3 } {
+        let mut simulation = scene.simulation()?;
+        let begun = Instant::now();
+        while simulation.time_secs() < duration {
+            simulation.step()?;
+        }
+        least = least.min(begun.elapsed().as_secs_f64());
+    }
+    Ok(least / duration)
+}

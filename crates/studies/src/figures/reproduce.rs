@@ -1,0 +1,165 @@
+//! From simulation to figures, tables and report.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use super::registry::{FIGURES, FigureInfo};
+use super::{Figure, Workshop};
+use crate::chart;
+use crate::error::{Error, Result};
+use crate::output::{check_writable, note_line, print_line, print_text, write_file};
+use crate::solver::worst;
+
+/// The figures that are pictures of grains, drawn together.
+const SNAPSHOTS: &str = "snapshots";
+/// Every figure, but for [`APART`].
+const ALL: &str = "all";
+/// What is not of the paper and takes hours: asked for by name alone.
+const APART: [&str; 6] = ["range", "range-regimes", "dry", "cohesion", "friction", "tolerance"];
+
+/// The names that [`reproduce`] knows.
+pub fn figure_names() -> Vec<&'static str> {
+    let charts = FIGURES.iter().map(|figure| figure.name);
+    [ALL, SNAPSHOTS].into_iter().chain(charts).collect()
+}
+
+/// Makes the figures of those names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies are
+/// kept below it, so that the same call goes on where one was stopped. `snapshots` draws the pictures
+/// of grains into a folder.
+///
+/// # Errors
+/// Where a name is unknown, the folder cannot be written, or a study fails.
+pub fn reproduce(
+    names: &[String],
+    folder: &Path,
+    quick: bool,
+    snapshots: impl FnOnce(&Path) -> Result<()>,
+) -> Result<()> {
+    let started = Instant::now();
+    let known = figure_names();
+    if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
+        return Err(Error::value("figure", unknown, format!("one of {}", known.join(", "))));
+    }
+    let wanted = |name: &str| {
+        let asked_for = |asked: &String| asked == name || asked == ALL && !APART.contains(&name);
+        names.iter().any(asked_for)
+    };
+    check_writable("out", folder)?;
+    let mut workshop = Workshop::new(folder.join("studies"), quick);
+    let mut report = Report::new(quick);
+    for info in FIGURES.iter().filter(|figure| wanted(figure.name)) {
+        let begun = Instant::now();
+        for study in info.studies {
+            workshop.run(study)?;
+        }
+        let mut figure = (info.make)(&workshop)?;
+        workshop.qualify(info.studies, &mut figure.claims);
+        let quick = if quick { " --quick" } else { "" };
+        let command = format!("slump reproduce {} --out figures{quick}", info.name);
+        write(&figure, folder, &command)?;
+        note_line(format_args!("{}: {:.0} s", info.name, begun.elapsed().as_secs_f64()));
+        report.add(info, &figure);
+    }
+    if wanted(SNAPSHOTS) {
+        snapshots(folder)?;
+        report.snapshots();
+    }
+    let path = folder.join("report.md");
+    write_file(&path, report.finish(&workshop, started.elapsed().as_secs_f64()).as_bytes())?;
+    print_line(path.display());
+    Ok(())
+}
+
+fn write(figure: &Figure, folder: &Path, command: &str) -> Result<()> {
+    let path = |ending: &str| folder.join(format!("{}.{ending}", figure.name));
+    write_file(&path("csv"), &figure.sheet.to_csv()?)?;
+    write_file(&path("png"), &chart::png(&figure.sheet, command)?)?;
+    if let Some(table) = &figure.table {
+        write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
+    }
+    write_file(&path("svg"), chart::svg(&figure.sheet)?.as_bytes())
+}
+
+/// `report.md`.
+struct Report {
+    text: String,
+}
+
+impl Report {
+    fn new(quick: bool) -> Self {
+        let mut text = "# What the paper says, and what was measured\n\n".to_owned();
+        if quick {
+            text.push_str("Quick pass: coarser, with fewer initial states than the full one.\n\n");
+        }
+        text.push_str(
+            "p-values are one-sided unless they say otherwise; a claim holds below 0.05, and does not \
+             hold where its contrary is below 0.05. Intervals hold the true value in 95 % of samples. *By chance* says how often \
+             the same test says that a claim holds where Δt has no effect, by shuffling Δt among the runs of each initial \
+             state; *hangs on* names the choices that were free.\n\n\
+             Alarms that runs raised are counted with each claim. Piles overlap by more than 5 % of a \
+             diameter somewhere by nature, most of all at large Δt; a claim on runs that lost grains, or had no \
+             finite end, is not decided.\n",
+        );
+        Self { text }
+    }
+
+    fn add(&mut self, info: &FigureInfo, figure: &Figure) {
+        // Writing to a string cannot fail.
+        let _ = write!(self.text, "\n## {0}\n\n![{0}]({0}.png)\n\n", figure.name);
+        for claim in &figure.claims {
+            let _ = writeln!(self.text, "* {}.\n  Measured: {}.", claim.said, claim.measured);
+            for (what, told) in [("By chance", &claim.by_chance), ("Hangs on", &claim.hangs_on)] {
+                if !told.is_empty() {
+                    let _ = writeln!(self.text, "  {what}: {told}.");
+                }
+            }
+            let _ = writeln!(self.text, "  **{}**", claim.verdict.words());
+            print_line(format_args!("{}: {} [{}]", info.name, claim.said, claim.verdict.words()));
+            print_line(format_args!("    {}", claim.measured));
+        }
+        if let Some(table) = &figure.table {
+            let _ = write!(self.text, "\n{}", table.to_markdown());
+            print_text(table.to_markdown());
+        }
+        if figure.claims.is_empty() {
+            self.text.push_str("No claim is tested on this figure.\n");
+        }
+    }
+
+    fn snapshots(&mut self) {
+        self.text.push_str("\n## Snapshots\n");
+        for name in ["fig3", "fig4", "fig7"] {
+            let _ = write!(self.text, "\n![{name}]({name}.png)\n");
+        }
+    }
+
+    fn finish(mut self, workshop: &Workshop, secs: f64) -> String {
+        self.text.push_str(
+            "\n## Studies\n\n| study | runs | core seconds | steps not solved as asked | largest residual \
+             | not finite |\n|---|---|---|---|---|---|\n",
+        );
+        for (name, (_, table)) in &workshop.finished {
+            let outcomes = || table.rows.iter().map(|(.., outcome)| outcome);
+            let steps: u64 = outcomes().map(|outcome| outcome.steps).sum();
+            let unsolved: u64 = outcomes().map(|outcome| outcome.unconverged_steps).sum();
+            let residual = outcomes().map(|outcome| outcome.largest_residual).fold(0.0, worst);
+            let _ = writeln!(
+                self.text,
+                "| {name} | {} | {:.0} | {:.2} % | {residual:.1e} | {} |",
+                table.rows.len(),
+                table.core_secs,
+                100.0 * unsolved as f64 / steps.max(1) as f64,
+                table.not_finite()
+            );
+        }
+        let _ = writeln!(
+            self.text,
+            "\nMade by slump {} in {secs:.0} s on {} threads, studies that were there before not \
+             counted.",
+            env!("CARGO_PKG_VERSION"),
+            rayon::current_num_threads()
+        );
+        self.text
+    }
+}

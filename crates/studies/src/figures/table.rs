@@ -1,0 +1,40 @@
+//! A table beside a figure: as CSV, and in the report.
+
+use crate::error::{Error, Result};
+
+/// Numbers that a figure's claims rest on.
+pub(crate) struct Table {
+    /// Name of its file, without the ending.
+    pub name: &'static str,
+    pub columns: Vec<&'static str>,
+    /// A cell a column.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// The table as CSV.
+    ///
+    /// # Errors
+    /// Where a row has not a cell a column.
+    pub(crate) fn to_csv(&self) -> Result<Vec<u8>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let refuse = |error: csv::Error| Error::file(self.name, error);
+        writer.write_record(&self.columns).map_err(refuse)?;
+        for row in &self.rows {
+            writer.write_record(row).map_err(refuse)?;
+        }
+        writer.into_inner().map_err(|error| Error::file(self.name, error.error()))
+    }
+
+    /// The table as Markdown.
+    pub(crate) fn to_markdown(&self) -> String {
+        let line = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
+        let words: Vec<String> = self.columns.iter().map(|name| name.replace('_', " ")).collect();
+        let mut text = line(&words.iter().map(String::as_str).collect::<Vec<_>>());
+        text.push_str(&line(&vec!["---"; self.columns.len()]));
+        for row in &self.rows {
+            text.push_str(&line(&row.iter().map(String::as_str).collect::<Vec<_>>()));
+        }
+        text
+    }
+}

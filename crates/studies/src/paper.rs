@@ -1,0 +1,81 @@
+//! The runs that the paper's Fig. 3, 4 and 7 show.
+
+use glam::DVec2;
+
+use crate::error::Result;
+use crate::scene::{NewPile, Scene, cradle, paper_pile};
+use crate::solver::{Fallback, FrictionModel, Method, Ordering, SolverSettings, StopTest};
+use crate::world::Boundary;
+
+/// One run of a figure, with the times that it is shown at.
+#[derive(Clone, Debug)]
+pub struct PaperRun {
+    /// Name of its files, without the time.
+    pub name: String,
+    /// The figure that it belongs to.
+    pub figure: &'static str,
+    /// What it simulates.
+    pub scene: Scene,
+    /// Rising, s.
+    pub times_secs: Vec<f64>,
+}
+
+/// Bond numbers of Fig. 4, a row each.
+pub const FIG4_BONDS: [f64; 2] = [20.0, 100.0];
+/// Time steps of Fig. 4, a column each, s.
+pub const FIG4_TIME_STEPS_SECS: [f64; 3] = [1e-4, 1e-3, 2e-3];
+/// Time steps of Fig. 7, a column each, s.
+pub const FIG7_TIME_STEPS_SECS: [f64; 2] = [5e-4, 1e-3];
+/// Times of Fig. 7, a row each, s.
+pub const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
+/// How the steps of the piles are solved: to the relative impulse change of the reference results, at which
+/// the verdicts no longer hang on the solver.
+pub const PILE_SOLVER: SolverSettings = SolverSettings {
+    method: Method::Nsgs,
+    ordering: Ordering::Interleaved,
+    stop: StopTest::RelativeChange,
+    tolerance: 1e-7,
+    max_sweeps: 5_000,
+    warm_start: true,
+    friction_model: FrictionModel::Coulomb,
+    model_solves: 1,
+    fallback: Fallback::OfMethod,
+    islands: false,
+};
+
+/// All runs, dearest first.
+///
+/// # Errors
+/// As [`paper_pile`].
+pub fn paper_runs() -> Result<Vec<PaperRun>> {
+    let mut runs = Vec::new();
+    let mut pile = paper_pile()?;
+    pile.solver = PILE_SOLVER;
+    for time_step_secs in FIG4_TIME_STEPS_SECS {
+        for bond in FIG4_BONDS {
+            let mut scene = pile.clone();
+            scene.parameters.bond = bond;
+            scene.parameters.time_step_secs = time_step_secs;
+            let times_secs = vec![scene.duration_secs];
+            let name = format!("fig4_bond{bond}_dt{time_step_secs:e}");
+            runs.push(PaperRun { name, figure: "fig4", scene, times_secs });
+        }
+    }
+    for time_step_secs in FIG7_TIME_STEPS_SECS {
+        let mut scene = cradle();
+        scene.parameters.time_step_secs = time_step_secs;
+        let name = format!("fig7_dt{time_step_secs:e}");
+        let times_secs = FIG7_TIMES_SECS.to_vec();
+        runs.push(PaperRun { name, figure: "fig7", scene, times_secs });
+    }
+    // The initial state is shown with the walls that it leans on.
+    let half_width = 0.5 * NewPile::default().box_width_in_diameters * pile.mean_diameter;
+    pile.boundaries = [-half_width, half_width]
+        .map(|x| Boundary::Segment {
+            from: DVec2::new(x, 0.0),
+            to: DVec2::new(x, 12.0 * pile.mean_diameter),
+        })
+        .to_vec();
+    runs.push(PaperRun { name: "fig3".into(), figure: "fig3", scene: pile, times_secs: vec![0.0] });
+    Ok(runs)
+}

@@ -1,0 +1,88 @@
+//! Pictures as PNG, with what they say of themselves.
+
+use std::path::Path;
+
+use image::{RgbImage, RgbaImage};
+use png::{BitDepth, ColorType, Encoder, EncodingError};
+
+use crate::error::{Error, Result};
+use crate::output::{Draft, Texts};
+
+/// Writes a picture as PNG. It is not worth waiting for the disk: it can be drawn again.
+///
+/// # Errors
+/// Names the file and what the system says.
+pub fn write_png(path: &Path, image: &RgbaImage, texts: &Texts) -> Result<()> {
+    let size = image.dimensions();
+    let bytes = encoded(size, ColorType::Rgba, image.as_raw(), texts);
+    let mut draft = Draft::start(path)?;
+    draft.write(&bytes.map_err(|error| Error::file(path, error))?)?;
+    draft.finish(false)
+}
+
+/// The bytes of such a file without transparency.
+///
+/// # Errors
+/// Where the picture has no pixel.
+pub fn png_of_rgb(image: &RgbImage, texts: &Texts) -> Result<Vec<u8>> {
+    encoded(image.dimensions(), ColorType::Rgb, image.as_raw(), texts)
+        .map_err(|error| Error::file("picture", error))
+}
+
+fn encoded(
+    (width, height): (u32, u32),
+    colours: ColorType,
+    pixels: &[u8],
+    texts: &Texts,
+) -> std::result::Result<Vec<u8>, EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(colours);
+    encoder.set_depth(BitDepth::Eight);
+    for (keyword, text) in texts.iter() {
+        // Plain text is read by more programs, but it has no Δ.
+        if text.is_ascii() {
+            encoder.add_text_chunk(keyword.into(), text.into())?;
+        } else {
+            encoder.add_itxt_chunk(keyword.into(), text.into())?;
+        }
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_says_what_it_is_and_has_the_pixels_that_it_had() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let image = RgbaImage::from_fn(7, 5, |x, y| image::Rgba([x as u8, y as u8, 9, 200]));
+        let mut texts = Texts::default();
+        texts.add("Command line", "slump --headless");
+        texts.add("World 1", "Δt 1e-3 s");
+        write_png(&path, &image, &texts).unwrap();
+        assert_eq!(image::open(&path).unwrap().into_rgba8(), image);
+        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        reader.finish().unwrap();
+        let info = reader.info();
+        let plain: Vec<_> = info
+            .uncompressed_latin1_text
+            .iter()
+            .map(|chunk| (&*chunk.keyword, &*chunk.text))
+            .collect();
+        assert_eq!(plain[1..], [("Command line", "slump --headless")]);
+        assert_eq!(plain[0].0, "Software");
+        assert_eq!(info.utf8_text.len(), 1);
+        assert_eq!(info.utf8_text[0].get_text().unwrap(), "Δt 1e-3 s");
+        // Nothing in it hangs on when it was written.
+        let again = folder.path().join("b.png");
+        write_png(&again, &image, &texts).unwrap();
+        assert_eq!(std::fs::read(path).unwrap(), std::fs::read(again).unwrap());
+    }
+}

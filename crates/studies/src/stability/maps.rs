@@ -1,0 +1,273 @@
+//! Stability maps: where, over two parameters, each method holds, where it sinks or overlaps by more
+//! than 1 % of d, and where it is lost: torn, thrown, or no longer finite.
+
+use rayon::prelude::*;
+
+use super::borders::{
+    COUNTS, DURATION_SECS, TOP_OF_COLUMN, contraction_of_column, substeps_at_border,
+    sweeps_at_border,
+};
+use super::contenders::{CONTENDERS, Contender};
+use super::measures::{sagging, sunk};
+use super::picture::colour;
+use super::trial::jitter;
+use crate::chart::{Axis, Cell, Chart, Corner, INK, Layer, Look, Sheet, points};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::scene::stability::{
+    breaking_bond_of_cantilever, cantilever, column_on_line, mass_ratio,
+};
+
+/// A grain that has gone this far is lost, in d.
+const LOST: f64 = 1.0;
+/// Speed that a scene at rest does not have at its end, in √(g d).
+const SHAKES: f64 = 0.05;
+const SPRINGS_SHAKE: f64 = 4e-3;
+/// Discs of the column whose size is not varied.
+const DISCS: usize = 20;
+/// Discs in a row of the cantilever.
+const CANTILEVER: i32 = 4;
+/// Width of a chart, pixels.
+const CHART_WIDTH: u32 = 500;
+/// Charts side by side.
+const ABREAST: usize = 5;
+
+/// A parameter of a map.
+struct Parameter {
+    label: &'static str,
+    from: f64,
+    to: f64,
+    /// Values of a full pass; a quick one takes half as many.
+    count: usize,
+    whole: bool,
+}
+
+impl Parameter {
+    /// Its values, in ratio, each with the edges of its cell.
+    fn values(&self, quick: bool) -> Vec<(f64, [f64; 2])> {
+        let count = if quick { self.count / 2 } else { self.count };
+        let ratio = (self.to / self.from).powf(1.0 / count as f64);
+        let edge = |k: usize| self.from * ratio.powi(k as i32);
+        (0..count)
+            .map(|k| {
+                let middle = (edge(k) * edge(k + 1)).sqrt();
+                (if self.whole { middle.round().max(1.0) } else { middle }, [edge(k), edge(k + 1)])
+            })
+            .collect()
+    }
+}
+
+/// A map of two parameters.
+struct Map {
+    name: &'static str,
+    title: &'static str,
+    x: Parameter,
+    y: Parameter,
+    scene: fn(f64, f64) -> Scene,
+    /// Whether springs swing in it for longer than a run.
+    may_swing: bool,
+    /// Sweeps at the border of Gauss–Seidel, against x.
+    border: Option<fn(f64) -> f64>,
+    /// Substeps at the border of springs, against x.
+    border_of_springs: Option<fn(f64) -> Result<f64>>,
+    /// Border of statics, the same for all methods, against x.
+    border_of_statics: Option<fn(f64) -> f64>,
+}
+
+const fn sweeps(to: f64) -> Parameter {
+    Parameter { label: "sweeps (substeps) a step", from: 1.0, to, count: 14, whole: true }
+}
+
+const fn time_step() -> Parameter {
+    Parameter { label: "Δt (s)", from: 1e-4, to: 1e-2, count: 12, whole: false }
+}
+
+/// All maps.
+const MAPS: [Map; 4] = [
+    Map {
+        name: "map-dt-bond",
+        title: "cantilever",
+        x: time_step(),
+        y: Parameter { label: "Bond", from: 5.0, to: 500.0, count: 12, whole: false },
+        scene: |time_step_secs, bond| {
+            let mut scene = cantilever(CANTILEVER);
+            scene.parameters.time_step_secs = time_step_secs;
+            scene.parameters.bond = bond;
+            scene
+        },
+        may_swing: true,
+        border: None,
+        border_of_springs: None,
+        border_of_statics: Some(|_| breaking_bond_of_cantilever(CANTILEVER)),
+    },
+    Map {
+        name: "map-dt-sweeps",
+        title: "column of 20",
+        x: time_step(),
+        y: sweeps(1e3),
+        scene: |time_step_secs, sweeps| sagging_on_line(DISCS, time_step_secs, sweeps),
+        may_swing: false,
+        border: Some(|time_step_secs| {
+            sweeps_at_border(TOP_OF_COLUMN, time_step_secs, contraction_of_column(DISCS as f64))
+        }),
+        border_of_springs: Some(|time_step_secs| substeps_at_border(DISCS, time_step_secs)),
+        border_of_statics: None,
+    },
+    Map {
+        name: "map-mass-sweeps",
+        title: "heavy on light",
+        x: Parameter { label: "ratio of masses", from: 1.0, to: 1e4, count: 12, whole: false },
+        y: sweeps(1e5),
+        scene: |ratio, sweeps| {
+            let mut scene = mass_ratio(ratio);
+            scene.solver = sagging(1, sweeps as u32).solver;
+            scene
+        },
+        may_swing: false,
+        border: Some(|ratio| sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0))),
+        border_of_springs: None,
+        border_of_statics: None,
+    },
+    Map {
+        name: "map-discs-sweeps",
+        title: "columns",
+        x: Parameter { label: "discs", from: 2.0, to: 100.0, count: 12, whole: true },
+        y: sweeps(1e4),
+        scene: |count, sweeps| sagging_on_line(count as usize, 1e-3, sweeps),
+        may_swing: false,
+        border: Some(|count| sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count))),
+        border_of_springs: Some(|count| substeps_at_border(count as usize, 1e-3)),
+        border_of_statics: None,
+    },
+];
+
+fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
+    let mut scene = column_on_line(count);
+    scene.solver = sagging(count, sweeps as u32).solver;
+    scene.parameters.time_step_secs = time_step_secs;
+    scene
+}
+
+/// 0 where the contender holds, 1 where it sinks or overlaps, 2 where it is lost. `may_swing`: what
+/// stands on springs has not come to rest by the end, and is not lost for that.
+fn class(contender: &Contender, scene: &Scene, may_swing: bool) -> Result<f64> {
+    let mut scene = scene.clone();
+    contender.apply(&mut scene);
+    let mut simulation = scene.simulation()?;
+    let mut overlap = 0f64;
+    while simulation.time_secs() < DURATION_SECS {
+        match simulation.step() {
+            Ok(observables) => overlap = overlap.max(observables.max_overlap),
+            Err(Error::NonFinite { .. }) => return Ok(2.0),
+            Err(error) => return Err(error),
+        }
+    }
+    let way = sunk(&simulation, &scene);
+    // A step left unsolved sinks steadily; stiff springs that are stable have come to rest.
+    let springs = simulation.critical_time_step_secs().is_some();
+    let calm = match (springs, may_swing) {
+        (false, _) => SHAKES,
+        (true, false) => SPRINGS_SHAKE,
+        (true, true) => f64::INFINITY,
+    };
+    let shakes = jitter(&simulation) > calm;
+    Ok(if way > LOST || shakes {
+        2.0
+    } else if way.max(overlap) > COUNTS {
+        1.0
+    } else {
+        0.0
+    })
+}
+
+/// Who has a map.
+fn of_registry() -> impl Iterator<Item = &'static Contender> {
+    CONTENDERS.iter().filter(|one| one.is_of_registry())
+}
+
+/// All maps, each with its file's name: the methods of the registry side by side.
+///
+/// # Errors
+/// Where a scene is not sound.
+pub fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
+    let mut sheets = Vec::new();
+    for map in &MAPS {
+        let mut charts = Vec::new();
+        for contender in of_registry() {
+            charts.push(map.chart(contender, quick, &told)?);
+        }
+        for (number, charts) in charts.chunks(ABREAST).enumerate() {
+            let mut caption = vec![
+                "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s; red is torn, thrown, still shaking or not finite.".to_owned(),
+            ];
+            if map.border.is_some() {
+                caption.push("Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs.".into());
+            }
+            if map.border_of_statics.is_some() {
+                caption.push("Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing.".into());
+            }
+            let size = (CHART_WIDTH * charts.len() as u32, 620);
+            let sheet = Sheet { size, charts: charts.to_vec(), caption };
+            sheets.push((format!("{}-{}", map.name, number + 1), sheet));
+        }
+    }
+    Ok(sheets)
+}
+
+/// Number of charts of all maps.
+pub fn count_of_maps() -> usize {
+    MAPS.len() * of_registry().count()
+}
+
+impl Map {
+    fn chart(&self, contender: &Contender, quick: bool, told: &impl Fn()) -> Result<Chart>
+    where
+        Self: Sync,
+    {
+        let rows = self.y.values(quick);
+        let cells = self
+            .x
+            .values(quick)
+            .into_par_iter()
+            .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
+            .map(|(x, y)| {
+                let value = class(contender, &(self.scene)(x.0, y.0), self.may_swing)?;
+                Ok(Cell { x, y, value })
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let mut chart = Chart::new(
+            format!("{}: {}", self.title, contender.name),
+            Axis::log(self.x.label, self.x.from, self.x.to),
+            Axis::log(self.y.label, self.y.from, self.y.to),
+        );
+        chart.legend = Corner::UpperLeft;
+        chart.layers.push(Layer::Cells { name: contender.name.into(), cells, colour });
+        let places: Vec<f64> = {
+            let ratio = (self.x.to / self.x.from).powf(1.0 / 60.0);
+            (0..=60).map(|k| self.x.from * ratio.powi(k)).collect()
+        };
+        let on_chart = |curve: Vec<(f64, f64)>| {
+            let within = |&(_, y): &(f64, f64)| (self.y.from..=self.y.to).contains(&y);
+            points(curve.into_iter().filter(within))
+        };
+        if let (Some(border), "nsgs") = (self.border, contender.name) {
+            let curve = on_chart(places.iter().map(|&x| (x, border(x))).collect());
+            chart.layers.push(Layer::quiet("theory", curve, INK, Look::Dashes(3)));
+        }
+        if let Some(border) = self.border_of_statics {
+            let curve = on_chart(places.iter().map(|&x| (x, border(x))).collect());
+            chart.layers.push(Layer::quiet("statics", curve, INK, Look::Dashes(3)));
+        }
+        if let (Some(border), "dem") = (self.border_of_springs, contender.name) {
+            let curve: Result<Vec<_>> = places.iter().map(|&x| Ok((x, border(x)?))).collect();
+            chart.layers.push(Layer::quiet(
+                "critical time step",
+                on_chart(curve?),
+                INK,
+                Look::Line(3),
+            ));
+        }
+        told();
+        Ok(chart)
+    }
+}

@@ -1,0 +1,99 @@
+//! Laws fitted to what was measured.
+
+/// What a damped wave x_n = c rⁿ cos(nθ + φ) does in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DampedWave {
+    /// θ, rad.
+    pub angle: f64,
+    /// r.
+    pub shrinkage: f64,
+}
+
+/// The damped wave through evenly spaced values, by G. de Prony's recursion over `lag` values,
+///
+/// > x_{n+m} = 2 r^m cos(mθ) x_n − r^{2m} x_{n−m},
+///
+/// whose two coefficients are those of the least squares. A lag of about a quarter of a period parts them best. NaN
+/// where the values are no damped wave of a longer period than twice the lag.
+pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
+    let (mut xx, mut xy, mut yy, mut xz, mut yz) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for window in values.windows(2 * lag + 1) {
+        let (y, x, z) = (window[0], window[lag], window[2 * lag]);
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+        xz += x * z;
+        yz += y * z;
+    }
+    let determinant = xx * yy - xy * xy;
+    let forward = (xz * yy - yz * xy) / determinant;
+    let back = (xz * xy - yz * xx) / determinant;
+    let steps = lag as f64;
+    DampedWave {
+        angle: (0.5 * forward / back.sqrt()).acos() / steps,
+        shrinkage: back.powf(0.5 / steps),
+    }
+}
+
+/// The power p and the time τ of the law y = y₀ (1 + t/τ)^−p that is nearest to points (t, y), y > 0 and t rising from
+/// 0, in the logarithm of y.
+///
+/// For a τ the logarithm is linear in ln(1 + t/τ), whose line is known; the best τ is found on a grid in ratio around
+/// the last t, made finer twice.
+pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
+    let last = points.last().map_or(1.0, |(t, _)| *t);
+    let (mut middle, mut ratio) = (last, 1e3f64);
+    let mut best = [f64::NAN; 2];
+    for _ in 0..4 {
+        let mut least = f64::INFINITY;
+        let centre = middle;
+        for number in -40..=40 {
+            let tau = centre * ratio.powf(f64::from(number) / 40.0);
+            let line: Vec<(f64, f64)> =
+                points.iter().map(|(t, y)| ((t / tau).ln_1p(), y.ln())).collect();
+            let (power, misfit) = line_through(&line);
+            if misfit < least {
+                (least, middle, best) = (misfit, tau, [-power, tau]);
+            }
+        }
+        ratio = ratio.powf(0.1);
+    }
+    best
+}
+
+/// Slope of the line of least squares, and the squares that it leaves.
+fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
+    let slope = crate::statistics::slope(points);
+    let count = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
+    let (x_mean, y_mean) = (mean(|point| point.0), mean(|point| point.1));
+    let left = |(x, y): &(f64, f64)| (y - y_mean - slope * (x - x_mean)).powi(2);
+    (slope, points.iter().map(left).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_damped_wave_is_found_again() {
+        let wave: Vec<f64> =
+            (0..400).map(|n| 0.99f64.powi(n) * (0.07 * f64::from(n) + 0.4).cos()).collect();
+        for lag in [5, 20, 30] {
+            let DampedWave { angle, shrinkage } = damped_wave(&wave, lag);
+            assert!((angle - 0.07).abs() < 1e-9 && (shrinkage - 0.99).abs() < 1e-9, "lag {lag}");
+        }
+    }
+
+    #[test]
+    fn a_cooling_law_is_found_again() {
+        for (power, tau) in [(2.0, 3.0), (1.4, 0.2)] {
+            let law = |t: f64| 0.7 * (1.0 + t / tau).powf(-power);
+            let points: Vec<(f64, f64)> =
+                (0..60).map(|n| f64::from(n) * 0.3).map(|t| (t, law(t))).collect();
+            let [p, found] = cooling_law(&points);
+            assert!((p / power - 1.0).abs() < 2e-3, "{p} is not {power}");
+            assert!((found / tau - 1.0).abs() < 5e-3, "{found} is not {tau}");
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Published experiments: what was measured or derived of each, what Slump measures with an interval, whether the
+//! two agree, and what that cost, for a choice of methods, time steps and efforts.
+//!
+//! One file an experiment, and a row in `registry`. A verdict is of the whole interval against a band: what lies
+//! within agrees, what lies outside differs, and what does neither is not decided. Numbers that were recalled, not
+//! read, have generous bands and say so.
+//!
+//! The folder holds `report.md`, `quantities.csv` and `.json`, a figure (`errors.png`, `.svg`, `.csv`), and
+//! `measured/`: journals of finished runs, by program and processor, so that the same command goes on where it was
+//! stopped.
+
+mod chain;
+mod cliff;
+mod cohesive_shear;
+mod experiment;
+mod figure;
+mod fit;
+mod flow;
+mod gas;
+mod packing;
+mod plane_shear;
+mod quantity;
+mod registry;
+mod report;
+mod repose;
+mod runs;
+mod spread;
+mod start;
+mod trial;
+mod wall_load;
+mod way;
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+pub use self::quantity::Verdict;
+
+use self::experiment::Experiment;
+use self::registry::EXPERIMENTS;
+use self::runs::{Entry, run_all};
+use self::way::Choice;
+use super::chart::{png, svg};
+use super::machine::Machine;
+use crate::error::Result;
+use crate::output::{check_writable, print_line, print_text, write_file};
+use crate::solver::Method;
+
+/// What to hold against what was published, and how.
+#[derive(Clone, Debug)]
+pub struct ValidateOptions {
+    /// Experiments by name; all where there is none.
+    pub experiments: Vec<String>,
+    /// Folder for report, tables and figure.
+    pub out: PathBuf,
+    /// Smaller systems and fewer of them, in a few minutes.
+    pub quick: bool,
+    /// Methods; an empty list is left to the program, as in the next ones.
+    pub methods: Vec<Method>,
+    /// Δt, s.
+    pub time_steps_secs: Vec<f64>,
+    /// Sweeps of each step.
+    pub sweeps: Vec<u32>,
+    /// Residuals that each step is solved to.
+    pub tolerances: Vec<f64>,
+}
+
+impl ValidateOptions {
+    /// The command line that asks for them, into a folder of a name of its own.
+    fn command(&self) -> String {
+        fn listed(option: &str, values: impl Iterator<Item = String>) -> String {
+            let values: Vec<String> = values.collect();
+            if values.is_empty() {
+                String::new()
+            } else {
+                format!(" --{option} {}", values.join(","))
+            }
+        }
+        let Self { experiments, quick, methods, time_steps_secs, sweeps, tolerances, .. } = self;
+        let named: String = experiments.iter().map(|name| format!(" {name}")).collect();
+        let quick = if *quick { " --quick" } else { "" };
+        let choices = listed("methods", methods.iter().map(|method| method.name().to_owned()))
+            + &listed("time-steps", time_steps_secs.iter().map(|step| format!("{step:e}")))
+            + &listed("sweeps", sweeps.iter().map(u32::to_string))
+            + &listed("tolerances", tolerances.iter().map(|tolerance| format!("{tolerance:e}")));
+        format!("slump validate{named}{quick}{choices} --out validation")
+    }
+}
+
+/// The names of all experiments.
+pub fn experiment_names() -> Vec<&'static str> {
+    EXPERIMENTS.iter().map(|experiment| experiment.name).collect()
+}
+
+/// Runs experiments into a folder.
+///
+/// # Errors
+/// Where a value is outside its range, the folder cannot be written, or a scene is not sound.
+pub fn validate(options: &ValidateOptions) -> Result<()> {
+    let started = Instant::now();
+    let ValidateOptions { experiments, out, quick, methods, time_steps_secs, sweeps, tolerances } =
+        options;
+    let choice = Choice::of(*quick, methods, time_steps_secs, (sweeps, tolerances))?;
+    check_writable("out", out)?;
+    let wanted: Vec<&'static Experiment> = EXPERIMENTS
+        .iter()
+        .filter(|one| experiments.is_empty() || experiments.iter().any(|name| name == one.name))
+        .collect();
+    let machine = Machine::this()?;
+    let (journal, done) = machine.journal::<Entry>(out, *quick, "validation")?;
+    let ran = run_all(&wanted, &choice, *quick, (&journal, done))?;
+    let sheet = figure::draw(&ran, &machine.words());
+    write_file(&out.join("errors.csv"), &sheet.to_csv()?)?;
+    write_file(&out.join("errors.png"), &png(&sheet, &options.command())?)?;
+    write_file(&out.join("errors.svg"), svg(&sheet)?.as_bytes())?;
+    let table = report::table(&ran);
+    write_file(&out.join("quantities.csv"), &table.to_csv()?)?;
+    write_file(&out.join("quantities.json"), report::json(&ran)?.as_bytes())?;
+    let told = report::told(&ran, *quick, &machine.words(), started.elapsed().as_secs_f64());
+    let path = out.join("report.md");
+    write_file(&path, told.as_bytes())?;
+    print_text(&told);
+    print_line(path.display());
+    Ok(())
+}

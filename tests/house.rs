@@ -1,0 +1,84 @@
+//! The rules of the house that no compiler sees, kept by reading the sources.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A file is one concept; longer ones are rarely one.
+const LONGEST_FILE: usize = 500;
+
+/// All Rust files of the package and its crates, by their path, but for those that test.
+fn sources() -> BTreeMap<String, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut found = BTreeMap::new();
+    let mut folders = vec![root.join("src"), root.join("crates")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let name = path.strip_prefix(root).unwrap().to_str().unwrap().to_owned();
+                found.insert(name, std::fs::read_to_string(&path).unwrap());
+            }
+        }
+    }
+    assert!(found.len() > 100, "{found:?}");
+    found
+}
+
+/// The words behind a keyword that begins an item.
+fn named<'a>(text: &'a str, keyword: &str) -> impl Iterator<Item = &'a str> {
+    let keyword = format!("{keyword} ");
+    text.lines().filter_map(move |line| {
+        let line = line.trim_start();
+        let item = line.strip_prefix("pub").map_or(line, |rest| {
+            rest.split_once(") ").filter(|_| rest.starts_with('(')).map_or(rest, |(_, it)| it)
+        });
+        let name = item.trim_start().strip_prefix(&*keyword)?;
+        Some(
+            &name[..name.find(|it: char| !it.is_alphanumeric() && it != '_').unwrap_or(name.len())],
+        )
+    })
+}
+
+#[test]
+fn every_file_is_compiled() {
+    let sources = sources();
+    let is_named = |path: &str| {
+        let (folder, file) = path.rsplit_once('/').unwrap();
+        let (folder, name) = match file {
+            "lib.rs" | "main.rs" => return true,
+            "mod.rs" => folder.rsplit_once('/').unwrap(),
+            _ => (folder, file.trim_end_matches(".rs")),
+        };
+        let owners = ["mod.rs", "lib.rs"].map(|owner| format!("{folder}/{owner}"));
+        let owners = owners.into_iter().chain([format!("{folder}.rs")]);
+        owners
+            .filter_map(|owner| sources.get(&owner))
+            .any(|it| named(it, "mod").any(|it| it == name))
+    };
+    let orphans: Vec<_> = sources.keys().filter(|path| !is_named(path)).collect();
+    assert!(orphans.is_empty(), "no `mod` names {orphans:?}");
+}
+
+#[test]
+fn every_scene_made_to_break_methods_is_listed() {
+    let sources = sources();
+    let registry = &sources["crates/core/src/scene/registry.rs"];
+    let rooms = sources.iter().filter(|(path, _)| {
+        path.starts_with("crates/core/src/scene/stability/") && !path.ends_with("mod.rs")
+    });
+    let unlisted: Vec<_> =
+        rooms.filter(|(_, text)| !named(text, "fn").any(|it| registry.contains(it))).collect();
+    assert!(unlisted.is_empty(), "no row of the registry makes {unlisted:?}");
+}
+
+#[test]
+fn a_file_can_be_held_in_the_head() {
+    let long: Vec<_> = sources()
+        .into_iter()
+        .map(|(path, text)| (path, text.lines().count()))
+        .filter(|(_, lines)| *lines > LONGEST_FILE)
+        .collect();
+    assert!(long.is_empty(), "longer than {LONGEST_FILE} lines: {long:?}");
+}
