@@ -8,7 +8,7 @@ use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Extension, Frame
 use image::RgbaImage;
 
 use crate::error::{Error, Result};
-use crate::output::{Draft, Texts};
+use crate::output::{PendingFile, Texts};
 
 /// Hundredths of a second in a second, the unit in which a file says how long a picture is shown.
 const CENTISECS: f64 = 100.0;
@@ -27,7 +27,7 @@ pub(crate) struct Animation {
     picture_centisecs: u16,
     /// Two handles of one file: the encoder keeps the one that it writes to.
     encoder: Option<Encoder<File>>,
-    draft: Draft,
+    draft: PendingFile,
     pictures: usize,
     /// Length of the pictures that are in the file, bytes; none where it has no lengths.
     whole: Option<u64>,
@@ -49,7 +49,7 @@ impl Animation {
     /// # Errors
     /// Names the file and what the system says.
     pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
-        let draft = Draft::start(path)?;
+        let draft = PendingFile::start(path)?;
         let (path, picture_centisecs) = (path.to_owned(), Self::centisecs(rate_hz));
         Ok(Self { path, picture_centisecs, encoder: None, draft, pictures: 0, whole: None })
     }

@@ -108,11 +108,7 @@ impl<Row> ColumnSpec<Row> {
         Self::new(name, "", about, CellValue::Word(words, of))
     }
 
-    pub(crate) const fn name(
-        name: &'static str,
-        about: &'static str,
-        of: fn(&Row) -> u32,
-    ) -> Self {
+    pub(crate) const fn name(name: &'static str, about: &'static str, of: fn(&Row) -> u32) -> Self {
         Self::new(name, "", about, CellValue::Name(of))
     }
 }

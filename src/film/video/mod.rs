@@ -14,7 +14,7 @@ use self::container::{Movie, Sample, movie_head};
 use self::encoder::{Packet, PictureEncoder};
 use crate::error::{Error, Result};
 use crate::output::folder_of;
-use crate::output::{Draft, Texts};
+use crate::output::{PendingFile, Texts};
 
 /// Ticks a second, of which 24, 25, 30, 48, 50, 60 and 120 pictures a second take a whole number each.
 const TICKS_PER_SEC: u32 = 90_000;
@@ -97,7 +97,7 @@ impl Video {
         if self.samples.is_empty() {
             return Ok(false);
         }
-        let mut draft = Draft::start(&self.path)?;
+        let mut draft = PendingFile::start(&self.path)?;
         let head = movie_head(&Movie {
             size: self.encoder.size(),
             ticks_per_picture: self.encoder.ticks_per_picture(),
@@ -113,7 +113,7 @@ impl Video {
     }
 
     /// What is encoded, without what a failure may have left behind it.
-    fn copy_to(&mut self, draft: &mut Draft) -> std::io::Result<()> {
+    fn copy_to(&mut self, draft: &mut PendingFile) -> std::io::Result<()> {
         let bytes = self.samples.iter().map(|sample| u64::from(sample.bytes)).sum();
         self.waiting.seek(SeekFrom::Start(0))?;
         let mut whole = std::io::Read::take(&mut self.waiting, bytes);

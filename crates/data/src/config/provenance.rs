@@ -121,7 +121,9 @@ const CHANGES: &str = "changes";
 pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
     let program = concat!("slump ", env!("CARGO_PKG_VERSION"));
     let mut facts = vec![("program".to_owned(), program.to_owned())];
-    facts.extend(values_of(scene, scene)?.iter().map(|(name, value)| (name.clone(), one_line(value))));
+    facts.extend(
+        values_of(scene, scene)?.iter().map(|(name, value)| (name.clone(), one_line(value))),
+    );
     Ok(RunFacts { facts })
 }
 
@@ -198,7 +200,6 @@ mod tests {
     use super::*;
     use crate::scene::built_in;
     use crate::sim::Stepper;
-
 
     #[test]
     fn a_command_has_what_differs_and_a_file_all_settings() {

@@ -11,7 +11,8 @@ use super::{SavedState, parser_of};
 use crate::data::{RecordedGrains, read_grains};
 use crate::error::{Error, Result};
 use crate::scene::{
-    Deposition, NewPile, Preset, Scene, Settling, built_in, cradle_from, pile_of, put_on_base, settle,
+    Deposition, NewPile, Preset, Scene, Settling, built_in, cradle_from, pile_of, put_on_base,
+    settle,
 };
 use crate::setting::{Changes, Settable, Value};
 use crate::sim::{RemedyChanges, Settings, Stepper};

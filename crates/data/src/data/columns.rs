@@ -180,9 +180,12 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactRow>] = &[
         "on i along the normal, mean over the step; negative pulls",
         |row| row.state.normal_force,
     ),
-    ColumnSpec::number("tangential_force", "N", "on i along (-ny, nx), mean over the step", |row| {
-        row.state.tangential_force
-    }),
+    ColumnSpec::number(
+        "tangential_force",
+        "N",
+        "on i along (-ny, nx), mean over the step",
+        |row| row.state.tangential_force,
+    ),
     ColumnSpec::word(
         "status",
         "what the laws of contact and friction make of it",
@@ -294,12 +297,31 @@ const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     ColumnSpec::count("factorisations", "matrices that it factorised", |row| {
         row.factorisations.into()
     }),
-    ColumnSpec::flag("converged", "whether the step was solved as asked", |row| Some(row.converged)),
+    ColumnSpec::flag("converged", "whether the step was solved as asked", |row| {
+        Some(row.converged)
+    }),
     ColumnSpec::flag("stalled", "whether more sweeps would be of no use", |row| Some(row.stalled)),
-    ColumnSpec::number("residual", "1", "common residual of the step's problem", |row| row.residual),
-    ColumnSpec::some_number("model_residual", "1", "the same of the model of friction that was solved in the place of Coulomb's law", |row| row.model_residual),
-    ColumnSpec::some_number("duality_gap", "1", "duality gap of that model, whose square root bounds the error of the velocities", |row| row.duality_gap),
-    ColumnSpec::some_number("fell_back", "1", "1 where it was solved under bounds of friction in the place of Coulomb's law, else 0", |row| row.fell_back.map(|fell_back| u8::from(fell_back).into())),
+    ColumnSpec::number("residual", "1", "common residual of the step's problem", |row| {
+        row.residual
+    }),
+    ColumnSpec::some_number(
+        "model_residual",
+        "1",
+        "the same of the model of friction that was solved in the place of Coulomb's law",
+        |row| row.model_residual,
+    ),
+    ColumnSpec::some_number(
+        "duality_gap",
+        "1",
+        "duality gap of that model, whose square root bounds the error of the velocities",
+        |row| row.duality_gap,
+    ),
+    ColumnSpec::some_number(
+        "fell_back",
+        "1",
+        "1 where it was solved under bounds of friction in the place of Coulomb's law, else 0",
+        |row| row.fell_back.map(|fell_back| u8::from(fell_back).into()),
+    ),
     ColumnSpec::count("contacts", "contacts", |row| row.contacts.into()),
     ColumnSpec::count("compressive_contacts", "contacts that push", |row| {
         row.compressive_contacts.into()
@@ -318,9 +340,12 @@ const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     ColumnSpec::number("potential_energy", "J", "potential energy in the gravity field", |row| {
         row.potential_energy
     }),
-    ColumnSpec::number("normal_work", "J", "work of the normal contact forces in the step", |row| {
-        row.normal_work
-    }),
+    ColumnSpec::number(
+        "normal_work",
+        "J",
+        "work of the normal contact forces in the step",
+        |row| row.normal_work,
+    ),
     ColumnSpec::number(
         "tangential_work",
         "J",
@@ -333,14 +358,21 @@ const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
         "part of both that surfaces which move did in the step",
         |row| row.wall_work,
     ),
-    ColumnSpec::some_number("drive_energy", "J", "kinetic energy of walls that a force drives", |row| {
-        row.drive_energy
-    }),
-    ColumnSpec::some_number("drive_work", "J",
+    ColumnSpec::some_number(
+        "drive_energy",
+        "J",
+        "kinetic energy of walls that a force drives",
+        |row| row.drive_energy,
+    ),
+    ColumnSpec::some_number(
+        "drive_work",
+        "J",
         "work in the step of the forces that drive walls, less that of their damping",
         |row| row.drive_work,
     ),
-    ColumnSpec::some_number("border_work", "J",
+    ColumnSpec::some_number(
+        "border_work",
+        "J",
         "work that borders which shear did in the step, beside the others",
         |row| row.border_work,
     ),
@@ -353,8 +385,15 @@ const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
         "how far the centre of mass has sunk, in its first height",
         |row| row.slump,
     ),
-    ColumnSpec::some_number("bond_work", "J", "work that bonds did in the step", |row| row.bond_work),
-    ColumnSpec::some_number("bond_energy", "J", "what stretching the bonds that live took", |row| row.bond_energy),
+    ColumnSpec::some_number("bond_work", "J", "work that bonds did in the step", |row| {
+        row.bond_work
+    }),
+    ColumnSpec::some_number(
+        "bond_energy",
+        "J",
+        "what stretching the bonds that live took",
+        |row| row.bond_energy,
+    ),
     ColumnSpec::some_number("broken_bond_energy", "J", "what bonds took that have broken", |row| {
         row.broken_bond_energy
     }),

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use super::columns;
 use super::csv::Csv;
 use super::lammps::Lammps;
 #[cfg(feature = "data")]
 use super::parquet::Parquet;
 use super::table::Table;
 use super::vtk::Vtk;
-use super::columns;
 use crate::error::{Error, Result};
 use crate::granular::{MomentMeasures, measure};
 use crate::scene::{DataSettings, FormatName};
@@ -135,7 +135,11 @@ pub fn check_format(format: FormatName) -> Result<()> {
 }
 
 /// Starts, or goes on with what is there.
-pub(super) fn start_format(format: FormatName, folder: &Path, facts: &RunFacts) -> Result<Box<dyn Format>> {
+pub(super) fn start_format(
+    format: FormatName,
+    folder: &Path,
+    facts: &RunFacts,
+) -> Result<Box<dyn Format>> {
     check_format(format)?;
     match format {
         #[cfg(feature = "data")]

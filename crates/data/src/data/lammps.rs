@@ -56,7 +56,6 @@ const IN_WORDS: &str = "element";
 /// LAMMPS counts types from here.
 const FIRST_TYPE: u32 = 1;
 
-
 /// Writes dumps.
 pub(super) struct Lammps {
     facts: RunFacts,

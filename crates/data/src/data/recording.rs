@@ -80,7 +80,11 @@ impl Recording {
     ///
     /// # Errors
     /// Where the folder cannot be written to.
-    pub fn start_in(folder: RecordingFolder, formats: &[FormatName], facts: &RunFacts) -> Result<Self> {
+    pub fn start_in(
+        folder: RecordingFolder,
+        formats: &[FormatName],
+        facts: &RunFacts,
+    ) -> Result<Self> {
         formats.iter().try_for_each(|&format| check_format(format))?;
         folder.clear()?;
         // First of all: it is by this that others know a recording.
@@ -94,7 +98,12 @@ impl Recording {
     ///
     /// # Errors
     /// As [`Recording::start`], and where a file there is not what this version writes.
-    pub fn go_on(folder: &Path, formats: &[FormatName], facts: &RunFacts, step: u64) -> Result<Self> {
+    pub fn go_on(
+        folder: &Path,
+        formats: &[FormatName],
+        facts: &RunFacts,
+        step: u64,
+    ) -> Result<Self> {
         let folder = RecordingFolder::to_go_on(folder)?;
         check_manifest(folder.path(), formats)?;
         let mut writer = FormatsWriter::start(folder.path(), formats, facts)?;
@@ -103,7 +112,12 @@ impl Recording {
         Ok(Self::with(folder, writer, kept.rows, kept.step))
     }
 
-    fn with(folder: RecordingFolder, writer: FormatsWriter, frames: u64, last_step: Option<u64>) -> Self {
+    fn with(
+        folder: RecordingFolder,
+        writer: FormatsWriter,
+        frames: u64,
+        last_step: Option<u64>,
+    ) -> Self {
         let (sender, messages) = sync_channel(MOST_WAITING);
         let thread = std::thread::spawn(move || writer.run(&messages));
         let writer = Some(WriterThread { sender, thread });

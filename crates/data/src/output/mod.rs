@@ -13,6 +13,6 @@ pub use files::{
 pub use growing::{GrowingFile, end_of_last};
 pub use seal::Seal;
 pub use terminal::{
-    Progress, Signal, caught_signal, counted, heed_signals, lost_stdout, note_line, note_printed, print_line,
-    print_text, warn_of_steps,
+    Progress, Signal, caught_signal, counted, heed_signals, lost_stdout, note_line, note_printed,
+    print_line, print_text, warn_of_steps,
 };

@@ -9,7 +9,8 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::{
-    COMMENT, DiscRow, NUMBERS, RecordedGrains, discs_of_rows, empty_grains, has_needed, no_such_step,
+    COMMENT, DiscRow, NUMBERS, RecordedGrains, discs_of_rows, empty_grains, has_needed,
+    no_such_step,
 };
 use crate::error::{Error, Result};
 

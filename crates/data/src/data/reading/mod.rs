@@ -79,7 +79,8 @@ fn read_folder(folder: &Path, step: Option<u64>) -> Result<RecordedGrains> {
         return csv::read(&text, wanted?);
     }
     let is_written_alone = [vtk::FOLDER, lammps::FOLDER].iter().any(|it| folder.join(it).exists());
-    let found = if is_written_alone { "has grains for other programs alone" } else { "has no grains" };
+    let found =
+        if is_written_alone { "has grains for other programs alone" } else { "has no grains" };
     Err(Error::file(folder, format!("{found}, but must be {FORM}")))
 }
 
@@ -157,7 +158,8 @@ pub fn grains_of(what: &Path, columns: &[(String, Values)]) -> Result<RecordedGr
         match (name.as_str(), values) {
             (_, values) if values.len() != rows => {
                 let found = values.len();
-                let reason = format!("{name} has {found} rows, but must have {rows}, as {first} has");
+                let reason =
+                    format!("{name} has {found} rows, but must have {rows}, as {first} has");
                 return Err(refuse(reason));
             }
             ("id", Values::Counts(_)) | ("kind", Values::Words { .. }) => {}

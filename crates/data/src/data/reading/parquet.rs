@@ -102,7 +102,10 @@ impl ParquetFile {
 
     fn refuse(&self, row: usize, name: &str, value: Option<i64>, allowed: &str) -> Error {
         let value = value.map_or("missing".to_owned(), |value| value.to_string());
-        Error::file(&self.path, format!("row {}: {name} is {value}, but must be {allowed}", row + 1))
+        Error::file(
+            &self.path,
+            format!("row {}: {name} is {value}, but must be {allowed}", row + 1),
+        )
     }
 
     fn wrong_kind(&self, name: &str, allowed: &str) -> Error {

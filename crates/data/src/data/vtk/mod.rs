@@ -72,7 +72,10 @@ impl Vtk {
         let [grains, contacts] = KINDS.map(|kind| {
             let files =
                 times.iter().zip(0..).map(|(&time, number)| (time, file_name(kind, number)));
-            PvdSeries::of(self.folder.join(format!("{kind}{ENDING_OF_SERIES}")), &files.collect::<Vec<_>>())
+            PvdSeries::of(
+                self.folder.join(format!("{kind}{ENDING_OF_SERIES}")),
+                &files.collect::<Vec<_>>(),
+            )
         });
         Ok(self.series.insert([grains?, contacts?]))
     }
@@ -80,9 +83,10 @@ impl Vtk {
 
 /// Whether a file in the folder has a name of these files.
 pub(super) fn is_name_of_file(name: &str) -> bool {
-    KINDS.iter().filter_map(|kind| name.strip_prefix(kind)).any(|rest| {
-        rest == ENDING_OF_SERIES || number_of(rest).is_some()
-    })
+    KINDS
+        .iter()
+        .filter_map(|kind| name.strip_prefix(kind))
+        .any(|rest| rest == ENDING_OF_SERIES || number_of(rest).is_some())
 }
 
 impl Format for Vtk {
