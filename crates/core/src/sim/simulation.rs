@@ -396,7 +396,7 @@ impl<V: ProblemVisitor> SlotVisitor for ShowProblem<'_, V> {
 
 /// A simulation in a file: all its fields, so that it goes on as if it had never been written. One that is forgotten here does
 /// not compile. Left out is what every step makes anew: the step's problem, and what methods keep from one solve to the
-/// next, on which no result depends (`tests/restart` holds all of them to that).
+/// next, on which no result depends (`tests/program/restart` holds all of them to that).
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Simulation", deny_unknown_fields)]
 struct Whole {
