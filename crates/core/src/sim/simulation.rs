@@ -157,8 +157,8 @@ impl Simulation {
     fn look(&mut self) -> Result<&Observables> {
         let finite = self.state.is_finite();
         let State { world, candidates, .. } = &self.state;
-        let walls = (candidates.features(), world.has_motion());
-        self.watch.look(world, walls, &mut self.observables, finite);
+        let features = candidates.features();
+        self.watch.look(world, features, world.has_motion(), &mut self.observables, finite);
         if finite {
             return Ok(&self.observables);
         }
@@ -281,7 +281,7 @@ impl Simulation {
 
     /// Whether a grain went through a wall or left the world.
     pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.watch.is_lost(grain)
+        self.watch.losses.is_lost(grain)
     }
 
     /// Simulated time, s.
@@ -441,7 +441,7 @@ impl Simulation {
         if !state.contacts.is_sound(bodies, grains) {
             return Err(refuse("contacts"));
         }
-        if !watch.is_of(grains) {
+        if !watch.losses.is_of(grains) {
             return Err(refuse("watch"));
         }
         if state.pull.is_some_and(|pull| pull.grain as usize >= grains) {
