@@ -142,9 +142,6 @@ impl GravityTurn {
     }
 
     /// Checks it against the gravity and the physics that it is for.
-    ///
-    /// # Errors
-    /// Names the first field that does not fit.
     pub(crate) fn check(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let field = "gravity_turn";
         if !matches!(gravity, Gravity::Uniform { .. }) {

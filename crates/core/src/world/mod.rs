@@ -50,9 +50,6 @@ pub struct World {
 
 impl World {
     /// Checks its grains and motions, how its gravity turns, and its borders.
-    ///
-    /// # Errors
-    /// Names the first of them that does not fit.
     pub(crate) fn validate(&self, physics: Physics) -> Result<()> {
         self.grains.validate()?;
         if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
@@ -104,9 +101,6 @@ impl Physics {
     pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
 
     /// Checks that the parts fit each other.
-    ///
-    /// # Errors
-    /// Names the field that does not fit.
     pub(crate) fn validate(&self) -> Result<()> {
         match (self.axes, self.friction, self.rotation) {
             (1 | 2, false, true) => {

@@ -7,9 +7,6 @@ use crate::error::{Error, Result};
 
 /// Checks motions against the boundaries, the number of fixed discs, the number of axes and the borders that they are
 /// for.
-///
-/// # Errors
-/// Names the first motion, or body of one, that does not fit.
 pub(crate) fn check_motions(
     motions: &[Motion],
     (boundaries, fixed_discs): (&[Boundary], usize),
@@ -128,9 +125,6 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
 }
 
 /// Checks the times of a table, and its values, of which it is known whether each is finite.
-///
-/// # Errors
-/// Names the first time or value that does not fit.
 pub(super) fn check_table(
     field: &str,
     times_secs: &[f64],
@@ -175,9 +169,6 @@ fn stays_on_line(motion: &Motion) -> bool {
 
 impl Drive {
     /// Checks its numbers; `field` is what users call it.
-    ///
-    /// # Errors
-    /// Names the first number that does not fit.
     fn check(&self, field: &str, periodic: Option<Periodic>) -> Result<()> {
         let refuse = |name: &str, found: String, allowed: &str| {
             Err(Error::value(format!("{field}.{name}"), found, allowed))
