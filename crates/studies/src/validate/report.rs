@@ -7,7 +7,7 @@ use serde_json::json;
 use super::quantity::{Expected, Quantity, Verdict};
 use super::runs::Ran;
 use crate::error::{Error, Result};
-use crate::figures::Table;
+use crate::report::ReportTable;
 
 /// A number as it is written.
 fn short(number: f64) -> String {
@@ -29,7 +29,7 @@ fn ends(low: f64, high: f64) -> String {
 }
 
 /// Every quantity of every experiment in every way.
-pub(super) fn table(all: &[Ran]) -> Table {
+pub(super) fn table(all: &[Ran]) -> ReportTable {
     let mut rows = Vec::new();
     for ran in all {
         for (quantity, verdict) in ran.judged() {
@@ -67,7 +67,7 @@ pub(super) fn table(all: &[Ran]) -> Table {
         "wall_secs",
         "share_of_unsolved_steps",
     ];
-    Table { name: "quantities", columns, rows }
+    ReportTable { name: "quantities", columns, rows }
 }
 
 /// The same as JSON: numbers as numbers, and those that do not exist as null.
