@@ -48,5 +48,5 @@ pub use states::settled_pile;
 pub use statistics::{Mean, mean};
 pub use sweep::{SweepOptions, merge, sweep};
 pub use table::RunsTable;
-pub use validate::Verdict;
+pub use validate::Agreement as Verdict;
 pub use validate::{ValidateOptions, experiment_names, validate};

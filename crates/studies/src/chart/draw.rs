@@ -9,7 +9,9 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use plotters::prelude::*;
 use plotters::style::register_font;
 
-use super::{Axis, CAPTION_LINE, Cell, Chart, Corner, INK, LEGEND, Layer, Look, Rgb, Sheet};
+use super::{
+    Axis, CAPTION_LINE, Chart, INK, LEGEND, Layer, LegendCorner, Look, MapCell, Rgb, Sheet,
+};
 use crate::error::{Error, Result};
 use crate::output::Texts;
 use crate::png::png_of_rgb;
@@ -149,10 +151,10 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
         return Ok(());
     }
     let position = match chart.legend {
-        Corner::UpperLeft => SeriesLabelPosition::UpperLeft,
-        Corner::UpperRight => SeriesLabelPosition::UpperRight,
-        Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
-        Corner::LowerRight => SeriesLabelPosition::LowerRight,
+        LegendCorner::UpperLeft => SeriesLabelPosition::UpperLeft,
+        LegendCorner::UpperRight => SeriesLabelPosition::UpperRight,
+        LegendCorner::LowerLeft => SeriesLabelPosition::LowerLeft,
+        LegendCorner::LowerRight => SeriesLabelPosition::LowerRight,
     };
     context
         .configure_series_labels()
@@ -179,7 +181,7 @@ fn draw_layer<'a, DB: DrawingBackend + 'a>(
             context.draw_series([words]).map_err(failed)?;
         }
         Layer::Cells { cells, colour, .. } => {
-            let rectangles = cells.iter().map(|Cell { x: (_, x), y: (_, y), value }| {
+            let rectangles = cells.iter().map(|MapCell { x: (_, x), y: (_, y), value }| {
                 let corners = [place(x[0], y[0]), place(x[1], y[1])];
                 Rectangle::new(corners, rgb(colour(*value)).filled())
             });

@@ -4,6 +4,8 @@
 mod draw;
 
 pub use draw::{png, svg};
+// The names that figures still use.
+pub use self::{LegendCorner as Corner, MapCell as Cell};
 
 use crate::error::{Error, Result};
 
@@ -71,7 +73,7 @@ pub(crate) fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point>
 
 /// A filled rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cell {
+pub struct MapCell {
     /// What it stands for on the x axis, and the edges to its left and right.
     pub x: (f64, [f64; 2]),
     /// What it stands for on the y axis, and its lower and upper edge.
@@ -118,7 +120,7 @@ pub enum Layer {
         /// Name in the CSV.
         name: String,
         /// The rectangles.
-        cells: Vec<Cell>,
+        cells: Vec<MapCell>,
         /// Value → colour.
         colour: fn(f64) -> Rgb,
     },
@@ -165,7 +167,7 @@ impl Layer {
 
 /// Where a legend stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Corner {
+pub enum LegendCorner {
     /// Upper left.
     UpperLeft,
     /// Upper right.
@@ -189,7 +191,7 @@ pub struct Chart {
     /// From back to front.
     pub layers: Vec<Layer>,
     /// Where the legend stands.
-    pub(crate) legend: Corner,
+    pub(crate) legend: LegendCorner,
     /// Its share of the width of the sheet.
     pub(crate) width: f64,
     /// Whether it is nothing but a legend, without axes: for long ones, beside other charts.
@@ -206,7 +208,7 @@ impl Chart {
             x,
             y,
             layers: Vec::new(),
-            legend: Corner::default(),
+            legend: LegendCorner::default(),
             width: 1.0,
             only_legend: false,
             begins_row: false,
@@ -314,7 +316,7 @@ fn point_row(point: &Point) -> [String; 5] {
 }
 
 /// The same of a cell.
-fn cell_row(cell: &Cell) -> [String; 5] {
+fn cell_row(cell: &MapCell) -> [String; 5] {
     let [x, y, value] = [cell.x.0, cell.y.0, cell.value].map(|number| number.to_string());
     [x, y, String::new(), String::new(), value]
 }

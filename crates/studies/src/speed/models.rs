@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use super::{Bench, ChartSection};
-use crate::chart::{Axis, Cell, Chart, INK, Layer, Sheet};
+use crate::chart::{Axis, Chart, INK, Layer, MapCell, Sheet};
 use crate::error::Result;
 use crate::scene::{Scene, cradle, paper_pile};
 use crate::sim::Simulation;
@@ -102,7 +102,7 @@ fn draw(bench: &Bench, models: &[TimedModel]) -> ChartSection {
             report.push_str(&format!("\n| {scene} | {model} | {micros:.3} | {:.2} |", 1.0 / share));
             table.push_str(&format!("{scene},\"{model}\",{secs:e},{}\n", 1.0 / share));
             let edges = [at - 0.35, at + 0.35];
-            cells.push(Cell { x: (at, edges), y: (share, [0.0, share]), value: share });
+            cells.push(MapCell { x: (at, edges), y: (share, [0.0, share]), value: share });
             let text = format!("{share:.2}  ({micros:.3} µs)");
             words.push(Layer::Words { at: (at - 0.3, share + 0.06), text, colour: INK });
             x.ticks.push((at, (*model).to_owned()));

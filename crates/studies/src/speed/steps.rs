@@ -10,7 +10,7 @@ use super::solves::{
 };
 use super::variants::{self, ChartedVariant, staircase};
 use super::{Bench, ChartSection, csv_cell, listed};
-use crate::chart::{Axis, Chart, Corner, Layer, Sheet};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Sheet};
 use crate::error::Result;
 use crate::solver::{Method, Ordering};
 
@@ -174,7 +174,7 @@ impl TimedCollection {
                 let stairs = staircase(&profile, most);
                 chart.layers.push(make(name, stairs, variant.colour(), variant.stroke()));
             }
-            chart.legend = Corner::LowerRight;
+            chart.legend = LegendCorner::LowerRight;
             charts.push(chart);
         }
         let title = format!(

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use super::rest::{sagging, sunk};
 use super::table::colour;
 use super::{TriedVariant, VARIANTS, jitter};
-use crate::chart::{Axis, Cell, Chart, Corner, INK, Layer, Look, Sheet, points};
+use crate::chart::{Axis, Chart, INK, Layer, LegendCorner, Look, MapCell, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::scene::stability::{
@@ -249,7 +249,7 @@ impl Map {
             .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
             .map(|(x, y)| {
                 let value = class(variant, &(self.scene)(x.0, y.0), self.may_swing)?;
-                Ok(Cell { x, y, value })
+                Ok(MapCell { x, y, value })
             })
             .collect::<Result<Vec<_>>>()?;
         let mut chart = Chart::new(
@@ -257,7 +257,7 @@ impl Map {
             Axis::log(self.x.label, self.x.from, self.x.to),
             Axis::log(self.y.label, self.y.from, self.y.to),
         );
-        chart.legend = Corner::UpperLeft;
+        chart.legend = LegendCorner::UpperLeft;
         chart.layers.push(Layer::Cells { name: variant.name.into(), cells, colour });
         let ratio = (self.x.to / self.x.from).powf(1.0 / 60.0);
         let places: Vec<f64> = (0..=60).map(|k| self.x.from * ratio.powi(k)).collect();

@@ -231,7 +231,7 @@ pub fn picture(table: &StabilityTable) -> Sheet {
             let levels = table.levels(challenge, variant);
             let (verdict, from) = summary(&levels);
             let middle = (column as f64 + 0.5, height(row));
-            cells.push(chart::Cell {
+            cells.push(chart::MapCell {
                 x: (middle.0, [middle.0 - 0.49, middle.0 + 0.49]),
                 y: (middle.1, [middle.1 - 0.47, middle.1 + 0.47]),
                 value: f64::from(verdict as u8),

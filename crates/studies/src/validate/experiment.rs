@@ -218,7 +218,7 @@ pub(super) struct Expected {
 /// Whether the measured agrees with the published.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum Agreement {
     /// The whole interval lies within the band.
     Agrees,
     /// The whole interval lies outside.
@@ -227,7 +227,7 @@ pub enum Verdict {
     NotDecided,
 }
 
-impl Verdict {
+impl Agreement {
     /// In words.
     pub(super) const fn words(self) -> &'static str {
         match self {
@@ -268,14 +268,14 @@ impl PublishedQuantity {
     }
 
     /// Whether the two agree, where all runs are sound.
-    pub(super) fn verdict(&self) -> Verdict {
+    pub(super) fn verdict(&self) -> Agreement {
         let (Mean { low, high, .. }, band) = (self.measured, self.expected);
         if low >= band.low && high <= band.high {
-            Verdict::Agrees
+            Agreement::Agrees
         } else if high < band.low || low > band.high {
-            Verdict::Differs
+            Agreement::Differs
         } else {
-            Verdict::NotDecided
+            Agreement::NotDecided
         }
     }
 }
@@ -291,15 +291,15 @@ mod tests {
 
     #[test]
     fn a_verdict_can_come_out_each_way() {
-        assert_eq!(quantity(&[2.0, 2.01, 1.99]).verdict(), Verdict::Agrees);
-        assert_eq!(quantity(&[2.3, 2.31, 2.29]).verdict(), Verdict::Differs);
-        assert_eq!(quantity(&[1.3, 1.31, 1.29]).verdict(), Verdict::Differs);
+        assert_eq!(quantity(&[2.0, 2.01, 1.99]).verdict(), Agreement::Agrees);
+        assert_eq!(quantity(&[2.3, 2.31, 2.29]).verdict(), Agreement::Differs);
+        assert_eq!(quantity(&[1.3, 1.31, 1.29]).verdict(), Agreement::Differs);
         // It straddles an end of the band, or holds all of it.
-        assert_eq!(quantity(&[2.1, 2.11, 2.09]).verdict(), Verdict::NotDecided);
-        assert_eq!(quantity(&[1.0, 2.0, 3.0]).verdict(), Verdict::NotDecided);
+        assert_eq!(quantity(&[2.1, 2.11, 2.09]).verdict(), Agreement::NotDecided);
+        assert_eq!(quantity(&[1.0, 2.0, 3.0]).verdict(), Agreement::NotDecided);
         // One value alone tells nothing of its spread, and what is no number tells nothing.
-        assert_eq!(quantity(&[2.0]).verdict(), Verdict::NotDecided);
-        assert_eq!(quantity(&[f64::NAN, 2.0]).verdict(), Verdict::NotDecided);
+        assert_eq!(quantity(&[2.0]).verdict(), Agreement::NotDecided);
+        assert_eq!(quantity(&[f64::NAN, 2.0]).verdict(), Agreement::NotDecided);
         assert!((quantity(&[2.2, 2.2]).error() - 0.1).abs() < 1e-12);
     }
 }

@@ -29,7 +29,7 @@ mod watched;
 use std::path::PathBuf;
 use std::time::Instant;
 
-pub use self::experiment::Verdict;
+pub use self::experiment::Agreement;
 
 use self::experiment::Experiment;
 use self::runs::run_all;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::json;
 
-use super::experiment::{Expected, PublishedQuantity, Verdict};
+use super::experiment::{Agreement, Expected, PublishedQuantity};
 use super::runs::ExperimentRuns;
 use super::variants::{SolveBudget, StepVariant};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
@@ -143,15 +143,15 @@ pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs:
 
 /// How many quantities came out how.
 fn summary(all: &[ExperimentRuns]) -> String {
-    let verdicts: Vec<Verdict> =
+    let verdicts: Vec<Agreement> =
         all.iter().flat_map(ExperimentRuns::judged).map(|(_, verdict)| verdict).collect();
     let count = |verdict| verdicts.iter().filter(|&&one| one == verdict).count();
     format!(
         "\nOf {} quantities {} agree, {} differ and {} are not decided.\n",
         verdicts.len(),
-        count(Verdict::Agrees),
-        count(Verdict::Differs),
-        count(Verdict::NotDecided)
+        count(Agreement::Agrees),
+        count(Agreement::Differs),
+        count(Agreement::NotDecided)
     )
 }
 

@@ -1,8 +1,8 @@
 //! The runs of experiments: every case of every experiment by every solver variant.
 
 use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, MeasuredCase, Measurements, PublishedQuantity,
-    RunReadings, Verdict,
+    Agreement, Experiment, ExperimentCase, ExperimentCases, MeasuredCase, Measurements,
+    PublishedQuantity, RunReadings,
 };
 use super::variants::{SolveBudget, StepVariant};
 use crate::error::{Error, Result};
@@ -33,11 +33,11 @@ impl ExperimentRuns {
     }
 
     /// Its quantities, each with its verdict.
-    pub(super) fn judged(&self) -> Vec<(PublishedQuantity, Verdict)> {
+    pub(super) fn judged(&self) -> Vec<(PublishedQuantity, Agreement)> {
         let sound = Measurements(self.cases.iter().filter(|case| !case.run.blew_up).collect());
         let is_spoilt = self.spoilt().is_some();
         let judge = |quantity: PublishedQuantity| {
-            let verdict = if is_spoilt { Verdict::NotDecided } else { quantity.verdict() };
+            let verdict = if is_spoilt { Agreement::NotDecided } else { quantity.verdict() };
             (quantity, verdict)
         };
         (self.experiment.judge)(&sound).into_iter().map(judge).collect()
