@@ -4,10 +4,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::losses::Losses;
-use super::{Observables, Settings};
 use crate::contact::Feature;
 use crate::error::legible;
+use crate::sim::losses::Losses;
+use crate::sim::{Observables, Settings};
 use crate::solver::Method;
 use crate::world::{Physics, World};
 

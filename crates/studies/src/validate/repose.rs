@@ -15,7 +15,7 @@ use super::trial::Trial;
 use super::way::Way;
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::scene::experiments::{LEVEL_SECS, RATE, drum, incline};
+use crate::scene::experiments::{LEVEL_SECS, TILT_RATE, drum, incline};
 use crate::sim::Simulation;
 use crate::statistics::mean;
 
@@ -104,7 +104,7 @@ fn tilt(scene: &Scene) -> Result<Measured> {
         trial.run_until(time_secs + 0.01, |_| ())?;
     }
     // What has not flown at the steepest flows nowhere.
-    let angle = RATE * (trial.simulation.time_secs() - LEVEL_SECS);
+    let angle = TILT_RATE * (trial.simulation.time_secs() - LEVEL_SECS);
     Ok(trial.measured([("angle", angle.to_degrees())]))
 }
 

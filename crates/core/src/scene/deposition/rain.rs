@@ -9,11 +9,12 @@ use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::new_pile::{NewPile, SPACING};
-use super::resting::{REST_SECS, Settled, Settling, fastest, in_a_box, interrupted, not_at_rest};
-use super::sizes::random_radius;
 use crate::error::Result;
-use crate::scene::pile::{DIAMETER, GRAVITY};
+use crate::scene::deposition::{
+    NewPile, REST_SECS, SPACING, Settled, Settling, fastest, in_a_box, interrupted, not_at_rest,
+    random_radius,
+};
+use crate::scene::paper::{DIAMETER, GRAVITY};
 use crate::solver::SolverSettings;
 use crate::world::Grain;
 

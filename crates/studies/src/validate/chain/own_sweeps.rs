@@ -3,7 +3,7 @@
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64;
 
-use crate::sim::{Advance, Outcome, Settings, Stage};
+use crate::sim::{Advance, Settings, Stage, StepResult};
 use crate::solver::{ContactSystem, Model, SolveReport};
 
 /// All contacts at once, or one after the other in random order.
@@ -14,7 +14,7 @@ pub(super) struct OwnSweeps {
 }
 
 impl Advance for OwnSweeps {
-    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
         stage.prepare(settings, |_approach| 0.0);
         let mut root_masses = Vec::new();
         let mut system = stage.system(&mut root_masses);

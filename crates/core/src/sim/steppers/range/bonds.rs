@@ -18,10 +18,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::numbers::StepNumbers;
-use super::shocks::{self, Closed, Passed, Shocks};
 use crate::contact::range::{Bond, Opening};
 use crate::sim::settings::Settings;
+use crate::sim::steppers::range::StepNumbers;
+use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks, ShocksResult};
 use crate::sim::stepping::{BondEnergies, Stage};
 use crate::solver::{
     Kinematics, Model, Motion, Row, SolveReport, StepProblem, for_each_row, solve,
@@ -44,7 +44,7 @@ const FALL: f64 = 1e-6;
 /// What the law remembers from one step to the next.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::sim) struct Memory {
+pub(in crate::sim) struct RangeMemory {
     #[serde(skip)]
     pub(super) shocks: Shocks,
     #[serde(skip)]
@@ -58,10 +58,10 @@ pub(in crate::sim) struct Memory {
 
 /// What solving a step came to.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Solved {
+pub(super) struct RangeSolution {
     pub report: SolveReport,
     /// What the shocks came to, where there were any.
-    pub of_shocks: Option<Passed>,
+    pub of_shocks: Option<ShocksResult>,
     pub bonds: BondEnergies,
     /// False where a bond breaks that may not.
     pub done: bool,
@@ -71,14 +71,14 @@ pub(super) struct Solved {
 /// that may not.
 pub(super) fn solve_range<M: Model>(
     stage: &mut Stage<'_, M>,
-    remembered: &mut Memory,
+    remembered: &mut RangeMemory,
     settings: &Settings,
     may_break: bool,
-) -> Solved {
+) -> RangeSolution {
     let mut report = SolveReport::nothing_yet();
     let of_shocks = pass_shocks(stage, remembered, settings, &mut report);
     let numbers = StepNumbers::of(stage.world(), settings);
-    let Memory { shocks, lowered, restless, .. } = remembered;
+    let RangeMemory { shocks, lowered, restless, .. } = remembered;
     let Stage { state, problem, memory, .. } = stage;
     let fastest = state.fastest();
     let contacts = &mut state.contacts;
@@ -87,12 +87,12 @@ pub(super) fn solve_range<M: Model>(
         round += 1;
         report.add(solve::<M>(problem, memory, &settings.solver));
         let bonds = contacts.bonds();
-        let limits = Limits { bonds, shocks, numbers };
+        let limits = BondLimits { bonds, shocks, numbers };
         if round == 1 {
             *restless |= limits.is_restless::<M>(problem, fastest, lowered);
             if !may_break && *restless {
                 let bonds = BondEnergies::default();
-                return Solved { report, of_shocks, bonds, done: false };
+                return RangeSolution { report, of_shocks, bonds, done: false };
             }
         }
         limits.lowered::<M>(problem, 1.0, lowered);
@@ -103,11 +103,11 @@ pub(super) fn solve_range<M: Model>(
     }
     shocks.finish(problem);
     let bonds = update_bonds(problem, contacts.bonds_mut(), shocks, numbers);
-    Solved { report, of_shocks, bonds, done: true }
+    RangeSolution { report, of_shocks, bonds, done: true }
 }
 
 /// How a bond opens in a step, or in what a shock that closed it has left of the step.
-struct Run {
+struct BondOpening {
     /// The part of the step.
     part: f64,
     /// Whether a shock closed it.
@@ -120,7 +120,7 @@ struct Run {
     impulse: f64,
 }
 
-impl Run {
+impl BondOpening {
     /// That of a row which tells of a bond. Other forces are even over the whole step, so that a part of it
     /// has that part of them.
     fn of<K: Kinematics>(
@@ -129,7 +129,7 @@ impl Run {
         (shocks, bond, numbers): (&Shocks, Bond, StepNumbers),
     ) -> Self {
         let closed = shocks.closed(number, bond.alive, numbers.time_step_secs);
-        let Closed { part, gained } = closed.unwrap_or(Closed { part: 1.0, gained: 0.0 });
+        let ClosedBond { part, gained } = closed.unwrap_or(ClosedBond { part: 1.0, gained: 0.0 });
         let [impulse, _] = problem.reduced_impulse(number, row);
         let [now, before] = [motion.now, motion.before].map(|[normal, _]| normal);
         let [wall_before, wall_gained] = problem.wall_speed_and_gain(number);
@@ -160,7 +160,7 @@ fn update_bonds<K: Kinematics>(
     for_each_row(problem, |number, row, motion| {
         let bond = &mut bonds[problem.contact_of_row[number] as usize];
         let cohesion_force = row.effective_mass * problem.capture_speed / time_step_secs;
-        let run = Run::of(problem, (number, row, &motion), (shocks, *bond, numbers));
+        let run = BondOpening::of(problem, (number, row, &motion), (shocks, *bond, numbers));
         let opening_speed = run.opening_speed();
         let before = if bond.alive { cohesion_force * bond.stretch } else { 0.0 };
         if run.is_closed || row.shifted_impulse > 0.0 {
@@ -190,10 +190,10 @@ fn update_bonds<K: Kinematics>(
 /// Takes a prepared problem through its shocks.
 pub(super) fn pass_shocks<M: Model>(
     stage: &mut Stage<'_, M>,
-    remembered: &mut Memory,
+    remembered: &mut RangeMemory,
     settings: &Settings,
     report: &mut SolveReport,
-) -> Option<Passed> {
+) -> Option<ShocksResult> {
     let numbers = StepNumbers::of(stage.world(), settings);
     let passed = shocks::pass::<M>(stage, &mut remembered.shocks, numbers, &settings.solver)?;
     report.add(passed.report);
@@ -201,14 +201,14 @@ pub(super) fn pass_shocks<M: Model>(
 }
 
 /// What the bounds of a step hang on.
-struct Limits<'a> {
+struct BondLimits<'a> {
     /// One a contact.
     bonds: &'a [Bond],
     shocks: &'a Shocks,
     numbers: StepNumbers,
 }
 
-impl Limits<'_> {
+impl BondLimits<'_> {
     /// Whether bonds are about to break in a step that has been solved, at whose beginning the fastest grain or
     /// wall had that speed (m/s).
     fn is_restless<M: Model>(
@@ -255,7 +255,8 @@ impl Limits<'_> {
                 return;
             }
             let bond = self.bonds[problem.contact_of_row[number] as usize];
-            let run = Run::of(problem, (number, row, &motion), (self.shocks, bond, self.numbers));
+            let run =
+                BondOpening::of(problem, (number, row, &motion), (self.shocks, bond, self.numbers));
             let stretch = if run.is_closed { 0.0 } else { bond.stretch };
             let left = (debonding_distance - stretch).max(0.0);
             let opening = Opening { left, speed: run.speed, load: run.load };

@@ -49,18 +49,21 @@
 //! **How tightly.** As the step. Solved less tightly, with what that leaves of approach taken up by the
 //! step, shocks cost less, but slump may then depend on Δt. A pair that shares its grains with no other is solved exactly.
 
-mod bodies;
-mod foreseen;
-mod result;
-mod struck;
+mod hand_over;
+mod next_impacts;
+mod solve_impacts;
 
-pub(super) use self::bodies::{Passed, Shocks};
-pub(super) use self::result::Closed;
+pub(super) use hand_over::ClosedBond;
 
-use self::bodies::{NEVER, Surroundings};
-use super::numbers::StepNumbers;
+use glam::DVec2;
+
+use crate::contact::{Candidates, Contact, ContactList};
+use crate::sim::steppers::range::StepNumbers;
 use crate::sim::stepping::Stage;
-use crate::solver::{Model, SolverSettings};
+use crate::solver::{
+    Kinematics, Measures, Model, Row, SolveReport, SolverSettings, StepProblem, for_each_row, worst,
+};
+use crate::world::World;
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
 /// step, restitution is lost; larger: a wedge of grains that bounces ever faster holds the step up.
@@ -72,27 +75,274 @@ pub(super) fn pass<M: Model>(
     shocks: &mut Shocks,
     numbers: StepNumbers,
     settings: &SolverSettings,
-) -> Option<Passed> {
+) -> Option<ShocksResult> {
     let Stage { state, problem, part, memory } = stage;
     let (world, candidates, contacts) = (&state.world, &state.candidates, &state.contacts);
-    let around = Surroundings { world, candidates, contacts, numbers };
-    shocks.begin(problem, &around, settings.tolerance);
-    let mut passed: Option<Passed> = None;
+    let inputs = ShockInputs { world, candidates, contacts, numbers };
+    shocks.begin(problem, &inputs, settings.tolerance);
+    let mut passed: Option<ShocksResult> = None;
     for _ in 0..MOST_PASSES {
-        let first = shocks.foresee(problem, &around);
+        let first = shocks.find_next(problem, &inputs);
         if first == NEVER {
             break;
         }
         shocks.choose(problem, first, numbers);
-        shocks.refine(problem, &around);
-        let all = passed.get_or_insert(Passed::nothing_yet());
+        shocks.refine(problem, &inputs);
+        let all = passed.get_or_insert(ShocksResult::nothing_yet());
         for alone in [true, false] {
-            if shocks.set_up(problem, part, &around, alone) {
+            if shocks.set_up(problem, part, &inputs, alone) {
                 shocks.strike::<M>((problem, part), memory, (settings, alone), all);
             }
         }
         shocks.move_on(problem);
     }
-    shocks.hand_over(problem, &around);
+    shocks.hand_over(problem, &inputs);
     passed
+}
+
+/// Contacts that were struck and close again are struck once more above this part of the fastest shock of
+/// the step. Smaller: clusters of touching grains take more passes; larger: restitution is lost in them.
+pub(super) const LEAST_AGAIN: f64 = 1e-3;
+
+/// Grains that come to what they touch slower than this many steps of gravity rest on it. Smaller: in a pile
+/// at rest grains would be taken to fall; larger: a ball that has just come down would not have the speed of its fall.
+pub(super) const RESTS_BELOW: f64 = 2.0;
+
+/// Meetings that are this part of Δt apart happen at once: symmetric motions stay symmetric.
+pub(super) const SAME_MOMENT: f64 = 1e-6;
+
+/// No moment of the step.
+pub(super) const NEVER: f64 = f64::INFINITY;
+
+/// What the shocks of a step came to.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::sim::steppers::range) struct ShocksResult {
+    pub report: SolveReport,
+    /// Works, and the residual of the shocks' own problems.
+    pub measures: Measures,
+    /// What gravity did of that until meetings, J: the step counts it once more.
+    pub of_gravity: f64,
+}
+
+/// A row on its way through the shocks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShockPair {
+    /// n, from j to i: at the beginning of the step, or where it last met.
+    pub normal: DVec2,
+    /// The gap along n at the beginning of the step, m; of one that has met, such that it closed then.
+    pub gap: f64,
+    /// What offsets have added to it, m.
+    pub shift: f64,
+    /// v_n, relative to a wall that moves, m/s.
+    pub speed: f64,
+    /// a_n of a grain that falls on what is fixed, m/s²; else 0.
+    pub acceleration: f64,
+    /// When it is struck next, s, or [`NEVER`].
+    pub next: f64,
+    /// n at that moment, of a pair that meets.
+    pub meets: Option<DVec2>,
+    /// Whether it touched at the beginning or has met since.
+    pub touches: bool,
+    /// Whether it has been told anew where its bodies go.
+    pub is_new: bool,
+    /// Whether it is one of this pass, and whether it is struck in it by what comes next.
+    pub chosen: bool,
+    pub is_next: bool,
+    /// λ_n of its shocks, m/s.
+    pub impulse: f64,
+    /// The moment of the last of them, s.
+    pub struck_at: f64,
+    /// What gravity had given it by then, m/s.
+    pub gained: f64,
+    /// Whether that closed a gap.
+    pub has_met: bool,
+}
+
+/// A grain on its way through the shocks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShockBody {
+    /// −Σ t Δv, an entry a degree of freedom, m.
+    pub offset: [f64; 3],
+    /// What the last pass added to that, m.
+    pub shift: DVec2,
+    /// The moment of its last shock, s.
+    pub since: f64,
+    /// The moment of its next one, s, or [`NEVER`].
+    pub next: f64,
+    /// Whether it was struck in this step, and in this pass.
+    pub struck: [bool; 2],
+    /// What gravity gives it in the step, m/s.
+    pub gain: [f64; 3],
+    /// Whether it rests against something or is bonded, and so does not fall freely.
+    pub is_held: bool,
+    /// What the step's last velocity tells too little of its way, m: −½aΔt² of one that falls freely, and
+    /// −Σ tλ of the impulses that the step has for pairs that met.
+    pub rest_of_way: DVec2,
+    /// A grain of the cluster that it is struck with.
+    pub root: u32,
+    /// Of a root: the moment of the cluster's shock, s, and its rows.
+    pub cluster: (f64, u32),
+}
+
+/// What is known of shocks. Memory is kept from one step to the next.
+#[derive(Clone, Debug, Default)]
+pub(in crate::sim::steppers::range) struct Shocks {
+    pub(super) pairs: Vec<ShockPair>,
+    pub(super) bodies: Vec<ShockBody>,
+    /// λ_n·m_ij from which on a contact that touches is struck, N·s.
+    pub(super) least: f64,
+    /// The fastest shock of the step so far, m/s.
+    pub(super) fastest: f64,
+}
+
+/// Where shocks happen.
+pub(super) struct ShockInputs<'a> {
+    pub world: &'a World,
+    pub candidates: &'a Candidates,
+    pub contacts: &'a ContactList,
+    pub numbers: StepNumbers,
+}
+
+impl ShockInputs<'_> {
+    /// The contact behind a row.
+    pub(super) fn contact<K: Kinematics>(
+        &self,
+        problem: &StepProblem<K>,
+        number: usize,
+    ) -> &Contact {
+        &self.contacts.contacts()[problem.contact_of_row[number] as usize]
+    }
+
+    /// Whether its pair is bonded.
+    pub(super) fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
+        self.contacts.is_in_touch(problem.contact_of_row[number] as usize)
+    }
+
+    /// How far its bond is open, m.
+    pub(super) fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
+        let bond = self.contacts.bonds()[problem.contact_of_row[number] as usize];
+        if bond.alive { bond.stretch } else { 0.0 }
+    }
+}
+
+/// The grains of a row by its number: i, and j unless that is fixed.
+pub(super) fn grains<K: Kinematics>(
+    problem: &StepProblem<K>,
+    number: usize,
+    row: &Row<K>,
+) -> (usize, Option<usize>) {
+    let is_pair = number >= problem.fixed_rows.len();
+    (row.i as usize, is_pair.then_some(row.j as usize))
+}
+
+/// ‖m_n (v_n^free + what the law adds)‖ of a problem, N·s, which its residual is measured by.
+pub(super) fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
+    let mut squared = 0.0;
+    for_each_row(problem, |_, row, motion| {
+        let free = row.effective_mass * (motion.free[0] + row.restitution_velocity);
+        squared += free * free;
+    });
+    squared.sqrt()
+}
+
+/// Along x and y.
+pub(super) fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
+    let [x, y, _] = K::coordinates(body);
+    if K::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
+}
+
+impl ShocksResult {
+    pub(super) fn nothing_yet() -> Self {
+        let (report, measures) = (SolveReport::nothing_yet(), Measures::default());
+        Self { report, measures, of_gravity: 0.0 }
+    }
+
+    /// Counts another problem.
+    pub(super) fn add(&mut self, report: SolveReport, measures: Measures) {
+        self.report.add(report);
+        let all = &mut self.measures;
+        all.residual = worst(all.residual, measures.residual);
+        all.normal_work += measures.normal_work;
+        all.tangential_work += measures.tangential_work;
+        all.wall_work += measures.wall_work;
+        all.border_work += measures.border_work;
+    }
+}
+
+impl ShockBody {
+    /// One of which nothing has happened yet, as it begins and as gravity alone would leave it.
+    fn untouched<K: Kinematics>((before, free): (&K::Body<f64>, &K::Body<f64>)) -> Self {
+        let [before, free] = [before, free].map(K::coordinates);
+        Self {
+            offset: [0.0; 3],
+            shift: DVec2::ZERO,
+            since: 0.0,
+            next: NEVER,
+            struck: [false; 2],
+            gain: std::array::from_fn(|axis| free[axis] - before[axis]),
+            is_held: false,
+            rest_of_way: DVec2::ZERO,
+            root: 0,
+            cluster: (NEVER, 0),
+        }
+    }
+}
+
+impl Shocks {
+    /// Nothing has happened yet.
+    pub(super) fn begin<K: Kinematics>(
+        &mut self,
+        problem: &StepProblem<K>,
+        inputs: &ShockInputs<'_>,
+        tolerance: f64,
+    ) {
+        let Self { pairs, bodies, .. } = self;
+        bodies.clear();
+        bodies.extend(problem.before.iter().zip(&problem.free).map(ShockBody::untouched::<K>));
+        pairs.clear();
+        let is_cohesive = problem.capture_speed > 0.0;
+        for_each_row(problem, |number, row, motion| {
+            let Contact { normal, gap, .. } = *inputs.contact(problem, number);
+            let touches = gap <= inputs.numbers.touch;
+            let speed = motion.before[0] - problem.wall_speed(number);
+            let (i, j) = grains(problem, number, row);
+            for grain in std::iter::once(i).chain(j) {
+                let [x, y, _] = bodies[grain].gain;
+                let rests = touches && speed.abs() <= RESTS_BELOW * x.hypot(y);
+                bodies[grain].is_held |= rests || is_cohesive && inputs.is_bonded(problem, number);
+            }
+            // The step proper stops what comes to a wall that gives way (see the module).
+            let touches = touches && !problem.gives_way(number);
+            pairs.push(ShockPair {
+                normal,
+                gap,
+                shift: 0.0,
+                speed,
+                acceleration: 0.0,
+                next: NEVER,
+                meets: None,
+                touches,
+                is_new: true,
+                chosen: false,
+                is_next: false,
+                impulse: 0.0,
+                struck_at: 0.0,
+                gained: 0.0,
+                has_met: false,
+            });
+        });
+        for body in bodies.iter_mut().filter(|body| !body.is_held) {
+            let fallen = along_axes::<K>(&K::from_coordinates(body.gain));
+            body.rest_of_way = -0.5 * inputs.numbers.time_step_secs * fallen;
+        }
+        self.least = tolerance * scale(problem);
+        self.fastest = 0.0;
+    }
+}
+
+impl ShockPair {
+    /// The gap along the normal at a moment, m: never above the gap itself.
+    pub(super) fn gap_at(&self, secs: f64) -> f64 {
+        self.gap + self.shift + secs * (self.speed + 0.5 * self.acceleration * secs)
+    }
 }
