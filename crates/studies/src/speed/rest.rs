@@ -13,7 +13,7 @@ use super::peers::{self, PeerRun};
 use super::runs::{Ending, TimedRun, timed_steps};
 use super::{Bench, Part};
 use crate::chart::{Axis, Chart, Layer, Look, Sheet, points};
-use crate::config::{Config, Origin};
+use crate::config::{Config, SceneSource};
 use crate::error::Result;
 use crate::output::Progress;
 use crate::scene::{Deposition, NewPile, Scene, walls};
@@ -49,18 +49,18 @@ struct Entry {
 }
 
 pub(super) fn make(bench: &Bench) -> Result<Vec<Part>> {
-    let origin = Origin {
+    let source = SceneSource {
         grains: Some(RAIN.grains),
         box_width: Some(RAIN.box_width_in_diameters),
         seed: Some(RAIN.seed),
-        ..Origin::default()
+        ..SceneSource::default()
     };
     let parameters = ParameterChanges {
         bond: Some(0.0),
         restitution_threshold: Some(2.0),
         ..ParameterChanges::default()
     };
-    let config = Config { origin, parameters, ..Config::default() };
+    let config = Config { source, parameters, ..Config::default() };
     let states = States::of(bench.states_folder(), std::iter::once(&config))?;
     let mut scene = states.scene(&config)?;
     scene.boundaries = walls(RAIN.box_width_in_diameters);

@@ -18,7 +18,7 @@ use super::start::{loose, settle, wall};
 use super::trial::Trial;
 use super::way::Way;
 use crate::error::Result;
-use crate::granular::{Measured as Moments, measure};
+use crate::granular::{MomentMeasures as Moments, measure};
 use crate::scene::stability::{DIAMETER, dry};
 use crate::sim::{ContactState, Moment, OtherBody};
 use crate::statistics::mean;

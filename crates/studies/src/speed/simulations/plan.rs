@@ -1,7 +1,7 @@
 //! Which piles are run, by which methods, and how well each is to solve its steps.
 
 use super::super::entrants::{self, Entrant, Way};
-use crate::config::{Config, Origin};
+use crate::config::{Config, SceneSource};
 use crate::scene::{Deposition, NewPile};
 use crate::sim::Stepper;
 use crate::solver::{Method, SolverSettings, StopTest};
@@ -138,15 +138,15 @@ impl Plan {
             restitution_threshold: Some(THRESHOLD),
             ..ParameterChanges::default()
         };
-        let origin = Origin {
+        let source = SceneSource {
             grains: Some(self.made_as.grains),
             box_width: Some(self.made_as.box_width_in_diameters),
             deposition: Some(self.made_as.deposition),
             seed: Some(seed),
             duration: Some(self.duration_secs),
-            ..Origin::default()
+            ..SceneSource::default()
         };
-        Config { origin, stepper: Some(law), parameters, ..Config::default() }
+        Config { source, stepper: Some(law), parameters, ..Config::default() }
     }
 
     /// How the references are solved to a tolerance.

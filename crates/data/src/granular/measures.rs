@@ -1,9 +1,106 @@
-//! What a pile is as a whole.
+//! What a pile is around each of its grains, and as a whole.
 
-use super::column::columns;
-use super::parts::Parts;
-use super::stress;
+use super::MomentParts;
+use super::stress::{self, Tensor};
+use crate::column_spec::{CellValue, ColumnSpec};
 use crate::sim::{ContactStatus, Moment};
+
+/// Declares a kind of row once: a structure, and a [`ColumnSpec`] for each field, whose unit follows its type.
+macro_rules! columns {
+    (@value f64 $field:ident) => {
+        CellValue::SomeNumber(|row| (!row.$field.is_nan()).then_some(row.$field))
+    };
+    (@value u32 $field:ident) => {
+        CellValue::Count(|row| u64::from(row.$field))
+    };
+    (@value bool $field:ident) => {
+        CellValue::Flag(|row| Some(row.$field))
+    };
+    (
+        $(#[$meta:meta])* $vis:vis struct $Name:ident {
+            $($(#[doc = $about:literal])+ $field:ident: $type:ident, $unit:literal;)*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+        $vis struct $Name {
+            $(
+                $(#[doc = $about])+
+                #[doc = concat!("\n\nUnit: ", $unit, ".")]
+                pub $field: $type,
+            )*
+        }
+
+        impl $Name {
+            /// The fields, in the order of the declaration.
+            pub const COLUMNS: &'static [ColumnSpec<Self>] = &[$(
+                ColumnSpec {
+                    name: stringify!($field),
+                    unit: $unit,
+                    about: concat!($($about),+).trim_ascii(),
+                    value: columns!(@value $type $field),
+                },
+            )*];
+        }
+    };
+}
+
+columns! {
+    /// The pile around one grain at one moment. A lost grain has no contacts, and its other numbers are NaN.
+    pub struct GrainMeasures {
+        /// Contacts with grains and with what does not move.
+        coordination: u32, "1";
+        /// Whether it carries nothing on: it is one of the pile's rattlers.
+        rattler: bool, "1";
+        /// a: area of its cell, as far as that belongs to the packing.
+        cell_area: f64, "m²";
+        /// σ_xx of (1/a) Σ f ⊗ ℓ over its contacts, compression positive: f on the grain, ℓ from the contact point to
+        /// its centre. The mean over all grains, weighted by a, is the pile's. NaN without a cell.
+        stress_xx: f64, "N/m";
+        /// σ_xy: x of the forces, y of the branches.
+        stress_xy: f64, "N/m";
+        /// σ_yx: y of the forces, x of the branches.
+        stress_yx: f64, "N/m";
+        /// σ_yy.
+        stress_yy: f64, "N/m";
+        /// p = (σ_1 + σ_2)/2, half the trace of σ.
+        pressure: f64, "N/m";
+        /// q = (σ_1 − σ_2)/2 of the symmetric part of σ, never negative.
+        deviator: f64, "N/m";
+        /// Area of its disc in that of its cell; NaN where the cell is not closed.
+        solid_fraction: f64, "1";
+    }
+}
+
+impl GrainMeasures {
+    /// Measures each grain of a pile, in their order.
+    pub fn of_each(moment: &Moment) -> Vec<Self> {
+        Self::of_parts(&MomentParts::of(moment))
+    }
+
+    pub(super) fn of_parts(parts: &MomentParts) -> Vec<Self> {
+        let MomentParts { network, cells, coordination, .. } = parts;
+        let sums = stress::stress_of_grains(network);
+        let of_grain = |(index, sum): (usize, Tensor)| {
+            let cell_area = cells.areas[index];
+            // A disc within a larger one may have no cell at all.
+            let stress = sum.over(if cell_area > 0.0 { cell_area } else { f64::NAN });
+            Self {
+                coordination: coordination.of_grains[index],
+                rattler: coordination.rattlers[index],
+                cell_area,
+                stress_xx: stress.xx,
+                stress_xy: stress.xy,
+                stress_yx: stress.yx,
+                stress_yy: stress.yy,
+                pressure: stress.mean(),
+                deviator: stress.deviator(),
+                solid_fraction: cells.solid_fractions[index],
+            }
+        };
+        sums.into_iter().enumerate().map(of_grain).collect()
+    }
+}
 
 columns! {
     /// The whole pile at one moment. A number that does not exist is NaN: a mean over nothing, a direction where
@@ -84,12 +181,12 @@ columns! {
 impl PileMeasures {
     /// Measures a pile. What is asked for of its grains besides is cheaper from [`measure`](super::measure).
     pub fn of(moment: &Moment) -> Self {
-        Self::of_parts(&Parts::of(moment))
+        Self::of_parts(&MomentParts::of(moment))
     }
 
-    pub(super) fn of_parts(parts: &Parts) -> Self {
-        let Parts { network, cells, coordination, forces, clusters } = parts;
-        let stress = stress::of_contacts(network).over(cells.area);
+    pub(super) fn of_parts(parts: &MomentParts) -> Self {
+        let MomentParts { network, cells, coordination, forces, clusters } = parts;
+        let stress = stress::stress_of_contacts(network).over(cells.area);
         let fabric = stress::fabric(network);
         Self {
             grains: network.len() as u32,
@@ -103,7 +200,7 @@ impl PileMeasures {
             pressure: stress.mean(),
             deviator: stress.deviator(),
             principal_direction: stress.direction(),
-            kinetic_pressure: stress::of_motion(network) / cells.area,
+            kinetic_pressure: stress::energy_about_mean(network) / cells.area,
             fabric_xx: fabric.xx,
             fabric_xy: fabric.xy,
             fabric_yy: fabric.yy,

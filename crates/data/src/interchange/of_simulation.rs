@@ -48,14 +48,14 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
 /// Where it has so many contacts that a file would not hold their matrix.
 pub fn problem_file_of(simulation: &Simulation) -> Result<ProblemFile> {
     let grains = &simulation.world().grains;
-    simulation.next_problem(Dump { grains })
+    simulation.next_problem(ProblemFileVisitor { grains })
 }
 
-struct Dump<'a> {
+struct ProblemFileVisitor<'a> {
     grains: &'a Grains,
 }
 
-impl ProblemVisitor for Dump<'_> {
+impl ProblemVisitor for ProblemFileVisitor<'_> {
     type Output = Result<ProblemFile>;
 
     fn visit<M: Model>(

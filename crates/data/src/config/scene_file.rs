@@ -1,10 +1,14 @@
-//! Scene files in TOML.
+//! Scene files in TOML, and discs as CSV.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::data::read_grains;
+use glam::DVec2;
+
+use crate::data::{parse_grains, read_grains};
 use crate::error::{Error, Result};
 use crate::scene::{GrainSource, NewPile, Scene, settle, start_of};
+use crate::world::Grain;
 
 /// What a scene file must be, for messages.
 const FORM: &str = "a scene file in TOML, such as `slump scene` prints";
@@ -72,4 +76,34 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
 /// Where the scene holds what TOML cannot say.
 pub fn scene_to_toml(scene: &Scene) -> Result<String> {
     toml::to_string(scene).map_err(|error| Error::value("scene", &scene.name, error.to_string()))
+}
+
+/// Reads discs from the text of a CSV file: header `x,y,radius` and, where there are any, `vx,vy,omega`; SI units;
+/// lines that start with `#` are comments. `path` is for messages.
+///
+/// # Errors
+/// Where a line is none; the message names it.
+pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
+    Ok(parse_grains(text, path)?.grains)
+}
+
+/// The text of a CSV file of discs, of numbers that read back bit for bit; `comment` goes in front, each line of it behind `# `.
+pub fn write_discs(grains: &[Grain], comment: &str) -> String {
+    let mut text = String::new();
+    for line in comment.lines() {
+        let _ = writeln!(text, "# {line}");
+    }
+    let moving =
+        grains.iter().any(|grain| grain.velocity != DVec2::ZERO || grain.angular_velocity != 0.0);
+    text.push_str(if moving { "x,y,radius,vx,vy,omega\n" } else { "x,y,radius\n" });
+    for grain in grains {
+        let DVec2 { x, y } = grain.position;
+        let _ = write!(text, "{x:e},{y:e},{:e}", grain.radius);
+        if moving {
+            let DVec2 { x, y } = grain.velocity;
+            let _ = write!(text, ",{x:e},{y:e},{:e}", grain.angular_velocity);
+        }
+        text.push('\n');
+    }
+    text
 }
