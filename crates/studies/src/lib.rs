@@ -24,6 +24,7 @@ mod planned_run;
 pub mod png;
 mod record;
 mod run;
+mod runner;
 mod shard;
 mod speed;
 pub mod stability;

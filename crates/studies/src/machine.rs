@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::journal::{self, Journal};
+use super::runner::Runner;
 use crate::error::{Error, Result};
 use crate::output::{check_writable, note_line};
 
@@ -67,6 +68,24 @@ impl Machine {
             note_line(format_args!("{name}: {} measurements were there", done.len()));
         }
         Ok((journal, done))
+    }
+
+    /// A runner of the measurements of this program on this machine, whose journal lies below `folder`. A quick pass
+    /// has its own.
+    ///
+    /// # Errors
+    /// Where the journal cannot be read or written.
+    #[allow(dead_code)] // Until the speed studies run there.
+    pub(super) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
+        &self,
+        folder: &Path,
+        quick: bool,
+        name: &str,
+    ) -> Result<Runner<T>> {
+        let pass = if quick { "quick" } else { "full" };
+        let folder = folder.join("measured").join(&self.fingerprint).join(pass);
+        check_writable("out", &folder)?;
+        Runner::open(name, &folder, name)
     }
 
     /// A line for a caption.
