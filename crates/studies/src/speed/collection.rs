@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use crate::config::{Config, Origin};
+use crate::config::{Config, SceneSource};
 use crate::error::Result;
 use crate::output::Progress;
 use crate::scene::{Deposition, NewPile, walls};
@@ -101,12 +101,12 @@ impl CollectionPlan {
         let mut configs = Vec::new();
         for (row, &bond) in self.bonds.iter().enumerate() {
             for (column, &time_step_secs) in self.time_steps_secs.iter().enumerate() {
-                let origin = Origin {
+                let source = SceneSource {
                     grains: Some(self.grains),
                     box_width: Some(self.box_width_in_diameters),
                     seed: Some(self.seeds[(row + column) % self.seeds.len()]),
                     deposition: Some(self.deposition),
-                    ..Origin::default()
+                    ..SceneSource::default()
                 };
                 let parameters = ParameterChanges {
                     bond: Some(bond),
@@ -114,7 +114,7 @@ impl CollectionPlan {
                     restitution_threshold: Some(self.restitution_threshold),
                     ..ParameterChanges::default()
                 };
-                configs.push(Config { origin, parameters, ..Config::default() });
+                configs.push(Config { source, parameters, ..Config::default() });
             }
         }
         configs
@@ -235,7 +235,7 @@ mod tests {
             let seeds: std::collections::HashSet<_> = configs
                 .iter()
                 .filter(|c| c.parameters.bond == Some(*bond))
-                .map(|c| c.origin.seed)
+                .map(|c| c.source.seed)
                 .collect();
             assert!(seeds.len() > 1);
         }

@@ -16,7 +16,7 @@ use super::variants::StepVariant;
 use super::watched::{WatchedRun, centre_of_mass};
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::scene::experiments::{LEVEL_SECS, RATE, drum, incline};
+use crate::scene::experiments::{LEVEL_SECS, TILT_RATE, drum, incline};
 use crate::statistics::mean;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
@@ -89,7 +89,7 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
         run.run_until(time_secs + 0.01, |_| ())?;
     }
     // What has not flown at the steepest flows nowhere.
-    let angle = RATE * (run.simulation.time_secs() - LEVEL_SECS);
+    let angle = TILT_RATE * (run.simulation.time_secs() - LEVEL_SECS);
     Ok(run.with([("angle", angle.to_degrees())]))
 }
 
