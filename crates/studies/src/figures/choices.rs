@@ -283,7 +283,7 @@ fn of_later_steps(variant: &Variant<'_>) -> Vec<PairedSlumps> {
 
 /// That slump does not depend on Δt in a variant.
 fn no_dependence(variant: &Variant<'_>, pairs: &[PairedSlumps]) -> Claim {
-    let grains = variant.rows.0.iter().filter_map(|(config, _)| config.origin.grains).max();
+    let grains = variant.rows.0.iter().filter_map(|(config, _)| config.source.grains).max();
     let margin = margin(grains.unwrap_or_default());
     let said = format!(
         "Beyond the paper: under range slump is that at Δt = {:e} s, within {margin}, with {}",
