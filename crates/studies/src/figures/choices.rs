@@ -178,7 +178,6 @@ pub(super) fn of_piles(studies: &StudyRunner) -> Result<Figure> {
         ),
         named.collect::<Vec<_>>().join("; "),
     ];
-    sheet.caption.extend(studies.note());
     let own = ["choice", "bond", "slump_least_dt", "slump_most_dt"];
     let columns = [&own[..], &["change", "low", "high", "p_two_sided"]].concat();
     let table = ReportTable { name: "pile-choices-changes", columns, rows: table };
@@ -251,7 +250,6 @@ pub(super) fn of_range(studies: &StudyRunner) -> Result<Figure> {
         ),
         named.collect::<Vec<_>>().join("; "),
     ];
-    sheet.caption.extend(studies.note());
     let claims = variants.iter().zip(&all).map(|(one, pairs)| no_dependence(one, pairs)).collect();
     let row = |variant: &Variant<'_>, one: &PairedSlumps| {
         let own = [variant.name.clone(), one.bond.to_string(), format!("{:e}", one.step)];

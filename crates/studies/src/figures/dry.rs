@@ -23,12 +23,11 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
             claims.push(agrees(&here, rho, law));
         }
     }
-    let mut sheet = Sheet { size: (1600, 720), charts, caption: Vec::new() };
-    sheet.caption = vec![format!(
+    let caption = vec![format!(
         "Bond 0; means over {} initial states of 138 grains with 95 % intervals.",
         rows.seeds().len()
     )];
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (1600, 720), charts, caption };
     Ok(Figure { name: "dry", sheet, claims, table: None })
 }
 

@@ -57,8 +57,7 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
         }));
         states.push(ensemble.seeds().len());
     }
-    let mut sheet = Sheet { size: (2000, 860), charts, caption: Vec::new() };
-    sheet.caption = vec![
+    let caption = vec![
         format!(
             "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no \
              mean.",
@@ -67,7 +66,7 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
         "Left |T| ≤ μ(N + C₀), right |T| ≤ μ max(N, 0): the paper's words can be read either way."
             .into(),
     ];
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (2000, 860), charts, caption };
     Ok(Figure { name: "fig5a", sheet, claims, table: None })
 }
 
@@ -84,13 +83,11 @@ pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let y = Axis::linear("mean overlap δ/d", 0.0, END_OF_AXIS);
     let mut of_paper = chart(&all, "On the paper's axes", x, y, overlap);
     of_paper.legend = Corner::UpperLeft;
-    let mut sheet =
-        Sheet { size: (2000, 860), charts: vec![of_exponent, of_paper], caption: Vec::new() };
-    sheet.caption = vec![format!(
+    let caption = vec![format!(
         "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no mean.",
         rows.seeds().len()
     )];
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (2000, 860), charts: vec![of_exponent, of_paper], caption };
     let cohesive = rows.such_that(|config| config.parameters.bond > Some(0.0));
     let claims = vec![grows(&cohesive), stays_below(&rows), reverses(&cohesive), loses(&cohesive)];
     Ok(Figure { name: "fig5b", sheet, claims, table: None })

@@ -59,7 +59,6 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         "Means over {count} initial states with 95 % intervals (Bond 0 has no cohesive time). A broken line \
          bends at {place:.2} ({low:.2} … {high:.2})."
     )];
-    sheet.caption.extend(studies.note());
     let claims = vec![regimes(&groups, count), guess(&groups, count, turn)];
     Ok(Figure { name: "fig6", sheet, claims, table: None })
 }

@@ -176,7 +176,6 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
         starts[0],
         starts[starts.len() - 1]
     )];
-    sheet.caption.extend(studies.note());
     let claims = at_large_steps.into_iter().map(|(tolerance, large)| {
         let listed: Vec<String> =
             large.iter().map(|point| format!("{:.0} % at {}", 100.0 * point.y, point.x)).collect();
@@ -256,7 +255,6 @@ pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     sheet.size = (1200, 960);
     sheet.caption =
         vec![format!("{} × {} runs; k starts 7.865 d left of i.", steps.len(), tolerances.len())];
-    sheet.caption.extend(studies.note());
     let claim = Claim::new(
         "Beyond the paper: at small Δt the outcome hangs on how well the step is solved",
         format!(

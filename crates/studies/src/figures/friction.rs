@@ -32,8 +32,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
          with 95 % intervals."
             .into(),
     ];
-    let mut sheet = Sheet { size: (620 * charts.len().max(1) as u32, 560), charts, caption };
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (620 * charts.len().max(1) as u32, 560), charts, caption };
     let claims = piles.iter().map(claim).collect();
     Ok(Figure { name: "friction", sheet, claims, table: Some(table(&piles)) })
 }

@@ -82,10 +82,10 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let sheet = Sheet {
         size: (1320, 900),
         charts: vec![chart, scale()],
-        caption: [vec![format!(
+        caption: vec![format!(
             "Means over {} initial states; red: the Δt of the lowest slump at each Bond number.",
             rows.seeds().len()
-        )], studies.note()].concat(),
+        )],
     };
     Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
 }

@@ -20,7 +20,7 @@ pub(super) fn size(studies: &StudyRunner) -> Result<Figure> {
     let counts = rows.values(grains);
     let x = Axis::log("number of grains", 0.8 * counts[0], 1.25 * counts[counts.len() - 1]);
     let (mut sheet, curves) =
-        series(studies, &rows, "Slump against the number of grains", x, grains)?;
+        series(&rows, "Slump against the number of grains", x, grains)?;
     let solver = rows.0.first().map_or_else(String::new, |(config, _)| {
         let SolverChanges { method, friction_model, tolerance, .. } = config.solver;
         let (model, residual) = (friction_model.unwrap_or_default(), tolerance.unwrap_or_default());
@@ -58,7 +58,7 @@ pub(super) fn tolerance(studies: &StudyRunner) -> Result<Figure> {
         1.6 * values[values.len() - 1],
     );
     let title = "Slump against how well each step is solved";
-    let (sheet, _) = series(studies, &rows, title, x, |config| config.solver.tolerance)?;
+    let (sheet, _) = series(&rows, title, x, |config| config.solver.tolerance)?;
     let unit_secs = unit_secs()?;
     let claims = rows.steps().into_iter().map(|step| {
         let of_step = rows.of_step(step);
@@ -96,7 +96,6 @@ pub(super) fn tolerance(studies: &StudyRunner) -> Result<Figure> {
 
 /// One curve a cohesive time; and each such time with its slope for each initial state.
 fn series(
-    studies: &StudyRunner,
     rows: &Rows<'_>,
     title: &str,
     x: Axis,
@@ -129,6 +128,5 @@ fn series(
         "Bond {bond}; means over {} initial states, with 95 % intervals from three states up.",
         rows.seeds().len()
     )];
-    sheet.caption.extend(studies.note());
     Ok((sheet, curves))
 }

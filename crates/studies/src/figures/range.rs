@@ -37,14 +37,13 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         .collect();
     charts.push(against_bond(&of_law[1], &steps));
     charts.push(cost(&of_law, &steps, studies.quick)?);
-    let mut sheet = Sheet { size: (2000, 760), charts, caption: Vec::new() };
-    sheet.caption = vec![format!(
+    let caption = vec![format!(
         "Means over {} initial states of 138 grains with 95 % intervals. Error: mean over the Bonds of the \
          difference of slump from that at Δt = {:e} s; a dot for each larger Δt.",
         rows.seeds().len(),
         steps[0]
     )];
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (2000, 760), charts, caption };
     let named = [(LAWS[0].name(), &of_law[0]), (LAWS[1].name(), &of_law[1])];
     let mut claims = Vec::from(named.map(|(name, rows)| no_dependence(name, rows, &steps)));
     let overlaps = of_law[1].results(|result| result.tally.mean_overlap);

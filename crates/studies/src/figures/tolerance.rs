@@ -134,8 +134,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
          so often."
             .into(),
     ];
-    let mut sheet = Sheet { size: (760 * charts.len().max(2) as u32, 640), charts, caption };
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (760 * charts.len().max(2) as u32, 640), charts, caption };
     let claims_of = |of_size: &Piles<'_>| {
         let claim = |(_, accuracy): (usize, StepAccuracy)| {
             let how = format!("by {} as by certified ones", accuracy.long());
