@@ -7,7 +7,7 @@ use super::claims::{Claim, SIGNIFICANT, Verdict};
 use super::comparison::PairedSlumps;
 use super::studies::Rows;
 use super::{Figure, StudyRunner, slump_point};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Point, Sheet};
 use crate::config::SceneSource;
 use crate::error::Result;
 use crate::report::ReportTable;
@@ -129,7 +129,7 @@ fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
     let x = Axis { ticks: ticks(&[3e-3, 1e-2, 3e-2, 1e-1], left, right), ..x };
     let mut chart =
         Chart::new("Cost at equal error", x, Axis::log("seconds per simulated second", low, high));
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     for ((name, points), colour) in curves.into_iter().zip([PALETTE[6], PALETTE[1]]) {
         chart.layers.push(Layer::curve(name, points, colour, Look::Dots(6)));
     }
@@ -251,7 +251,7 @@ mod tests {
                     if step == STEPS[0] { 0.0 } else { 0.03 * [1.0, -1.0][seed as usize % 2] };
                 let slump = 0.1 * seed as f64 + shift + scatter;
                 let mut config = Config::default();
-                config.origin.seed = Some(seed);
+                config.source.seed = Some(seed);
                 config.parameters.bond = Some(10.0);
                 config.parameters.time_step_secs = Some(step);
                 runs.push((config, RunResult::of_slump(slump)));

@@ -153,7 +153,7 @@ impl<'a> Rows<'a> {
 
     /// Those from an initial state.
     pub(super) fn of_seed(&self, seed: u64) -> Self {
-        self.such_that(|config| config.origin.seed == Some(seed))
+        self.such_that(|config| config.source.seed == Some(seed))
     }
 
     /// Those with a tolerance.
