@@ -28,6 +28,7 @@ pub use joined::{JoinedGrains, most_contacts_joined};
 pub(crate) use lanes::Lanes;
 #[cfg(test)]
 pub(crate) use lanes::levels;
+pub use law::ContactLaw;
 pub(crate) use look_ahead::LookAhead;
 pub(crate) use meeting::Course;
 pub use numbering::{Numbering, Other};

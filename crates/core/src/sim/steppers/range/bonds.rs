@@ -24,7 +24,7 @@ use crate::sim::steppers::range::StepNumbers;
 use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks, ShocksResult};
 use crate::sim::stepping::{BondEnergies, Stage};
 use crate::solver::{
-    Kinematics, Model, Motion, Row, SolveReport, StepProblem, for_each_row, solve,
+    Kinematics, Model, Row, RowVelocities, SolveReport, StepProblem, for_each_row, solve,
 };
 
 /// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
@@ -125,7 +125,7 @@ impl BondOpening {
     /// has that part of them.
     fn of<K: Kinematics>(
         problem: &StepProblem<K>,
-        (number, row, motion): (usize, &Row<K>, &Motion),
+        (number, row, motion): (usize, &Row<K>, &RowVelocities),
         (shocks, bond, numbers): (&Shocks, Bond, StepNumbers),
     ) -> Self {
         let closed = shocks.closed(number, bond.alive, numbers.time_step_secs);
@@ -158,8 +158,8 @@ fn update_bonds<K: Kinematics>(
     let StepNumbers { time_step_secs, debonding_distance, .. } = numbers;
     let mut energies = BondEnergies::default();
     for_each_row(problem, |number, row, motion| {
-        let bond = &mut bonds[problem.contact_of_row[number] as usize];
-        let cohesion_force = row.effective_mass * problem.capture_speed / time_step_secs;
+        let bond = &mut bonds[problem.rows.contacts[number] as usize];
+        let cohesion_force = row.effective_mass * problem.law.capture_speed() / time_step_secs;
         let run = BondOpening::of(problem, (number, row, &motion), (shocks, *bond, numbers));
         let opening_speed = run.opening_speed();
         let before = if bond.alive { cohesion_force * bond.stretch } else { 0.0 };
@@ -170,7 +170,7 @@ fn update_bonds<K: Kinematics>(
         if bond.alive && row.shifted_impulse <= 0.0 {
             let opened = bond.stretch + run.part * opening_speed * time_step_secs;
             bond.stretch = opened.max(0.0);
-            let broken = problem.capture(number) < run.part * problem.capture_speed;
+            let broken = problem.capture(number) < run.part * problem.law.capture_speed();
             bond.alive = !broken && bond.stretch < debonding_distance;
         }
         if bond.alive {
@@ -245,7 +245,7 @@ impl BondLimits<'_> {
         lowered: &mut Vec<(usize, f64)>,
     ) {
         lowered.clear();
-        if problem.captures.is_empty() {
+        if problem.rows.captures.is_empty() {
             return;
         }
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
@@ -254,13 +254,13 @@ impl BondLimits<'_> {
             if before <= 0.0 {
                 return;
             }
-            let bond = self.bonds[problem.contact_of_row[number] as usize];
+            let bond = self.bonds[problem.rows.contacts[number] as usize];
             let run =
                 BondOpening::of(problem, (number, row, &motion), (self.shocks, bond, self.numbers));
             let stretch = if run.is_closed { 0.0 } else { bond.stretch };
             let left = (debonding_distance - stretch).max(0.0);
             let opening = Opening { left, speed: run.speed, load: run.load };
-            let capture_speed = strength * run.part * problem.capture_speed;
+            let capture_speed = strength * run.part * problem.law.capture_speed();
             let bound = opening.bound(capture_speed, run.part * time_step_secs);
             if bound < (1.0 - FALL) * before {
                 lowered.push((number, bound));
@@ -272,8 +272,8 @@ impl BondLimits<'_> {
 /// Lowers the bounds of bonds that do not live to the end of the step.
 fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
-        let before = std::mem::replace(&mut problem.captures[number], bound);
-        let row = problem.row_at_mut(number);
+        let before = std::mem::replace(&mut problem.rows.captures[number], bound);
+        let row = problem.rows.get_mut(number);
         row.shifted_impulse = (row.shifted_impulse - before + bound).max(0.0);
     }
     problem.form_velocities();

@@ -210,17 +210,17 @@ impl ShockInputs<'_> {
         problem: &StepProblem<K>,
         number: usize,
     ) -> &Contact {
-        &self.contacts.contacts()[problem.contact_of_row[number] as usize]
+        &self.contacts.contacts()[problem.rows.contacts[number] as usize]
     }
 
     /// Whether its pair is bonded.
     pub(super) fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
-        self.contacts.is_in_touch(problem.contact_of_row[number] as usize)
+        self.contacts.is_in_touch(problem.rows.contacts[number] as usize)
     }
 
     /// How far its bond is open, m.
     pub(super) fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
-        let bond = self.contacts.bonds()[problem.contact_of_row[number] as usize];
+        let bond = self.contacts.bonds()[problem.rows.contacts[number] as usize];
         if bond.alive { bond.stretch } else { 0.0 }
     }
 }
@@ -231,7 +231,7 @@ pub(super) fn grains<K: Kinematics>(
     number: usize,
     row: &Row<K>,
 ) -> (usize, Option<usize>) {
-    let is_pair = number >= problem.fixed_rows.len();
+    let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
@@ -298,9 +298,11 @@ impl Shocks {
     ) {
         let Self { pairs, bodies, .. } = self;
         bodies.clear();
-        bodies.extend(problem.before.iter().zip(&problem.free).map(ShockBody::untouched::<K>));
+        bodies.extend(
+            problem.bodies.before.iter().zip(&problem.bodies.free).map(ShockBody::untouched::<K>),
+        );
         pairs.clear();
-        let is_cohesive = problem.capture_speed > 0.0;
+        let is_cohesive = problem.law.capture_speed() > 0.0;
         for_each_row(problem, |number, row, motion| {
             let Contact { normal, gap, .. } = *inputs.contact(problem, number);
             let touches = gap <= inputs.numbers.touch;

@@ -64,7 +64,7 @@ impl Shocks {
         let pair = &self.pairs[number];
         let offset =
             |grain: usize| along_axes::<K>(&K::from_coordinates(self.bodies[grain].offset));
-        let velocity = |grain: usize| along_axes::<K>(&problem.before[grain]);
+        let velocity = |grain: usize| along_axes::<K>(&problem.bodies.before[grain]);
         let falls = pair.acceleration != 0.0;
         let acceleration = if falls { self.fall::<K>(i) / time_step_secs } else { DVec2::ZERO };
         let of_other = j.map_or_else(
