@@ -1,7 +1,6 @@
 //! What all ways to step share: the step's problem on its stage, the cut into pieces, the step's result.
 
 use crate::contact::{ContactList, LookAhead};
-use crate::sim::pull;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::solver::{
@@ -144,8 +143,8 @@ impl<'a, M: Model> Stage<'a, M> {
             problem.drive::<M>(contacts, rebound, |contact| walls.surface(world, contact));
         }
         if let Some(push) = push {
-            pull::apply::<M::Kinematics>(&mut problem.free, push);
-            pull::apply::<M::Kinematics>(&mut problem.bodies, push);
+            push.apply::<M::Kinematics>(&mut problem.free);
+            push.apply::<M::Kinematics>(&mut problem.bodies);
         }
     }
 

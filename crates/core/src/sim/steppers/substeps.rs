@@ -7,7 +7,6 @@
 //! limit mean nothing.
 
 use crate::contact::ContactMemory;
-use crate::sim::pull;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::moreau::set_up;
@@ -85,7 +84,7 @@ impl<K: Kinematics> Substepping<K> {
             }
         }
         if let Some(push) = push {
-            pull::apply::<K>(bodies, push);
+            push.apply::<K>(bodies);
         }
         self.free.clone_from(bodies);
     }

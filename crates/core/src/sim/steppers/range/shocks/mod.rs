@@ -260,7 +260,7 @@ fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
 
 impl ShockBody {
     /// One of which nothing has happened yet, as it begins and as gravity alone would leave it.
-    fn untouched<K: Kinematics>((before, free): (&K::Body<f64>, &K::Body<f64>)) -> Self {
+    fn untouched<K: Kinematics>(before: &K::Body<f64>, free: &K::Body<f64>) -> Self {
         let [before, free] = [before, free].map(K::coordinates);
         Self {
             offset: [0.0; 3],
@@ -288,7 +288,8 @@ impl Shocks {
     ) {
         let Self { pairs, bodies, .. } = self;
         bodies.clear();
-        bodies.extend(problem.before.iter().zip(&problem.free).map(ShockBody::untouched::<K>));
+        let ends = problem.before.iter().zip(&problem.free);
+        bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<K>(before, free)));
         pairs.clear();
         let is_cohesive = problem.capture_speed > 0.0;
         for_each_row(problem, |number, _, motion| {
