@@ -104,7 +104,7 @@ impl Simulation {
         grown.grains.push(&Grain::at_rest(position, radius), density);
         grown.validate(self.state.physics)?;
         self.state.add_last_grain(grown)?;
-        self.watch.add_grain(position);
+        self.watch.losses.add(position);
         self.initial_heights += position.y;
         Ok(())
     }
@@ -147,7 +147,7 @@ impl Simulation {
             return Err(Error::value("grains", 1, "more than one where one is taken away"));
         }
         self.initial_heights -= self.state.world.grains.positions[grain].y;
-        self.watch.remove_grain(grain);
+        self.watch.losses.remove(grain);
         self.state.remove_grain(grain)
     }
 
@@ -180,7 +180,7 @@ impl Simulation {
         world.validate(self.state.physics)?;
         self.state.world = world;
         self.state.is_held = true;
-        self.watch.let_walls_move(self.state.candidates.features());
+        self.watch.losses.let_walls_move(self.state.candidates.features());
         Ok(())
     }
 

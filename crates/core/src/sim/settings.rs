@@ -106,14 +106,15 @@ impl Settings {
     }
 }
 
+fn names_of<'a>(steppers: impl Iterator<Item = &'a Stepper>) -> Vec<&'static str> {
+    steppers.map(|stepper| stepper.name()).collect()
+}
+
 /// The diameter that lengths are measured in is at most this many radii of the largest grain: the
 /// skin goes with it, and all that lie within the skin are candidates.
 const MOST_RADII_OF_DIAMETER: f64 = 200.0;
 
 /// How far a world's candidate search looks, where its lengths leave each disc few others to touch.
-///
-/// # Errors
-/// Names the length that does not, or two discs that are too close.
 pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
     let diameter = world.mean_diameter;
     if !(diameter > 0.0 && diameter.is_finite()) {
@@ -149,12 +150,9 @@ impl Settings {
         self.remedies.validate_each()?;
         for remedy in &ROWS {
             if remedy.is_on(&self.remedies) && !remedy.taken_by.contains(&self.stepper) {
-                let takers: Vec<_> = remedy.taken_by.iter().map(|taker| taker.name()).collect();
-                let allowed = format!(
-                    "left out where stepper is {}: it goes with {}",
-                    self.stepper,
-                    takers.join(" and ")
-                );
+                let takers = names_of(remedy.taken_by.iter()).join(" and ");
+                let stepper = self.stepper;
+                let allowed = format!("left out where stepper is {stepper}: it goes with {takers}");
                 return Err(Error::value(remedy.name, "given", allowed));
             }
         }
@@ -166,12 +164,9 @@ impl Settings {
         let (model, cone) = (self.solver.friction_model, self.parameters.cone);
         if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
             let readers = Stepper::ALL.iter().filter(|stepper| stepper.reads("friction-model"));
-            let readers: Vec<_> = readers.map(|stepper| stepper.name()).collect();
-            let allowed = format!(
-                "coulomb where stepper is {}: other models go with {}",
-                self.stepper,
-                readers.join(" and ")
-            );
+            let (stepper, readers) = (self.stepper, names_of(readers).join(" and "));
+            let allowed =
+                format!("coulomb where stepper is {stepper}: other models go with {readers}");
             return Err(Error::value("friction-model", model, allowed));
         }
         if model.needs_shifted_cone() && cone != FrictionCone::Shifted {
@@ -185,9 +180,6 @@ impl Settings {
     }
 
     /// Whether all that a world has goes with the settings.
-    ///
-    /// # Errors
-    /// Names the first setting that does not go with it.
     pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
         self.check_drives(&world.motions)?;
         self.check_tilt(&world.gravity, physics)?;
@@ -195,9 +187,6 @@ impl Settings {
     }
 
     /// Whether there is a gravity that can be tilted, if it is.
-    ///
-    /// # Errors
-    /// Names what has none.
     pub(crate) fn check_tilt(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let refuse = |of: &str| {
             let allowed = format!("left out or 0 where {of}");
@@ -212,9 +201,6 @@ impl Settings {
     }
 
     /// Whether there is a way to move walls that a force drives, if any of the motions is one.
-    ///
-    /// # Errors
-    /// Names the setting that knows of no such walls.
     pub(crate) fn check_drives(&self, motions: &[Motion]) -> Result<()> {
         if motions.iter().all(|motion| motion.drive.is_none()) {
             return Ok(());
@@ -225,8 +211,7 @@ impl Settings {
         };
         if !self.stepper.info().takes_drives {
             let takers = Stepper::ALL.iter().filter(|stepper| stepper.info().takes_drives);
-            let takers = takers.map(|stepper| stepper.name()).collect();
-            return refuse("stepper", self.stepper.to_string(), takers);
+            return refuse("stepper", self.stepper.to_string(), names_of(takers));
         }
         if self.stepper.uses_method() && !self.solver.method.info().takes_drives {
             let takers = METHODS.iter().filter(|info| info.takes_drives).map(|info| info.name);
@@ -246,9 +231,6 @@ impl Settings {
     }
 
     /// Whether the method knows of images that slide, if there are any.
-    ///
-    /// # Errors
-    /// Names it if it does not.
     pub(crate) fn check_shear(&self, periodic: Option<Periodic>) -> Result<()> {
         let method = self.solver.method;
         let is_taken = !self.stepper.uses_method() || method.info().takes_shear;

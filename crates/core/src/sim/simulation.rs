@@ -22,12 +22,16 @@ use crate::world::{Parameters, Physics, World};
 
 /// A world in motion.
 ///
-/// Cloning it gives a second simulation that goes on bitwise as the first one would.
-#[derive(Clone, Debug)]
+/// Cloning it gives a second simulation that goes on bitwise as the first one would, and so does writing it to a file.
+/// Left out is what every step makes anew: the step's problem, and what methods keep from one solve to the next, on
+/// which no result depends (`tests/program/restart/` holds all of them to that).
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(remote = "Self", deny_unknown_fields)]
 pub struct Simulation {
     pub(super) state: State,
     pub(super) settings: Settings,
     steady: Steady,
+    #[serde(skip)]
     slots: Slots,
     memory: StepperMemory,
     observables: Observables,
@@ -157,8 +161,8 @@ impl Simulation {
     fn look(&mut self) -> Result<&Observables> {
         let finite = self.state.is_finite();
         let State { world, candidates, .. } = &self.state;
-        let walls = (candidates.features(), world.has_motion());
-        self.watch.look(world, walls, &mut self.observables, finite);
+        let features = candidates.features();
+        self.watch.look(world, features, world.has_motion(), &mut self.observables, finite);
         if finite {
             return Ok(&self.observables);
         }
@@ -281,7 +285,7 @@ impl Simulation {
 
     /// Whether a grain went through a wall or left the world.
     pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.watch.is_lost(grain)
+        self.watch.losses.is_lost(grain)
     }
 
     /// Simulated time, s.
@@ -394,35 +398,15 @@ impl<V: ProblemVisitor> SlotVisitor for ShowProblem<'_, V> {
     }
 }
 
-/// A simulation in a file: all its fields, so that it goes on as if it had never been written. One that is forgotten here does
-/// not compile. Left out is what every step makes anew: the step's problem, and what methods keep from one solve to the
-/// next, on which no result depends (`tests/program/restart` holds all of them to that).
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Simulation", deny_unknown_fields)]
-struct Whole {
-    state: State,
-    pub(super) settings: Settings,
-    steady: Steady,
-    #[serde(skip)]
-    slots: Slots,
-    memory: StepperMemory,
-    observables: Observables,
-    initial_heights: f64,
-    last_stepper: Option<Stepper>,
-    watch: Watch,
-    surroundings: Arc<Surroundings>,
-    edits: u32,
-}
-
 impl Serialize for Simulation {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        Whole::serialize(self, serializer)
+        Self::serialize(self, serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for Simulation {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        Whole::deserialize(deserializer)?.complete().map_err(D::Error::custom)
+        Self::deserialize(deserializer)?.complete().map_err(D::Error::custom)
     }
 }
 
@@ -441,7 +425,7 @@ impl Simulation {
         if !state.contacts.is_sound(bodies, grains) {
             return Err(refuse("contacts"));
         }
-        if !watch.is_of(grains) {
+        if !watch.losses.is_of(grains) {
             return Err(refuse("watch"));
         }
         if state.pull.is_some_and(|pull| pull.grain as usize >= grains) {

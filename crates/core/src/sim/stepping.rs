@@ -1,7 +1,6 @@
 //! What all ways to step share: the step's problem on its stage, the cut into pieces, the step's result.
 
 use crate::contact::{ContactList, LookAhead};
-use crate::sim::pull;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::solver::{
@@ -149,8 +148,8 @@ impl<'a, M: Model> Stage<'a, M> {
         });
         problem.prepare_among::<M>(world, contacts, numbers, &settings.solver, rebound, surfaces);
         if let Some(push) = push {
-            pull::apply::<M::Kinematics>(&mut problem.bodies.free, push);
-            pull::apply::<M::Kinematics>(&mut problem.bodies.now, push);
+            push.apply::<M::Kinematics>(&mut problem.bodies.free);
+            push.apply::<M::Kinematics>(&mut problem.bodies.now);
         }
     }
 

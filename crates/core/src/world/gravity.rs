@@ -4,7 +4,8 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::world::motion::{at_time, is_zero};
+use crate::number::is_zero;
+use crate::world::motion::at_time;
 use crate::world::motion_check::check_table;
 use crate::world::{Physics, World};
 
@@ -142,9 +143,6 @@ impl GravityTurn {
     }
 
     /// Checks it against the gravity and the physics that it is for.
-    ///
-    /// # Errors
-    /// Names the first field that does not fit.
     pub(crate) fn check(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let field = "gravity_turn";
         if !matches!(gravity, Gravity::Uniform { .. }) {
@@ -164,7 +162,7 @@ impl GravityTurn {
             TurnCourse::Rate { .. } => Ok(()),
             TurnCourse::Table { times_secs, angles } => {
                 let finite = angles.iter().map(|angle| angle.is_finite());
-                check_table(&format!("{field}.course"), times_secs, ("angles", finite))
+                check_table(&format!("{field}.course"), times_secs, "angles", finite)
             }
         }
     }

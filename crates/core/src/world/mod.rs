@@ -50,22 +50,19 @@ pub struct World {
 
 impl World {
     /// Checks its grains and motions, how its gravity turns, and its borders.
-    ///
-    /// # Errors
-    /// Names the first of them that does not fit.
     pub(crate) fn validate(&self, physics: Physics) -> Result<()> {
         self.grains.validate()?;
         if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
             turn.check(&self.gravity, physics)?;
         }
-        let bodies = (&*self.boundaries, self.fixed_discs.len());
-        check_motions(&self.motions, bodies, physics.axes, self.periodic)?;
+        let Self { boundaries, motions, gravity, .. } = self;
+        let fixed_discs = self.fixed_discs.len();
+        check_motions(motions, boundaries, fixed_discs, physics.axes, self.periodic)?;
         let Some(periodic) = self.periodic else { return Ok(()) };
         let fixed = self.fixed_discs.iter().map(|disc| disc.radius);
         let largest_radius = self.grains.radii.iter().copied().chain(fixed).fold(0.0, f64::max);
         let lengths = [largest_radius, self.mean_diameter];
-        let bodies = (&*self.boundaries, self.fixed_discs.len(), &*self.motions);
-        periodic.check(bodies, &self.gravity, physics, lengths)
+        periodic.check(boundaries, fixed_discs, motions, gravity, physics, lengths)
     }
 
     /// Whether anything can move that no grain moves.
@@ -104,9 +101,6 @@ impl Physics {
     pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
 
     /// Checks that the parts fit each other.
-    ///
-    /// # Errors
-    /// Names the field that does not fit.
     pub(crate) fn validate(&self) -> Result<()> {
         match (self.axes, self.friction, self.rotation) {
             (1 | 2, false, true) => {

@@ -7,12 +7,10 @@ use crate::error::{Error, Result};
 
 /// Checks motions against the boundaries, the number of fixed discs, the number of axes and the borders that they are
 /// for.
-///
-/// # Errors
-/// Names the first motion, or body of one, that does not fit.
 pub(crate) fn check_motions(
     motions: &[Motion],
-    (boundaries, fixed_discs): (&[Boundary], usize),
+    boundaries: &[Boundary],
+    fixed_discs: usize,
     axes: u8,
     periodic: Option<Periodic>,
 ) -> Result<()> {
@@ -117,24 +115,22 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
         }
         Some(MotionCourse::Table { times_secs, offsets }) => {
             let finite = offsets.iter().map(|offset| offset.is_finite());
-            check_table(&format!("{field}.course"), times_secs, ("offsets", finite))
+            check_table(&format!("{field}.course"), times_secs, "offsets", finite)
         }
         Some(MotionCourse::AngleTable { pivot, times_secs, angles }) => {
             finite_point("course.pivot", *pivot)?;
             let finite = angles.iter().map(|angle| angle.is_finite());
-            check_table(&format!("{field}.course"), times_secs, ("angles", finite))
+            check_table(&format!("{field}.course"), times_secs, "angles", finite)
         }
     }
 }
 
 /// Checks the times of a table, and its values, of which it is known whether each is finite.
-///
-/// # Errors
-/// Names the first time or value that does not fit.
 pub(super) fn check_table(
     field: &str,
     times_secs: &[f64],
-    (name, values): (&str, impl ExactSizeIterator<Item = bool>),
+    name: &str,
+    values: impl ExactSizeIterator<Item = bool>,
 ) -> Result<()> {
     if times_secs.is_empty() || times_secs.len() != values.len() {
         let found = format!("{} values at {} times", values.len(), times_secs.len());
@@ -175,9 +171,6 @@ fn stays_on_line(motion: &Motion) -> bool {
 
 impl Drive {
     /// Checks its numbers; `field` is what users call it.
-    ///
-    /// # Errors
-    /// Names the first number that does not fit.
     fn check(&self, field: &str, periodic: Option<Periodic>) -> Result<()> {
         let refuse = |name: &str, found: String, allowed: &str| {
             Err(Error::value(format!("{field}.{name}"), found, allowed))

@@ -96,9 +96,6 @@ pub(super) fn start_of(pile: &NewPile) -> Vec<Grain> {
 }
 
 /// Drops a pile and lets it settle.
-///
-/// # Errors
-/// Where the grains do not come to rest, or `progress` returns false.
 pub(super) fn settled(
     pile: &NewPile,
     mut progress: impl FnMut(Settling) -> bool,

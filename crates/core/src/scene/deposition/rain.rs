@@ -27,9 +27,6 @@ const REST_SPEED: f64 = 2e-4;
 const STEPS_PER_LOOK: u32 = 100;
 
 /// Rains a pile.
-///
-/// # Errors
-/// Where the grains do not come to rest, or `progress` returns false.
 pub(super) fn settled(
     rain: &NewPile,
     mut progress: impl FnMut(Settling) -> bool,

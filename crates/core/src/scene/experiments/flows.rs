@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use crate::scene::experiments::{SPACING, lattice, of_loose_grains, view};
-use crate::scene::stability::{DIAMETER, GRAVITY};
+use super::{SPACING, lattice, moved, of_loose_grains, open_box, place, view};
+use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
 use crate::scene::{Scene, rough_base};
 use crate::world::{Boundary, Disc, Grain, GravityTurn, Motion, MotionCourse, TurnCourse};
 
@@ -47,21 +47,14 @@ pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     // Beyond the longest run-out that columns are known for.
     let reach = REACH * half * (1.0 + (2.5 * aspect).max(3.25 * aspect.powf(0.7)));
     scene.fixed_discs = rough_base(2.0 * reach, DIAMETER);
-    let gate = |side: f64| Boundary::HalfSpace {
-        point: DVec2::new(side * half * DIAMETER, 0.0),
-        normal: DVec2::new(-side, 0.0),
+    let gate = |side: f64| half_space(DVec2::new(side * half, 0.0), DVec2::new(-side, 0.0));
+    scene.boundaries = vec![floor(), gate(-1.0), gate(1.0)];
+    let pulled = |(gate, side): (usize, f64)| {
+        let times_secs = vec![0.0, release_secs, release_secs + GATE_SECS];
+        let offsets = vec![DVec2::ZERO, DVec2::ZERO, DVec2::new(side * GATE_WAY, 0.0)];
+        moved(gate, MotionCourse::Table { times_secs, offsets })
     };
-    let floor = Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y };
-    scene.boundaries = vec![floor, gate(-1.0), gate(1.0)];
-    let pulled = |(number, side): (usize, f64)| Motion {
-        boundaries: vec![number],
-        course: Some(MotionCourse::Table {
-            times_secs: vec![0.0, release_secs, release_secs + GATE_SECS],
-            offsets: vec![DVec2::ZERO, DVec2::ZERO, DVec2::new(side * GATE_WAY, 0.0)],
-        }),
-        ..Motion::default()
-    };
-    scene.motions = [(1, -1.0), (2, 1.0)].into_iter().map(pulled).collect();
+    scene.motions = [(1, -1.0), (2, 1.0)].map(pulled).into();
     scene
 }
 
@@ -88,26 +81,20 @@ pub fn silo() -> Scene {
 
 /// The silo around a scene of grains, with an orifice of that width in diameters, which opens at `release_secs`.
 pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
-    let corner = |x: f64, y: f64| DIAMETER * DVec2::new(x, y);
     let side = |sign: f64| Boundary::Polyline {
         points: vec![
-            corner(sign * 0.5 * SILO_WIDTH, SILO_HEIGHT),
-            corner(sign * 0.5 * SILO_WIDTH, 0.0),
-            corner(sign * 0.5 * orifice, 0.0),
+            place(sign * 0.5 * SILO_WIDTH, SILO_HEIGHT),
+            place(sign * 0.5 * SILO_WIDTH, 0.0),
+            place(sign * 0.5 * orifice, 0.0),
         ],
     };
     let plate =
-        Boundary::Segment { from: corner(-0.5 * orifice, 0.0), to: corner(0.5 * orifice, 0.0) };
-    let floor = Boundary::HalfSpace { point: corner(0.0, -FLOOR_DEPTH), normal: DVec2::Y };
+        Boundary::Segment { from: place(-0.5 * orifice, 0.0), to: place(0.5 * orifice, 0.0) };
+    let floor = half_space(DVec2::new(0.0, -FLOOR_DEPTH), DVec2::Y);
     scene.boundaries = vec![side(-1.0), side(1.0), plate, floor];
-    scene.motions = vec![Motion {
-        boundaries: vec![2],
-        course: Some(MotionCourse::Table {
-            times_secs: vec![0.0, release_secs, release_secs + PLATE_SECS],
-            offsets: vec![DVec2::ZERO, DVec2::ZERO, DVec2::new(0.0, -PLATE_WAY)],
-        }),
-        ..Motion::default()
-    }];
+    let times_secs = vec![0.0, release_secs, release_secs + PLATE_SECS];
+    let offsets = vec![DVec2::ZERO, DVec2::ZERO, DVec2::new(0.0, -PLATE_WAY)];
+    scene.motions = vec![moved(2, MotionCourse::Table { times_secs, offsets })];
     scene
 }
 
@@ -132,14 +119,7 @@ pub fn incline() -> Scene {
     let course = TurnCourse::Table { times_secs, angles: vec![0.0, 0.0, STEEPEST] };
     scene.gravity_turn = Some(GravityTurn { course, elapsed_secs: 0.0 });
     scene.fixed_discs = rough_base(INCLINE_WIDTH - 2.0, DIAMETER);
-    let corner = |x: f64, y: f64| DIAMETER * DVec2::new(x, y);
-    let points = vec![
-        corner(-0.5 * INCLINE_WIDTH, INCLINE_HEIGHT),
-        corner(-0.5 * INCLINE_WIDTH, 0.0),
-        corner(0.5 * INCLINE_WIDTH, 0.0),
-        corner(0.5 * INCLINE_WIDTH, INCLINE_HEIGHT),
-    ];
-    scene.boundaries = vec![Boundary::Polyline { points }];
+    scene.boundaries = vec![open_box(0.5 * INCLINE_WIDTH, INCLINE_HEIGHT)];
     scene.duration_secs = LEVEL_SECS + tilting_secs;
     scene.view = view(
         DVec2::new(-0.55 * INCLINE_WIDTH, -2.0),
@@ -178,12 +158,7 @@ pub fn drum() -> Scene {
     let points = (0..=DRUM_SIDES).map(|k| on_rim(k, DRUM_RADIUS)).collect();
     scene.boundaries = vec![Boundary::Polyline { points }];
     let course = MotionCourse::Rotation { pivot: DVec2::ZERO, rate: DRUM_RATE, travel: None };
-    scene.motions = vec![Motion {
-        boundaries: vec![0],
-        fixed_discs: (0..DRUM_SIDES).collect(),
-        course: Some(course),
-        ..Motion::default()
-    }];
+    scene.motions = vec![Motion { fixed_discs: (0..DRUM_SIDES).collect(), ..moved(0, course) }];
     scene.duration_secs = 3.0;
     scene.view = view(DVec2::splat(-DRUM_RADIUS - 1.0), DVec2::splat(DRUM_RADIUS + 1.0));
     scene
@@ -212,17 +187,10 @@ pub(crate) fn vibrated() -> Scene {
     let mut grain = Grain::at_rest(DIAMETER * large, DIAMETER * LARGE);
     grain.tone = 40;
     scene.grains.push(grain);
-    let corner = |x: f64, y: f64| DIAMETER * DVec2::new(x, y);
-    let points = vec![
-        corner(-HALF_WIDTH, BOX_HEIGHT),
-        corner(-HALF_WIDTH, 0.0),
-        corner(HALF_WIDTH, 0.0),
-        corner(HALF_WIDTH, BOX_HEIGHT),
-    ];
-    scene.boundaries = vec![Boundary::Polyline { points }];
+    scene.boundaries = vec![open_box(HALF_WIDTH, BOX_HEIGHT)];
     let amplitude = ACCELERATION * GRAVITY / (TAU * FREQUENCY_HZ).powi(2) * DVec2::Y;
     let course = MotionCourse::Sine { amplitude, frequency_hz: FREQUENCY_HZ, phase: 0.0 };
-    scene.motions = vec![Motion { boundaries: vec![0], course: Some(course), ..Motion::default() }];
+    scene.motions = vec![moved(0, course)];
     scene.duration_secs = 5.0;
     scene.view = view(DVec2::new(-HALF_WIDTH - 1.0, -2.0), DVec2::new(HALF_WIDTH + 1.0, 22.0));
     scene

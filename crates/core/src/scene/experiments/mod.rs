@@ -16,7 +16,7 @@ use super::Scene;
 use super::paper::tone_in_layers;
 use super::stability::{DIAMETER, dry, view};
 use crate::solver::Method;
-use crate::world::Grain;
+use crate::world::{Boundary, Grain, Motion, MotionCourse};
 
 /// The golden mean less 1: its multiples are spread evenly over an interval, however many there are.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -49,4 +49,21 @@ fn lattice(grains: usize, width: f64, lowest: f64) -> impl Iterator<Item = DVec2
         let (row, column) = ((index / columns) as f64, (index % columns) as f64);
         DVec2::new(first + SPACING * column, lowest + SPACING * row)
     })
+}
+
+/// A place in diameters, in m.
+fn place(x: f64, y: f64) -> DVec2 {
+    DIAMETER * DVec2::new(x, y)
+}
+
+/// A box without a lid on y = 0, in diameters.
+fn open_box(half_width: f64, height: f64) -> Boundary {
+    let corners =
+        [(-half_width, height), (-half_width, 0.0), (half_width, 0.0), (half_width, height)];
+    Boundary::Polyline { points: corners.map(|(x, y)| place(x, y)).into() }
+}
+
+/// A boundary that goes.
+fn moved(boundary: usize, course: MotionCourse) -> Motion {
+    Motion { boundaries: vec![boundary], course: Some(course), ..Motion::default() }
 }

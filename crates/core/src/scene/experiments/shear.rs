@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
+use super::{GOLDEN, SPACING, lattice, moved, of_loose_grains, view};
 use crate::scene::Scene;
-use crate::scene::experiments::{GOLDEN, SPACING, lattice, of_loose_grains, view};
-use crate::scene::stability::{DIAMETER, GRAVITY};
-use crate::world::{Boundary, Disc, Drive, Motion, MotionCourse, Periodic};
+use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
+use crate::world::{Disc, Drive, Motion, MotionCourse, Periodic};
 
 /// How many grains and how large the plates are.
 #[derive(Clone, Copy, Debug)]
@@ -168,15 +168,11 @@ pub fn biaxial() -> Scene {
     let rows = (GRAINS as f64 / columns).ceil();
     let half = 0.5 * SPACING * (columns - 1.0) + ROOM;
     let top = 2.0 * ROOM + SPACING * (rows - 1.0);
-    let wall = |x: f64, y: f64, normal: DVec2| Boundary::HalfSpace {
-        point: DIAMETER * DVec2::new(x, y),
-        normal,
-    };
     scene.boundaries = vec![
-        wall(0.0, 0.0, DVec2::Y),
-        wall(-half, 0.0, DVec2::X),
-        wall(half, 0.0, DVec2::NEG_X),
-        wall(0.0, top, DVec2::NEG_Y),
+        floor(),
+        half_space(DVec2::new(-half, 0.0), DVec2::X),
+        half_space(DVec2::new(half, 0.0), DVec2::NEG_X),
+        half_space(DVec2::new(0.0, top), DVec2::NEG_Y),
     ];
     let of_grain = 0.25 * std::f64::consts::PI * DIAMETER * DIAMETER * scene.areal_density;
     let pressed = |(boundary, direction): (usize, DVec2)| Motion {
@@ -193,14 +189,13 @@ pub fn biaxial() -> Scene {
         ..Motion::default()
     };
     let down = |by: f64| DVec2::new(0.0, -DIAMETER * by);
-    let lid = Motion {
-        boundaries: vec![3],
-        course: Some(MotionCourse::Table {
+    let lid = moved(
+        3,
+        MotionCourse::Table {
             times_secs: vec![0.0, CLOSING_SECS, CLOSING_SECS + COMPRESSION_SECS],
             offsets: vec![DVec2::ZERO, down(CLOSING), down(CLOSING + COMPRESSION)],
-        }),
-        ..Motion::default()
-    };
+        },
+    );
     let sides = [(1, DVec2::X), (2, DVec2::NEG_X)].map(pressed);
     scene.motions = sides.into_iter().chain([lid]).collect();
     scene.duration_secs = CLOSING_SECS + COMPRESSION_SECS;

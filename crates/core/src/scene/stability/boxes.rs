@@ -4,8 +4,8 @@ use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+use super::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, view};
 use crate::scene::Scene;
-use crate::scene::stability::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, view};
 use crate::world::Boundary;
 
 /// Discs in a column.

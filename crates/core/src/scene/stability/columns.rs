@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
+use super::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, half_space};
 use crate::scene::Scene;
-use crate::scene::stability::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor};
-use crate::world::{Boundary, Grain, Gravity, Physics};
+use crate::world::{Grain, Gravity, Physics};
 
 /// A column of `count` discs on the floor.
 ///
@@ -30,7 +30,7 @@ pub fn column_on_line(count: usize) -> Scene {
     scene.mean_diameter = DIAMETER;
     scene.physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
     scene.gravity = Gravity::Uniform { acceleration: DVec2::new(-GRAVITY, 0.0) };
-    scene.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::X }];
+    scene.boundaries = vec![half_space(DVec2::ZERO, DVec2::X)];
     scene
 }
 

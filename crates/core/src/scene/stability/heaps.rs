@@ -6,9 +6,9 @@ use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::scene::stability::{DIAMETER, TOUCH, disc, dry, floor, view};
+use super::{DIAMETER, TOUCH, disc, dry, floor, half_space, view};
 use crate::scene::{Scene, rough_base};
-use crate::world::{Boundary, Disc};
+use crate::world::Disc;
 
 /// Where the falling disc starts, from the place of the highest, in diameters.
 const FALLING: [f64; 2] = [0.3, 1.5];
@@ -140,8 +140,7 @@ pub fn arch() -> Scene {
     let mut scene = dry("arch", stones.into());
     let abutment = |eighth: u8| Disc { position: DIAMETER * place(eighth), radius: 0.5 * DIAMETER };
     scene.fixed_discs = vec![abutment(0), abutment(4)];
-    scene.boundaries =
-        vec![Boundary::HalfSpace { point: DIAMETER * DVec2::new(0.0, -GROUND), normal: DVec2::Y }];
+    scene.boundaries = vec![half_space(DVec2::new(0.0, -GROUND), DVec2::Y)];
     scene.view = view(DVec2::new(-3.0, -1.0), DVec2::new(3.0, 2.5));
     scene
 }
@@ -179,10 +178,7 @@ pub fn lattice(columns: usize, rows: usize, perturbation: f64) -> Scene {
         }
     }
     let mut scene = dry("hyperstatic", grains);
-    let wall = |across: f64, normal: DVec2| Boundary::HalfSpace {
-        point: DIAMETER * DVec2::new(across, 0.0),
-        normal,
-    };
+    let wall = |across: f64, normal: DVec2| half_space(DVec2::new(across, 0.0), normal);
     let right = (columns as f64 - 0.5) * spacing;
     scene.boundaries = vec![floor(), wall(-0.5 * spacing, DVec2::X), wall(right, -DVec2::X)];
     scene

@@ -41,9 +41,14 @@ pub(super) fn view(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: DIAMETER * min, max: DIAMETER * max })
 }
 
+/// A half-space through a point in diameters.
+pub(super) fn half_space(point: DVec2, normal: DVec2) -> Boundary {
+    Boundary::HalfSpace { point: DIAMETER * point, normal }
+}
+
 /// The ground: all below y = 0.
-fn floor() -> Boundary {
-    Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }
+pub(super) fn floor() -> Boundary {
+    half_space(DVec2::ZERO, DVec2::Y)
 }
 
 /// A disc of diameter d at rest, at a place in diameters.

@@ -44,8 +44,8 @@ use crate::contact::ContactList;
 use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{
-    Bodies, Kinematics, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
-    for_each_row, relative_velocities, solve as solve_problem,
+    Bodies, FrictionModel, Kinematics, Memory, Method, Model, SolveReport, SolverSettings,
+    StepProblem, for_each_row, relative_velocities, solve as solve_problem,
 };
 
 /// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
@@ -210,36 +210,31 @@ impl<K: Kinematics> ImpactSequence<K> {
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
-    /// Stops all contacts that still close, by the step's own method: there may be many of them.
+    /// Stops all contacts that still close, without friction, by the step's own method: there may be many of them.
     fn stop_the_rest<M: Model<Kinematics = K>>(
         &mut self,
-        problem: &mut StepProblem<K>,
+        problem: &StepProblem<K>,
         memory: &mut Memory<K>,
         settings: &SolverSettings,
     ) -> SolveReport {
-        let free = std::mem::replace(&mut problem.bodies.free, self.bodies.clone());
-        let friction = std::mem::take(&mut problem.law.friction);
-        let model = std::mem::take(&mut problem.friction.model);
-        let (fixed, pairs) = (problem.rows.fixed.clone(), problem.rows.pairs.clone());
-        for ((row, wall_speed), &touches) in problem.rows_with_walls().zip(&self.touching) {
+        let mut rest = problem.clone();
+        rest.bodies.free.clone_from(&self.bodies);
+        rest.law.friction = 0.0;
+        rest.friction.model = FrictionModel::Coulomb;
+        for ((row, wall_speed), &touches) in rest.rows_with_walls().zip(&self.touching) {
             if touches {
                 row.restitution_velocity = -wall_speed;
             }
             row.shifted_impulse = 0.0;
             row.tangential_impulse = 0.0;
         }
-        problem.form_velocities();
-        let report = solve_problem::<M>(problem, memory, settings);
-        for (number, row) in problem.rows() {
+        rest.form_velocities();
+        let report = solve_problem::<M>(&mut rest, memory, settings);
+        for (number, row) in rest.rows() {
             self.impulses[number] += row.shifted_impulse;
         }
-        self.bodies.clone_from(&problem.bodies.now);
+        self.bodies = rest.bodies.now;
         relative_velocities(problem, &self.bodies, &mut self.speeds);
-        problem.bodies.free = free;
-        problem.law.friction = friction;
-        problem.friction.model = model;
-        problem.rows.fixed = fixed;
-        problem.rows.pairs = pairs;
         report
     }
 

@@ -78,9 +78,9 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         for (contact, &(mass, impulse, of_wall)) in list.iter().zip(&pushes) {
             let normal = M::Kinematics::normal_of(&stage.state.world, contact);
             let of = |bodies: &[_]| velocity::<M::Kinematics>(normal, contact, bodies);
-            substepping.works.add(mass, impulse, of(&substepping.start), of(bodies));
-            substepping.works.add_of_wall(mass, impulse, of_wall);
-            substepping.works.add_of_border::<M::Kinematics>(mass, impulse, normal);
+            let velocities = [of(&substepping.start), of(bodies)];
+            let works = &mut substepping.works;
+            works.add::<M::Kinematics>(mass, normal, impulse, velocities, of_wall);
         }
         substepping.add_gravity_work(bodies, &stage.state.world.grains.masses);
         drive_walls(stage, substepping.substep_secs, &pushes, &mut substepping.works);

@@ -7,7 +7,6 @@
 //! limit mean nothing.
 
 use crate::contact::ContactMemory;
-use crate::sim::pull;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::moreau::set_up;
@@ -85,7 +84,7 @@ impl<K: Kinematics> Substepping<K> {
             }
         }
         if let Some(push) = push {
-            pull::apply::<K>(bodies, push);
+            push.apply::<K>(bodies);
         }
         self.free.clone_from(bodies);
     }
@@ -113,30 +112,24 @@ impl<K: Kinematics> Substepping<K> {
 }
 
 impl Works {
-    /// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step
-    /// (`solver::measure`), impulse times the mean of the velocities at its beginning and its end.
-    pub(super) fn add(&mut self, mass: f64, impulse: [f64; 2], start: [f64; 2], end: [f64; 2]) {
-        self.normal += 0.5 * mass * impulse[0] * (start[0] + end[0]);
-        self.tangential += 0.5 * mass * impulse[1] * (start[1] + end[1]);
-    }
-
-    /// Counts what an image that slides did besides.
+    /// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
+    /// the mean of the velocities at its beginning and its end. `wall` is (V_n, V_t) of its wall, m/s.
     #[inline(always)]
-    pub(super) fn add_of_border<K: Kinematics>(
+    pub(super) fn add<K: Kinematics>(
         &mut self,
         mass: f64,
-        impulse: [f64; 2],
         normal: K::Normal<f64>,
+        impulse: [f64; 2],
+        [start, end]: [[f64; 2]; 2],
+        wall: [f64; 2],
     ) {
+        self.normal += 0.5 * mass * impulse[0] * (start[0] + end[0]);
+        self.tangential += 0.5 * mass * impulse[1] * (start[1] + end[1]);
+        self.wall += mass * (impulse[0] * wall[0] + impulse[1] * wall[1]);
         if K::SLIDES {
             let along = K::slide_along(normal);
             self.border += mass * (impulse[0] * along[0] + impulse[1] * along[1]);
         }
-    }
-
-    /// Counts what of it a wall did that goes with (V_n, V_t), m/s.
-    pub(super) fn add_of_wall(&mut self, mass: f64, impulse: [f64; 2], velocity: [f64; 2]) {
-        self.wall += mass * (impulse[0] * velocity[0] + impulse[1] * velocity[1]);
     }
 }
 
@@ -223,9 +216,9 @@ pub(super) fn end_substep<K: Kinematics>(
     for (((row, contact), start), end) in rows.zip(contacts).zip(start).zip(end) {
         contact.total[0] += contact.impulse[0];
         contact.total[1] += contact.impulse[1];
-        works.add(row.effective_mass, contact.impulse, start, end);
-        works.add_of_wall(row.effective_mass, contact.impulse, contact.wall_velocity());
-        works.add_of_border::<K>(row.effective_mass, contact.impulse, row.normal);
+        let velocities = [start, end];
+        let wall = contact.wall_velocity();
+        works.add::<K>(row.effective_mass, row.normal, contact.impulse, velocities, wall);
     }
 }
 

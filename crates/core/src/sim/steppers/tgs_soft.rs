@@ -116,12 +116,11 @@ fn restitute<K: Kinematics>(
         let missing = (parting - normal_velocity).max(0.0) / contact.answers[0];
         let (push, before, after) = ([missing, 0.0], normal_velocity, normal_velocity + missing);
         contact.total[0] += missing;
-        works.add(row.effective_mass, push, [before, 0.0], [after, 0.0]);
-        works.add_of_wall(row.effective_mass, push, contact.wall_velocity());
+        let (velocities, wall) = ([[before, 0.0], [after, 0.0]], contact.wall_velocity());
+        works.add::<K>(row.effective_mass, row.normal, push, velocities, wall);
         // The wall gave way, which takes so much off its mean speed.
         let given_way = (contact.answers[0] - 1.0) * missing;
         works.wall += -0.5 * row.effective_mass * missing * given_way;
-        works.add_of_border::<K>(row.effective_mass, push, row.normal);
         push
     });
 }

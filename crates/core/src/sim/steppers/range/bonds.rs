@@ -21,10 +21,10 @@ use serde::{Deserialize, Serialize};
 use crate::contact::range::{Bond, Opening};
 use crate::sim::settings::Settings;
 use crate::sim::steppers::range::StepNumbers;
-use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks, ShocksResult};
-use crate::sim::stepping::{BondEnergies, Stage};
+use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
+use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{
-    Kinematics, Model, Row, RowVelocities, SolveReport, StepProblem, for_each_row, solve,
+    Kinematics, Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve,
 };
 
 /// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
@@ -56,27 +56,16 @@ pub(in crate::sim) struct RangeMemory {
     pub longest_step_secs: Option<f64>,
 }
 
-/// What solving a step came to.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RangeSolution {
-    pub report: SolveReport,
-    /// What the shocks came to, where there were any.
-    pub of_shocks: Option<ShocksResult>,
-    pub bonds: BondEnergies,
-    /// False where a bond breaks that may not.
-    pub done: bool,
-}
-
-/// Solves a prepared problem, and tells the bonds what became of them; or gives up where a bond breaks
-/// that may not.
+/// Solves a prepared problem, and tells the bonds what became of them. Gives what shocks, solves and bonds came to before
+/// the grains move, or the work alone where a bond breaks that may not.
 pub(super) fn solve_range<M: Model>(
     stage: &mut Stage<'_, M>,
     remembered: &mut RangeMemory,
     settings: &Settings,
     may_break: bool,
-) -> RangeSolution {
-    let mut report = SolveReport::nothing_yet();
-    let of_shocks = pass_shocks(stage, remembered, settings, &mut report);
+) -> Result<StepResult, SolveReport> {
+    let shocks_result = pass_shocks(stage, remembered, settings);
+    let mut result = shocks_result.unwrap_or_else(StepResult::nothing_yet);
     let numbers = StepNumbers::of(stage.world(), settings);
     let RangeMemory { shocks, lowered, restless, .. } = remembered;
     let Stage { state, problem, memory, .. } = stage;
@@ -85,14 +74,12 @@ pub(super) fn solve_range<M: Model>(
     let mut round = 0;
     loop {
         round += 1;
-        report.add(solve::<M>(problem, memory, &settings.solver));
-        let bonds = contacts.bonds();
-        let limits = BondLimits { bonds, shocks, numbers };
+        result.report.add(solve::<M>(problem, memory, &settings.solver));
+        let limits = BondLimits { bonds: contacts.bonds(), shocks, numbers };
         if round == 1 {
             *restless |= limits.is_restless::<M>(problem, fastest, lowered);
             if !may_break && *restless {
-                let bonds = BondEnergies::default();
-                return RangeSolution { report, of_shocks, bonds, done: false };
+                return Err(result.report);
             }
         }
         limits.lowered::<M>(problem, 1.0, lowered);
@@ -102,8 +89,8 @@ pub(super) fn solve_range<M: Model>(
         shorten(problem, lowered);
     }
     shocks.finish(problem);
-    let bonds = update_bonds(problem, contacts.bonds_mut(), shocks, numbers);
-    RangeSolution { report, of_shocks, bonds, done: true }
+    result.bonds = Some(update_bonds(problem, contacts.bonds_mut(), shocks, numbers));
+    Ok(result)
 }
 
 /// How a bond opens in a step, or in what a shock that closed it has left of the step.
@@ -125,9 +112,13 @@ impl BondOpening {
     /// has that part of them.
     fn of<K: Kinematics>(
         problem: &StepProblem<K>,
-        (number, row, motion): (usize, &Row<K>, &RowVelocities),
-        (shocks, bond, numbers): (&Shocks, Bond, StepNumbers),
+        number: usize,
+        motion: &RowVelocities,
+        shocks: &Shocks,
+        bond: Bond,
+        numbers: StepNumbers,
     ) -> Self {
+        let row = problem.rows.get(number);
         let closed = shocks.closed(number, bond.alive, numbers.time_step_secs);
         let ClosedBond { part, gained } = closed.unwrap_or(ClosedBond { part: 1.0, gained: 0.0 });
         let [impulse, _] = problem.reduced_impulse(number, row);
@@ -160,17 +151,17 @@ fn update_bonds<K: Kinematics>(
     for_each_row(problem, |number, row, motion| {
         let bond = &mut bonds[problem.rows.contacts[number] as usize];
         let cohesion_force = row.effective_mass * problem.law.capture_speed() / time_step_secs;
-        let run = BondOpening::of(problem, (number, row, &motion), (shocks, *bond, numbers));
-        let opening_speed = run.opening_speed();
+        let opens = BondOpening::of(problem, number, &motion, shocks, *bond, numbers);
+        let opening_speed = opens.opening_speed();
         let before = if bond.alive { cohesion_force * bond.stretch } else { 0.0 };
-        if run.is_closed || row.shifted_impulse > 0.0 {
+        if opens.is_closed || row.shifted_impulse > 0.0 {
             *bond = Bond { alive: true, stretch: 0.0 };
         }
         let was_alive = bond.alive;
         if bond.alive && row.shifted_impulse <= 0.0 {
-            let opened = bond.stretch + run.part * opening_speed * time_step_secs;
+            let opened = bond.stretch + opens.part * opening_speed * time_step_secs;
             bond.stretch = opened.max(0.0);
-            let broken = problem.capture(number) < run.part * problem.law.capture_speed();
+            let broken = problem.capture(number) < opens.part * problem.law.capture_speed();
             bond.alive = !broken && bond.stretch < debonding_distance;
         }
         if bond.alive {
@@ -179,7 +170,7 @@ fn update_bonds<K: Kinematics>(
             energies.work -= stored - before;
         } else if was_alive {
             let taken = row.effective_mass * problem.capture(number) * opening_speed;
-            let kept = if run.is_closed { 0.0 } else { before };
+            let kept = if opens.is_closed { 0.0 } else { before };
             energies.broken += kept + taken;
             energies.work -= taken + kept - before;
         }
@@ -192,12 +183,9 @@ pub(super) fn pass_shocks<M: Model>(
     stage: &mut Stage<'_, M>,
     remembered: &mut RangeMemory,
     settings: &Settings,
-    report: &mut SolveReport,
-) -> Option<ShocksResult> {
+) -> Option<StepResult> {
     let numbers = StepNumbers::of(stage.world(), settings);
-    let passed = shocks::pass::<M>(stage, &mut remembered.shocks, numbers, &settings.solver)?;
-    report.add(passed.report);
-    Some(passed)
+    shocks::pass::<M>(stage, &mut remembered.shocks, numbers, &settings.solver)
 }
 
 /// What the bounds of a step hang on.
@@ -249,19 +237,18 @@ impl BondLimits<'_> {
             return;
         }
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
-        for_each_row(problem, |number, row, motion| {
+        for_each_row(problem, |number, _, motion| {
             let before = strength * problem.capture(number);
             if before <= 0.0 {
                 return;
             }
             let bond = self.bonds[problem.rows.contacts[number] as usize];
-            let run =
-                BondOpening::of(problem, (number, row, &motion), (self.shocks, bond, self.numbers));
-            let stretch = if run.is_closed { 0.0 } else { bond.stretch };
+            let opens = BondOpening::of(problem, number, &motion, self.shocks, bond, self.numbers);
+            let stretch = if opens.is_closed { 0.0 } else { bond.stretch };
             let left = (debonding_distance - stretch).max(0.0);
-            let opening = Opening { left, speed: run.speed, load: run.load };
-            let capture_speed = strength * run.part * problem.law.capture_speed();
-            let bound = opening.bound(capture_speed, run.part * time_step_secs);
+            let opening = Opening { left, speed: opens.speed, load: opens.load };
+            let capture_speed = strength * opens.part * problem.law.capture_speed();
+            let bound = opening.bound(capture_speed, opens.part * time_step_secs);
             if bound < (1.0 - FALL) * before {
                 lowered.push((number, bound));
             }

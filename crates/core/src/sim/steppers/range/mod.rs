@@ -24,11 +24,10 @@ use crate::contact::{LookAhead, Numbering, Other};
 use crate::error::Error;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::range::bonds::{RangeSolution, pass_shocks, solve_range};
-use crate::sim::steppers::range::shocks::ShocksResult;
+use crate::sim::steppers::range::bonds::{pass_shocks, solve_range};
 use crate::sim::steppers::{MeanPair, StepperInfo};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Approach, Kinematics, Model, SolveReport, worst};
+use crate::solver::{Approach, Kinematics, Model, SolveReport};
 use crate::world::{FrictionCone, Parameters, World};
 
 /// The row of the registry.
@@ -174,7 +173,7 @@ pub(super) fn set_up<M: Model>(
     let first = settings.over(settings.parameters.time_step_secs / f64::from(substeps));
     let first = if whole_first { *settings } else { first };
     prepare(stage, &first);
-    pass_shocks(stage, memory, &first, &mut SolveReport::default());
+    pass_shocks(stage, memory, &first);
 }
 
 /// Detects the contacts and sets up the problem of a step. A gap must not close by more than itself;
@@ -195,23 +194,10 @@ fn try_step<M: Model>(
     memory: &mut RangeMemory,
     may_break: bool,
 ) -> Result<StepResult, SolveReport> {
-    let RangeSolution { report, of_shocks, bonds, done } =
-        solve_range(stage, memory, settings, may_break);
-    if !done {
-        return Err(report);
-    }
-    let mut result = stage.move_by(report, settings);
+    let mut result = solve_range(stage, memory, settings, may_break)?;
+    let bonds = result.bonds.take();
+    result.add(StepResult { bonds, ..stage.move_by(SolveReport::nothing_yet(), settings) });
     memory.shocks.shift(&mut stage.state.world);
-    result.bonds = Some(bonds);
-    if let Some(ShocksResult { measures: of_shocks, of_gravity, .. }) = of_shocks {
-        let measures = &mut result.measures;
-        measures.residual = worst(measures.residual, of_shocks.residual);
-        measures.normal_work += of_shocks.normal_work;
-        measures.tangential_work += of_shocks.tangential_work;
-        measures.wall_work += of_shocks.wall_work;
-        measures.border_work += of_shocks.border_work;
-        result.gravity_work -= of_gravity;
-    }
     separate::<M>(stage.state);
     Ok(result)
 }

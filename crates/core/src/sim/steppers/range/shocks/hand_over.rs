@@ -2,14 +2,14 @@
 
 use glam::DVec2;
 
+use super::{NextImpact, ShockInputs, ShockPair, Shocks, Touch, grains};
 use crate::sim::steppers::range::StepNumbers;
-use crate::sim::steppers::range::shocks::{NEVER, ShockInputs, ShockPair, Shocks, grains};
 use crate::solver::{Kinematics, StepProblem};
 use crate::world::World;
 
 /// A bond that a shock closed.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::sim::steppers::range) struct ClosedBond {
+pub(in super::super) struct ClosedBond {
     /// The part of the step that was left.
     pub part: f64,
     /// What gravity had given the pair by then, m/s.
@@ -39,7 +39,8 @@ impl Shocks {
         inputs: &ShockInputs<'_>,
     ) {
         let mut moved = false;
-        for (index, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.struck[0]) {
+        for (index, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.struck_in_step)
+        {
             moved = true;
             let before = K::coordinates(&problem.bodies.before[index]);
             let free = std::array::from_fn(|axis| before[axis] + body.gain[axis]);
@@ -77,8 +78,7 @@ impl Shocks {
     ) -> Option<(f64, Option<DVec2>)> {
         let StepNumbers { time_step_secs: secs, touch, .. } = inputs.numbers;
         let pair = self.pairs[number];
-        let row = (number, problem.rows.get(number));
-        let (i, j) = grains(problem, number, row.1);
+        let (i, j) = grains(problem, number);
         let rest_of_way =
             self.bodies[i].rest_of_way - j.map_or(DVec2::ZERO, |j| self.bodies[j].rest_of_way);
         let rest = pair.normal.dot(rest_of_way) / secs;
@@ -88,20 +88,19 @@ impl Shocks {
             allowed = left * rest.max(0.0);
         }
         let mut normal = None;
-        let misses = pair.next == NEVER && !pair.is_new && !problem.gives_way(number);
-        if misses && pair.speed + allowed < 0.0 {
-            let is_in_touch = self.is_in_touch(problem, row, inputs);
-            if let Some((at_end, gap)) = self.approach(problem, row, inputs, secs)
+        if pair.next == NextImpact::Never && pair.speed + allowed < 0.0 {
+            let is_in_touch = self.is_in_touch(problem, number, inputs);
+            if let Some((at_end, gap)) = self.approach(problem, number, inputs, secs)
                 && (!is_in_touch || gap > touch)
             {
                 normal = Some(at_end);
-                let velocity = self.course(problem, row, secs).velocity_at(secs);
+                let velocity = self.course(problem, number, secs).velocity_at(secs);
                 allowed = gap.max(0.0) / secs - at_end.dot(velocity);
             } else if pair.speed > 0.0 {
                 allowed = -pair.speed;
             }
         }
-        let is_struck = |grain: usize| self.bodies[grain].struck[0];
+        let is_struck = |grain: usize| self.bodies[grain].struck_in_step;
         let changes = is_struck(i) || j.is_some_and(is_struck) || rest_of_way != DVec2::ZERO;
         (changes || normal.is_some()).then_some((allowed, normal))
     }
@@ -123,14 +122,14 @@ impl Shocks {
 
     /// What a shock has left of the step to the bond of a row, if it closed that: a pair that touches and is
     /// bonded has it as before.
-    pub(in crate::sim::steppers::range) fn closed(
+    pub(in super::super) fn closed(
         &self,
         number: usize,
         is_bonded: bool,
         time_step_secs: f64,
     ) -> Option<ClosedBond> {
         let pair = self.pairs.get(number)?;
-        let closes = pair.impulse > 0.0 && (pair.has_met || !is_bonded);
+        let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !is_bonded);
         closes.then(|| ClosedBond {
             part: 1.0 - pair.struck_at / time_step_secs,
             gained: pair.gained,
@@ -141,17 +140,14 @@ impl Shocks {
     /// not struck since has no gap at t, so that at the end it has (Δt − t) v^n, and −½a(Δt − t)² where it falls.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
-        pair.has_met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
+        pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
     /// Takes note of a solved step: its impulse λ on a pair that met at t moves grains for the time that was left
     /// alone, and not by Δt·λ.
-    pub(in crate::sim::steppers::range) fn finish<K: Kinematics>(
-        &mut self,
-        problem: &StepProblem<K>,
-    ) {
+    pub(in super::super) fn finish<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
         for (number, row) in problem.rows() {
-            let (i, j) = grains(problem, number, row);
+            let (i, j) = grains(problem, number);
             if !self.acts_late(number, i, j) {
                 continue;
             }
@@ -168,7 +164,7 @@ impl Shocks {
 
     /// Moves grains by what shocks and falling within the step leave out of the way that their last velocity
     /// tells.
-    pub(in crate::sim::steppers::range) fn shift(&self, world: &mut World) {
+    pub(in super::super) fn shift(&self, world: &mut World) {
         let grains = &mut world.grains;
         for (index, body) in self.bodies.iter().enumerate() {
             let [x, y, turn] = body.offset;

@@ -59,184 +59,191 @@ use glam::DVec2;
 
 use crate::contact::{Candidates, Contact, ContactList};
 use crate::sim::steppers::range::StepNumbers;
-use crate::sim::stepping::Stage;
-use crate::solver::{
-    Kinematics, Measures, Model, Row, SolveReport, SolverSettings, StepProblem, for_each_row, worst,
-};
+use crate::sim::stepping::{Stage, StepResult};
+use crate::solver::{Kinematics, Model, SolverSettings, StepProblem, for_each_row};
 use crate::world::World;
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
 /// step, restitution is lost; larger: a wedge of grains that bounces ever faster holds the step up.
 const MOST_PASSES: u32 = 24;
 
-/// Takes a prepared problem through the shocks of its step: from then on its bodies begin with v⁺.
+/// Contacts that were struck and close again are struck once more above this part of the fastest shock of
+/// the step. Smaller: clusters of touching grains take more passes; larger: restitution is lost in them.
+const LEAST_AGAIN: f64 = 1e-3;
+
+/// Grains that come to what they touch slower than this many steps of gravity rest on it. Smaller: in a pile
+/// at rest grains would be taken to fall; larger: a ball that has just come down would not have the speed of its fall.
+const RESTS_BELOW: f64 = 2.0;
+
+/// Meetings that are this part of Δt apart happen at once: symmetric motions stay symmetric.
+const SAME_MOMENT: f64 = 1e-6;
+
+/// No moment of the step.
+const NEVER: f64 = f64::INFINITY;
+
+/// Takes a prepared problem through the shocks of its step: from then on its bodies begin with v⁺. What the shocks came
+/// to, if there were any: `gravity_work` is less what gravity did until meetings, since the step counts it once more.
 pub(super) fn pass<M: Model>(
     stage: &mut Stage<'_, M>,
     shocks: &mut Shocks,
     numbers: StepNumbers,
     settings: &SolverSettings,
-) -> Option<ShocksResult> {
+) -> Option<StepResult> {
     let Stage { state, problem, part, memory } = stage;
     let (world, candidates, contacts) = (&state.world, &state.candidates, &state.contacts);
     let inputs = ShockInputs { world, candidates, contacts, numbers };
     shocks.begin(problem, &inputs, settings.tolerance);
-    let mut passed: Option<ShocksResult> = None;
+    let mut result: Option<StepResult> = None;
     for _ in 0..MOST_PASSES {
-        let first = shocks.find_next(problem, &inputs);
-        if first == NEVER {
+        let first_secs = shocks.find_next(problem, &inputs);
+        if first_secs == NEVER {
             break;
         }
-        shocks.choose(problem, first, numbers);
+        shocks.choose(problem, first_secs, numbers);
         shocks.refine(problem, &inputs);
-        let all = passed.get_or_insert(ShocksResult::nothing_yet());
+        let all = result.get_or_insert_with(StepResult::nothing_yet);
         for alone in [true, false] {
             if shocks.set_up(problem, part, &inputs, alone) {
-                shocks.strike::<M>((problem, part), memory, (settings, alone), all);
+                shocks.solve::<M>(problem, part, memory, settings, alone, all);
             }
         }
         shocks.move_on(problem);
     }
     shocks.hand_over(problem, &inputs);
-    passed
+    result
 }
 
-/// Contacts that were struck and close again are struck once more above this part of the fastest shock of
-/// the step. Smaller: clusters of touching grains take more passes; larger: restitution is lost in them.
-pub(super) const LEAST_AGAIN: f64 = 1e-3;
-
-/// Grains that come to what they touch slower than this many steps of gravity rest on it. Smaller: in a pile
-/// at rest grains would be taken to fall; larger: a ball that has just come down would not have the speed of its fall.
-pub(super) const RESTS_BELOW: f64 = 2.0;
-
-/// Meetings that are this part of Δt apart happen at once: symmetric motions stay symmetric.
-pub(super) const SAME_MOMENT: f64 = 1e-6;
-
-/// No moment of the step.
-pub(super) const NEVER: f64 = f64::INFINITY;
-
-/// What the shocks of a step came to.
+/// A pair on its way through the shocks.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::sim::steppers::range) struct ShocksResult {
-    pub report: SolveReport,
-    /// Works, and the residual of the shocks' own problems.
-    pub measures: Measures,
-    /// What gravity did of that until meetings, J: the step counts it once more.
-    pub of_gravity: f64,
-}
-
-/// A row on its way through the shocks.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ShockPair {
+struct ShockPair {
     /// n, from j to i: at the beginning of the step, or where it last met.
-    pub normal: DVec2,
+    normal: DVec2,
     /// The gap along n at the beginning of the step, m; of one that has met, such that it closed then.
-    pub gap: f64,
+    gap: f64,
     /// What offsets have added to it, m.
-    pub shift: f64,
+    shift: f64,
     /// v_n, relative to a wall that moves, m/s.
-    pub speed: f64,
+    speed: f64,
     /// a_n of a grain that falls on what is fixed, m/s²; else 0.
-    pub acceleration: f64,
-    /// When it is struck next, s, or [`NEVER`].
-    pub next: f64,
-    /// n at that moment, of a pair that meets.
-    pub meets: Option<DVec2>,
-    /// Whether it touched at the beginning or has met since.
-    pub touches: bool,
-    /// Whether it has been told anew where its bodies go.
-    pub is_new: bool,
-    /// Whether it is one of this pass, and whether it is struck in it by what comes next.
-    pub chosen: bool,
-    pub is_next: bool,
+    acceleration: f64,
+    touch: Touch,
+    next: NextImpact,
+    /// What it has to do with the present pass.
+    role: Role,
     /// λ_n of its shocks, m/s.
-    pub impulse: f64,
+    impulse: f64,
     /// The moment of the last of them, s.
-    pub struck_at: f64,
+    struck_at: f64,
     /// What gravity had given it by then, m/s.
-    pub gained: f64,
-    /// Whether that closed a gap.
-    pub has_met: bool,
+    gained: f64,
+}
+
+/// Whether a pair touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Touch {
+    Apart,
+    FromStart,
+    /// It has closed a gap within the step.
+    Met,
+}
+
+/// When a pair is struck next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum NextImpact {
+    /// To be found: its bodies go otherwise than before, or it is never looked for.
+    Unknown,
+    Never,
+    /// It touches, and closes from this moment (s) on.
+    Closes(f64),
+    /// It meets.
+    Meets {
+        secs: f64,
+        normal: DVec2,
+    },
+}
+
+/// What a pair has to do with a pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Role {
+    Apart,
+    /// It touches, and is joined to what is struck.
+    Joined,
+    /// Its own impact is the next one of both its grains.
+    Struck,
 }
 
 /// A grain on its way through the shocks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ShockBody {
+struct ShockBody {
     /// −Σ t Δv, an entry a degree of freedom, m.
-    pub offset: [f64; 3],
+    offset: [f64; 3],
     /// What the last pass added to that, m.
-    pub shift: DVec2,
+    shift: DVec2,
     /// The moment of its last shock, s.
-    pub since: f64,
+    since: f64,
     /// The moment of its next one, s, or [`NEVER`].
-    pub next: f64,
-    /// Whether it was struck in this step, and in this pass.
-    pub struck: [bool; 2],
+    next: f64,
+    struck_in_step: bool,
+    struck_in_pass: bool,
     /// What gravity gives it in the step, m/s.
-    pub gain: [f64; 3],
+    gain: [f64; 3],
     /// Whether it rests against something or is bonded, and so does not fall freely.
-    pub is_held: bool,
+    is_held: bool,
     /// What the step's last velocity tells too little of its way, m: −½aΔt² of one that falls freely, and
     /// −Σ tλ of the impulses that the step has for pairs that met.
-    pub rest_of_way: DVec2,
+    rest_of_way: DVec2,
     /// A grain of the cluster that it is struck with.
-    pub root: u32,
+    root: u32,
     /// Of a root: the moment of the cluster's shock, s, and its rows.
-    pub cluster: (f64, u32),
+    cluster: (f64, u32),
 }
 
 /// What is known of shocks. Memory is kept from one step to the next.
 #[derive(Clone, Debug, Default)]
-pub(in crate::sim::steppers::range) struct Shocks {
-    pub(super) pairs: Vec<ShockPair>,
-    pub(super) bodies: Vec<ShockBody>,
+pub(super) struct Shocks {
+    pairs: Vec<ShockPair>,
+    bodies: Vec<ShockBody>,
     /// λ_n·m_ij from which on a contact that touches is struck, N·s.
-    pub(super) least: f64,
+    least: f64,
     /// The fastest shock of the step so far, m/s.
-    pub(super) fastest: f64,
+    fastest: f64,
 }
 
 /// Where shocks happen.
-pub(super) struct ShockInputs<'a> {
-    pub world: &'a World,
-    pub candidates: &'a Candidates,
-    pub contacts: &'a ContactList,
-    pub numbers: StepNumbers,
+struct ShockInputs<'a> {
+    world: &'a World,
+    candidates: &'a Candidates,
+    contacts: &'a ContactList,
+    numbers: StepNumbers,
 }
 
 impl ShockInputs<'_> {
     /// The contact behind a row.
-    pub(super) fn contact<K: Kinematics>(
-        &self,
-        problem: &StepProblem<K>,
-        number: usize,
-    ) -> &Contact {
+    fn contact<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> &Contact {
         &self.contacts.contacts()[problem.rows.contacts[number] as usize]
     }
 
     /// Whether its pair is bonded.
-    pub(super) fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
+    fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
         self.contacts.is_in_touch(problem.rows.contacts[number] as usize)
     }
 
     /// How far its bond is open, m.
-    pub(super) fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
+    fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
         let bond = self.contacts.bonds()[problem.rows.contacts[number] as usize];
         if bond.alive { bond.stretch } else { 0.0 }
     }
 }
 
 /// The grains of a row by its number: i, and j unless that is fixed.
-pub(super) fn grains<K: Kinematics>(
-    problem: &StepProblem<K>,
-    number: usize,
-    row: &Row<K>,
-) -> (usize, Option<usize>) {
+fn grains<K: Kinematics>(problem: &StepProblem<K>, number: usize) -> (usize, Option<usize>) {
+    let row = problem.rows.get(number);
     let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
 /// ‖m_n (v_n^free + what the law adds)‖ of a problem, N·s, which its residual is measured by.
-pub(super) fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
+fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {
         let free = row.effective_mass * (motion.free[0] + row.restitution_velocity);
@@ -246,39 +253,22 @@ pub(super) fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
 }
 
 /// Along x and y.
-pub(super) fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
+fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
     let [x, y, _] = K::coordinates(body);
     if K::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
 }
 
-impl ShocksResult {
-    pub(super) fn nothing_yet() -> Self {
-        let (report, measures) = (SolveReport::nothing_yet(), Measures::default());
-        Self { report, measures, of_gravity: 0.0 }
-    }
-
-    /// Counts another problem.
-    pub(super) fn add(&mut self, report: SolveReport, measures: Measures) {
-        self.report.add(report);
-        let all = &mut self.measures;
-        all.residual = worst(all.residual, measures.residual);
-        all.normal_work += measures.normal_work;
-        all.tangential_work += measures.tangential_work;
-        all.wall_work += measures.wall_work;
-        all.border_work += measures.border_work;
-    }
-}
-
 impl ShockBody {
     /// One of which nothing has happened yet, as it begins and as gravity alone would leave it.
-    fn untouched<K: Kinematics>((before, free): (&K::Body<f64>, &K::Body<f64>)) -> Self {
+    fn untouched<K: Kinematics>(before: &K::Body<f64>, free: &K::Body<f64>) -> Self {
         let [before, free] = [before, free].map(K::coordinates);
         Self {
             offset: [0.0; 3],
             shift: DVec2::ZERO,
             since: 0.0,
             next: NEVER,
-            struck: [false; 2],
+            struck_in_step: false,
+            struck_in_pass: false,
             gain: std::array::from_fn(|axis| free[axis] - before[axis]),
             is_held: false,
             rest_of_way: DVec2::ZERO,
@@ -290,7 +280,7 @@ impl ShockBody {
 
 impl Shocks {
     /// Nothing has happened yet.
-    pub(super) fn begin<K: Kinematics>(
+    fn begin<K: Kinematics>(
         &mut self,
         problem: &StepProblem<K>,
         inputs: &ShockInputs<'_>,
@@ -298,16 +288,15 @@ impl Shocks {
     ) {
         let Self { pairs, bodies, .. } = self;
         bodies.clear();
-        bodies.extend(
-            problem.bodies.before.iter().zip(&problem.bodies.free).map(ShockBody::untouched::<K>),
-        );
+        let ends = problem.bodies.before.iter().zip(&problem.bodies.free);
+        bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<K>(before, free)));
         pairs.clear();
         let is_cohesive = problem.law.capture_speed() > 0.0;
-        for_each_row(problem, |number, row, motion| {
+        for_each_row(problem, |number, _, motion| {
             let Contact { normal, gap, .. } = *inputs.contact(problem, number);
             let touches = gap <= inputs.numbers.touch;
             let speed = motion.before[0] - problem.wall_speed(number);
-            let (i, j) = grains(problem, number, row);
+            let (i, j) = grains(problem, number);
             for grain in std::iter::once(i).chain(j) {
                 let [x, y, _] = bodies[grain].gain;
                 let rests = touches && speed.abs() <= RESTS_BELOW * x.hypot(y);
@@ -321,16 +310,12 @@ impl Shocks {
                 shift: 0.0,
                 speed,
                 acceleration: 0.0,
-                next: NEVER,
-                meets: None,
-                touches,
-                is_new: true,
-                chosen: false,
-                is_next: false,
+                touch: if touches { Touch::FromStart } else { Touch::Apart },
+                next: NextImpact::Unknown,
+                role: Role::Apart,
                 impulse: 0.0,
                 struck_at: 0.0,
                 gained: 0.0,
-                has_met: false,
             });
         });
         for body in bodies.iter_mut().filter(|body| !body.is_held) {
@@ -342,9 +327,19 @@ impl Shocks {
     }
 }
 
+impl NextImpact {
+    /// Its moment, s, or [`NEVER`].
+    fn secs(self) -> f64 {
+        match self {
+            Self::Unknown | Self::Never => NEVER,
+            Self::Closes(secs) | Self::Meets { secs, .. } => secs,
+        }
+    }
+}
+
 impl ShockPair {
     /// The gap along the normal at a moment, m: never above the gap itself.
-    pub(super) fn gap_at(&self, secs: f64) -> f64 {
+    fn gap_at(&self, secs: f64) -> f64 {
         self.gap + self.shift + secs * (self.speed + 0.5 * self.acceleration * secs)
     }
 }

@@ -2,12 +2,13 @@
 
 use glam::DVec2;
 
-use crate::contact::Course;
-use crate::sim::steppers::range::StepNumbers;
-use crate::sim::steppers::range::shocks::{
-    LEAST_AGAIN, NEVER, SAME_MOMENT, ShockInputs, ShockPair, Shocks, along_axes, grains,
+use super::{
+    LEAST_AGAIN, NEVER, NextImpact, Role, SAME_MOMENT, ShockInputs, Shocks, Touch, along_axes,
+    grains,
 };
-use crate::solver::{Kinematics, Row, StepProblem};
+use crate::contact::RelativeMotion;
+use crate::sim::steppers::range::StepNumbers;
+use crate::solver::{Kinematics, StepProblem};
 
 impl Shocks {
     /// Tells of each pair when it is struck next, and gives the first of these moments, s.
@@ -17,17 +18,16 @@ impl Shocks {
         inputs: &ShockInputs<'_>,
     ) -> f64 {
         let mut first = NEVER;
-        for (number, row) in problem.rows() {
+        for number in 0..self.pairs.len() {
             if problem.gives_way(number) {
                 continue;
             }
-            if self.pairs[number].is_new {
-                let acceleration = self.acceleration(problem, number, row, inputs.numbers);
-                self.pairs[number].acceleration = acceleration;
-                let (next, meets) = self.next_of(problem, (number, row), inputs);
-                self.pairs[number] = ShockPair { next, meets, is_new: false, ..self.pairs[number] };
+            if self.pairs[number].next == NextImpact::Unknown {
+                self.pairs[number].acceleration =
+                    self.acceleration(problem, number, inputs.numbers);
+                self.pairs[number].next = self.next_of(problem, number, inputs);
             }
-            first = first.min(self.pairs[number].next);
+            first = first.min(self.pairs[number].next.secs());
         }
         first
     }
@@ -37,12 +37,11 @@ impl Shocks {
         &self,
         problem: &StepProblem<K>,
         number: usize,
-        row: &Row<K>,
         numbers: StepNumbers,
     ) -> f64 {
-        let (i, j) = grains(problem, number, row);
+        let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
-        if j.is_some() || self.bodies[i].is_held || pair.has_met {
+        if j.is_some() || self.bodies[i].is_held || pair.touch == Touch::Met {
             return 0.0;
         }
         pair.normal.dot(self.fall::<K>(i)) / numbers.time_step_secs
@@ -57,22 +56,25 @@ impl Shocks {
     pub(super) fn course<K: Kinematics>(
         &self,
         problem: &StepProblem<K>,
-        (number, row): (usize, &Row<K>),
+        number: usize,
         time_step_secs: f64,
-    ) -> Course {
-        let (i, j) = grains(problem, number, row);
+    ) -> RelativeMotion {
+        let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
         let offset =
             |grain: usize| along_axes::<K>(&K::from_coordinates(self.bodies[grain].offset));
         let velocity = |grain: usize| along_axes::<K>(&problem.bodies.before[grain]);
         let falls = pair.acceleration != 0.0;
         let acceleration = if falls { self.fall::<K>(i) / time_step_secs } else { DVec2::ZERO };
-        let of_other = j.map_or_else(
-            || (DVec2::ZERO, problem.shape_velocity(number, pair.normal)),
-            |j| (offset(j), velocity(j) + K::slide(row.normal) * DVec2::X),
-        );
+        let of_other = match j {
+            None => (DVec2::ZERO, problem.shape_velocity(number, pair.normal)),
+            Some(j) => {
+                let slide = K::slide(problem.rows.get(number).normal);
+                (offset(j), velocity(j) + slide * DVec2::X)
+            }
+        };
         let (offset, velocity) = (offset(i) - of_other.0, velocity(i) - of_other.1);
-        Course { offset, velocity, acceleration }
+        RelativeMotion { offset, velocity, acceleration }
     }
 
     /// The moment from which on both grains of a pair go as they do now, s.
@@ -85,17 +87,16 @@ impl Shocks {
     pub(super) fn is_in_touch<K: Kinematics>(
         &self,
         problem: &StepProblem<K>,
-        (number, row): (usize, &Row<K>),
+        number: usize,
         inputs: &ShockInputs<'_>,
     ) -> bool {
         let pair = &self.pairs[number];
-        let (i, j) = grains(problem, number, row);
+        let (i, j) = grains(problem, number);
         let (from, touch) = (self.since(i, j), inputs.numbers.touch);
-        if !pair.touches || pair.gap_at(from) > touch {
+        if pair.touch == Touch::Apart || pair.gap_at(from) > touch {
             return false;
         }
-        let end =
-            (from > pair.struck_at).then(|| self.approach(problem, (number, row), inputs, from));
+        let end = (from > pair.struck_at).then(|| self.approach(problem, number, inputs, from));
         end.flatten().is_none_or(|(_, gap)| gap <= touch)
     }
 
@@ -103,12 +104,12 @@ impl Shocks {
     pub(super) fn approach<K: Kinematics>(
         &self,
         problem: &StepProblem<K>,
-        (number, row): (usize, &Row<K>),
+        number: usize,
         inputs: &ShockInputs<'_>,
         secs: f64,
     ) -> Option<(DVec2, f64)> {
         let contact = inputs.contact(problem, number);
-        let course = self.course(problem, (number, row), inputs.numbers.time_step_secs);
+        let course = self.course(problem, number, inputs.numbers.time_step_secs);
         let (world, candidates) = (inputs.world, inputs.candidates);
         match K::AXES {
             1 => course.approach::<1>(world, candidates, contact, secs),
@@ -116,49 +117,49 @@ impl Shocks {
         }
     }
 
-    /// When a pair is struck next, and its normal then if it meets.
+    /// When a pair is struck next.
     fn next_of<K: Kinematics>(
         &self,
         problem: &StepProblem<K>,
-        (number, row): (usize, &Row<K>),
+        number: usize,
         inputs: &ShockInputs<'_>,
-    ) -> (f64, Option<DVec2>) {
+    ) -> NextImpact {
         let pair = &self.pairs[number];
-        let time_step_secs = inputs.numbers.time_step_secs;
-        let (i, j) = grains(problem, number, row);
+        let (i, j) = grains(problem, number);
         let from = self.since(i, j);
-        if self.is_in_touch(problem, (number, row), inputs) {
-            let was_struck = |grain: usize| self.bodies[grain].struck[0];
+        if self.is_in_touch(problem, number, inputs) {
+            let was_struck = |grain: usize| self.bodies[grain].struck_in_step;
             let again = was_struck(i) || j.is_some_and(was_struck);
             let again = if again { LEAST_AGAIN * self.fastest } else { 0.0 };
-            let closes = -pair.speed > again && -pair.speed * row.effective_mass > self.least;
-            return (if closes { from } else { NEVER }, None);
+            let momentum = -pair.speed * problem.rows.get(number).effective_mass;
+            let closes = -pair.speed > again && momentum > self.least;
+            return if closes { NextImpact::Closes(from) } else { NextImpact::Never };
         }
         // The gap is no smaller than its tangents say.
-        let [begin, end] = [from, time_step_secs].map(|secs| pair.gap_at(secs));
+        let [begin, end] = [from, inputs.numbers.time_step_secs].map(|secs| pair.gap_at(secs));
         if begin > 0.0 && end > 0.0 && pair.acceleration <= 0.0 {
-            return (NEVER, None);
+            return NextImpact::Never;
         }
-        let meeting = self.meeting(problem, (number, row), inputs, from);
-        meeting.map_or((NEVER, None), |(secs, normal)| (secs, Some(normal)))
+        self.meeting(problem, number, inputs, from).unwrap_or(NextImpact::Never)
     }
 
-    /// When a pair meets from a moment (s) on, and its normal then.
+    /// When a pair meets from a moment (s) on.
     fn meeting<K: Kinematics>(
         &self,
         problem: &StepProblem<K>,
-        (number, row): (usize, &Row<K>),
+        number: usize,
         inputs: &ShockInputs<'_>,
         from: f64,
-    ) -> Option<(f64, DVec2)> {
+    ) -> Option<NextImpact> {
         let contact = inputs.contact(problem, number);
-        let course = self.course(problem, (number, row), inputs.numbers.time_step_secs);
-        let (world, candidates) = (inputs.world, inputs.candidates);
         let end = inputs.numbers.time_step_secs;
-        match K::AXES {
-            1 => course.meeting::<1>(world, candidates, contact, [from, end]),
-            _ => course.meeting::<2>(world, candidates, contact, [from, end]),
-        }
+        let course = self.course(problem, number, end);
+        let (world, candidates) = (inputs.world, inputs.candidates);
+        let meeting = match K::AXES {
+            1 => course.time_of_impact::<1>(world, candidates, contact, [from, end]),
+            _ => course.time_of_impact::<2>(world, candidates, contact, [from, end]),
+        };
+        meeting.map(|(secs, normal)| NextImpact::Meets { secs, normal })
     }
 
     /// Looks for the very moment at which a pair closes that touches but for a last gap, and is struck alone.
@@ -168,15 +169,15 @@ impl Shocks {
         inputs: &ShockInputs<'_>,
     ) {
         for (number, row) in problem.rows() {
-            let ShockPair { is_next, meets, next, .. } = self.pairs[number];
             let root = self.root(row.i as usize);
-            if !is_next || meets.is_some() || self.bodies[root].cluster.1 > 1 {
+            let pair = &self.pairs[number];
+            let NextImpact::Closes(from) = pair.next else { continue };
+            if pair.role != Role::Struck || self.bodies[root].cluster.1 > 1 {
                 continue;
             }
-            if let Some((secs, normal)) = self.meeting(problem, (number, row), inputs, next) {
-                let pair = &mut self.pairs[number];
-                (pair.next, pair.meets) = (secs, Some(normal));
-                self.bodies[root].cluster.0 = secs;
+            if let Some(next) = self.meeting(problem, number, inputs, from) {
+                self.pairs[number].next = next;
+                self.bodies[root].cluster.0 = next.secs();
             }
         }
     }
@@ -194,32 +195,41 @@ impl Shocks {
             body.root = index as u32;
             body.cluster = (NEVER, 0);
         }
-        for (number, row) in problem.rows() {
-            let (i, j) = grains(problem, number, row);
+        for number in 0..self.pairs.len() {
+            let (i, j) = grains(problem, number);
+            let next = self.pairs[number].next.secs();
             for grain in std::iter::once(i).chain(j) {
-                self.bodies[grain].next = self.bodies[grain].next.min(self.pairs[number].next);
+                self.bodies[grain].next = self.bodies[grain].next.min(next);
             }
         }
-        for (number, row) in problem.rows() {
-            let (i, j) = grains(problem, number, row);
+        for number in 0..self.pairs.len() {
+            let (i, j) = grains(problem, number);
             let moment = self.bodies[i].next.min(j.map_or(NEVER, |j| self.bodies[j].next));
             let since = self.since(i, j);
             let pair = &mut self.pairs[number];
-            pair.is_next = pair.next < NEVER && pair.next <= moment + SAME_MOMENT * time_step_secs;
+            let next = pair.next.secs();
             let at = if moment < NEVER { moment } else { first };
-            let in_touch = pair.touches && since <= at && pair.gap_at(at) <= touch;
-            pair.chosen = pair.is_next || in_touch;
-            if let (true, Some(j)) = (pair.chosen, j) {
+            let in_touch = pair.touch != Touch::Apart && since <= at && pair.gap_at(at) <= touch;
+            pair.role = if next < NEVER && next <= moment + SAME_MOMENT * time_step_secs {
+                Role::Struck
+            } else if in_touch {
+                Role::Joined
+            } else {
+                Role::Apart
+            };
+            if let (Role::Struck | Role::Joined, Some(j)) = (pair.role, j) {
                 let (one, other) = (self.root(i), self.root(j));
                 self.bodies[one.max(other)].root = one.min(other) as u32;
             }
         }
         for (number, row) in problem.rows() {
             let root = self.root(row.i as usize);
-            let ShockPair { chosen, is_next, next, .. } = self.pairs[number];
-            if chosen {
+            let pair = &self.pairs[number];
+            if pair.role != Role::Apart {
                 let (earliest, rows) = &mut self.bodies[root].cluster;
-                *earliest = if is_next { earliest.min(next) } else { *earliest };
+                if pair.role == Role::Struck {
+                    *earliest = earliest.min(pair.next.secs());
+                }
                 *rows += 1;
             }
         }

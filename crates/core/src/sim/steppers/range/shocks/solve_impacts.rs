@@ -2,9 +2,8 @@
 
 use glam::DVec2;
 
-use crate::sim::steppers::range::shocks::{
-    NEVER, ShockBody, ShockInputs, Shocks, ShocksResult, along_axes, grains, scale,
-};
+use super::{NEVER, NextImpact, Role, ShockInputs, Shocks, Touch, along_axes, grains, scale};
+use crate::sim::stepping::StepResult;
 use crate::solver::{
     Kinematics, Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
     StopTest, measure, solve, sweep,
@@ -59,7 +58,7 @@ impl Shocks {
         for number in 0..self.pairs.len() {
             let root = self.root(problem.rows.get(number).i as usize);
             let (moment, rows) = self.bodies[root].cluster;
-            if !self.pairs[number].chosen || moment == NEVER || (rows == 1) != alone {
+            if self.pairs[number].role == Role::Apart || moment == NEVER || (rows == 1) != alone {
                 continue;
             }
             let restitution_velocity = self.strike_row(problem, inputs, number);
@@ -92,10 +91,10 @@ impl Shocks {
     ) -> f64 {
         let numbers = inputs.numbers;
         let mut wall_speed = problem.wall_speed(number);
-        let (i, j) = grains(problem, number, problem.rows.get(number));
+        let (i, j) = grains(problem, number);
         let pair = &mut self.pairs[number];
         let (mut gained, mut closing) = (0.0, pair.speed);
-        if let (true, Some(normal)) = (pair.is_next, pair.meets) {
+        if let (Role::Struck, NextImpact::Meets { secs, normal }) = (pair.role, pair.next) {
             wall_speed = problem.turn_row(number, normal);
             let (row, before) = (problem.rows.get(number), &problem.bodies.before);
             let [speed, _] = j.map_or_else(
@@ -104,10 +103,10 @@ impl Shocks {
             );
             pair.speed = speed - wall_speed;
             pair.normal = normal;
-            gained = pair.acceleration * pair.next;
+            gained = pair.acceleration * secs;
             (pair.gap, pair.shift) = (0.0, 0.0);
-            pair.gap = -pair.gap_at(pair.next);
-            (pair.touches, pair.has_met) = (true, true);
+            pair.gap = -pair.gap_at(secs);
+            pair.touch = Touch::Met;
             let stored = inputs.stretch(problem, number) * problem.law.capture_speed();
             let squared = (pair.speed + gained).powi(2) + 2.0 * stored / numbers.time_step_secs;
             closing = -squared.sqrt();
@@ -123,12 +122,14 @@ impl Shocks {
     }
 
     /// Solves what was set up and takes it over; what is struck alone by one sweep, which is exact.
-    pub(super) fn strike<M: Model>(
+    pub(super) fn solve<M: Model>(
         &mut self,
-        (problem, part): (&mut StepProblem<M::Kinematics>, &mut StepProblem<M::Kinematics>),
+        problem: &mut StepProblem<M::Kinematics>,
+        part: &mut StepProblem<M::Kinematics>,
         memory: &mut Memory<M::Kinematics>,
-        (settings, alone): (&SolverSettings, bool),
-        passed: &mut ShocksResult,
+        settings: &SolverSettings,
+        alone: bool,
+        result: &mut StepResult,
     ) {
         let mut report = if alone {
             sweep::<M, false>(part);
@@ -159,9 +160,9 @@ impl Shocks {
             pair.impulse += row.shifted_impulse;
             let of_gravity = row.effective_mass * row.shifted_impulse * pair.gained;
             measures.normal_work += of_gravity;
-            passed.of_gravity += of_gravity;
+            result.gravity_work -= of_gravity;
         }
-        passed.add(report, measures);
+        result.add(StepResult { report, measures, ..StepResult::default() });
         for (grain, after) in part.bodies.now.iter().enumerate() {
             let root = self.root(grain);
             let (moment, rows) = self.bodies[root].cluster;
@@ -174,11 +175,12 @@ impl Shocks {
                 continue;
             }
             let shift = std::array::from_fn(|axis| -moment * (after[axis] - before[axis]));
-            let ShockBody { offset, shift: last, since, struck, .. } = &mut self.bodies[grain];
-            *offset = std::array::from_fn(|axis| offset[axis] + shift[axis]);
-            *last = along_axes::<M::Kinematics>(&M::Kinematics::from_coordinates(shift));
-            *since = since.max(moment);
-            *struck = [true; 2];
+            let body = &mut self.bodies[grain];
+            body.offset = std::array::from_fn(|axis| body.offset[axis] + shift[axis]);
+            body.shift = along_axes::<M::Kinematics>(&M::Kinematics::from_coordinates(shift));
+            body.since = body.since.max(moment);
+            body.struck_in_step = true;
+            body.struck_in_pass = true;
             M::Kinematics::set(&mut problem.bodies.before[grain], after);
         }
     }
@@ -186,11 +188,12 @@ impl Shocks {
     /// Tells the pairs of grains that were struck where these are now, and how fast they come.
     pub(super) fn move_on<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
         let bodies = &self.bodies;
-        let shift =
-            |grain: usize| if bodies[grain].struck[1] { bodies[grain].shift } else { DVec2::ZERO };
+        let shift = |grain: usize| {
+            if bodies[grain].struck_in_pass { bodies[grain].shift } else { DVec2::ZERO }
+        };
         for (number, row) in problem.rows() {
-            let (i, j) = grains(problem, number, row);
-            let is_struck = |grain: usize| bodies[grain].struck[1];
+            let (i, j) = grains(problem, number);
+            let is_struck = |grain: usize| bodies[grain].struck_in_pass;
             if !is_struck(i) && !j.is_some_and(is_struck) {
                 continue;
             }
@@ -202,10 +205,10 @@ impl Shocks {
             let pair = &mut self.pairs[number];
             pair.speed = speed - problem.wall_speed(number);
             pair.shift += pair.normal.dot(shift(i) - j.map_or(DVec2::ZERO, shift));
-            pair.is_new = true;
+            pair.next = NextImpact::Unknown;
         }
         for body in &mut self.bodies {
-            body.struck[1] = false;
+            body.struck_in_pass = false;
         }
     }
 }
