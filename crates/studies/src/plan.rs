@@ -8,7 +8,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::config::{Config, Ground};
+use crate::config::{BaseScene, Config};
 use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
 
@@ -171,7 +171,7 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
         }
         axes.push(axis);
     }
-    let mut grounds = HashMap::new();
+    let mut bases = HashMap::new();
     let series = file.series.as_ref();
     let grains: &[usize] = series.map_or(&[], |series| &series.grains);
     let run = |mut number: usize| {
@@ -181,7 +181,7 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
             number /= values.len();
         }
         chosen.extend(&file.base);
-        PlannedRun::new(&config_of("base", chosen)?, grains, &(series, &file.data), &mut grounds)
+        PlannedRun::new(&config_of("base", chosen)?, grains, &(series, &file.data), &mut bases)
     };
     (0..count).map(run).collect()
 }
@@ -251,25 +251,25 @@ pub struct PlannedRun {
     pub cost: f64,
 }
 
-/// A ground that has been read.
+/// A base scene that has been read.
 struct Known {
-    ground: Ground,
+    base: BaseScene,
     /// Hash of all its discs.
     discs: String,
 }
 
 impl Known {
     fn of(config: &Config) -> Result<Self> {
-        let ground = config.ground()?;
-        let scene = config.change(&ground)?;
+        let base = config.base_scene()?;
+        let scene = config.change(&base)?;
         let discs = short(&hash(&(&scene.grains, &scene.fixed_discs), &scene.name)?);
-        Ok(Self { ground, discs })
+        Ok(Self { base, discs })
     }
 }
 
 impl PlannedRun {
     /// That of a config. Series have these grains; `kept` is what is kept of the run besides its outcome, and
-    /// `grounds` what has been read, by name.
+    /// `bases` what has been read, by name.
     ///
     /// # Errors
     /// Where the config is not sound, or has fewer grains.
@@ -277,17 +277,17 @@ impl PlannedRun {
         config: &Config,
         grains_asked_for: &[usize],
         kept: &impl Serialize,
-        grounds: &mut HashMap<String, Known>,
+        bases: &mut HashMap<String, Known>,
     ) -> Result<Self> {
-        let known = match grounds.entry(config.name_of_ground()) {
+        let known = match bases.entry(config.base_scene_key()) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(place) => place.insert(Known::of(config)?),
         };
-        let mut scene = config.change(&known.ground)?;
+        let mut scene = config.change(&known.base)?;
         // What is kept of runs, the study says.
         scene.data = None;
         let config = config.resolved(&scene);
-        let grains = config.origin.grains.unwrap_or(scene.grains.len());
+        let grains = config.source.grains.unwrap_or(scene.grains.len());
         if let Some(grain) = grains_asked_for.iter().find(|&&grain| grain >= grains) {
             return Err(Error::value("series.grains", grain, format!("below {grains}")));
         }

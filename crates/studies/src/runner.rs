@@ -45,7 +45,6 @@ pub(crate) enum Threads {
     /// As many as there are threads, the longest first, so that no thread waits long for the last one.
     All,
     /// One after the other, for what is timed.
-    #[allow(dead_code)] // Until the speed studies run here.
     One,
 }
 
@@ -61,7 +60,6 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
     ///
     /// # Errors
     /// Where the journal cannot be read or written, or another program is at it.
-    #[allow(dead_code)] // Until the speed studies run here.
     pub(crate) fn open(name: &str, folder: &Path, journal_name: &str) -> Result<Self> {
         // Opening cuts off a half line, so it comes first.
         let journal = Journal::open(folder, journal_name)?;
@@ -80,6 +78,11 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         finished: HashMap<String, FinishedCase<T>>,
     ) -> Self {
         Self { name: name.to_owned(), journal, finished }
+    }
+
+    /// Whether the case of that key is finished.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.finished.contains_key(key)
     }
 
     /// Runs the cases that are not finished, and gives all of them in their order.

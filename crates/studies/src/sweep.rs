@@ -17,7 +17,7 @@ use super::runner::{Case, Runner, Threads};
 use super::series::{self, SERIES, Series};
 use super::states::States;
 use super::{PlannedRun, Study};
-use crate::config::about;
+use crate::config::scene_facts;
 use crate::data::{Recording, Times, formats_of};
 use crate::error::{Error, Result};
 use crate::output::{
@@ -190,7 +190,7 @@ fn recording_of(
 ) -> Result<Option<Recording>> {
     let Some(data) = &study.data else { return Ok(None) };
     let path = data_path(folder, &run.key);
-    let recording = Recording::start(&path, &formats_of(data)?, &about(scene)?, true)?;
+    let recording = Recording::start(&path, &formats_of(data)?, &scene_facts(scene)?, true)?;
     Ok(Some(recording.at(Times::of(data), &scene.simulation()?)))
 }
 

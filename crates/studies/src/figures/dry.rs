@@ -4,7 +4,7 @@ use super::claims::Claim;
 use super::comparison::{PairedSlumps, claim, margin};
 use super::studies::Rows;
 use super::{Figure, StudyRunner, slump_point};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet};
 use crate::error::Result;
 use crate::sim::Stepper;
 
@@ -40,7 +40,7 @@ fn chart(rows: &Rows<'_>, rho: f64) -> Chart {
     let x = Axis::log("Δt (s)", 7e-5, 7e-3);
     let mut chart =
         Chart::new(format!("Dry piles, ρ = {rho}"), x, Axis::linear("slump Δy_G", 0.4, 0.6));
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     for (index, (law, colour)) in LAWS.into_iter().enumerate() {
         let here = of(rows, law);
         let point = |step: f64| slump_point(step, &here.of_step(step).slumps());

@@ -6,7 +6,7 @@ use super::studies::Rows;
 use super::{Figure, StudyRunner};
 use crate::RunResult;
 use crate::chart::{
-    Axis, Cell, Chart, Corner, INK, Layer, Look, PALETTE, Point, Rgb, Sheet, points,
+    Axis, Chart, INK, Layer, LegendCorner, Look, MapCell, PALETTE, Point, Rgb, Sheet, points,
 };
 use crate::config::Config;
 use crate::error::Result;
@@ -67,7 +67,7 @@ pub(super) fn strip(studies: &StudyRunner) -> Result<Figure> {
         let name = format!("{what}: stop at {tolerance:e} m/s").replace('-', "−");
         chart.layers.push(Layer::curve(name, points(of(tolerance)), colour, look));
     }
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     let mut sheet = Sheet::of(chart);
     sheet.size = (1200, 480);
     sheet.caption = vec![
@@ -95,9 +95,9 @@ pub(super) fn agreed(rows: &Rows<'_>) -> usize {
 fn pattern_is_usual(rows: &Rows<'_>) -> Claim {
     let (loose, _) = loose_and_tight(rows);
     let rows = rows.of_tolerance(loose);
-    let starts = rows.values(|config| config.origin.start);
+    let starts = rows.values(|config| config.source.start);
     let whole = |start: &&f64| {
-        agreed(&rows.such_that(|config| config.origin.start == Some(**start))) == PAPER.len()
+        agreed(&rows.such_that(|config| config.source.start == Some(**start))) == PAPER.len()
     };
     let whole = starts.iter().filter(whole).count();
     let (share, low, high) = statistics::share(whole, starts.len());
@@ -150,8 +150,8 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
         Axis::linear("share of start distances", -0.02, 1.35),
     );
     chart.y.ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].map(|share| (share, share.to_string())).to_vec();
-    chart.legend = Corner::UpperRight;
-    let starts = rows.values(|config| config.origin.start);
+    chart.legend = LegendCorner::UpperRight;
+    let starts = rows.values(|config| config.source.start);
     let mut at_large_steps = Vec::new();
     let tolerances = rows.tolerances();
     for (&tolerance, colour) in tolerances.iter().rev().zip([PALETTE[6], PALETTE[2], PALETTE[1]]) {
@@ -222,7 +222,7 @@ pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     for (&step, &step_edges) in steps.iter().zip(&step_edges) {
         for (&tolerance, &edges) in tolerances.iter().zip(&tolerance_edges) {
             let here = rows.of_step(step).of_tolerance(tolerance);
-            let of_run = |(_, result): &(&Config, &RunResult)| Cell {
+            let of_run = |(_, result): &(&Config, &RunResult)| MapCell {
                 x: (step, step_edges),
                 y: (tolerance, edges),
                 value: f64::from(u8::from(is_open(result))),

@@ -6,7 +6,7 @@ use super::claims::{Alike, Claim, Verdict};
 use super::fig6::{cohesive_time, unit_secs};
 use super::fig8::log_edges;
 use super::{Figure, StudyRunner};
-use crate::chart::{Axis, Cell, Chart, Layer, Look, Rgb, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
 use crate::statistics::{Mean, mean, p_value};
@@ -45,7 +45,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         for (step, edges) in steps.iter().zip(&edges) {
             let cell = rows.of_bond(bond).of_step(*step);
             let slump = mean(&cell.slumps()).mean;
-            cells.push(Cell {
+            cells.push(MapCell {
                 x: (bond, [edge(index), edge(index + 1)]),
                 y: (*step, *edges),
                 value: slump,
@@ -115,7 +115,7 @@ fn scale() -> Chart {
     scale.x.ticks = vec![(-1.0, String::new())];
     let shade = |k: u32| {
         let at = |k: u32| MOST * f64::from(k) / f64::from(SHADES);
-        Cell { x: (0.5, [0.0, 1.0]), y: (at(k), [at(k), at(k + 1)]), value: at(k) }
+        MapCell { x: (0.5, [0.0, 1.0]), y: (at(k), [at(k), at(k + 1)]), value: at(k) }
     };
     let cells = (0..SHADES).map(shade).collect();
     scale.layers.push(Layer::Cells { name: "scale".into(), cells, colour });

@@ -5,7 +5,7 @@ use super::claims::{Claim, Verdict};
 use super::fig6::{cohesive_time, unit_secs};
 use super::studies::Rows;
 use super::{Figure, StudyRunner, slump_point};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet};
 use crate::config::Config;
 use crate::error::Result;
 use crate::solver::SolverChanges;
@@ -16,11 +16,10 @@ const FEWEST_STATES: usize = 8;
 
 pub(super) fn size(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("pile-size")?;
-    let grains = |config: &Config| config.origin.grains.map(|count| count as f64);
+    let grains = |config: &Config| config.source.grains.map(|count| count as f64);
     let counts = rows.values(grains);
     let x = Axis::log("number of grains", 0.8 * counts[0], 1.25 * counts[counts.len() - 1]);
-    let (mut sheet, curves) =
-        series(&rows, "Slump against the number of grains", x, grains)?;
+    let (mut sheet, curves) = series(&rows, "Slump against the number of grains", x, grains)?;
     let solver = rows.0.first().map_or_else(String::new, |(config, _)| {
         let SolverChanges { method, friction_model, tolerance, .. } = config.solver;
         let (model, residual) = (friction_model.unwrap_or_default(), tolerance.unwrap_or_default());
@@ -103,7 +102,7 @@ fn series(
 ) -> Result<(Sheet, Vec<(f64, Vec<f64>)>)> {
     let unit_secs = unit_secs()?;
     let mut chart = Chart::new(title, x, Axis::linear("slump Δy_G", 0.0, 0.7));
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     let mut curves = Vec::new();
     for (index, step) in rows.steps().into_iter().enumerate() {
         let of_step = rows.of_step(step);

@@ -7,8 +7,8 @@ use super::claims::{Claim, SIGNIFICANT, Verdict};
 use super::comparison::PairedSlumps;
 use super::studies::Rows;
 use super::{Figure, StudyRunner, slump_point};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
-use crate::config::Origin;
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Point, Sheet};
+use crate::config::SceneSource;
 use crate::error::Result;
 use crate::report::ReportTable;
 use crate::sim::Stepper;
@@ -128,7 +128,7 @@ fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
     let x = Axis { ticks: ticks(&[3e-3, 1e-2, 3e-2, 1e-1], left, right), ..x };
     let mut chart =
         Chart::new("Cost at equal error", x, Axis::log("seconds per simulated second", low, high));
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     for ((name, points), colour) in curves.into_iter().zip([PALETTE[6], PALETTE[1]]) {
         chart.layers.push(Layer::curve(name, points, colour, Look::Dots(6)));
     }
@@ -142,7 +142,7 @@ fn seconds_per_second(rows: &Rows<'_>, law: Stepper, step: f64, quick: bool) -> 
     let Some((config, _)) = like.0.first() else { return Ok(f64::NAN) };
     // The state that is shipped: no pile is settled for this.
     let mut config = (*config).clone();
-    config.origin = Origin { seed: None, duration: Some(duration), ..config.origin };
+    config.source = SceneSource { seed: None, duration: Some(duration), ..config.source };
     config.parameters.bond = Some(bond);
     config.stepper = Some(law);
     let scene = config.without_settling()?;
@@ -250,7 +250,7 @@ mod tests {
                     if step == STEPS[0] { 0.0 } else { 0.03 * [1.0, -1.0][seed as usize % 2] };
                 let slump = 0.1 * seed as f64 + shift + scatter;
                 let mut config = Config::default();
-                config.origin.seed = Some(seed);
+                config.source.seed = Some(seed);
                 config.parameters.bond = Some(10.0);
                 config.parameters.time_step_secs = Some(step);
                 runs.push((config, RunResult::of_slump(slump)));

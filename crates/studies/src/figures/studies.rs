@@ -134,7 +134,7 @@ impl<'a> Rows<'a> {
 
     /// Those of initial states that were not chosen for what they show.
     pub(super) fn ensemble(&self) -> Self {
-        self.such_that(|config| config.origin.seed != Some(NewPile::default().seed))
+        self.such_that(|config| config.source.seed != Some(NewPile::default().seed))
     }
 
     /// Those at a Bond.
@@ -149,7 +149,7 @@ impl<'a> Rows<'a> {
 
     /// Those from an initial state.
     pub(super) fn of_seed(&self, seed: u64) -> Self {
-        self.such_that(|config| config.origin.seed == Some(seed))
+        self.such_that(|config| config.source.seed == Some(seed))
     }
 
     /// Those with a tolerance.
@@ -183,7 +183,7 @@ impl<'a> Rows<'a> {
     /// Seeds, rising.
     pub(super) fn seeds(&self) -> Vec<u64> {
         let mut seeds: Vec<u64> =
-            self.0.iter().filter_map(|(config, _)| config.origin.seed).collect();
+            self.0.iter().filter_map(|(config, _)| config.source.seed).collect();
         seeds.sort_unstable();
         seeds.dedup();
         seeds

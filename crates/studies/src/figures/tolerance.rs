@@ -4,7 +4,7 @@
 use super::comparison::{PairedSlumps, claim_of_size, columns, widest};
 use super::studies::Rows;
 use super::{Figure, StudyRunner};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
 use crate::report::ReportTable;
@@ -84,10 +84,10 @@ struct Piles<'a> {
 
 impl<'a> Piles<'a> {
     fn all(rows: &Rows<'a>) -> Vec<Self> {
-        let counts = rows.values(|config| config.origin.grains.map(|grains| grains as f64));
+        let counts = rows.values(|config| config.source.grains.map(|grains| grains as f64));
         let of_count = |count: f64| {
             let grains = count as usize;
-            Self { grains, rows: rows.such_that(|config| config.origin.grains == Some(grains)) }
+            Self { grains, rows: rows.such_that(|config| config.source.grains == Some(grains)) }
         };
         counts.into_iter().map(of_count).collect()
     }
@@ -158,7 +158,7 @@ fn chart(of_size: &Piles<'_>) -> Chart {
     let reach = all.iter().map(|(_, comparisons)| widest(comparisons)).fold(0.0, f64::max);
     let y = Axis::linear("difference of slump", -1.05 * reach, 1.05 * reach);
     let mut chart = Chart::new(format!("{} grains", of_size.grains), x, y);
-    chart.legend = Corner::LowerLeft;
+    chart.legend = LegendCorner::LowerLeft;
     for (index, &bond) in bonds.iter().enumerate() {
         let here = all.iter().flat_map(|(at, comparisons)| {
             let of_bond = comparisons.iter().filter(|one| one.bond == bond);
@@ -205,7 +205,7 @@ mod tests {
 
     fn run(grains: usize, seed: u64, accuracy: StepAccuracy, slump: f64) -> (Config, RunResult) {
         let mut config = Config::default();
-        (config.origin.seed, config.origin.grains) = (Some(seed), Some(grains));
+        (config.source.seed, config.source.grains) = (Some(seed), Some(grains));
         config.parameters.bond = Some(20.0);
         config.parameters.time_step_secs = Some(1e-3);
         let SolverChanges {

@@ -1,0 +1,207 @@
+//! Initial states out of recordings.
+
+use std::path::{Path, PathBuf};
+
+use slump::config::{Config, SceneSource};
+use slump::data::{FormatName, RecordedGrains, read_grains};
+use slump::scene::Scene;
+use slump::sim::{Moment, Simulation};
+
+use super::tables::{csv, parquet};
+use super::{folder, record, refusal, run, said, scene, start, text};
+
+/// Bits of all that an initial state has of its grains.
+fn bits(grains: &RecordedGrains) -> Vec<u64> {
+    let of = |grain: &slump::world::Grain| {
+        let (place, velocity) = (grain.position, grain.velocity);
+        [place.x, place.y, grain.radius, velocity.x, velocity.y, grain.angular_velocity]
+    };
+    let moving = grains.grains.iter().flat_map(of);
+    let fixed = grains.fixed_discs.iter().flat_map(|it| [it.position.x, it.position.y, it.radius]);
+    moving.chain(fixed).map(f64::to_bits).collect()
+}
+
+fn bits_of_moment(moment: &Moment) -> Vec<u64> {
+    let of = |grain: &slump::sim::GrainState| {
+        let (place, velocity) = (grain.position, grain.velocity);
+        [place.x, place.y, grain.radius, velocity.x, velocity.y, grain.angular_velocity]
+    };
+    let moving = moment.grains.iter().filter(|grain| !grain.lost).flat_map(of);
+    let fixed = moment.surroundings.fixed_discs.iter();
+    let fixed = fixed.flat_map(|it| [it.position.x, it.position.y, it.radius]);
+    moving.chain(fixed).map(f64::to_bits).collect()
+}
+
+/// A recording of the pile, and its moments at steps 10, 20, …, 60.
+fn recorded(folder: &Path) -> Vec<Moment> {
+    let pile = scene("pile");
+    let mut recording = start(folder, FormatName::ALL, &pile);
+    let mut simulation = pile.simulation().expect("a scene");
+    let mut moments = Vec::new();
+    for _ in 0..6 {
+        record(&mut recording, &mut simulation, 10, 10);
+        moments.push(simulation.moment());
+    }
+    recording.finish().expect("a recording");
+    moments
+}
+
+/// What can be given to `--initial`, of a recording.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    [".", "grains", "grains/part-00000.parquet", "csv/grains.csv"]
+        .iter()
+        .map(|name| folder.join(name))
+        .collect()
+}
+
+fn config(path: &Path, step: Option<u64>) -> Config {
+    let initial = Some(path.to_owned());
+    let source = SceneSource { initial, initial_step: step, ..SceneSource::default() };
+    Config { source, ..Config::default() }
+}
+
+fn simulation(scene: &Scene) -> Simulation {
+    scene.simulation().expect("a scene")
+}
+
+#[test]
+fn every_format_gives_back_what_was_recorded_bit_for_bit() {
+    let folder = folder();
+    let moments = recorded(folder.path());
+    for source in sources(folder.path()) {
+        let last = read_grains(&source, None).expect("grains");
+        let expected = moments.last().expect("a moment");
+        if !source.ends_with("part-00000.parquet") {
+            assert_eq!(bits(&last), bits_of_moment(expected), "the last of {}", source.display());
+        }
+        for (moment, step) in moments.iter().zip([10, 20, 30, 40, 50, 60]) {
+            let Ok(found) = read_grains(&source, Some(step)) else {
+                // The first part has not all of them.
+                assert!(source.ends_with("part-00000.parquet"), "{}", source.display());
+                continue;
+            };
+            assert_eq!(bits(&found), bits_of_moment(moment), "{step} of {}", source.display());
+        }
+    }
+}
+
+#[test]
+fn runs_go_on_from_every_format_alike() {
+    let folder = folder();
+    recorded(folder.path());
+    let run = |source: &Path| {
+        let scene = config(source, Some(20)).scene(|_| true).expect("a scene");
+        assert!(scene.grains.iter().any(|grain| grain.angular_velocity != 0.0), "it moves");
+        let mut simulation = simulation(&scene);
+        simulation.take_steps(30).expect("a finite state");
+        bits_of_moment(&simulation.moment())
+    };
+    let sources = sources(folder.path());
+    let first = run(&sources[0]);
+    for source in &sources[1..] {
+        assert_eq!(run(source), first, "{}", source.display());
+    }
+}
+
+#[test]
+fn the_base_of_a_recorded_pile_stays_as_wide_as_it_was() {
+    let folder = folder();
+    recorded(folder.path());
+    let scene = config(folder.path(), None).scene(|_| true).expect("a scene");
+    assert_eq!(scene.fixed_discs, super::scene("pile").fixed_discs);
+    // Simple tables have none, and get the base that goes with the box.
+    let simple = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/pile_138.csv");
+    let scene = config(simple.as_ref(), None).scene(|_| true).expect("a scene");
+    assert_eq!(scene.grains, super::scene("pile").grains);
+    assert_eq!(scene.fixed_discs, super::scene("pile").fixed_discs);
+}
+
+#[test]
+fn the_command_line_takes_a_step_or_the_last() {
+    let folder = folder();
+    recorded(folder.path());
+    let again = folder.path().join("again");
+    for (more, step) in [(&["--initial-step", "30"][..], 30), (&[], 60)] {
+        let arguments =
+            ["--initial", text(folder.path()), "--duration", "0.001", "--data", text(&again)];
+        let mut arguments = arguments.to_vec();
+        arguments.extend(["--data-format", "parquet", "--overwrite"]);
+        arguments.extend(more);
+        let output = run(&arguments);
+        assert!(output.status.success(), "{}", said(&output));
+        let (from, to) = (parquet(folder.path(), "grains"), parquet(&again, "grains"));
+        let at = |step: u64| from["step"].iter().position(|it| super::tables::whole(it) == step);
+        let row = at(step).expect("the step is there");
+        for column in ["x", "y", "radius", "vx", "vy", "omega"] {
+            assert_eq!(to[column][0], from[column][row], "{column} from step {step}");
+        }
+    }
+}
+
+#[test]
+fn scene_files_take_grains_out_of_recordings() {
+    let folder = folder();
+    let moments = recorded(&folder.path().join("data"));
+    let mut scene = scene("pile");
+    scene.source = Some(slump::scene::GrainSource::Data { path: "data".into(), step: Some(40) });
+    scene.grains.clear();
+    let path = folder.path().join("scene.toml");
+    let toml = slump::config::scene_to_toml(&scene).expect("TOML");
+    std::fs::write(&path, toml).expect("a file");
+    let read = slump::config::read_scene(&path).expect("a scene");
+    assert_eq!(bits_of_moment(&simulation(&read).moment()), bits_of_moment(&moments[3]));
+}
+
+#[test]
+fn rows_in_any_order_are_put_in_that_of_their_ids() {
+    let folder = folder();
+    recorded(folder.path());
+    let table = folder.path().join("csv/grains.csv");
+    let like = parquet(folder.path(), "grains");
+    let words = std::fs::read_to_string(&table).expect("a table");
+    let (head, rows) = words.split_at(words.find("\n10,").expect("rows") + 1);
+    let mut rows: Vec<&str> = rows.lines().collect();
+    rows.reverse();
+    let turned = folder.path().join("turned.csv");
+    std::fs::write(&turned, format!("{head}{}\n", rows.join("\n"))).expect("a file");
+    assert_ne!(csv(&turned, &like)["id"], csv(&table, &like)["id"], "the situation");
+    for step in [None, Some(30)] {
+        let expected = read_grains(&table, step).expect("grains");
+        assert_eq!(bits(&read_grains(&turned, step).expect("grains")), bits(&expected));
+    }
+}
+
+#[test]
+fn a_frame_that_is_not_in_every_format_is_none() {
+    let folder = folder();
+    let moments = recorded(folder.path());
+    // As a kill in the middle of the last frame leaves it.
+    let index = folder.path().join("frames.csv");
+    let rows = std::fs::read_to_string(&index).expect("an index");
+    std::fs::write(&index, rows.trim_end().rsplit_once('\n').expect("rows").0).expect("a file");
+    let table = folder.path().join("csv/grains.csv");
+    let rows = std::fs::read_to_string(&table).expect("a table");
+    let cut = rows.rfind("\n60,").expect("a row") + 2;
+    std::fs::write(&table, &rows[..cut]).expect("a file");
+    for source in [folder.path(), &table] {
+        let found = read_grains(source, None).expect("grains");
+        assert_eq!(bits(&found), bits_of_moment(&moments[4]), "{}", source.display());
+    }
+}
+
+#[test]
+fn a_step_that_is_not_there_is_told_of_with_those_that_are() {
+    let folder = folder();
+    recorded(folder.path());
+    for source in sources(folder.path()).iter().filter(|it| !it.ends_with("part-00000.parquet")) {
+        let arguments = ["--initial", text(source), "--initial-step", "7", "--data", "no"];
+        let said = refusal(&arguments);
+        assert!(said.starts_with("initial-step is 7, but must be one of the steps of"), "{said}");
+        assert!(said.ends_with(": 10, 20, 30, 40, 50, 60"), "{said}");
+    }
+    let simple = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/pile_138.csv");
+    let said = refusal(&["--initial", simple, "--initial-step", "7", "--data", "no"]);
+    assert!(said.starts_with("initial-step is 7, but must be left out, since"), "{said}");
+    let said = refusal(&["--initial-step", "7", "--data", "no"]);
+    assert_eq!(said, "initial-step is 7, but must be left out where no initial grains are given");
+}

@@ -1,0 +1,225 @@
+//! Recordings that go on, and what several want of one folder.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use slump::data::{FormatName, Recording, RunFacts, Times};
+use slump::scene::Scene;
+
+use super::{folder, record, scene, start};
+
+/// All files of a recording, but for the manifest.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            all.extend(files(&path).into_iter().map(|(file, it)| (format!("{name}/{file}"), it)));
+        } else {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            all.insert(name, std::fs::read(&path).expect("a file"));
+        }
+    }
+    all
+}
+
+#[track_caller]
+fn assert_same_files(found: &Path, expected: &Path, what: &str) {
+    let (found, expected) = (files(found), files(expected));
+    assert_eq!(
+        found.keys().collect::<Vec<_>>(),
+        expected.keys().collect::<Vec<_>>(),
+        "the files, {what}"
+    );
+    for (name, bytes) in &expected {
+        assert!(found[name] == *bytes, "{name} differs, {what}");
+    }
+}
+
+fn whole(folder: &Path, scene: &Scene, formats: &[FormatName], steps: u64) {
+    let mut recording = start(folder, formats, scene);
+    record(&mut recording, &mut scene.simulation().expect("a scene"), steps, 2);
+    recording.finish().expect("a recording");
+}
+
+#[test]
+fn what_goes_on_is_what_was_never_stopped() {
+    let formats = [FormatName::Parquet, FormatName::Csv];
+    let pile = scene("pile");
+    let folder = folder();
+    let expected = folder.path().join("whole");
+    whole(&expected, &pile, &formats, 120);
+    // Before the first frame, within the first part, at a frame, between two, and at the end.
+    for stopped_at in [0, 1, 9, 40, 77, 120] {
+        let path = folder.path().join(format!("from-{stopped_at}"));
+        let mut simulation = pile.simulation().expect("a scene");
+        let mut recording = start(&path, &formats, &pile);
+        record(&mut recording, &mut simulation, stopped_at, 2);
+        let saved = simulation.clone();
+        // The run goes on for a while, and is stopped after its checkpoint.
+        record(&mut recording, &mut simulation, 120 - stopped_at, 2);
+        drop(recording);
+        let mut simulation = saved;
+        let about = slump::config::scene_facts(&pile).expect("facts");
+        let mut recording =
+            Recording::go_on(&path, &formats, &about, stopped_at).expect("it goes on");
+        assert_eq!(recording.frames(), stopped_at / 2);
+        record(&mut recording, &mut simulation, 120 - stopped_at, 2);
+        recording.finish().expect("a recording");
+        assert_same_files(&path, &expected, &format!("from step {stopped_at}"));
+    }
+}
+
+#[test]
+fn what_a_kill_tore_is_mended_when_it_goes_on() {
+    let formats = [FormatName::Parquet, FormatName::Csv];
+    let pile = scene("pile");
+    let folder = folder();
+    let (expected, torn) = (folder.path().join("whole"), folder.path().join("torn"));
+    whole(&expected, &pile, &formats, 40);
+    whole(&torn, &pile, &formats, 30);
+    // Half rows, and a frame that the index does not know.
+    let cut = |file: &str, by: u64| {
+        let file = std::fs::OpenOptions::new().write(true).open(torn.join(file)).expect("a file");
+        let length = file.metadata().expect("a length").len();
+        file.set_len(length - by).expect("cut");
+    };
+    cut("csv/grains.csv", 7);
+    cut("frames.csv", 2);
+    let mut simulation = pile.simulation().expect("a scene");
+    simulation.take_steps(25).expect("a finite state");
+    let about = slump::config::scene_facts(&pile).expect("facts");
+    let mut recording = Recording::go_on(&torn, &formats, &about, 25).expect("it goes on");
+    record(&mut recording, &mut simulation, 15, 2);
+    recording.finish().expect("a recording");
+    assert_same_files(&torn, &expected, "mended");
+}
+
+#[test]
+fn frames_that_are_there_are_not_made_again() {
+    let pile = scene("pile");
+    let folder = folder();
+    let about = RunFacts::default();
+    let formats = [FormatName::Csv];
+    let mut simulation = pile.simulation().expect("a scene");
+    let recording = Recording::start(folder.path(), &formats, &about, false);
+    let recording = recording.expect("a recording");
+    let mut recording = recording.at(Times::Every(0.002), &simulation);
+    recording.add_if_due(&simulation).expect("a frame");
+    for _ in 0..7 {
+        simulation.step().expect("a finite state");
+        recording.add_if_due(&simulation).expect("a frame");
+    }
+    assert_eq!(recording.frames(), 4);
+    recording.finish().expect("a recording");
+    let recording = Recording::go_on(folder.path(), &formats, &about, 7).expect("it goes on");
+    let mut recording = recording.at(Times::Every(0.002), &simulation);
+    // As a run that goes on asks before its first step.
+    recording.add_if_due(&simulation).expect("a frame");
+    assert_eq!(recording.frames(), 4);
+    simulation.step().expect("a finite state");
+    recording.add_if_due(&simulation).expect("a frame");
+    assert_eq!(recording.frames(), 5);
+    recording.finish().expect("a recording");
+    let index = std::fs::read_to_string(folder.path().join("frames.csv")).expect("an index");
+    let rows: Vec<_> = index.lines().skip_while(|line| !line.starts_with("step")).collect();
+    assert_eq!(rows.len(), 6);
+    assert!(rows[5].starts_with("8,") && rows[5].ends_with(",4"), "{rows:?}");
+}
+
+#[test]
+fn one_recording_at_a_time_in_a_folder() {
+    let folder = folder();
+    let pile = scene("pile");
+    let about = RunFacts::default();
+    let first = start(folder.path(), &[FormatName::Csv], &pile);
+    for overwrite in [false, true] {
+        let second = Recording::start(folder.path(), &[FormatName::Csv], &about, overwrite);
+        let said = second.err().expect("a refusal").to_string();
+        assert!(said.contains("is being written by another run"), "{said}");
+    }
+    let second = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 0);
+    assert!(second.is_err_and(|error| error.to_string().contains("another run")));
+    first.finish().expect("a recording");
+    let second = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
+    second.expect("the folder is free").finish().expect("a recording");
+}
+
+#[test]
+fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
+    let folder = folder();
+    let pile = scene("pile");
+    let about = RunFacts::default();
+    whole(folder.path(), &pile, FormatName::ALL, 8);
+    std::fs::write(folder.path().join("note.txt"), "mine").expect("a file");
+    std::fs::write(folder.path().join("grains/note.parquet"), "mine").expect("a file");
+    let before = files(folder.path());
+    let again = Recording::start(folder.path(), &[FormatName::Csv], &about, false);
+    let said = again.err().expect("a refusal").to_string();
+    assert!(said.starts_with("data is ") && said.contains("--overwrite"), "{said}");
+    assert_eq!(files(folder.path()), before);
+    // Without its manifest it still is one.
+    std::fs::remove_file(folder.path().join("data.json")).expect("gone");
+    std::fs::remove_file(folder.path().join("frames.csv")).expect("gone");
+    assert!(Recording::start(folder.path(), &[FormatName::Csv], &about, false).is_err());
+
+    let again = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
+    again.expect("an empty folder").finish().expect("a recording");
+    let mut left = files(folder.path());
+    for table in ["contacts", "grains", "histograms", "measures", "steps"] {
+        let text = left.remove(&format!("csv/{table}.csv")).expect("a table");
+        let rows = text.split(|&byte| byte == b'\n').filter(|line| !line.starts_with(b"#"));
+        assert_eq!(rows.count(), 2, "the names of its columns alone");
+    }
+    assert!(left.keys().eq(["data.json", "grains/note.parquet", "note.txt"]), "{:?}", left.keys());
+}
+
+#[test]
+fn a_recording_goes_on_in_its_own_formats_alone() {
+    let folder = folder();
+    whole(folder.path(), &scene("pile"), &[FormatName::Csv], 8);
+    let about = RunFacts::default();
+    let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4);
+    let said = other.err().expect("a refusal").to_string();
+    assert!(said.starts_with("data-format is parquet, but must be as "), "{said}");
+    // What is no table of this version is not gone on with, nor touched.
+    let table = folder.path().join("csv/contacts.csv");
+    let text = std::fs::read_to_string(&table).expect("a table").replace("normal_force", "force");
+    std::fs::write(&table, &text).expect("a file");
+    let changed = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 4);
+    let said = changed.err().expect("a refusal").to_string();
+    assert!(said.contains("contacts.csv: line ") && said.contains("normal_force"), "{said}");
+    assert_eq!(std::fs::read_to_string(&table).expect("a table"), text);
+}
+
+#[test]
+fn what_cannot_be_written_ends_the_recording_with_a_sentence_and_leaves_what_was() {
+    let folder = folder();
+    let pile = scene("pile");
+    let mut recording = start(folder.path(), &[FormatName::Parquet, FormatName::Csv], &pile);
+    let mut simulation = pile.simulation().expect("a scene");
+    record(&mut recording, &mut simulation, 4, 2);
+    recording.flush().expect("written");
+    let before = files(folder.path());
+    let moved = folder.path().join("gone");
+    std::fs::rename(folder.path().join("grains"), &moved).expect("moved");
+    let mut failure = None;
+    for _ in 0..50 {
+        let observables = *simulation.step().expect("a finite state");
+        let told =
+            recording.add_step(&observables).and_then(|()| recording.add(simulation.moment()));
+        let told = told.and_then(|()| recording.flush());
+        if let Err(error) = told {
+            failure = Some(error.to_string());
+            break;
+        }
+    }
+    let said = failure.expect("an error");
+    assert!(said.contains("part-00000.parquet: cannot be written"), "{said}");
+    recording.finish().expect("it is told once");
+    std::fs::rename(&moved, folder.path().join("grains")).expect("moved back");
+    let after = files(folder.path());
+    assert_eq!(after["frames.csv"], before["frames.csv"], "the frame is in not every format");
+    assert_eq!(after["grains/part-00000.parquet"], before["grains/part-00000.parquet"]);
+}

@@ -1,0 +1,239 @@
+//! Runs that are killed, stopped, or fill the disk: their recordings are there up to the last frame.
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use rand::RngExt;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::SeedableRng;
+
+use super::tables::{csv, parquet, parts, steps};
+use super::{folder, run, said, slump, text};
+
+/// A run of minutes with a frame each other step.
+const LONG: [&str; 9] = [
+    "--headless",
+    "--duration",
+    "1000",
+    "--data-every",
+    "0.002",
+    "--data-format",
+    "parquet,csv",
+    "--max-sweeps",
+    "20",
+];
+/// Longer than any of this takes on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn start(out: &Path) -> Child {
+    let mut command = slump();
+    command.args(LONG).arg("--data").arg(out).stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().expect("the program starts")
+}
+
+fn wait_for(what: &str, mut is_there: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_there() {
+        assert!(begun.elapsed() < PATIENCE, "{what} did not come");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// The steps of the frames that the index tells of, from whole rows alone.
+fn indexed(folder: &Path) -> Vec<u64> {
+    let index = std::fs::read_to_string(folder.join("frames.csv")).unwrap_or_default();
+    let whole = index.rfind('\n').map_or("", |end| &index[..end]);
+    let rows = whole.lines().skip_while(|line| !line.starts_with("step")).skip(1);
+    rows.map(|row| row.split(',').next().expect("a step").parse().expect("a number")).collect()
+}
+
+/// Checks that every frame that the index tells of is there, in every table of every format.
+fn check(folder: &Path) -> usize {
+    let frames = indexed(folder);
+    assert!(frames.iter().copied().eq((0..frames.len() as u64).map(|frame| 2 * frame)));
+    let last = frames.last().copied().unwrap_or(0);
+    for table in ["grains", "contacts", "measures", "histograms", "steps"] {
+        let found = parquet(folder, table);
+        let there = steps(&found);
+        let expected: Vec<u64> = match table {
+            "steps" => (1..=last).collect(),
+            _ => frames.clone(),
+        };
+        assert!(there.starts_with(&expected), "{table} in Parquet up to {last}: {there:?}");
+        // A kill may cut the last row of a text.
+        let path = folder.join(format!("csv/{table}.csv"));
+        let text = std::fs::read_to_string(&path).expect("a table");
+        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+        let copy = folder.join("whole.csv");
+        std::fs::write(&copy, whole).expect("a file");
+        let in_text = csv(&copy, &found);
+        assert!(steps(&in_text).starts_with(&expected), "{table} in text up to {last}");
+        let rows = found["step"].iter().filter(|step| super::tables::whole(step) <= last).count();
+        for (name, cells) in &found {
+            assert_eq!(in_text[name][..rows], cells[..rows], "{name} of {table}");
+        }
+    }
+    frames.len()
+}
+
+/// What is hidden in a folder and those in it, but for the lock.
+fn hidden(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.is_dir() {
+            found.extend(hidden(&path));
+        } else if name.starts_with('.') && !name.ends_with("lock") {
+            found.push(name);
+        }
+    }
+    found
+}
+
+#[test]
+fn what_a_kill_leaves_of_a_file_that_was_whole_is_no_rows_and_goes_with_the_next_run() {
+    let folder = folder();
+    let out = text(folder.path());
+    let first = ["--data", out, "--data-every", "0.01", "--duration", "0.03"];
+    let recorded = run(&first);
+    assert!(recorded.status.success(), "{}", said(&recorded));
+    let rows = |what: &str| {
+        let grains = steps(&parquet(folder.path(), "grains"));
+        assert!(!grains.is_empty(), "{what}");
+        grains
+    };
+    let expected = rows("before");
+    let plant = || {
+        let part = folder.path().join("grains/part-00000.parquet");
+        for left in ["grains/.part-00000.parquet.41-7.part", ".data.json.41-8.part"] {
+            std::fs::copy(&part, folder.path().join(left)).expect("a copy");
+        }
+        assert_eq!(hidden(folder.path()).len(), 2);
+    };
+    plant();
+    // The program itself reads the whole folder.
+    let beside = super::folder();
+    let read = run(&["--initial", out, "--duration", "0.002", "--data", text(beside.path())]);
+    assert!(read.status.success(), "{}", said(&read));
+    let again = run(&[&first[..], &["--overwrite"]].concat());
+    assert!(again.status.success(), "{}", said(&again));
+    assert_eq!(hidden(folder.path()), Vec::<String>::new());
+    assert_eq!(rows("after"), expected);
+
+    plant();
+    let scene = super::scene("pile");
+    let about = slump::config::scene_facts(&scene).expect("facts");
+    let formats = [slump::data::FormatName::Parquet];
+    drop(slump::data::Recording::go_on(folder.path(), &formats, &about, 0).expect("goes on"));
+    assert_eq!(hidden(folder.path()), Vec::<String>::new());
+}
+
+#[test]
+fn a_run_that_is_killed_at_any_moment_leaves_every_frame_that_it_told_of() {
+    let mut random = Pcg64::seed_from_u64(5);
+    let mut most = 0;
+    for _ in 0..6 {
+        let folder = folder();
+        let mut child = start(folder.path());
+        wait_for("the first frames", || indexed(folder.path()).len() > 1);
+        std::thread::sleep(Duration::from_micros(random.random_range(0..400_000)));
+        child.kill().expect("kill -9");
+        child.wait().expect("it ended");
+        most = most.max(check(folder.path()));
+        assert!(
+            parts(folder.path(), "grains")
+                .iter()
+                .all(|part| { part.extension().is_some_and(|ending| ending == "parquet") })
+        );
+        // In the moment in which a file takes another's place it has a second name.
+        let left = hidden(folder.path());
+        assert!(left.len() <= 1, "{left:?}");
+        // Nothing keeps the next one out.
+        let out = text(folder.path());
+        let again = run(&["--data", out, "--overwrite", "--duration", "0.01"]);
+        assert!(again.status.success(), "{}", said(&again));
+        assert_eq!(hidden(folder.path()), Vec::<String>::new());
+    }
+    assert!(most > 10, "some went on for a while: {most}");
+}
+
+#[test]
+fn a_reader_may_look_at_a_recording_that_grows() {
+    let folder = folder();
+    let mut child = start(folder.path());
+    let mut seen = 0;
+    wait_for("several parts", || {
+        let frames = indexed(folder.path()).len();
+        let grains = steps(&parquet(folder.path(), "grains"));
+        assert!(grains.len() >= frames && frames >= seen);
+        seen = frames;
+        parts(folder.path(), "grains").len() > 3
+    });
+    child.kill().expect("kill -9");
+    child.wait().expect("it ended");
+    check(folder.path());
+}
+
+#[test]
+fn a_signal_ends_a_recording_whole() {
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let folder = folder();
+        let mut child = start(folder.path());
+        wait_for("frames", || indexed(folder.path()).len() > 5);
+        let id = child.id().to_string();
+        assert!(Command::new("kill").args(["-s", signal, &id]).status().expect("kill").success());
+        assert_eq!(child.wait().expect("an end").code(), Some(code));
+        let frames = check(folder.path()) as u64;
+        let grains = steps(&parquet(folder.path(), "grains"));
+        assert_eq!(grains.len() as u64, frames, "no frame that the index does not tell of");
+        // The row of each step that was taken is there, those after the last frame too.
+        let taken = *steps(&parquet(folder.path(), "steps")).last().expect("rows");
+        assert!((2 * (frames - 1)..2 * frames).contains(&taken), "{taken} steps, {frames} frames");
+    }
+}
+
+#[test]
+fn a_full_disk_ends_the_run_with_a_sentence_and_leaves_whole_frames() {
+    let folder = folder();
+    // No file can become longer than this, as on a disk that is full: text reaches it first.
+    let script = "trap '' XFSZ; ulimit -f 1024; exec \"$@\"";
+    let mut small = Command::new("sh");
+    small.args(["-c", script, "sh"]).arg(slump().get_program()).args(LONG);
+    let output = small.arg("--data").arg(folder.path()).output().expect("sh");
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("csv: File too large"), "{said}");
+    let frames = check(folder.path());
+    assert!(frames > 3, "{frames}");
+}
+
+/// Kilobytes that a program has in memory.
+#[cfg(target_os = "linux")]
+fn memory(child: &Child) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).expect("status");
+    let line = status.lines().find(|line| line.starts_with("VmRSS:")).expect("a line");
+    line.split_whitespace().nth(1).expect("a number").parse().expect("a number")
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_does_not_grow_with_the_run() {
+    let folder = folder();
+    let mut child = start(folder.path());
+    let bytes = || -> u64 {
+        parts(folder.path(), "contacts")
+            .iter()
+            .filter_map(|part| part.metadata().ok())
+            .map(|about| about.len())
+            .sum()
+    };
+    wait_for("a first part", || parts(folder.path(), "contacts").len() > 3);
+    let (first, written) = (memory(&child), bytes());
+    wait_for("many parts", || bytes() > written + (8 << 20));
+    let later = memory(&child);
+    child.kill().expect("kill -9");
+    child.wait().expect("it ended");
+    assert!(later < first + (4 << 10), "{first} kB, and {later} kB after 8 MB more");
+}
