@@ -1,4 +1,4 @@
-//! Motion in the plane with rotation, between borders that shear (`world::shearing`).
+//! Motion in the plane with rotation, between borders that shear (`world::periodic`).
 //!
 //! The image of j that is nearest to i goes with v_j + (w, 0), and what the laws ask for is the velocity relative to
 //! that image:
