@@ -63,7 +63,7 @@ impl FilmOrder {
         let mut style = self.picture.style.clone();
         moments.set_scales(&mut style);
         let path = free_path(&self.folder, &self.stem, self.format.ending());
-        let mut film = self.format.start(&path, self.picture.size, self.rate_hz)?;
+        let mut film = self.format.start(&path, self.rate_hz)?;
         let mut renderer = Renderer::new(RendererChoice::Auto)?;
         let (count, slumps) = (times.len(), self.slumps);
         let mut picture = ScenePicture { style, ..self.picture };

@@ -5,14 +5,13 @@ use std::path::Path;
 use image::RgbaImage;
 
 use crate::error::Result;
-use crate::film::Animation;
-use crate::headless::VideoFile;
+use crate::film::{Animation, Video};
 use crate::output::Texts;
 
 /// What the record is made into.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FilmFormat {
-    /// AV1 in MP4.
+    /// MP4.
     Video,
     /// An animation that repeats, with at most 256 colours a picture.
     Gif,
@@ -51,10 +50,10 @@ impl FilmFormat {
         }
     }
 
-    /// Starts a file of pictures of that size (px) that follow each other by so many a second.
-    pub(super) fn start(self, path: &Path, size: [u32; 2], rate_hz: f64) -> Result<FilmFile> {
+    /// Starts a file of so many pictures a second.
+    pub(super) fn start(self, path: &Path, rate_hz: f64) -> Result<FilmFile> {
         Ok(match self {
-            Self::Video => FilmFile::Video(Box::new(VideoFile::start(path, size, rate_hz)?)),
+            Self::Video => FilmFile::Video(Box::new(Video::start(path, rate_hz)?)),
             Self::Gif => FilmFile::Gif(Animation::start(path, rate_hz)?),
         })
     }
@@ -62,7 +61,7 @@ impl FilmFormat {
 
 /// A file that is being made, and is there once it is finished.
 pub(super) enum FilmFile {
-    Video(Box<VideoFile>),
+    Video(Box<Video>),
     Gif(Animation),
 }
 

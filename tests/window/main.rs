@@ -29,9 +29,11 @@ mod sessions;
 mod speed;
 mod tour;
 mod validation;
-#[cfg(feature = "video")]
 mod videos;
 
+#[path = "../common/probed.rs"]
+#[allow(dead_code, reason = "tests of the command line use more of it")]
+mod probed;
 #[path = "../recordings/data/tables.rs"]
 #[allow(dead_code, reason = "tests of recordings use more of it")]
 mod tables;
