@@ -220,25 +220,25 @@ struct ShockInputs<'a> {
 impl ShockInputs<'_> {
     /// The contact behind a row.
     fn contact<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> &Contact {
-        &self.contacts.contacts()[problem.contact_of_row[number] as usize]
+        &self.contacts.contacts()[problem.rows.contacts[number] as usize]
     }
 
     /// Whether its pair is bonded.
     fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
-        self.contacts.is_in_touch(problem.contact_of_row[number] as usize)
+        self.contacts.is_in_touch(problem.rows.contacts[number] as usize)
     }
 
     /// How far its bond is open, m.
     fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
-        let bond = self.contacts.bonds()[problem.contact_of_row[number] as usize];
+        let bond = self.contacts.bonds()[problem.rows.contacts[number] as usize];
         if bond.alive { bond.stretch } else { 0.0 }
     }
 }
 
 /// The grains of a row by its number: i, and j unless that is fixed.
 fn grains<K: Kinematics>(problem: &StepProblem<K>, number: usize) -> (usize, Option<usize>) {
-    let row = problem.row_at(number);
-    let is_pair = number >= problem.fixed_rows.len();
+    let row = problem.rows.get(number);
+    let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
@@ -288,10 +288,10 @@ impl Shocks {
     ) {
         let Self { pairs, bodies, .. } = self;
         bodies.clear();
-        let ends = problem.before.iter().zip(&problem.free);
+        let ends = problem.bodies.before.iter().zip(&problem.bodies.free);
         bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<K>(before, free)));
         pairs.clear();
-        let is_cohesive = problem.capture_speed > 0.0;
+        let is_cohesive = problem.law.capture_speed() > 0.0;
         for_each_row(problem, |number, _, motion| {
             let Contact { normal, gap, .. } = *inputs.contact(problem, number);
             let touches = gap <= inputs.numbers.touch;
