@@ -8,7 +8,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::config::{Config, BaseScene};
+use crate::config::{BaseScene, Config};
 use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
 
@@ -45,7 +45,7 @@ struct Quick {
     vary: Table,
 }
 
-/// What is kept of the course of each run.
+/// Which rows are kept of a run over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesSettings {
@@ -63,7 +63,9 @@ pub struct Study {
     pub name: String,
     /// Tells studies apart: hash of the keys of all runs.
     pub fingerprint: String,
-    /// What is kept of the course of each run, if anything.
+    /// Whether these are the runs of a quick pass, which differs from the full one.
+    pub is_quick_pass: bool,
+    /// Which rows are kept of each run over time, if any.
     pub series: Option<SeriesSettings>,
     /// What is recorded of each run, if anything: below the results, in a folder that has the run's key.
     pub data: Option<DataSettings>,
@@ -92,19 +94,11 @@ impl Study {
             let place = line.map_or(String::new(), |line| format!("line {line}: "));
             Error::unread(path, format!("{place}{}", one_line(error.message())), FORM)
         })?;
-        if quick {
-            replace(
-                "quick.base",
-                &mut file.base,
-                &mut file.vary,
-                std::mem::take(&mut file.quick.base),
-            )?;
-            replace(
-                "quick.vary",
-                &mut file.vary,
-                &mut file.base,
-                std::mem::take(&mut file.quick.vary),
-            )?;
+        let Quick { base, vary } = std::mem::take(&mut file.quick);
+        let is_quick_pass = quick && !(base.is_empty() && vary.is_empty());
+        if is_quick_pass {
+            replace("quick.base", &mut file.base, &mut file.vary, base)?;
+            replace("quick.vary", &mut file.vary, &mut file.base, vary)?;
         }
         let series_is_sound =
             |series: &SeriesSettings| series.interval > 0.0 && series.interval.is_finite();
@@ -130,6 +124,7 @@ impl Study {
         Ok(Self {
             name: file.name,
             fingerprint: short(&hasher),
+            is_quick_pass,
             series: file.series,
             data: file.data,
             runs,

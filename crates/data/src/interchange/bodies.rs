@@ -7,12 +7,13 @@ use std::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 
 use super::{Friction, ProblemFile, pairs};
-use crate::contact::ContactList;
+use crate::contact::{ContactLaw, ContactList};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{
-    Assembled, Kinematics, Model, ModelParts, ModelVisitor, Row, StepProblem, visit_model,
+    Assembled, FixedRow, Kinematics, Model, ModelParts, ModelVisitor, PairRow, Row, StepProblem,
+    visit_model,
 };
 use crate::world::{FrictionCone, Grains};
 
@@ -113,7 +114,6 @@ impl BodyForm {
             sheared: false,
             friction: self.axes == 2 && friction > 0.0,
             rotation: self.rotation,
-            compressive_cone: file.cone == FrictionCone::Compressive && self.capture_speed > 0.0,
         })
     }
 
@@ -133,12 +133,12 @@ impl BodyForm {
         };
         let free: Vec<_> = (0..self.mass.len()).map(coordinates).collect();
         let mut problem = StepProblem::<M::Kinematics>::default();
-        problem.before.clone_from(&free);
-        problem.free = free;
-        problem.friction = file.friction()[0];
-        problem.capture_speed = self.capture_speed;
-        problem.masses.clone_from(&self.mass);
-        problem.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
+        problem.bodies.before.clone_from(&free);
+        problem.bodies.free = free;
+        let cone = if self.capture_speed > 0.0 { file.cone } else { FrictionCone::Shifted };
+        problem.law = ContactLaw::new(file.friction()[0], self.capture_speed, cone);
+        problem.bodies.masses.clone_from(&self.mass);
+        problem.bodies.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
         let starts: Vec<[f64; 2]> = match &file.start {
             Some(start) => pairs(start).collect(),
             None => vec![[0.0; 2]; file.nc],
@@ -157,15 +157,16 @@ impl BodyForm {
                     i,
                     j: j.unwrap_or(0),
                     normal: M::Kinematics::normal(self.normal[contact]),
-                    of_other: share.unwrap_or(surface_speed),
                     restitution_velocity: self.restitution_velocity[contact],
                     shifted_impulse: normal / effective_mass + self.capture_speed,
                     tangential_impulse: tangential / effective_mass,
                     effective_mass,
                 };
-                problem.contact_of_row.push(contact as u32);
-                let rows = if pass { &mut problem.pair_rows } else { &mut problem.fixed_rows };
-                rows.push(row);
+                problem.rows.contacts.push(contact as u32);
+                match share {
+                    Some(share) => problem.rows.pairs.push(PairRow { row, share }),
+                    None => problem.rows.fixed.push(FixedRow { row, surface_speed }),
+                }
             }
         }
         problem.form_velocities();
@@ -191,7 +192,7 @@ impl ModelVisitor for BodiesCheck<'_> {
         let Self { bodies, file } = self;
         let problem = bodies.step_problem::<M>(file);
         let assembled = Assembled::of(&problem)?;
-        let place = |index: u32| 2 * problem.contact_of_row[index as usize / 2] + index % 2;
+        let place = |index: u32| 2 * problem.rows.contacts[index as usize / 2] + index % 2;
         let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
         let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         let mut diagonal = vec![0.0; 2 * file.nc];
@@ -221,8 +222,8 @@ impl ModelVisitor for BodiesCheck<'_> {
             }
         }
         let cohesion = file.cohesion_impulses();
-        let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-        for (row, &contact) in rows.zip(&problem.contact_of_row) {
+        let rows = problem.rows.iter();
+        for (row, &contact) in rows.zip(&problem.rows.contacts) {
             let expected = row.effective_mass * bodies.capture_speed;
             let found = cohesion[contact as usize];
             if !agree(found, expected, expected) {
@@ -290,8 +291,8 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
         check_can_be_held(problem)?;
         let Assembled { matrix, free_velocities } = Assembled::of(problem)?;
         let grains = self.grains;
-        let rows = || problem.fixed_rows.iter().chain(&problem.pair_rows);
-        let fixed = problem.fixed_rows.len();
+        let rows = || problem.rows.iter();
+        let fixed = problem.rows.fixed.len();
         let free_velocity = |(body, radius): (_, &f64)| {
             let [x, y, spin] = M::Kinematics::coordinates(body);
             [x, y, spin / radius]
@@ -299,11 +300,17 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
         let bodies = BodyForm {
             axes: M::Kinematics::AXES as u8,
             rotation: M::Kinematics::ROTATION,
-            capture_speed: problem.capture_speed,
+            capture_speed: problem.law.capture_speed(),
             mass: grains.masses.clone(),
             inertia: (0..grains.len()).map(|body| grains.inertia(body)).collect(),
             radius: grains.radii.clone(),
-            free_velocity: problem.free.iter().zip(&grains.radii).map(free_velocity).collect(),
+            free_velocity: problem
+                .bodies
+                .free
+                .iter()
+                .zip(&grains.radii)
+                .map(free_velocity)
+                .collect(),
             pair: (0..)
                 .zip(rows())
                 .map(|(at, row)| (row.i, (at >= fixed).then_some(row.j)))
@@ -323,18 +330,14 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
         });
         Ok(ProblemFile {
             comment: None,
-            nc: problem.contact_of_row.len(),
-            mu: Friction::Same(if M::FRICTION { problem.friction } else { 0.0 }),
-            cone: if M::COMPRESSIVE_CONE {
-                FrictionCone::Compressive
-            } else {
-                FrictionCone::Shifted
-            },
+            nc: problem.rows.contacts.len(),
+            mu: Friction::Same(if M::FRICTION { problem.law.friction } else { 0.0 }),
+            cone: problem.law.cone(),
             q: free_velocities,
-            c0: (problem.capture_speed > 0.0).then(|| cohesions().collect()),
+            c0: (problem.law.capture_speed() > 0.0).then(|| cohesions().collect()),
             start: Some(starts.collect()),
             // Bodies know of one capture speed alone.
-            bodies: problem.captures.is_empty().then_some(bodies),
+            bodies: problem.rows.captures.is_empty().then_some(bodies),
             matrix,
         })
     }

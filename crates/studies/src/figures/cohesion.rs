@@ -115,8 +115,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
          step stops."
             .into(),
     ];
-    let mut sheet = Sheet { size: (520 * charts.len() as u32, 620), charts, caption };
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (520 * charts.len() as u32, 620), charts, caption };
     let claims = vec![laws_agree(&levels), factor(&bonds, &levels), bonds_agree(&bonds, &levels)];
     Ok(Figure { name: "cohesion", sheet, claims, table: Some(table(&levels)) })
 }
