@@ -1,11 +1,87 @@
-//! A user interface drawn into memory: pictures of plots, and measurements without a window.
+//! egui on a graphics device: the window's screen, and a canvas without one, for pictures of plots and measurements.
 
+use egui::{ClippedPrimitive, TexturesDelta};
+use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use image::RgbaImage;
 
-use super::graphics::Screen;
+use super::painting::{TargetFormat, fill};
+use super::plots::{PlotData, WorldCurve, draw};
+use super::theme;
 use crate::error::{Error, Result};
 use crate::render::Gpu;
 use crate::render::offscreen::{FORMAT, Target};
+
+/// Draws user interfaces into targets of one format.
+pub(super) struct Screen {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    renderer: Renderer,
+}
+
+impl Screen {
+    /// A screen for targets of this format.
+    pub(super) fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        format: wgpu::TextureFormat,
+    ) -> Self {
+        // Nothing here has gradients that would show steps.
+        let mut renderer = Renderer::new(
+            device,
+            format,
+            RendererOptions { dithering: false, ..RendererOptions::default() },
+        );
+        renderer.callback_resources.insert(TargetFormat(format));
+        Self { device: device.clone(), queue: queue.clone(), renderer }
+    }
+
+    /// Sends new and changed textures to the device: before the pass that needs them.
+    pub(super) fn update_textures(&mut self, delta: &TexturesDelta) {
+        for (id, changes) in &delta.set {
+            for change in changes {
+                self.renderer.update_texture(&self.device, &self.queue, *id, change);
+            }
+        }
+    }
+
+    /// Frees textures: after the pass that needed them last.
+    pub(super) fn free_textures(&mut self, delta: &TexturesDelta) {
+        for id in &delta.free {
+            self.renderer.free_texture(id);
+        }
+    }
+
+    /// Records the pass. Returns what is to be submitted before it.
+    pub(super) fn paint(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        size: [u32; 2],
+        pixels_per_point: f32,
+        primitives: &[ClippedPrimitive],
+    ) -> Vec<wgpu::CommandBuffer> {
+        let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
+        let commands =
+            self.renderer.update_buffers(&self.device, &self.queue, encoder, primitives, &screen);
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("window"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        self.renderer.render(&mut pass.forget_lifetime(), primitives, &screen);
+        commands
+    }
+}
 
 /// A graphics device without a window.
 pub struct Canvas {
@@ -87,4 +163,74 @@ impl Canvas {
         gpu.check()?;
         Ok(image)
     }
+}
+
+/// Pixels of a picture a point: words stay readable in print.
+const PIXELS_PER_POINT: f32 = 2.0;
+/// Passes until the axes have settled to the width of their labels.
+const PASSES: usize = 4;
+
+/// What is to be drawn.
+pub(crate) struct PlotPicture {
+    /// The curves.
+    pub data: PlotData,
+    /// Pixels.
+    pub size: [u32; 2],
+    /// Light ink on a dark ground.
+    pub dark: bool,
+}
+
+/// Draws such pictures. Keep it: opening a device takes longer than a picture.
+pub(crate) struct PlotPrinter {
+    canvas: Canvas,
+}
+
+impl PlotPrinter {
+    /// Opens a graphics device.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub(crate) fn new() -> Result<Self> {
+        Ok(Self { canvas: Canvas::new()? })
+    }
+
+    /// Draws a picture.
+    ///
+    /// # Errors
+    /// What the device reports.
+    pub(crate) fn print(&mut self, picture: &PlotPicture) -> Result<RgbaImage> {
+        let context = egui::Context::default();
+        theme::install(&context);
+        context.set_theme(if picture.dark { egui::Theme::Dark } else { egui::Theme::Light });
+        let contents = |ui: &mut egui::Ui| {
+            let ground = ui.visuals().extreme_bg_color;
+            fill(ui, ui.max_rect(), ground);
+            let frame = egui::Frame::new().inner_margin(12.0);
+            egui::CentralPanel::default_margins().frame(frame).show(ui, |ui| {
+                legend(ui, &picture.data);
+                draw(ui, &picture.data);
+            });
+        };
+        let mut image = RgbaImage::default();
+        for pass in 1..=PASSES {
+            let last = pass == PASSES;
+            let drawn =
+                self.canvas.draw(&context, picture.size, PIXELS_PER_POINT, last, contents)?;
+            image = drawn.unwrap_or(image);
+        }
+        Ok(image)
+    }
+}
+
+/// What the colours mean, where there is more than one.
+fn legend(ui: &mut egui::Ui, data: &PlotData) {
+    if data.worlds.len() < 2 {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        for WorldCurve { name, colour, .. } in &data.worlds {
+            ui.label(egui::RichText::new("■").color(*colour));
+            ui.label(name);
+        }
+    });
 }

@@ -4,21 +4,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use crate::error::{Error, Result};
 use image::RgbaImage;
 
+use super::canvas::{PlotPicture, PlotPrinter};
+use super::opening::TakenRun;
+use super::session::{SESSION_ENDING, SessionOrder, write_session};
+use super::setting_control::written;
 use crate::config::SavedState;
+use crate::error::{Error, Result};
 use crate::live::Curve;
 use crate::output::{Texts, check_writable, write_file};
 use crate::render::{Camera, Panel, Renderer, RendererChoice, Style, draw_scene, draw_worlds};
 use crate::sim::{Observables, Settings, Snapshot};
 use crate::study::png::write_png;
 use crate::world::Parameters;
-
-use super::number::written;
-use super::plot_picture::{PlotPicture, PlotPrinter};
-use super::session::{SESSION_ENDING, SessionOrder, write_session};
-use super::taken::TakenRun;
 
 /// A file to be written.
 pub(crate) enum Export {
@@ -196,16 +195,16 @@ fn write(
 /// A run, by the moment that it has when it is handed out: it may go on meanwhile.
 fn write_state(folder: &Path, run: &Receiver<TakenRun>) -> Result<PathBuf> {
     let run = run.recv();
-    let TakenRun { opened, taken } =
+    let TakenRun { opened, world } =
         run.map_err(|_| Error::value("run", "closed", "open when its state is saved"))?;
-    if taken.failure.is_some() {
+    if world.failure.is_some() {
         let allowed = "an earlier one: drag the timeline back";
         return Err(Error::value("state", "no longer finite", allowed));
     }
-    let settings = [*taken.simulation.settings()];
-    let stem = stem(&opened.scene.name, &settings, taken.simulation.time_secs());
+    let settings = [*world.simulation.settings()];
+    let stem = stem(&opened.scene.name, &settings, world.simulation.time_secs());
     let path = free_path(folder, &stem, STATE_ENDING);
-    SavedState::new(opened.scene.clone(), taken.simulation, taken.tally).save(&path)?;
+    SavedState::new(opened.scene.clone(), world.simulation, world.tally).save(&path)?;
     Ok(path)
 }
 

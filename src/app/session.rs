@@ -1,20 +1,23 @@
-//! A session: all worlds with their record, and the window as it was arranged, as one file.
+//! A session: all worlds with their history, and the window as it was arranged, as one file; and the file of a saved run.
 //!
 //! What is computed is kept as live runs keep it, thinned: the start, some moments on the way, every change
 //! of the settings, and the moment that was shown. So it opens at once, and the moments between are computed
 //! again, bit for bit, where the timeline asks for them.
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::{Receiver, Sender, channel};
 
 use serde::{Deserialize, Serialize};
 
 use super::camera::SceneCamera;
-use super::storage::Stored;
-use super::taken::{LastOpened, Opened};
-use crate::config::Config;
+use super::export::Export;
+use super::opening::{LastOpened, Opened, loader_of_file, loader_of_run, loader_of_session};
+use super::panels::see::file_stem;
+use super::preferences::{Preferences, StoredWindow};
+use super::state::AppState;
+use crate::config::{Config, SavedState};
 use crate::error::{Error, Result};
-use crate::live::Start;
+use crate::live::{Command, LiveStart};
 use crate::output::{Seal, write_file};
 use crate::scene::Scene;
 
@@ -34,7 +37,7 @@ pub(crate) const SESSION_ENDING: &str = "session";
 #[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Arrangement {
     /// Choices, and where panels are.
-    pub stored: Stored,
+    pub stored: StoredWindow,
     /// Whether the tour is being taken.
     pub touring: bool,
     /// The world that the controls are about.
@@ -47,7 +50,7 @@ pub(crate) struct Arrangement {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Session {
-    start: Start,
+    start: LiveStart,
     scene: Scene,
     /// What opens the scene again, as JSON.
     config: String,
@@ -58,7 +61,7 @@ pub(crate) struct Session {
 /// A session that is on its way to a file.
 pub(crate) struct SessionOrder {
     /// What the solver's thread hands out.
-    pub run: Receiver<(Start, Opened)>,
+    pub run: Receiver<(LiveStart, Opened)>,
     /// The [`Arrangement`], as RON.
     pub window: String,
 }
@@ -70,7 +73,7 @@ impl Session {
     /// Where it cannot be read, is damaged or of another version, or is no such file.
     pub(crate) fn open(path: &Path) -> Result<Self> {
         let session: Self = SEAL.open(path)?;
-        let is_sound = session.start.record.as_ref().is_some_and(|record| record.is_sound());
+        let is_sound = session.start.history.as_ref().is_some_and(|history| history.is_sound());
         if is_sound && session.parts().is_some() {
             return Ok(session);
         }
@@ -83,7 +86,7 @@ impl Session {
     }
 
     /// Takes it apart: the start, and what goes to the window.
-    pub(super) fn begin(self, last: &LastOpened, window: &Sender<Arrangement>) -> Start {
+    pub(super) fn begin(self, last: &LastOpened, window: &Sender<Arrangement>) -> LiveStart {
         if let Some((config, arrangement)) = self.parts() {
             last.note(Opened { scene: self.scene, config });
             // Whoever waits for it has gone where another file is opened already.
@@ -102,7 +105,7 @@ impl SessionOrder {
         let run = self.run.recv();
         let (start, Opened { scene, config }) =
             run.map_err(|_| Error::value("run", "closed", "open when its session is saved"))?;
-        if start.record.as_ref().is_some_and(|record| record.failure().is_some()) {
+        if start.history.as_ref().is_some_and(|history| history.failure().is_some()) {
             let allowed = "an earlier one: drag the timeline back";
             return Err(Error::value("state", "no longer finite", allowed));
         }
@@ -118,4 +121,105 @@ impl SessionOrder {
 /// Names the file and what the system says, or why the run cannot be saved.
 pub(super) fn write_session(path: &Path, order: &SessionOrder) -> Result<()> {
     write_file(path, &order.bytes()?)
+}
+
+impl AppState {
+    /// Opens a saved run, to go on with it.
+    pub fn load_run(&mut self, state: SavedState) {
+        self.leave_tour();
+        self.live.send(Command::Load(loader_of_run(state, self.last_opened.clone())));
+    }
+
+    /// Opens a session.
+    pub(crate) fn load_session(
+        &mut self,
+        session: impl FnOnce() -> Result<Session> + Send + 'static,
+    ) {
+        self.leave_tour();
+        let (sender, arriving) = channel();
+        self.arriving = Some(arriving);
+        let loader = loader_of_session(session, self.last_opened.clone(), sender);
+        self.live.send(Command::Load(loader));
+    }
+
+    /// Opens the file of a saved run or of a session, to go on with it.
+    pub fn load_saved(&mut self, path: &Path) {
+        self.data.saved_run = path.display().to_string();
+        if path.extension().is_some_and(|ending| ending == SESSION_ENDING) {
+            let path = path.to_owned();
+            return self.load_session(move || Session::open(&path));
+        }
+        self.leave_tour();
+        let loader = loader_of_file(path.to_owned(), self.last_opened.clone());
+        self.live.send(Command::Load(loader));
+    }
+
+    /// Saves the moment that the selected world has come to.
+    pub(crate) fn save_state(&mut self, context: &egui::Context) {
+        let run = self.take_run();
+        let folder = self.preferences.folder.clone();
+        self.exporter.submit(context, Export::State(run), &folder, "");
+    }
+
+    /// Saves all worlds with their record, and how the window is arranged.
+    pub(crate) fn save_session(&mut self, context: &egui::Context) {
+        if self.frame.worlds.is_empty() {
+            return;
+        }
+        let order = match self.session_order(context) {
+            Ok(order) => order,
+            Err(error) => return self.warn(error.to_string()),
+        };
+        let (folder, stem) = (self.preferences.folder.clone(), file_stem(self));
+        self.exporter.submit(context, Export::Session(Box::new(order)), &folder, &stem);
+    }
+
+    /// What a session of the present moment is made of.
+    ///
+    /// # Errors
+    /// Where the window's arrangement cannot be said as text.
+    fn session_order(&mut self, context: &egui::Context) -> Result<SessionOrder> {
+        let arrangement = Arrangement {
+            stored: StoredWindow {
+                preferences: self.preferences.clone(),
+                layout: context.memory(Clone::clone),
+            },
+            touring: self.touring,
+            selected: self.selected,
+            camera: self.camera,
+        };
+        let refuse = |error| Error::value("window", "arranged so", format!("written ({error})"));
+        let window = ron::to_string(&arrangement).map_err(refuse)?;
+        let (sender, run) = channel();
+        let last = self.last_opened.clone();
+        let hand_on = move |start: LiveStart| {
+            if let Some(opened) = last.get() {
+                let Opened { scene, config } = &*opened;
+                // Whoever asked may have gone.
+                let _ =
+                    sender.send((start, Opened { scene: scene.clone(), config: config.clone() }));
+            }
+        };
+        self.live.send(Command::TakeAll(Box::new(hand_on)));
+        Ok(SessionOrder { run, window })
+    }
+
+    /// Arranges the window as it was when a session was saved. What belongs to this window and its user stays:
+    /// its size, and where files go.
+    pub(super) fn arrange(&mut self, arrangement: Arrangement) {
+        let Arrangement { stored, touring, selected, camera } = arrangement;
+        let Preferences { window_points, folder, .. } = self.preferences.clone();
+        self.preferences = Preferences { window_points, folder, ..stored.preferences };
+        (self.touring, self.selected, self.camera) = (touring, selected, camera);
+        self.layout = Some(stored.layout);
+        self.live.send(Command::SetPace(self.preferences.pace()));
+    }
+
+    /// Puts the panels where they were when a session was saved.
+    pub(super) fn restore_layout(&mut self, context: &egui::Context) {
+        if let Some(layout) = self.layout.take() {
+            context.memory_mut(|memory| memory.data = layout.data);
+            context.set_zoom_factor(layout.options.zoom_factor);
+        }
+    }
 }

@@ -4,28 +4,26 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
+use std::time::Instant;
 
 use egui::Rect;
 
 use super::camera::SceneCamera;
-use super::data_desk::DataDesk;
+use super::data_export::DataPanel;
+use super::ensemble::Ensemble;
 use super::export::{Exporter, STATE_ENDING};
-use super::film_file::FilmFormat;
-use super::held::{GrainRef, Grip};
-use super::link::Linking;
-use super::loader::loader;
-use super::notice::Notice;
-use super::other_piles::OtherPiles;
+use super::film::FilmFormat;
+use super::opening::{LastOpened, TakenRun, loader};
+use super::painting::LegendCache;
+use super::panels::distributions::Spread;
+use super::panels::speed::StepRace;
+use super::panels::{GrainRef, Grip};
 use super::preferences::Preferences;
-use super::scene_legend::LegendCache;
 use super::session::{Arrangement, SESSION_ENDING};
-use super::spread::Spread;
-use super::step_race::StepRace;
-use super::taken::{LastOpened, TakenRun};
-use super::validation::Validation;
+use super::sharing::PendingLink;
 use super::work::Work;
 use crate::config::Config;
-use crate::live::{Command, Controls, Frame, Live, WorldFrame};
+use crate::live::{Command, Controls, Live, LiveFrame, WorldFrame};
 use crate::sim::Settings;
 
 /// The state of the user interface.
@@ -33,7 +31,7 @@ pub struct AppState {
     /// The solver's thread.
     pub live: Live,
     /// Its newest frame.
-    pub frame: Frame,
+    pub frame: LiveFrame,
     /// What the controls show, one entry a world: ahead of the frame by what is on its way.
     pub(crate) wanted: Vec<Controls>,
     /// The world that the controls are about.
@@ -59,15 +57,11 @@ pub struct AppState {
     /// Writes files without keeping the window waiting.
     pub(crate) exporter: Exporter,
     /// What is being done about data and saved runs.
-    pub(crate) data: DataDesk,
+    pub(crate) data: DataPanel,
     /// The video or the animation that is being made.
     pub(crate) film: Option<(FilmFormat, Work)>,
-    /// What was found of published experiments.
-    pub(super) validation: Validation,
-    /// The file of another such report, as it is typed.
-    pub(crate) report: String,
     /// What the present settings make of other piles.
-    pub other_piles: OtherPiles,
+    pub ensemble: Ensemble,
     /// How forces and the like are distributed.
     pub(crate) spread: Spread,
     /// Whether the view goes with the pinned grain.
@@ -81,13 +75,13 @@ pub struct AppState {
     pub(super) legend: LegendCache,
     pub(super) last_opened: LastOpened,
     /// Links that are to be copied.
-    pub(super) linking: Option<Linking>,
+    pub(super) linking: Option<PendingLink>,
     /// How the panels lay when a session was saved.
     pub(super) layout: Option<egui::Memory>,
     /// The window of a session that is being opened.
     pub(super) arriving: Option<Receiver<Arrangement>>,
     notice: Option<Notice>,
-    seen_start: u64,
+    seen_loads: u64,
     seen_refusal: Option<Arc<str>>,
 }
 
@@ -103,7 +97,7 @@ impl AppState {
     pub(crate) fn idle(live: Live, preferences: Preferences) -> Self {
         let mut state = Self {
             live,
-            frame: Frame::default(),
+            frame: LiveFrame::default(),
             wanted: Vec::new(),
             selected: 0,
             config: Config::default(),
@@ -116,11 +110,9 @@ impl AppState {
             opened_panel: None,
             help: false,
             exporter: Exporter::default(),
-            data: DataDesk::default(),
+            data: DataPanel::default(),
             film: None,
-            validation: Validation::of_last_run(),
-            report: String::new(),
-            other_piles: OtherPiles::new(),
+            ensemble: Ensemble::new(),
             race: None,
             spread: Spread::default(),
             follows: false,
@@ -132,7 +124,7 @@ impl AppState {
             layout: None,
             arriving: None,
             notice: None,
-            seen_start: 0,
+            seen_loads: 0,
             seen_refusal: None,
         };
         // A window that was closed on the tour and is opened for something else has the user's own choices.
@@ -166,9 +158,8 @@ impl AppState {
     /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
     pub(crate) fn refresh(&mut self) {
         self.frame = self.live.latest().clone();
-        let start = self.frame.start.as_ref().map_or(0, |start| start.number);
-        if start != self.seen_start {
-            self.seen_start = start;
+        if self.frame.loads != self.seen_loads {
+            self.seen_loads = self.frame.loads;
             self.camera.frame_scene();
             self.pinned = None;
             self.data.stretch = None;
@@ -285,7 +276,7 @@ impl AppState {
     /// Forgets what lives in an egui context: it is about to be replaced.
     pub(crate) fn forget_context(&mut self) {
         self.legend.forget();
-        self.other_piles.stop();
+        self.ensemble.stop();
     }
 
     /// Notes where a control lies.
@@ -296,5 +287,63 @@ impl AppState {
                 self.controls.insert(name.to_owned(), rect);
             }
         }
+    }
+}
+
+impl AppState {
+    /// Releases, plays or pauses.
+    pub(crate) fn toggle_play(&mut self) {
+        let command = if self.frame.playing { Command::Pause } else { Command::Play };
+        self.live.send(command);
+    }
+
+    /// Takes one step and pauses.
+    pub fn step(&mut self) {
+        self.live.send(Command::Step);
+    }
+
+    /// Goes one step back in the recording.
+    pub(crate) fn step_back(&mut self) {
+        let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
+        let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
+        self.live.send(Command::Seek(time_secs.max(0.0)));
+    }
+
+    /// Back to the start, with the present settings.
+    pub(crate) fn reset(&mut self) {
+        self.live.send(Command::Reset);
+    }
+
+    /// Back to the run that the present one has taken the place of last.
+    pub(crate) fn undo(&mut self) {
+        if let Some(last) = self.frame.past.last() {
+            self.live.send(Command::Return(last.number));
+        }
+    }
+}
+
+/// How long a notice stays, s.
+const NOTICE_SECS: f32 = 8.0;
+
+/// A sentence for the status bar.
+#[derive(Clone, Debug)]
+pub struct Notice {
+    /// The sentence.
+    pub text: String,
+    /// Whether it tells of a failure.
+    pub(crate) failure: bool,
+    since: Instant,
+}
+
+impl Notice {
+    /// One that begins now.
+    pub(super) fn new(text: String, failure: bool) -> Self {
+        Self { text, failure, since: Instant::now() }
+    }
+
+    /// For how long it stays yet, s.
+    pub(super) fn left_secs(&self) -> Option<f32> {
+        let left = NOTICE_SECS - self.since.elapsed().as_secs_f32();
+        (left > 0.0).then_some(left)
     }
 }

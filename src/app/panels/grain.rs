@@ -1,7 +1,6 @@
 //! Panel: the pinned grain and its contacts.
 
-use egui::ScrollArea;
-use egui::{RichText, Ui};
+use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::state::AppState;
 use crate::live::WorldFrame;

@@ -2,12 +2,11 @@
 
 use egui::{RichText, Ui};
 
+use crate::app::canvas::PlotPicture;
 use crate::app::export::Export;
-use crate::app::plot_picture::PlotPicture;
-use crate::app::plots::{PlotData, draw};
+use crate::app::plots::{PlotData, WorldCurve, draw};
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::app::world_curve::WorldCurve;
 use crate::live::Command;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 
@@ -29,10 +28,10 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
                 name: super::compare::title(state, index),
                 colour: theme::world_colour(index, dark),
                 curve: world.curve.clone(),
-                others: state.other_piles.told(index).map(|told| told.band),
+                others: state.ensemble.told(index).map(|told| told.band),
             })
             .collect(),
-        ghosts: super::past::ghost(state).map_or_else(Vec::new, |run| {
+        ghosts: super::run::ghost(state).map_or_else(Vec::new, |run| {
             run.worlds.iter().map(|world| world.curve.clone()).collect()
         }),
         quantities: QUANTITIES.iter().filter(|quantity| is_shown(state, quantity)).collect(),
@@ -94,7 +93,7 @@ fn switches(ui: &mut Ui, state: &mut AppState) {
 
 /// From the right: what saves the plots, how they were thinned, and in the room that is left the other piles.
 fn files(ui: &mut Ui, state: &mut AppState) {
-    let stem = format!("{}-curves", super::picture::file_stem(state));
+    let stem = format!("{}-curves", super::see::file_stem(state));
     let folder = state.preferences.folder.clone();
     let all: Vec<usize> = (0..state.frame.worlds.len()).collect();
     if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
@@ -124,11 +123,11 @@ fn others(ui: &mut Ui, state: &mut AppState) {
         return;
     }
     ui.separator();
-    let mut shown = state.preferences.other_piles;
+    let mut shown = state.preferences.ensemble;
     let hint = state.about_other_piles();
     let switch = ui.toggle_value(&mut shown, "other piles").on_hover_text(&hint);
     state.note_control("other piles", switch.rect);
-    state.preferences.other_piles = shown;
+    state.preferences.ensemble = shown;
     if let Some(text) = state.beside_other_piles(state.selected) {
         ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
     }

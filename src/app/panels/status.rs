@@ -2,7 +2,7 @@
 
 use egui::{Align, Label, Layout, RichText, Ui};
 
-use crate::app::effort::FAST;
+use crate::app::budget::FAST;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::live::{WorldAlarm, WorldFrame};

@@ -1,19 +1,35 @@
 //! What has to be settled before a window opens.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use winit::dpi::LogicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::monitor::MonitorHandle;
 use winit::window::{Window, WindowAttributes};
 
-use crate::app::link::Link;
-use crate::app::options::WindowOptions;
 use crate::app::preferences::Preferences;
 use crate::app::session::Session;
+use crate::app::sharing::RunLink;
 use crate::app::state::AppState;
 use crate::config::{Config, SavedState};
 use crate::error::{Error, Result};
+
+/// Options of the window. The scene, its physics and its solver are in [`crate::config::Config`].
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+pub(crate) struct WindowOptions {
+    /// Forget the window's layout, theme and last scene
+    #[arg(long, help_heading = "Window")]
+    pub reset_ui: bool,
+    /// Open a session that the window saved: worlds, record and arrangement
+    #[arg(long, value_name = "FILE", help_heading = "Window", conflicts_with_all = ["headless", "restart", "open"])]
+    pub session: Option<PathBuf>,
+    /// Open the line that Copy link gave, slump://run?…
+    #[arg(long, value_name = "LINK", help_heading = "Window", conflicts_with_all = ["headless", "restart"])]
+    pub open: Option<String>,
+    /// Keep writing the state of window and run to this file, as JSON: for tests
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub export_state: Option<PathBuf>,
+}
 
 /// Size of a new window, points.
 const SIZE: [f64; 2] = [1280.0, 800.0];
@@ -27,7 +43,7 @@ pub(super) enum First {
     /// A saved run that is to go on.
     Run(Box<SavedState>),
     /// What a link tells of.
-    Link(Box<Link>),
+    Link(Box<RunLink>),
     Session(Box<Session>),
 }
 
@@ -54,7 +70,7 @@ impl First {
             return Ok(Self::Session(Box::new(Session::open(path)?)));
         }
         if let Some(text) = &options.open {
-            let link = Link::read(text)?;
+            let link = RunLink::read(text)?;
             link.check()?;
             return Ok(Self::Link(Box::new(link)));
         }
