@@ -31,6 +31,6 @@ mod tour;
 #[cfg(feature = "video")]
 mod videos;
 
-#[path = "../data/tables.rs"]
+#[path = "../recordings/data/tables.rs"]
 #[allow(dead_code, reason = "tests of recordings use more of it")]
 mod tables;
