@@ -29,7 +29,7 @@ mod work;
 pub use canvas::Canvas;
 pub use data_export::DataChoices;
 pub use ensemble::Ensemble;
-pub use panels::GrainRef;
+pub use panels::{Grabbing, GrainRef};
 pub use plots::ChosenPlot;
 pub use preferences::Preferences;
 pub use state::{AppState, Notice};

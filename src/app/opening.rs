@@ -1,7 +1,7 @@
 //! Opening: from what a user asks for to a start that the solver's thread makes, and what was opened last.
 
-use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -10,17 +10,15 @@ use glam::DVec2;
 
 use super::budget;
 use super::export::STATE_ENDING;
-use super::session::{Arrangement, SESSION_ENDING, Session};
+use super::session::{SESSION_ENDING, Session};
 use super::sharing::RunLink;
 use super::state::AppState;
 use super::tour::Station;
 use crate::config::{Config, Origin, SavedState};
 use crate::error::Result;
-use crate::live::{
-    Command, Live, LiveStart, Loader, LoadingProgress, Preview, RunHistory, WorldHistory,
-};
+use crate::live::{Command, LiveStart, LoadingProgress, Preview, RunHistory, WorldHistory};
 use crate::scene::{Scene, Settling};
-use crate::sim::{GrainView, Snapshot, Tally};
+use crate::sim::{GrainView, Simulation, Snapshot, Tally};
 use crate::world::{Boundary, Disc, Gravity};
 
 /// What a run began with.
@@ -57,120 +55,151 @@ pub(crate) struct TakenRun {
     pub world: WorldHistory,
 }
 
-impl TakenRun {
+/// Height of the walls that are drawn around a pile, in its own heights.
+const WALL_HEIGHTS: f64 = 1.1;
+
+/// Hears how far a start has come; false where it is given up.
+type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
+
+impl AppState {
+    /// Opens a scene.
+    pub fn load(&mut self, config: Config) {
+        self.leave_tour();
+        self.config = config.clone();
+        self.open(move |tell| {
+            let mut scene = settled(&config, tell)?;
+            budget::complete(&mut scene, &config.solver);
+            Ok((start(&scene)?, Opened { scene, config }))
+        });
+    }
+
+    /// Opens a station of the tour, with its worlds side by side.
+    pub(super) fn load_station(&mut self, station: &'static Station) {
+        self.open(move |_| {
+            let config = Config::of_scene(station.scene);
+            let mut scene = config.without_settling()?;
+            budget::complete(&mut scene, &config.solver);
+            let worlds = (station.worlds)(scene.settings());
+            Ok((LiveStart { worlds, ..start(&scene)? }, Opened { scene, config }))
+        });
+    }
+
+    /// Opens what a link tells of, with what its worlds have come to. Settings are those that it says, whatever the
+    /// window would choose.
+    pub(super) fn load_link(&mut self, link: RunLink) {
+        self.leave_tour();
+        self.open(move |tell| {
+            let config = link.config();
+            let scene = settled(&config, tell)?;
+            let start = start(&scene)?;
+            let plans = link.plans(&scene.settings());
+            let history = RunHistory::computed(&start.simulation, start.tally, &plans, tell)?;
+            Ok((LiveStart { history: Some(history), ..start }, Opened { scene, config }))
+        });
+    }
+
+    /// Opens a session, with its window as it was arranged.
+    pub(super) fn load_session(
+        &mut self,
+        session: impl FnOnce() -> Result<Session> + Send + 'static,
+    ) {
+        self.leave_tour();
+        let (window, arriving) = channel();
+        self.opening.arriving = Some(arriving);
+        self.open(move |_| {
+            let (start, opened, arrangement) = session()?.into_parts()?;
+            // Whoever waits for it has gone where another file is opened already.
+            let _ = window.send(arrangement);
+            Ok((start, opened))
+        });
+    }
+
+    /// Opens a saved run, to go on with it.
+    pub fn load_run(&mut self, state: SavedState) {
+        self.leave_tour();
+        self.open(move |_| Ok(start_of_run(state)));
+    }
+
+    /// Opens the file of a saved run or of a session, to go on with it.
+    pub fn load_saved(&mut self, path: &Path) {
+        self.exports.data.saved_run = path.display().to_string();
+        let path = path.to_owned();
+        if path.extension().is_some_and(|ending| ending == SESSION_ENDING) {
+            return self.load_session(move || Session::open(&path));
+        }
+        self.leave_tour();
+        self.open(move |_| Ok(start_of_run(SavedState::open(&path)?)));
+    }
+
+    /// Has the solver's thread make a start, and notes what it is of.
+    fn open(
+        &mut self,
+        make: impl FnOnce(Tell<'_>) -> Result<(LiveStart, Opened)> + Send + 'static,
+    ) {
+        let last = self.opening.last.clone();
+        self.live.send(Command::Load(Box::new(move |tell| {
+            let (start, opened) = make(tell)?;
+            last.note(opened);
+            Ok(start)
+        })));
+    }
+
+    /// Asks for the run of the selected world.
+    pub(crate) fn take_run(&mut self) -> Receiver<TakenRun> {
+        self.take_run_of(self.selected)
+    }
+
     /// Asks for a world's run. It comes between two steps; nothing comes where that world is gone.
-    pub(crate) fn ask(live: &mut Live, world: usize, opened: &LastOpened) -> Receiver<Self> {
+    pub(crate) fn take_run_of(&mut self, world: usize) -> Receiver<TakenRun> {
         let (sender, receiver) = channel();
-        let opened = opened.clone();
+        let last = self.opening.last.clone();
         let hand_on = move |world| {
-            if let Some(opened) = opened.get() {
+            if let Some(opened) = last.get() {
                 // Whoever asked may have gone.
-                let _ = sender.send(Self { opened, world });
+                let _ = sender.send(TakenRun { opened, world });
             }
         };
-        live.send(Command::Take(world, Box::new(hand_on)));
+        self.live.send(Command::Take(world, Box::new(hand_on)));
         receiver
     }
 }
 
-/// Height of the walls that are drawn around a pile, in its own heights.
-const WALL_HEIGHTS: f64 = 1.1;
-
-/// Makes the start of `config` on the thread that calls it.
-pub(crate) fn loader(config: Config, last: LastOpened) -> Loader {
-    Box::new(move |tell| {
-        let mut scene = settled(&config, tell)?;
-        budget::complete(&mut scene, &config.solver);
-        let start = start(&scene)?;
-        last.note(Opened { scene, config });
-        Ok(start)
-    })
-}
-
 /// The scene, shown and with progress told where a new pile has to settle first.
-fn settled(config: &Config, tell: &mut dyn FnMut(LoadingProgress) -> bool) -> Result<Scene> {
+fn settled(config: &Config, tell: Tell<'_>) -> Result<Scene> {
     let mut making = SettlingProgress::new();
     config.scene(|settling| tell(making.look(&settling)))
 }
 
-/// Makes the start of a station of the tour, with its worlds side by side.
-pub(crate) fn loader_of_station(station: &'static Station, last: LastOpened) -> Loader {
-    Box::new(move |_| {
-        let config = Config::of_scene(station.scene);
-        let mut scene = config.without_settling()?;
-        budget::complete(&mut scene, &config.solver);
-        let worlds = (station.worlds)(scene.settings());
-        let start = LiveStart { worlds, ..start(&scene)? };
-        last.note(Opened { scene, config });
-        Ok(start)
-    })
-}
-
-/// Makes the start of a link, with what its worlds have come to. Settings are those that it says, whatever the
-/// window would choose.
-pub(crate) fn loader_of_link(link: RunLink, last: LastOpened) -> Loader {
-    Box::new(move |tell| {
-        let config = link.config();
-        let scene = settled(&config, tell)?;
-        let start = start(&scene)?;
-        let plans = link.plans(&scene.settings());
-        let record = RunHistory::computed(&start.simulation, start.tally, &plans, tell)?;
-        last.note(Opened { scene, config });
-        Ok(LiveStart { history: Some(record), ..start })
-    })
-}
-
-/// Makes a start of a session, and hands on how its window was arranged.
-pub(crate) fn loader_of_session(
-    session: impl FnOnce() -> Result<Session> + Send + 'static,
-    last: LastOpened,
-    window: Sender<Arrangement>,
-) -> Loader {
-    Box::new(move |_| Ok(session()?.begin(&last, &window)))
-}
-
-/// Makes a start of a saved run, which goes on in time.
-pub(crate) fn loader_of_run(state: SavedState, last: LastOpened) -> Loader {
-    Box::new(move |_| Ok(start_of_run(state, &last)))
-}
-
-/// Makes a start of a file that a run was saved to.
-pub(crate) fn loader_of_file(path: PathBuf, last: LastOpened) -> Loader {
-    Box::new(move |_| Ok(start_of_run(SavedState::open(&path)?, &last)))
-}
-
-fn start_of_run(state: SavedState, last: &LastOpened) -> LiveStart {
+/// The start of a saved run, which goes on in time.
+fn start_of_run(state: SavedState) -> (LiveStart, Opened) {
     let SavedState { scene, simulation, tally, .. } = state;
+    let start = start_with(&scene, simulation, tally, Vec::new());
+    let config = Config::of_scene(&scene.name);
+    (start, Opened { scene, config })
+}
+
+fn start(scene: &Scene) -> Result<LiveStart> {
+    Ok(start_with(scene, scene.simulation()?, Tally::default(), walls(scene)))
+}
+
+fn start_with(
+    scene: &Scene,
+    simulation: Simulation,
+    tally: Tally,
+    held_by: Vec<Boundary>,
+) -> LiveStart {
     let view = scene.view();
-    let start = LiveStart {
+    LiveStart {
         name: scene.name.clone(),
         simulation,
         tally,
         duration_secs: scene.duration_secs,
-        held_by: Vec::new(),
-        view: [view.min, view.max],
-        slumps: slumps(&scene),
-        worlds: Vec::new(),
-        history: None,
-    };
-    let config = Config::of_scene(&scene.name);
-    last.note(Opened { scene, config });
-    start
-}
-
-fn start(scene: &Scene) -> Result<LiveStart> {
-    let view = scene.view();
-    Ok(LiveStart {
-        name: scene.name.clone(),
-        simulation: scene.simulation()?,
-        tally: Tally::default(),
-        duration_secs: scene.duration_secs,
-        held_by: walls(scene),
+        held_by,
         view: [view.min, view.max],
         slumps: slumps(scene),
         worlds: Vec::new(),
         history: None,
-    })
+    }
 }
 
 /// Whether grains lie on level ground that stays, and may spread: of others Δy_G, which goes by heights above y = 0,
@@ -237,13 +266,7 @@ impl SettlingProgress {
             let view = view_of(&snapshot);
             self.preview = Some(Preview { snapshot: Arc::new(snapshot), view });
         }
-        // Rain falls for a quarter of the limit at most; then the slowing down tells how far it has come.
-        let rained = match settling.rains {
-            true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),
-            false => 1.0,
-        };
-        let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
-        self.part = self.part.max(0.5 * rained + 0.5 * slowed.clamp(0.0, 1.0) * rained);
+        self.part = self.part.max(settled_part(settling));
         let grains = settling.simulation.world().grains.len();
         let text = if settling.rains {
             format!("Raining a new pile: {} of {grains} grains have landed", self.landed)
@@ -271,6 +294,16 @@ impl SettlingProgress {
             format!(", some {:.0} min left", (left_secs / 60.0).ceil())
         }
     }
+}
+
+/// How much of a settling is done, 0 … 1: rain falls for a quarter of the limit at most, then the slowing down tells.
+pub(super) fn settled_part(settling: &Settling) -> f64 {
+    let rained = match settling.rains {
+        true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),
+        false => 1.0,
+    };
+    let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
+    0.5 * rained * (1.0 + slowed.clamp(0.0, 1.0))
 }
 
 /// How many grains touch what is below all of them, or others that do.

@@ -141,12 +141,16 @@ pub(super) struct StoredWindow {
     pub layout: egui::Memory,
 }
 
+/// The program's folder in the one of the user that a variable of the environment names, or that lies in their home.
+pub(super) fn user_folder(variable: &str, in_home: &str) -> Option<PathBuf> {
+    let named = std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
+    let home = || std::env::home_dir().map(|home| home.join(in_home));
+    Some(named.or_else(home)?.join("slump"))
+}
+
 /// Where the file lies: in the user's configuration folder.
 fn path() -> Option<PathBuf> {
-    let folder =
-        std::env::var_os("XDG_CONFIG_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
-    let home = || std::env::home_dir().map(|home| home.join(".config"));
-    Some(folder.or_else(home)?.join("slump").join("window.ron"))
+    Some(user_folder("XDG_CONFIG_HOME", ".config")?.join("window.ron"))
 }
 
 /// Reads what was kept.

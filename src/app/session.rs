@@ -5,17 +5,17 @@
 //! again, bit for bit, where the timeline asks for them.
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, channel};
 
 use serde::{Deserialize, Serialize};
 
 use super::camera::SceneCamera;
 use super::export::Export;
-use super::opening::{LastOpened, Opened, loader_of_file, loader_of_run, loader_of_session};
+use super::opening::Opened;
 use super::panels::see::file_stem;
 use super::preferences::{Preferences, StoredWindow};
 use super::state::AppState;
-use crate::config::{Config, SavedState};
+use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::live::{Command, LiveStart};
 use crate::output::{Seal, write_file};
@@ -85,14 +85,14 @@ impl Session {
         Some((serde_json::from_str(&self.config).ok()?, ron::from_str(&self.window).ok()?))
     }
 
-    /// Takes it apart: the start, and what goes to the window.
-    pub(super) fn begin(self, last: &LastOpened, window: &Sender<Arrangement>) -> LiveStart {
-        if let Some((config, arrangement)) = self.parts() {
-            last.note(Opened { scene: self.scene, config });
-            // Whoever waits for it has gone where another file is opened already.
-            let _ = window.send(arrangement);
-        }
-        self.start
+    /// The start, what it is of, and how the window was arranged.
+    ///
+    /// # Errors
+    /// Where what is text in it is none.
+    pub(super) fn into_parts(self) -> Result<(LiveStart, Opened, Arrangement)> {
+        let refuse = || Error::value("session", "damaged", SEAL.form);
+        let (config, arrangement) = self.parts().ok_or_else(refuse)?;
+        Ok((self.start, Opened { scene: self.scene, config }, arrangement))
     }
 }
 
@@ -124,41 +124,11 @@ pub(super) fn write_session(path: &Path, order: &SessionOrder) -> Result<()> {
 }
 
 impl AppState {
-    /// Opens a saved run, to go on with it.
-    pub fn load_run(&mut self, state: SavedState) {
-        self.leave_tour();
-        self.live.send(Command::Load(loader_of_run(state, self.last_opened.clone())));
-    }
-
-    /// Opens a session.
-    pub(crate) fn load_session(
-        &mut self,
-        session: impl FnOnce() -> Result<Session> + Send + 'static,
-    ) {
-        self.leave_tour();
-        let (sender, arriving) = channel();
-        self.arriving = Some(arriving);
-        let loader = loader_of_session(session, self.last_opened.clone(), sender);
-        self.live.send(Command::Load(loader));
-    }
-
-    /// Opens the file of a saved run or of a session, to go on with it.
-    pub fn load_saved(&mut self, path: &Path) {
-        self.data.saved_run = path.display().to_string();
-        if path.extension().is_some_and(|ending| ending == SESSION_ENDING) {
-            let path = path.to_owned();
-            return self.load_session(move || Session::open(&path));
-        }
-        self.leave_tour();
-        let loader = loader_of_file(path.to_owned(), self.last_opened.clone());
-        self.live.send(Command::Load(loader));
-    }
-
     /// Saves the moment that the selected world has come to.
     pub(crate) fn save_state(&mut self, context: &egui::Context) {
         let run = self.take_run();
         let folder = self.preferences.folder.clone();
-        self.exporter.submit(context, Export::State(run), &folder, "");
+        self.exports.files.submit(context, Export::State(run), &folder, "");
     }
 
     /// Saves all worlds with their record, and how the window is arranged.
@@ -171,7 +141,7 @@ impl AppState {
             Err(error) => return self.warn(error.to_string()),
         };
         let (folder, stem) = (self.preferences.folder.clone(), file_stem(self));
-        self.exporter.submit(context, Export::Session(Box::new(order)), &folder, &stem);
+        self.exports.files.submit(context, Export::Session(Box::new(order)), &folder, &stem);
     }
 
     /// What a session of the present moment is made of.
@@ -191,7 +161,7 @@ impl AppState {
         let refuse = |error| Error::value("window", "arranged so", format!("written ({error})"));
         let window = ron::to_string(&arrangement).map_err(refuse)?;
         let (sender, run) = channel();
-        let last = self.last_opened.clone();
+        let last = self.opening.last.clone();
         let hand_on = move |start: LiveStart| {
             if let Some(opened) = last.get() {
                 let Opened { scene, config } = &*opened;
@@ -211,13 +181,13 @@ impl AppState {
         let Preferences { window_points, folder, .. } = self.preferences.clone();
         self.preferences = Preferences { window_points, folder, ..stored.preferences };
         (self.touring, self.selected, self.camera) = (touring, selected, camera);
-        self.layout = Some(stored.layout);
+        self.opening.layout = Some(stored.layout);
         self.live.send(Command::SetPace(self.preferences.pace()));
     }
 
     /// Puts the panels where they were when a session was saved.
     pub(super) fn restore_layout(&mut self, context: &egui::Context) {
-        if let Some(layout) = self.layout.take() {
+        if let Some(layout) = self.opening.layout.take() {
             context.memory_mut(|memory| memory.data = layout.data);
             context.set_zoom_factor(layout.options.zoom_factor);
         }

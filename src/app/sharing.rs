@@ -13,11 +13,11 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 
 use egui::Context;
 
-use super::opening::{TakenRun, loader_of_link};
+use super::opening::TakenRun;
 use super::state::AppState;
 use crate::config::{Config, Origin, Provenance, asked_time_secs, joined, words_of, words_up_to};
 use crate::error::{Error, Result};
-use crate::live::{Command, ControlsChange, WorldHistory, WorldPlan};
+use crate::live::{ControlsChange, WorldHistory, WorldPlan};
 use crate::output::Texts;
 use crate::sim::Settings;
 
@@ -255,13 +255,13 @@ impl AppState {
     /// Has the link of the present moment of all worlds copied.
     pub fn copy_link(&mut self) {
         let worlds = 0..self.frame.worlds.len();
-        let waiting = worlds.map(|world| TakenRun::ask(&mut self.live, world, &self.last_opened));
-        self.linking = Some(PendingLink { waiting: waiting.collect(), come: Vec::new() });
+        let waiting = worlds.map(|world| self.take_run_of(world));
+        self.exports.link = Some(PendingLink { waiting: waiting.collect(), come: Vec::new() });
     }
 
     /// Copies the link once all worlds have come.
     pub(super) fn follow_link(&mut self, context: &Context) {
-        let Some(linking) = &mut self.linking else { return };
+        let Some(linking) = &mut self.exports.link else { return };
         while let Some(next) = linking.waiting.get(linking.come.len()) {
             match next.try_recv() {
                 Ok(run) => linking.come.push(run),
@@ -270,7 +270,7 @@ impl AppState {
             }
         }
         let runs = std::mem::take(&mut linking.come);
-        self.linking = None;
+        self.exports.link = None;
         match linked(runs) {
             Ok((text, is_pulled)) => {
                 context.copy_text(text);
@@ -294,12 +294,6 @@ impl AppState {
         let link = RunLink::read(text)?;
         self.load_link(link);
         Ok(())
-    }
-
-    /// Opens what a link tells of.
-    pub(super) fn load_link(&mut self, link: RunLink) {
-        self.leave_tour();
-        self.live.send(Command::Load(loader_of_link(link, self.last_opened.clone())));
     }
 }
 

@@ -4,7 +4,6 @@
 use egui::{Align, Button, Layout, RichText, Ui};
 use serde::{Deserialize, Serialize};
 
-use super::opening::loader_of_station;
 use super::preferences::Preferences;
 use super::state::AppState;
 use super::theme;
@@ -181,10 +180,9 @@ impl AppState {
     pub fn visit(&mut self, at: usize) {
         let station = self.preferences.visit(at);
         self.touring = true;
-        self.opened_panel = station.panel;
+        self.shown.panel = station.panel;
         self.live.send(Command::SetPace(self.preferences.pace()));
-        let loader = loader_of_station(station, self.last_opened.clone());
-        self.live.send(Command::Load(loader));
+        self.load_station(station);
     }
 
     /// Ends the tour, with the worlds as they are.

@@ -26,7 +26,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     if context.options(|options| options.theme_preference) != state.preferences.theme {
         context.set_theme(state.preferences.theme);
     }
-    state.follow_other_piles(&context);
+    state.follow_ensemble(&context);
     opening::take_dropped_files(&context, state);
     act_on_keys(&context, state);
 
@@ -79,7 +79,7 @@ fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
         }
         tour::resume_button(ui, state);
     }
-    let asked = state.opened_panel.take();
+    let asked = state.shown.panel.take();
     ui.add_space(2.0);
     for Section { id, title, open, show } in SECTIONS {
         let Some(title) = title(state) else { continue };
@@ -114,14 +114,14 @@ fn waiting(ui: &mut Ui, state: &AppState) {
 fn act_on_keys(context: &Context, state: &mut AppState) {
     let escape = context.input(|input| input.key_pressed(Key::Escape));
     if escape {
-        state.help = false;
+        state.shown.help = false;
     }
     // A focused field or slider has a use of its own for letters and arrows.
     if context.egui_wants_keyboard_input() {
         return;
     }
     let restart = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::G);
-    state.restart_graphics |= context.input_mut(|input| input.consume_shortcut(&restart));
+    state.shown.restart_graphics |= context.input_mut(|input| input.consume_shortcut(&restart));
     let quit = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
     if context.input_mut(|input| input.consume_shortcut(&quit)) {
         context.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -160,7 +160,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
         see::save_picture(context, state);
     }
     if pressed(Key::H) {
-        state.help = !state.help;
+        state.shown.help = !state.shown.help;
     }
 }
 

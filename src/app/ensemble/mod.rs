@@ -13,12 +13,19 @@ mod pool;
 mod runs;
 
 use super::opening::Opened;
+use super::preferences::user_folder;
 use super::state::AppState;
 use crate::scene::NewPile;
 use crate::sim::Settings;
-use pool::{EnsembleSummary, Tasks, WorkerPool, idle_cores};
+use pool::{EnsembleSummary, WorkerPool, idle_cores};
 pub(crate) use runs::Band;
-use runs::{others_of, user_folder};
+use runs::others_of;
+
+/// The rule that a mean goes by, for whoever points at it.
+const RULE: &str = "Idle cores run piles that differ from this one in their seed alone, with the present settings from \
+                    the start on. The band is their mean slump with its 95 % interval (Student's). Other settings \
+                    begin anew; a run whose settings changed on the way, or that was pulled by hand, has no others: \
+                    reset it. The seed of the shipped pile, which was chosen, is never among them.";
 
 /// A run that stands still for longer is not computed for.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -40,7 +47,8 @@ pub struct Ensemble {
 impl Ensemble {
     /// None yet; their initial states are kept in the user's cache folder.
     pub(crate) fn new() -> Self {
-        Self { folder: user_folder(), ..Self::default() }
+        let folder = user_folder("XDG_CACHE_HOME", ".cache").map(|folder| folder.join("piles"));
+        Self { folder, ..Self::default() }
     }
 
     /// Keeps initial states elsewhere.
@@ -56,7 +64,7 @@ impl Ensemble {
     }
 
     /// Whether what is open has others, and there are cores to compute them.
-    pub(super) fn are_possible(&self) -> bool {
+    pub(super) fn is_possible(&self) -> bool {
         self.folder.is_some() && idle_cores() > 0 && !self.piles.is_empty()
     }
 
@@ -68,20 +76,20 @@ impl Ensemble {
     /// Mean slump of those that have come to their end at a simulated time (s), half the width of its interval, and
     /// their number.
     pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
-        let band = self.told(world)?.band;
+        let band = self.summary(world)?.band;
         let (mean, half) = band.at(time_secs)?;
         Some((mean, half, band.count))
     }
 
     /// What is said of those of a world; nothing where it has none.
-    pub(crate) fn told(&self, world: usize) -> Option<EnsembleSummary> {
-        self.pool.as_ref()?.told(world)
+    pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
+        self.pool.as_ref()?.summary(world)
     }
 
     /// Looks up the others of what is open.
-    pub(super) fn look_up(&mut self, opened: Option<Arc<Opened>>) {
-        let ends = |opened: &Option<Arc<Opened>>| opened.as_ref().map(Arc::as_ptr);
-        if ends(&self.opened) != ends(&opened) {
+    fn look_up(&mut self, opened: Option<Arc<Opened>>) {
+        let address = |opened: &Option<Arc<Opened>>| opened.as_ref().map(Arc::as_ptr);
+        if address(&self.opened) != address(&opened) {
             self.stop();
             self.piles = opened.as_ref().map_or_else(Vec::new, |opened| others_of(opened));
             self.opened = opened;
@@ -89,36 +97,26 @@ impl Ensemble {
     }
 
     /// Has them follow the worlds, those without settings left out, of the frame of that number.
-    pub(super) fn follow(
-        &mut self,
-        context: &egui::Context,
-        worlds: Vec<Option<Settings>>,
-        frame: u64,
-    ) {
-        let (Some(opened), Some(folder), true) = (&self.opened, &self.folder, self.are_possible())
+    fn follow(&mut self, context: &egui::Context, worlds: Vec<Option<Settings>>, frame: u64) {
+        let (Some(opened), Some(folder), true) = (&self.opened, &self.folder, self.is_possible())
         else {
             return;
         };
-        let pool = self.pool.get_or_insert_with(|| {
-            let tasks = Tasks::new(Arc::clone(opened), self.piles.clone());
-            WorkerPool::start(idle_cores(), folder, context, tasks)
-        });
-        let changed = self.worlds != worlds;
-        if changed {
-            pool.follow(&worlds);
-            self.worlds = worlds;
+        let start = || WorkerPool::start(folder, context, opened, &self.piles);
+        let pool = self.pool.get_or_insert_with(start);
+        if self.worlds == worlds && self.frame == frame {
+            return;
         }
-        if changed || self.frame != frame {
-            self.frame = frame;
-            pool.keep_awake(PATIENCE);
-        }
+        pool.follow(&worlds);
+        pool.keep_awake(PATIENCE);
+        (self.worlds, self.frame) = (worlds, frame);
     }
 }
 
 impl AppState {
     /// Has the other piles follow the worlds that there are.
-    pub(crate) fn follow_other_piles(&mut self, context: &egui::Context) {
-        self.ensemble.look_up(self.last_opened.get());
+    pub(crate) fn follow_ensemble(&mut self, context: &egui::Context) {
+        self.ensemble.look_up(self.opening.last.get());
         if !self.preferences.ensemble {
             self.ensemble.stop();
             return;
@@ -130,29 +128,16 @@ impl AppState {
         let worlds = worlds.collect();
         self.ensemble.follow(context, worlds, self.frame.number);
     }
-}
-
-/// The rule that a mean goes by, for whoever points at it.
-const RULE: &str = "Idle cores run piles that differ from this one in their seed alone, with the present settings from \
-                    the start on. The band is their mean slump with its 95 % interval (Student's). Other settings \
-                    begin anew; a run whose settings changed on the way, or that was pulled by hand, has no others: \
-                    reset it. The seed of the shipped pile, which was chosen, is never among them.";
-
-impl AppState {
-    /// Whether what is open has other piles, be they computed or not.
-    pub(crate) fn has_other_piles(&self) -> bool {
-        self.ensemble.are_possible()
-    }
 
     /// How other piles come about, and which they are.
-    pub(crate) fn about_other_piles(&self) -> String {
+    pub(crate) fn about_ensemble(&self) -> String {
         let Some(EnsembleSummary { seeds, settling, failed, .. }) =
-            self.ensemble.told(self.selected)
+            self.ensemble.summary(self.selected)
         else {
             return RULE.into();
         };
-        let seeds: Vec<String> = seeds.iter().map(u64::to_string).collect();
-        let mut text = format!("{RULE}\nSeeds {}.", seeds.join(", "));
+        let all: Vec<String> = seeds.iter().map(u64::to_string).collect();
+        let mut text = format!("{RULE}\nSeeds {}.", all.join(", "));
         if let Some((number, part)) = settling {
             text += &format!(" Rain {number} of {}: {:.0} %.", seeds.len(), 100.0 * part);
         }
@@ -162,34 +147,33 @@ impl AppState {
         text
     }
 
-    /// A world's slump at the moment that is shown beside that of its other piles; nothing where it has none.
-    pub(crate) fn beside_other_piles(&self, world: usize) -> Option<String> {
+    /// What is said of a world's other piles at the moment that is shown; nothing where it has none.
+    pub(crate) fn said_of_ensemble(&self, world: usize) -> Option<String> {
         let row = self.frame.worlds.get(world)?.snapshot.observables;
-        let told = self.ensemble.told(world)?;
-        Some(format!("Δy {:.3}; {}", row.slump, said(&told, row.time_secs)))
+        Some(said(&self.ensemble.summary(world)?, row.time_secs))
     }
 
-    /// The same of the others alone, for narrow places.
+    /// The same in short, for narrow places.
     pub(crate) fn others_in_short(&self, world: usize) -> Option<String> {
-        let row = self.frame.worlds.get(world)?.snapshot.observables;
-        let told = self.ensemble.told(world)?;
-        Some(said(&told, row.time_secs).replace("other piles", "others"))
+        Some(self.said_of_ensemble(world)?.replace("other piles", "others"))
     }
 }
 
 /// What other piles say at a simulated time.
-fn said(told: &EnsembleSummary, time_secs: f64) -> String {
-    let (planned, count) = (told.seeds.len() - told.failed, told.band.count);
-    let mean = told.band.at(time_secs);
+fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
+    let (planned, count) = (summary.seeds.len() - summary.failed, summary.band.count);
+    let mean = summary.band.at(time_secs);
     let of = if count < planned { format!("{count} of {planned}") } else { count.to_string() };
-    match (mean, told.settling) {
+    match (mean, summary.settling) {
         (Some((mean, half)), _) if half.is_finite() => {
             let decimals = decimals(half);
             format!("other piles {mean:.decimals$} ± {half:.decimals$} (n = {of})")
         }
         (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
         (None, _) if count > 0 => "other piles were not run so far".into(),
-        (None, Some((number, _))) => format!("other piles: rain {number} of {}", told.seeds.len()),
+        (None, Some((number, _))) => {
+            format!("other piles: rain {number} of {}", summary.seeds.len())
+        }
         (None, None) => "other piles are under way".into(),
     }
 }

@@ -1,12 +1,11 @@
 //! The pool of worker threads that runs the ensemble: what is to be done, what is under way, and what has come of it.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::runs::{Band, SlumpSeries, scene_of, settled_part, slump};
-use crate::app::opening::Opened;
+use super::runs::{Band, SlumpSeries, scene_of, slump};
+use crate::app::opening::{Opened, settled_part};
 use crate::error::Result;
 use crate::output::check_writable;
 use crate::scene::{NewPile, Settling};
@@ -14,54 +13,49 @@ use crate::sim::Settings;
 use crate::study::settled_pile;
 use crate::world::Grain;
 
-/// Whoever has taken a task looks now and then whether nobody wants it any more.
-pub(super) type Ticket = Arc<AtomicBool>;
+/// Least time between two looks of the window at how far a pile has come.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
+/// Cores that are left to what is in front; where the system is not asked for a lower priority, another one for the
+/// window.
+const LEFT: usize = if cfg!(target_os = "linux") { 1 } else { 2 };
 
-/// What one thread is to do next.
-pub(super) enum Task {
-    /// Let a pile settle.
-    Settle { pile: NewPile, ticket: Ticket },
-    /// Run one with the settings of a world.
-    Run {
-        opened: Arc<Opened>,
-        pile: NewPile,
-        grains: Vec<Grain>,
-        settings: Settings,
-        ticket: Ticket,
-    },
+/// How many cores are idle while a world runs: none where there is one.
+pub(super) fn idle_cores() -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    cores.saturating_sub(LEFT)
+}
+
+/// Gives the thread that calls it the lowest priority. On Linux a priority is a thread's own, and that of the
+/// "process" None is that of the calling thread (setpriority(2), "C library/kernel differences").
+fn give_way() {
+    #[cfg(target_os = "linux")]
+    {
+        const NICEST: i32 = 19;
+        // Where it is refused, the thread shares its core as any other would.
+        let _ = rustix::process::setpriority_process(None, NICEST);
+    }
 }
 
 /// How far something has come.
-enum TaskState<T> {
+enum JobState<T> {
     Waiting,
-    Underway(Ticket),
+    /// Whoever does it has this number, and has come so far, 0 … 1.
+    Underway(u64, f32),
     Done(T),
     Failed,
 }
 
-impl<T> TaskState<T> {
-    fn is_of(&self, ticket: &Ticket) -> bool {
-        matches!(self, Self::Underway(own) if Arc::ptr_eq(own, ticket))
+impl<T> JobState<T> {
+    fn is_of(&self, ticket: u64) -> bool {
+        matches!(self, Self::Underway(own, _) if *own == ticket)
     }
 
     fn done(&self) -> Option<&T> {
         if let Self::Done(result) = self { Some(result) } else { None }
     }
 
-    fn begin(&mut self) -> Ticket {
-        let ticket = Ticket::default();
-        *self = Self::Underway(Arc::clone(&ticket));
-        ticket
-    }
-
     fn end(&mut self, result: Option<T>) {
         *self = result.map_or(Self::Failed, Self::Done);
-    }
-
-    fn cancel(&self) {
-        if let Self::Underway(ticket) = self {
-            ticket.store(true, Ordering::Relaxed);
-        }
     }
 }
 
@@ -69,7 +63,7 @@ impl<T> TaskState<T> {
 struct EnsembleWorld {
     /// None where the world has no others.
     settings: Option<Settings>,
-    runs: Vec<TaskState<Arc<SlumpSeries>>>,
+    runs: Vec<JobState<Arc<SlumpSeries>>>,
     band: Arc<Band>,
 }
 
@@ -87,222 +81,229 @@ pub(crate) struct EnsembleSummary {
 }
 
 /// All that is to be done for what is open.
-pub(super) struct Tasks {
+struct Jobs {
     opened: Arc<Opened>,
-    piles: Vec<(NewPile, TaskState<Vec<Grain>>)>,
-    /// How far those have come that are under way.
-    parts: Vec<f32>,
+    piles: Vec<(NewPile, JobState<Vec<Grain>>)>,
     worlds: Vec<EnsembleWorld>,
+    /// Counts what was begun.
+    tickets: u64,
+    /// Until when there is work to be done: what stands still for long is not computed for.
+    awake_until: Instant,
+    is_over: bool,
 }
 
-impl Tasks {
-    /// Those of what is open, with no world yet.
-    pub(super) fn new(opened: Arc<Opened>, piles: Vec<NewPile>) -> Self {
-        let parts = vec![0.0; piles.len()];
-        let piles = piles.into_iter().map(|pile| (pile, TaskState::Waiting)).collect();
-        Self { opened, piles, parts, worlds: Vec::new() }
-    }
+/// What one thread is to do next.
+enum Job {
+    /// Let a pile settle.
+    Settle(NewPile),
+    /// Run one with the settings of a world.
+    Run { opened: Arc<Opened>, pile: NewPile, grains: Vec<Grain>, settings: Settings },
+}
 
+impl Jobs {
     /// Has worlds with these settings. What was computed for others is forgotten.
-    pub(super) fn follow(&mut self, worlds: &[Option<Settings>]) {
+    fn follow(&mut self, worlds: &[Option<Settings>]) {
         let mut before = std::mem::take(&mut self.worlds);
         for &settings in worlds {
             let same = before.iter().position(|world| world.settings == settings);
-            let world = same.map_or_else(
-                || EnsembleWorld {
-                    settings,
-                    runs: self.piles.iter().map(|_| TaskState::Waiting).collect(),
-                    band: Arc::default(),
-                },
-                |index| before.swap_remove(index),
-            );
-            self.worlds.push(world);
+            let fresh = || EnsembleWorld {
+                settings,
+                runs: self.piles.iter().map(|_| JobState::Waiting).collect(),
+                band: Arc::default(),
+            };
+            self.worlds.push(same.map_or_else(fresh, |index| before.swap_remove(index)));
         }
-        before.iter().flat_map(|world| &world.runs).for_each(TaskState::cancel);
-    }
-
-    /// Has nobody go on with anything.
-    pub(super) fn cancel(&self) {
-        self.piles.iter().for_each(|(_, stage)| stage.cancel());
-        self.worlds.iter().flat_map(|world| &world.runs).for_each(TaskState::cancel);
     }
 
     /// What is to be done next: pile by pile, each for all worlds, so that all have as many.
-    pub(super) fn next(&mut self) -> Option<Task> {
+    fn next(&mut self) -> Option<(Job, u64)> {
         if self.worlds.iter().all(|world| world.settings.is_none()) {
             return None;
         }
-        for (index, (pile, stage)) in self.piles.iter_mut().enumerate() {
-            if matches!(stage, TaskState::Waiting) {
-                self.parts[index] = 0.0;
-                return Some(Task::Settle { pile: pile.clone(), ticket: stage.begin() });
+        let ticket = self.tickets + 1;
+        let job = self.piles.iter_mut().enumerate().find_map(|(index, (pile, state))| {
+            if matches!(state, JobState::Waiting) {
+                *state = JobState::Underway(ticket, 0.0);
+                return Some(Job::Settle(pile.clone()));
             }
-            let Some(grains) = stage.done() else { continue };
-            for EnsembleWorld { settings, runs, .. } in &mut self.worlds {
-                if let (Some(settings), TaskState::Waiting) = (*settings, &runs[index]) {
-                    let (opened, pile) = (Arc::clone(&self.opened), pile.clone());
-                    let (grains, ticket) = (grains.clone(), runs[index].begin());
-                    return Some(Task::Run { opened, pile, grains, settings, ticket });
+            let grains = state.done()?;
+            self.worlds.iter_mut().find_map(|EnsembleWorld { settings, runs, .. }| {
+                let settings = (*settings)?;
+                if !matches!(runs[index], JobState::Waiting) {
+                    return None;
                 }
-            }
-        }
-        None
+                runs[index] = JobState::Underway(ticket, 0.0);
+                let (opened, pile) = (Arc::clone(&self.opened), pile.clone());
+                Some(Job::Run { opened, pile, grains: grains.clone(), settings })
+            })
+        })?;
+        self.tickets = ticket;
+        Some((job, ticket))
+    }
+
+    fn pile_of(&mut self, ticket: u64) -> Option<usize> {
+        self.piles.iter().position(|(_, state)| state.is_of(ticket))
+    }
+
+    /// Whether somebody still wants what has that number.
+    fn is_wanted(&self, ticket: u64) -> bool {
+        let mut runs = self.worlds.iter().flat_map(|world| &world.runs);
+        !self.is_over
+            && (self.piles.iter().any(|(_, state)| state.is_of(ticket))
+                || runs.any(|run| run.is_of(ticket)))
     }
 
     /// Notes how far a pile has come.
-    pub(super) fn note_part(&mut self, ticket: &Ticket, part: f32) {
-        if let Some(index) = self.piles.iter().position(|(_, stage)| stage.is_of(ticket)) {
-            self.parts[index] = self.parts[index].max(part);
+    fn note_part(&mut self, ticket: u64, now: f32) {
+        for (_, state) in &mut self.piles {
+            if let JobState::Underway(own, part) = state
+                && *own == ticket
+            {
+                *part = part.max(now);
+            }
         }
     }
 
     /// Notes that a pile has settled, or that it cannot.
-    pub(super) fn note_pile(&mut self, ticket: &Ticket, grains: Option<Vec<Grain>>) {
-        let Some(index) = self.piles.iter().position(|(_, stage)| stage.is_of(ticket)) else {
-            return;
-        };
+    fn note_pile(&mut self, ticket: u64, grains: Option<Vec<Grain>>) {
+        let Some(index) = self.pile_of(ticket) else { return };
         if grains.is_none() {
-            self.worlds.iter_mut().for_each(|world| world.runs[index] = TaskState::Failed);
+            self.worlds.iter_mut().for_each(|world| world.runs[index] = JobState::Failed);
         }
         self.piles[index].1.end(grains);
     }
 
     /// Notes that a run has come to its end, or that it cannot.
-    pub(super) fn note_run(&mut self, ticket: &Ticket, series: Option<SlumpSeries>) {
-        let of_ticket = |world: &&mut EnsembleWorld| world.runs.iter().any(|run| run.is_of(ticket));
-        let Some(world) = self.worlds.iter_mut().find(of_ticket) else { return };
-        if let Some(run) = world.runs.iter_mut().find(|run| run.is_of(ticket)) {
-            run.end(series.map(Arc::new));
+    fn note_run(&mut self, ticket: u64, series: Option<SlumpSeries>) {
+        for world in &mut self.worlds {
+            if let Some(run) = world.runs.iter_mut().find(|run| run.is_of(ticket)) {
+                run.end(series.map(Arc::new));
+                let done: Vec<_> = world.runs.iter().filter_map(JobState::done).cloned().collect();
+                world.band = Arc::new(Band::of(&done));
+                return;
+            }
         }
-        let done: Vec<Arc<SlumpSeries>> =
-            world.runs.iter().filter_map(TaskState::done).cloned().collect();
-        world.band = Arc::new(Band::of(&done));
     }
 
     /// What is said of a world's others; nothing where it has none.
-    pub(super) fn told(&self, world: usize) -> Option<EnsembleSummary> {
+    fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         let EnsembleWorld { settings, runs, band } = self.worlds.get(world)?;
         (*settings)?;
-        let underway =
-            |(_, stage): &(NewPile, TaskState<_>)| matches!(stage, TaskState::Underway(_));
-        let settling = self.piles.iter().position(underway);
+        let mut states = self.piles.iter().map(|(_, state)| state).enumerate();
         Some(EnsembleSummary {
             band: Arc::clone(band),
             seeds: self.piles.iter().map(|(pile, _)| pile.seed).collect(),
-            failed: runs.iter().filter(|run| matches!(run, TaskState::Failed)).count(),
-            settling: settling.map(|index| (index + 1, self.parts[index])),
+            failed: runs.iter().filter(|run| matches!(run, JobState::Failed)).count(),
+            settling: states.find_map(|(index, state)| match state {
+                JobState::Underway(_, part) => Some((index + 1, *part)),
+                _ => None,
+            }),
         })
     }
-}
-
-/// Least time between two looks of the window at how far a pile has come.
-const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
-
-/// Threads at work. Dropped, they end after the step that they are computing.
-pub(super) struct WorkerPool {
-    shared: Arc<PoolState>,
-    // Their threads end when the work that they were given does.
-    pools: Vec<rayon::ThreadPool>,
 }
 
 /// What the threads and the window share.
 struct PoolState {
     folder: PathBuf,
     context: egui::Context,
-    started: Instant,
-    /// Until when there is work to be done, ms since the start: what stands still for long is not computed for.
-    awake_until_ms: AtomicU64,
-    work: Mutex<Jobs>,
+    jobs: Mutex<Jobs>,
     news: Condvar,
 }
 
-struct Jobs {
-    tasks: Tasks,
-    is_over: bool,
+/// Threads at work. Dropped, they end after the step that they are computing.
+pub(super) struct WorkerPool {
+    state: Arc<PoolState>,
+    // Their threads end when the work that they were given does.
+    threads: Vec<rayon::ThreadPool>,
 }
 
 impl WorkerPool {
-    /// Starts so many threads. Initial states are kept in `folder`; `context` is asked for a frame where there is
-    /// something new.
+    /// Starts a thread for each idle core. Initial states are kept in `folder`; `context` is asked for a frame where
+    /// there is something new.
     pub(super) fn start(
-        threads: usize,
         folder: &Path,
         context: &egui::Context,
-        tasks: Tasks,
+        opened: &Arc<Opened>,
+        piles: &[NewPile],
     ) -> Self {
-        let shared = Arc::new(PoolState {
+        let jobs = Jobs {
+            opened: Arc::clone(opened),
+            piles: piles.iter().map(|pile| (pile.clone(), JobState::Waiting)).collect(),
+            worlds: Vec::new(),
+            tickets: 0,
+            awake_until: Instant::now(),
+            is_over: false,
+        };
+        let state = Arc::new(PoolState {
             folder: folder.to_owned(),
             context: context.clone(),
-            started: Instant::now(),
-            awake_until_ms: AtomicU64::new(0),
-            work: Mutex::new(Jobs { tasks, is_over: false }),
+            jobs: Mutex::new(jobs),
             news: Condvar::new(),
         });
         // A pool of one thread each: what a method does in parallel stays on it, below all others.
-        let pool = |_| {
+        let thread = |_| {
             let builder = rayon::ThreadPoolBuilder::new().num_threads(1);
             let builder = builder.thread_name(|_| "other piles".into()).panic_handler(|_| {});
-            let pool = builder.start_handler(|_| give_way()).build().ok()?;
-            let shared = Arc::clone(&shared);
-            pool.spawn(move || shared.work());
-            Some(pool)
+            let thread = builder.start_handler(|_| give_way()).build().ok()?;
+            let state = Arc::clone(&state);
+            thread.spawn(move || state.work());
+            Some(thread)
         };
-        let pools = (0..threads).filter_map(pool).collect();
-        Self { shared, pools }
+        let threads = (0..idle_cores()).filter_map(thread).collect();
+        Self { state, threads }
     }
 
     /// Has worlds with these settings.
     pub(super) fn follow(&self, worlds: &[Option<Settings>]) {
-        self.shared.lock().tasks.follow(worlds);
+        self.state.lock().follow(worlds);
     }
 
     /// What is said of the others of a world.
-    pub(super) fn told(&self, world: usize) -> Option<EnsembleSummary> {
-        self.shared.lock().tasks.told(world)
+    pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
+        self.state.lock().summary(world)
     }
 
     /// Has the threads work for that long, unless they are told so again.
     pub(super) fn keep_awake(&self, duration: Duration) {
-        let until = (self.shared.started.elapsed() + duration).as_millis() as u64;
-        // Under the lock, so that no thread goes to sleep between its look and the news.
-        let _work = self.shared.lock();
-        self.shared.awake_until_ms.store(until, Ordering::Relaxed);
-        self.shared.news.notify_all();
+        self.state.lock().awake_until = Instant::now() + duration;
+        self.state.news.notify_all();
     }
 
     /// Number of threads.
     pub(super) fn threads(&self) -> usize {
-        self.pools.len()
+        self.threads.len()
     }
 }
 
 impl Drop for WorkerPool {
     fn drop(&mut self) {
-        let mut work = self.shared.lock();
-        work.is_over = true;
-        work.tasks.cancel();
-        self.shared.news.notify_all();
+        self.state.lock().is_over = true;
+        self.state.news.notify_all();
     }
 }
 
 impl PoolState {
     fn lock(&self) -> MutexGuard<'_, Jobs> {
-        self.work.lock().unwrap_or_else(PoisonError::into_inner)
+        self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn wait<'a>(&self, jobs: MutexGuard<'a, Jobs>) -> MutexGuard<'a, Jobs> {
+        self.news.wait(jobs).unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What a thread does until all is over.
     fn work(&self) {
-        while let Some(task) = self.next() {
-            match task {
-                Task::Settle { pile, ticket } => {
-                    let settled = self.settle(&pile, &ticket);
-                    self.lock().tasks.note_pile(&ticket, settled.ok());
+        while let Some((job, ticket)) = self.next() {
+            match job {
+                Job::Settle(pile) => {
+                    let settled = self.settle(&pile, ticket);
+                    self.lock().note_pile(ticket, settled.ok());
                 }
-                Task::Run { opened, pile, grains, settings, ticket } => {
+                Job::Run { opened, pile, grains, settings } => {
                     let scene = scene_of(&opened, &pile, grains, &settings);
-                    let ran = scene.and_then(|scene| slump(&scene, || self.goes_on(&ticket)));
+                    let ran = scene.and_then(|scene| slump(&scene, || self.goes_on(ticket)));
                     if let Some(series) = ran.transpose() {
-                        self.lock().tasks.note_run(&ticket, series.ok());
+                        self.lock().note_run(ticket, series.ok());
                     }
                 }
             }
@@ -310,46 +311,38 @@ impl PoolState {
         }
     }
 
-    fn is_awake(&self) -> bool {
-        let now = self.started.elapsed().as_millis() as u64;
-        now < self.awake_until_ms.load(Ordering::Relaxed)
-    }
-
-    /// The next task, once there is one; nothing where all is over.
-    fn next(&self) -> Option<Task> {
-        let mut work = self.lock();
-        loop {
-            if work.is_over {
-                return None;
+    /// The next job, once there is one; nothing where all is over.
+    fn next(&self) -> Option<(Job, u64)> {
+        let mut jobs = self.lock();
+        while !jobs.is_over {
+            let is_awake = Instant::now() < jobs.awake_until;
+            if let Some(next) = is_awake.then(|| jobs.next()).flatten() {
+                return Some(next);
             }
-            if let Some(task) = self.is_awake().then(|| work.tasks.next()).flatten() {
-                return Some(task);
-            }
-            work = self.news.wait(work).unwrap_or_else(PoisonError::into_inner);
+            jobs = self.wait(jobs);
         }
+        None
     }
 
-    /// Whether a task is still wanted. Waits where nothing is to be done for the time being.
-    fn goes_on(&self, ticket: &Ticket) -> bool {
-        while !ticket.load(Ordering::Relaxed) {
-            if self.is_awake() {
+    /// Whether a job is still wanted. Waits where nothing is to be done for the time being.
+    fn goes_on(&self, ticket: u64) -> bool {
+        let mut jobs = self.lock();
+        while jobs.is_wanted(ticket) {
+            if Instant::now() < jobs.awake_until {
                 return true;
             }
-            let work = self.lock();
-            // Who cancels a task alone does not tell: hence the second.
-            let waited = self.news.wait_timeout(work, Duration::from_secs(1));
-            drop(waited.unwrap_or_else(PoisonError::into_inner));
+            jobs = self.wait(jobs);
         }
         false
     }
 
-    fn settle(&self, pile: &NewPile, ticket: &Ticket) -> Result<Vec<Grain>> {
+    fn settle(&self, pile: &NewPile, ticket: u64) -> Result<Vec<Grain>> {
         check_writable("cache folder", &self.folder)?;
         let mut told: Option<Instant> = None;
         settled_pile(&self.folder, pile, |settling: Settling| {
             if told.is_none_or(|at| at.elapsed() >= PROGRESS_INTERVAL) {
                 told = Some(Instant::now());
-                self.lock().tasks.note_part(ticket, settled_part(&settling));
+                self.lock().note_part(ticket, settled_part(&settling) as f32);
                 self.context.request_repaint();
             }
             self.goes_on(ticket)
@@ -357,32 +350,7 @@ impl PoolState {
     }
 }
 
-/// Cores that are left to what is in front.
-#[cfg(target_os = "linux")]
-const LEFT: usize = 1;
-/// Where the system is not asked for a lower priority, another one for the window.
-#[cfg(not(target_os = "linux"))]
-const LEFT: usize = 2;
-
-/// How many cores are idle while a world runs: none where there is one.
-pub(super) fn idle_cores() -> usize {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    cores.saturating_sub(LEFT)
-}
-
-/// Gives the thread that calls it the lowest priority. On Linux a priority is a thread's own, and that of the
-/// "process" None is that of the calling thread (setpriority(2), "C library/kernel differences").
-#[cfg(target_os = "linux")]
-pub(super) fn give_way() {
-    const NICEST: i32 = 19;
-    // Where it is refused, the thread shares its core as any other would.
-    let _ = rustix::process::setpriority_process(None, NICEST);
-}
-
-#[cfg(not(target_os = "linux"))]
-pub(super) fn give_way() {}
-
-#[cfg(test)]
+#[cfg(all(test, target_os = "linux"))]
 mod tests {
     use super::*;
 

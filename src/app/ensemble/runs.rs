@@ -1,13 +1,12 @@
 //! Which piles are the others of one that is open, how one of them runs, and the mean of those that have run.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::opening::Opened;
 use crate::config::Config;
 use crate::error::Result;
-use crate::scene::{NewPile, Scene, Settling, built_in};
+use crate::scene::{NewPile, Scene, built_in};
 use crate::sim::{RunEnding, Settings, Simulation};
 use crate::study;
 use crate::world::Grain;
@@ -58,16 +57,6 @@ impl Band {
 
 /// Points of a run at the most, but for its end.
 const MOST_POINTS: u64 = 400;
-/// A settling ends when the fastest grain is so many orders of magnitude slower than at first.
-const ORDERS_OF_SETTLING: f64 = 3.5;
-
-/// How much of a settling is done, 0 … 1: rain falls for a quarter of the limit at most, then the slowing down tells.
-pub(super) fn settled_part(settling: &Settling) -> f32 {
-    let rained = (4.0 * settling.time_secs / settling.limit_secs).min(1.0);
-    let slowed = 1.0 - settling.speed_over_rest.log10() / ORDERS_OF_SETTLING;
-    (0.5 * rained * (1.0 + slowed.clamp(0.0, 1.0))) as f32
-}
-
 /// The slump of a scene from its start to its end; nothing where `goes_on`, which is asked after each step, says no.
 ///
 /// # Errors
@@ -99,14 +88,6 @@ pub(super) fn slump(
 const COUNT: usize = 8;
 /// Larger piles rain for minutes each.
 const MOST_GRAINS: usize = 1_000;
-
-/// Where initial states are kept: in the user's cache folder.
-pub(super) fn user_folder() -> Option<PathBuf> {
-    let folder =
-        std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
-    let home = || std::env::home_dir().map(|home| home.join(".cache"));
-    Some(folder.or_else(home)?.join("slump").join("piles"))
-}
 
 /// The other piles of what is open, with seeds from 1 on but for its own and that of the shipped state; none where
 /// it is no pile that was made from a seed, or a large one.

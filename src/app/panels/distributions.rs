@@ -18,7 +18,7 @@ const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Histograms of one world, as new as they need be.
 #[derive(Default)]
-pub(crate) struct Spread {
+pub(crate) struct Distributions {
     /// Those that were counted last.
     pub histograms: Vec<Histogram>,
     /// World and step that they are of, or are being counted of.
@@ -27,7 +27,7 @@ pub(crate) struct Spread {
     coming: Option<Receiver<Vec<Histogram>>>,
 }
 
-impl Spread {
+impl Distributions {
     /// Whether a moment is to be counted: it is another one, none is being counted, and the last was a while ago.
     pub(crate) fn wants(&mut self, world: usize, step: u64) -> bool {
         if let Some(counted) = self.coming.as_ref().and_then(|coming| coming.try_recv().ok()) {
@@ -84,7 +84,8 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         }
     });
     let name = state.preferences.histogram.as_str();
-    let Some(histogram) = state.spread.histograms.iter().find(|found| found.quantity == name)
+    let Some(histogram) =
+        state.distributions.histograms.iter().find(|found| found.quantity == name)
     else {
         ui.weak("Nothing is counted yet.");
         return;
@@ -104,10 +105,10 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 fn count(ui: &Ui, state: &mut AppState) {
     let Some(world) = state.world() else { return };
     let of = (state.selected, world.snapshot.observables.step);
-    if state.spread.wants(of.0, of.1) && !state.frame.seeking {
+    if state.distributions.wants(of.0, of.1) && !state.frame.seeking {
         let run = state.take_run();
-        state.spread.count(run, of, ui.ctx().clone());
-    } else if state.frame.playing || state.spread.is_coming() {
+        state.distributions.count(run, of, ui.ctx().clone());
+    } else if state.frame.playing || state.distributions.is_coming() {
         ui.ctx().request_repaint_after_secs(0.1);
     }
 }

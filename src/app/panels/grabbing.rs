@@ -20,6 +20,19 @@ pub struct GrainRef {
     pub grain: usize,
 }
 
+/// What the mouse has chosen and holds.
+#[derive(Default)]
+pub struct Grabbing {
+    /// The grain whose contacts are listed.
+    pub pinned: Option<GrainRef>,
+    /// Whether the view goes with it.
+    pub(crate) follows: bool,
+    /// The grain at the end of the mouse's spring.
+    pub grabbed: Option<GrainRef>,
+    /// The wall that the mouse draws.
+    pub(crate) grip: Option<Grip>,
+}
+
 /// A wall in the hand of the mouse.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grip {
@@ -73,13 +86,13 @@ impl WorldCell<'_> {
             );
         };
         let grains = &self.frame.snapshot.grains;
-        if let Some(pinned) = state.pinned.filter(|pinned| pinned.world == self.index) {
+        if let Some(pinned) = state.mouse.pinned.filter(|pinned| pinned.world == self.index) {
             for partner in super::grain::partners(&self.frame.snapshot, pinned.grain) {
                 ring(&grains[partner], 1.5, accent);
             }
             ring(&grains[pinned.grain], 3.0, accent);
         }
-        if let Some(grabbed) = state.grabbed.filter(|grabbed| grabbed.world == self.index) {
+        if let Some(grabbed) = state.mouse.grabbed.filter(|grabbed| grabbed.world == self.index) {
             let grain = &grains[grabbed.grain];
             ring(grain, 2.0, accent);
             if let Some(at) = response.interact_pointer_pos() {
@@ -90,7 +103,7 @@ impl WorldCell<'_> {
             return;
         }
         let changes = ui.input(|input| input.modifiers.shift);
-        if let Some(at) = response.hover_pos().filter(|_| changes || state.grip.is_some()) {
+        if let Some(at) = response.hover_pos().filter(|_| changes || state.mouse.grip.is_some()) {
             return self.marks_of_hand(ui, state, at);
         }
         let hovered = response.hover_pos().and_then(|at| self.grain_at(at));
@@ -116,12 +129,12 @@ impl WorldCell<'_> {
         if response.drag_started_by(PointerButton::Primary) {
             let pressed = ui.input(|input| input.pointer.press_origin());
             if changes {
-                state.grip = pressed.and_then(|at| self.grip_at(at));
+                state.mouse.grip = pressed.and_then(|at| self.grip_at(at));
             } else {
-                state.grabbed = pressed.and_then(|at| self.grain_at(at));
+                state.mouse.grabbed = pressed.and_then(|at| self.grain_at(at));
             }
         }
-        if state.grip.is_some_and(|grip| grip.world == self.index) {
+        if state.mouse.grip.is_some_and(|grip| grip.world == self.index) {
             self.draw_wall(state, response, pointer);
         } else {
             self.pull_or_pan(state, response, pointer);
@@ -132,7 +145,7 @@ impl WorldCell<'_> {
             (false, true, false) => {
                 state.selected = self.index;
                 let clicked = pointer.and_then(|at| self.grain_at(at));
-                state.pinned = clicked.filter(|grain| state.pinned != Some(*grain));
+                state.mouse.pinned = clicked.filter(|grain| state.mouse.pinned != Some(*grain));
             }
             _ => {}
         }
@@ -147,7 +160,7 @@ impl WorldCell<'_> {
     }
 
     fn pull_or_pan(&self, state: &mut AppState, response: &Response, pointer: Option<Pos2>) {
-        let held = state.grabbed.filter(|grabbed| grabbed.world == self.index);
+        let held = state.mouse.grabbed.filter(|grabbed| grabbed.world == self.index);
         if let (Some(held), Some(at)) = (held, pointer) {
             if response.dragged() {
                 let pull = Pull { grain: held.grain as u32, target: self.to_world(at) };
@@ -160,16 +173,16 @@ impl WorldCell<'_> {
             state.camera.pan(response.drag_delta());
         }
         if held.is_some() && !response.dragged() {
-            state.grabbed = None;
+            state.mouse.grabbed = None;
             state.live.send(Command::SetPull(self.index, None));
         }
     }
 
     /// Has the wall in the hand follow the mouse, or lets go of it.
     fn draw_wall(&self, state: &mut AppState, response: &Response, pointer: Option<Pos2>) {
-        let Some(mut grip) = state.grip else { return };
+        let Some(mut grip) = state.mouse.grip else { return };
         if !response.dragged() {
-            state.grip = None;
+            state.mouse.grip = None;
             if grip.sent.is_some() {
                 state.live.send(Command::Edit(self.index, Edit::LetGo));
             }
@@ -184,7 +197,7 @@ impl WorldCell<'_> {
         let half_a_point = 0.5 * self.pixels_per_point * self.camera.metres_per_pixel;
         if grip.sent.is_none_or(|sent| sent.distance(to) > half_a_point) {
             grip.sent = Some(to);
-            state.grip = Some(grip);
+            state.mouse.grip = Some(grip);
             let edit = Edit::Draw { boundary: grip.boundary as u32, to };
             state.live.send(Command::Edit(self.index, edit));
         }
@@ -199,7 +212,7 @@ impl WorldCell<'_> {
             None => Edit::Add(self.new_grain(state, at)),
         };
         // Grains may go by other numbers from here on.
-        state.pinned = None;
+        state.mouse.pinned = None;
         state.live.send(Command::Edit(self.index, edit));
     }
 
@@ -242,7 +255,7 @@ impl WorldCell<'_> {
             return;
         }
         let stroke = Stroke::new(1.5, theme::accent(dark));
-        let held = state.grip.map(|grip| grip.boundary).or_else(|| self.boundary_at(at));
+        let held = state.mouse.grip.map(|grip| grip.boundary).or_else(|| self.boundary_at(at));
         if let Some(boundary) =
             held.and_then(|it| self.frame.snapshot.surroundings.boundaries.get(it))
         {

@@ -22,8 +22,7 @@ use egui::Ui;
 
 use super::state::AppState;
 
-pub use grabbing::GrainRef;
-pub(super) use grabbing::Grip;
+pub use grabbing::{Grabbing, GrainRef};
 
 /// A panel of the sidebar, below a heading that opens and closes it.
 pub(super) struct Section {

@@ -28,7 +28,7 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
                 name: super::compare::title(state, index),
                 colour: theme::world_colour(index, dark),
                 curve: world.curve.clone(),
-                others: state.ensemble.told(index).map(|told| told.band),
+                others: state.ensemble.summary(index).map(|summary| summary.band),
             })
             .collect(),
         ghosts: super::run::ghost(state).map_or_else(Vec::new, |run| {
@@ -101,13 +101,13 @@ fn files(ui: &mut Ui, state: &mut AppState) {
         let size = state.preferences.picture_size;
         let picture = PlotPicture { data, size, dark: ui.visuals().dark_mode };
         let export = Export::Plots(Box::new(picture), state.texts_of(&all, false));
-        state.exporter.submit(ui.ctx(), export, &folder, &stem);
+        state.exports.files.submit(ui.ctx(), export, &folder, &stem);
     }
     let hint = "Save all observables of all worlds; a text beside the table says what they are of.";
     if ui.button("CSV").on_hover_text(hint).clicked() {
         let curves = state.frame.worlds.iter().map(|world| world.curve.clone()).collect();
         let export = Export::Curves(curves, state.texts_of(&all, false));
-        state.exporter.submit(ui.ctx(), export, &folder, &stem);
+        state.exports.files.submit(ui.ctx(), export, &folder, &stem);
     }
     if state.frame.worlds.iter().any(|world| world.curve.stride() > 1) {
         let stride = state.frame.worlds.iter().map(|world| world.curve.stride()).max();
@@ -119,16 +119,18 @@ fn files(ui: &mut Ui, state: &mut AppState) {
 
 /// The switch of the other piles, and what they say beside the selected world.
 fn others(ui: &mut Ui, state: &mut AppState) {
-    if !state.has_other_piles() {
+    if !state.ensemble.is_possible() {
         return;
     }
     ui.separator();
     let mut shown = state.preferences.ensemble;
-    let hint = state.about_other_piles();
+    let hint = state.about_ensemble();
     let switch = ui.toggle_value(&mut shown, "other piles").on_hover_text(&hint);
     state.note_control("other piles", switch.rect);
     state.preferences.ensemble = shown;
-    if let Some(text) = state.beside_other_piles(state.selected) {
+    let said = state.said_of_ensemble(state.selected);
+    if let (Some(said), Some(world)) = (said, state.world()) {
+        let text = format!("Δy {:.3}; {said}", world.snapshot.observables.slump);
         ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
     }
 }

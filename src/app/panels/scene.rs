@@ -49,7 +49,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         let camera =
             state.camera.camera(view(state), &bare, pixels(scenes), f64::from(pixels_per_point));
         let legend = Legend::of(&world.snapshot, &style, &camera, style.text_px(width, height));
-        state.legend.paint(ui, legend_area, legend, pixels(legend_area));
+        state.shown.legend.paint(ui, legend_area, legend, pixels(legend_area));
     }
     drop(response);
 }
@@ -136,7 +136,7 @@ fn world(
 
 /// Has the view go with the pinned grain, where that is asked for.
 fn follow(state: &mut AppState, world: usize) {
-    let pinned = state.pinned.filter(|pinned| state.follows && pinned.world == world);
+    let pinned = state.mouse.pinned.filter(|pinned| state.mouse.follows && pinned.world == world);
     if let Some(GrainRef { world, grain }) = pinned {
         let place = state.frame.worlds[world].snapshot.grains[grain].position;
         state.camera.look_at(place);

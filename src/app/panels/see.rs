@@ -89,7 +89,7 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
     });
     films(ui, state);
     folder(ui, state);
-    if state.is_writing() && state.film.is_none() {
+    if state.is_writing() && state.exports.film.is_none() {
         ui.horizontal(|ui| {
             ui.spinner();
             ui.label(RichText::new("saving").color(theme::accent(ui.visuals().dark_mode)));
@@ -99,7 +99,7 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
 
 /// The record as a video or an animation.
 fn films(ui: &mut Ui, state: &mut AppState) {
-    if let Some((format, work)) = &state.film {
+    if let Some((format, work)) = &state.exports.film {
         let name = format.name();
         let hint = format!("No {name} is left; what was computed stays in the window.");
         let words = [&format!("Making a {name}"), &format!("Stop {name}"), &hint];
@@ -172,12 +172,12 @@ pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
     let style = shared_style(state, context.theme() == egui::Theme::Dark);
     let picture = scene_picture(state, style, state.preferences.picture_size, true);
     let (folder, stem) = (state.preferences.folder.clone(), file_stem(state));
-    state.exporter.submit(context, Export::Scene(Box::new(picture)), &folder, &stem);
+    state.exports.files.submit(context, Export::Scene(Box::new(picture)), &folder, &stem);
 }
 
 /// Saves what was recorded of the worlds as moving pictures, or the stretch of it that data would be exported of.
 pub(crate) fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) {
-    if state.frame.worlds.is_empty() || state.film.is_some() {
+    if state.frame.worlds.is_empty() || state.exports.film.is_some() {
         return;
     }
     // Its scales are those of all its pictures.
@@ -189,12 +189,12 @@ pub(crate) fn save_film(context: &egui::Context, state: &mut AppState, format: F
         slumps: state.slumps(),
         rate_hz: format.nearest_rate_hz(state.preferences.video_rate_hz),
         speed: state.preferences.video_speed,
-        stretch: state.data.stretch,
+        stretch: state.exports.data.stretch,
         folder: state.preferences.folder.clone(),
         stem: file_stem(state),
     };
     let runs = (0..state.frame.worlds.len()).map(|world| state.take_run_of(world)).collect();
-    state.film = Some((format, order.start(context, runs)));
+    state.exports.film = Some((format, order.start(context, runs)));
 }
 
 /// What is seen of the worlds, of which there is one at least.

@@ -71,7 +71,7 @@ impl StateFile {
             parameters: world.map(|world| world.controls.settings.parameters),
             worlds: state.frame.worlds.len(),
             grains: world.map_or(0, |world| world.snapshot.grains.len()),
-            ensemble: state.ensemble.told(state.selected).map_or(0, |told| told.band.count),
+            ensemble: state.ensemble.summary(state.selected).map_or(0, |it| it.band.count),
             other_threads: state.ensemble.threads(),
             station: if state.touring { state.preferences.tour.at + 1 } else { 0 },
             steps_per_sec: state.frame.steps_per_sec,

@@ -199,7 +199,7 @@ impl App {
         if let Some(file) = &mut self.state_file {
             file.write(&self.state, window, self.devices);
         }
-        if std::mem::take(&mut self.state.restart_graphics) {
+        if std::mem::take(&mut self.state.shown.restart_graphics) {
             surface.destroy_device();
             window.request_redraw();
             return;
