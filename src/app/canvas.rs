@@ -170,55 +170,34 @@ const PIXELS_PER_POINT: f32 = 2.0;
 /// Passes until the axes have settled to the width of their labels.
 const PASSES: usize = 4;
 
-/// What is to be drawn.
-pub(crate) struct PlotPicture {
-    /// The curves.
-    pub data: PlotData,
-    /// Pixels.
-    pub size: [u32; 2],
-    /// Light ink on a dark ground.
-    pub dark: bool,
-}
-
-/// Draws such pictures. Keep it: opening a device takes longer than a picture.
-pub(crate) struct PlotPrinter {
-    canvas: Canvas,
-}
-
-impl PlotPrinter {
-    /// Opens a graphics device.
-    ///
-    /// # Errors
-    /// Where there is none.
-    pub(crate) fn new() -> Result<Self> {
-        Ok(Self { canvas: Canvas::new()? })
-    }
-
-    /// Draws a picture.
+impl Canvas {
+    /// Draws a picture of plots, with light ink on a `dark` ground.
     ///
     /// # Errors
     /// What the device reports.
-    pub(crate) fn print(&mut self, picture: &PlotPicture) -> Result<RgbaImage> {
+    pub(super) fn print(
+        &mut self,
+        data: &PlotData,
+        size: [u32; 2],
+        dark: bool,
+    ) -> Result<RgbaImage> {
         let context = egui::Context::default();
         theme::install(&context);
-        context.set_theme(if picture.dark { egui::Theme::Dark } else { egui::Theme::Light });
+        context.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
         let contents = |ui: &mut egui::Ui| {
             let ground = ui.visuals().extreme_bg_color;
             fill(ui, ui.max_rect(), ground);
             let frame = egui::Frame::new().inner_margin(12.0);
             egui::CentralPanel::default_margins().frame(frame).show(ui, |ui| {
-                legend(ui, &picture.data);
-                draw(ui, &picture.data);
+                legend(ui, data);
+                draw(ui, data);
             });
         };
-        let mut image = RgbaImage::default();
+        let mut image = None;
         for pass in 1..=PASSES {
-            let last = pass == PASSES;
-            let drawn =
-                self.canvas.draw(&context, picture.size, PIXELS_PER_POINT, last, contents)?;
-            image = drawn.unwrap_or(image);
+            image = self.draw(&context, size, PIXELS_PER_POINT, pass == PASSES, contents)?;
         }
-        Ok(image)
+        Ok(image.unwrap_or_default())
     }
 }
 

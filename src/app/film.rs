@@ -149,10 +149,9 @@ impl FilmOrder {
             if reporter.tell(PART_OF_MOMENTS + (1.0 - PART_OF_MOMENTS) * done).is_break() {
                 return Ok(None);
             }
-            for (world, (shown, _, note)) in picture.worlds.iter_mut().enumerate() {
-                let snapshot = moments.get(world, number)?;
-                *note = slump(&snapshot, slumps);
-                *shown = snapshot.into();
+            for (index, world) in picture.worlds.iter_mut().enumerate() {
+                world.snapshot = moments.get(index, number)?.into();
+                world.note = slump(&world.snapshot, slumps);
             }
             film.add(picture.draw(&mut renderer)?, &picture.texts)?;
         }

@@ -128,8 +128,8 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
         .include_x(data.until_secs)
         .include_y(least)
         .include_y(most)
-        .x_grid_spacer(|grid| round_marks(grid, 4, 0.0))
-        .y_grid_spacer(move |grid| round_marks(grid, 4, if log { 1.0 } else { 0.0 }))
+        .x_grid_spacer(|grid| round_marks(grid, false))
+        .y_grid_spacer(move |grid| round_marks(grid, log))
         .custom_x_axes(vec![axis(AxisHints::new_x(), false, " s")])
         .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log, "")])
         .label_formatter(move |position| hover_text(position, log))
@@ -225,14 +225,12 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
     (title, factor)
 }
 
-/// Marks at round numbers, at most `most` of them and at least `least_step` apart.
-fn round_marks(grid: GridInput, most: usize, least_step: f64) -> Vec<GridMark> {
-    let (low, high) = grid.bounds;
-    let (values, step) = ticks(low, high, most);
-    let step_size = step.max(least_step);
-    let on_grid = |value: &f64| step == step_size || (value / step_size).fract() == 0.0;
-    let marks = values.into_iter().filter(on_grid);
-    marks.map(|value| GridMark { value, step_size }).collect()
+/// Four marks at the most, at round numbers, or at whole powers of ten.
+fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
+    let (values, step) = ticks(grid.bounds.0, grid.bounds.1, 4);
+    let step_size = if log { step.max(1.0) } else { step };
+    let is_mark = |value: &f64| step == step_size || value.fract() == 0.0;
+    values.into_iter().filter(is_mark).map(|value| GridMark { value, step_size }).collect()
 }
 
 /// Labels of the marks: numbers, or the powers of ten that numbers stand for.
@@ -367,10 +365,10 @@ impl ChosenPlot {
             .allow_scroll(false)
             .show_background(false)
             .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
-            .x_grid_spacer(move |grid| marks(grid, log_x))
-            .y_grid_spacer(move |grid| marks(grid, log_y))
-            .custom_x_axes(vec![labelled(AxisHints::new_x(), log_x)])
-            .custom_y_axes(vec![labelled(AxisHints::new_y().min_thickness(34.0), log_y)])
+            .x_grid_spacer(move |grid| round_marks(grid, log_x))
+            .y_grid_spacer(move |grid| round_marks(grid, log_y))
+            .custom_x_axes(vec![axis(AxisHints::new_x(), log_x, "")])
+            .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log_y, "")])
             .show(ui, |plot| {
                 for WorldCurve { name, colour, curve, .. } in worlds {
                     let stride = curve.len().div_ceil(MOST_POINTS).max(1);
@@ -384,19 +382,6 @@ impl ChosenPlot {
                 }
             });
     }
-}
-
-fn marks(grid: GridInput, log: bool) -> Vec<GridMark> {
-    let (values, step) = ticks(grid.bounds.0, grid.bounds.1, 4);
-    let step_size = if log { step.max(1.0) } else { step };
-    let is_mark = |value: &f64| !log || value.fract() == 0.0;
-    values.into_iter().filter(is_mark).map(|value| GridMark { value, step_size }).collect()
-}
-
-fn labelled(hints: AxisHints<'static>, log: bool) -> AxisHints<'static> {
-    hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
-        if log { format!("1e{}", mark.value) } else { decimal(mark.value, mark.step_size) }
-    })
 }
 
 #[cfg(test)]

@@ -5,12 +5,12 @@
 //! again, bit for bit, where the timeline asks for them.
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::channel;
 
 use serde::{Deserialize, Serialize};
 
 use super::camera::SceneCamera;
-use super::export::Export;
+use super::export::{free_path, write_state};
 use super::opening::Opened;
 use super::panels::see::file_stem;
 use super::preferences::{Preferences, StoredWindow};
@@ -58,14 +58,6 @@ pub(crate) struct Session {
     window: String,
 }
 
-/// A session that is on its way to a file.
-pub(crate) struct SessionOrder {
-    /// What the solver's thread hands out.
-    pub run: Receiver<(LiveStart, Opened)>,
-    /// The [`Arrangement`], as RON.
-    pub window: String,
-}
-
 impl Session {
     /// Reads a file.
     ///
@@ -85,6 +77,22 @@ impl Session {
         Some((serde_json::from_str(&self.config).ok()?, ron::from_str(&self.window).ok()?))
     }
 
+    /// Writes a file.
+    ///
+    /// # Errors
+    /// Names the file and what the system says, or why the run cannot be saved.
+    fn save(start: LiveStart, opened: &Opened, window: String, path: &Path) -> Result<()> {
+        if start.history.as_ref().is_some_and(|history| history.failure().is_some()) {
+            let allowed = "an earlier one: drag the timeline back";
+            return Err(Error::value("state", "no longer finite", allowed));
+        }
+        let Opened { scene, config } = opened;
+        let refuse = |error| Error::value("scene", &scene.name, format!("written ({error})"));
+        let config = serde_json::to_string(config).map_err(refuse)?;
+        let session = Self { start, scene: scene.clone(), config, window };
+        write_file(path, &SEAL.written(&session)?)
+    }
+
     /// The start, what it is of, and how the window was arranged.
     ///
     /// # Errors
@@ -96,82 +104,46 @@ impl Session {
     }
 }
 
-impl SessionOrder {
-    /// Waits for the run, and gives what is in the file.
-    ///
-    /// # Errors
-    /// Where there is no run, or one that cannot go on.
-    fn bytes(&self) -> Result<Vec<u8>> {
-        let run = self.run.recv();
-        let (start, Opened { scene, config }) =
-            run.map_err(|_| Error::value("run", "closed", "open when its session is saved"))?;
-        if start.history.as_ref().is_some_and(|history| history.failure().is_some()) {
-            let allowed = "an earlier one: drag the timeline back";
-            return Err(Error::value("state", "no longer finite", allowed));
-        }
-        let refuse = |error| Error::value("scene", &scene.name, format!("written ({error})"));
-        let config = serde_json::to_string(&config).map_err(refuse)?;
-        SEAL.written(&Session { start, scene, config, window: self.window.clone() })
-    }
-}
-
-/// Writes a session.
-///
-/// # Errors
-/// Names the file and what the system says, or why the run cannot be saved.
-pub(super) fn write_session(path: &Path, order: &SessionOrder) -> Result<()> {
-    write_file(path, &order.bytes()?)
-}
-
 impl AppState {
     /// Saves the moment that the selected world has come to.
     pub(crate) fn save_state(&mut self, context: &egui::Context) {
         let run = self.take_run();
-        let folder = self.preferences.folder.clone();
-        self.exports.files.submit(context, Export::State(run), &folder, "");
+        self.export(context, move |folder, _| write_state(folder, &run));
     }
 
-    /// Saves all worlds with their record, and how the window is arranged.
+    /// Saves all worlds with their history, and how the window is arranged.
     pub(crate) fn save_session(&mut self, context: &egui::Context) {
         if self.frame.worlds.is_empty() {
             return;
         }
-        let order = match self.session_order(context) {
-            Ok(order) => order,
-            Err(error) => return self.warn(error.to_string()),
+        let preferences = self.preferences.clone();
+        let stored = StoredWindow { preferences, layout: context.memory(Clone::clone) };
+        let Self { touring, selected, camera, .. } = *self;
+        let window = match ron::to_string(&Arrangement { stored, touring, selected, camera }) {
+            Ok(window) => window,
+            Err(error) => {
+                let allowed = format!("written ({error})");
+                return self.warn(Error::value("window", "arranged so", allowed).to_string());
+            }
         };
-        let (folder, stem) = (self.preferences.folder.clone(), file_stem(self));
-        self.exports.files.submit(context, Export::Session(Box::new(order)), &folder, &stem);
-    }
-
-    /// What a session of the present moment is made of.
-    ///
-    /// # Errors
-    /// Where the window's arrangement cannot be said as text.
-    fn session_order(&mut self, context: &egui::Context) -> Result<SessionOrder> {
-        let arrangement = Arrangement {
-            stored: StoredWindow {
-                preferences: self.preferences.clone(),
-                layout: context.memory(Clone::clone),
-            },
-            touring: self.touring,
-            selected: self.selected,
-            camera: self.camera,
-        };
-        let refuse = |error| Error::value("window", "arranged so", format!("written ({error})"));
-        let window = ron::to_string(&arrangement).map_err(refuse)?;
         let (sender, run) = channel();
         let last = self.opening.last.clone();
         let hand_on = move |start: LiveStart| {
             if let Some(opened) = last.get() {
-                let Opened { scene, config } = &*opened;
                 // Whoever asked may have gone.
-                let _ =
-                    sender.send((start, Opened { scene: scene.clone(), config: config.clone() }));
+                let _ = sender.send((start, opened));
             }
         };
         self.live.send(Command::TakeAll(Box::new(hand_on)));
-        Ok(SessionOrder { run, window })
+        let stem = file_stem(self);
+        self.export(context, move |folder, _| {
+            let path = free_path(folder, &stem, SESSION_ENDING);
+            let run = run.recv();
+            let (start, opened) =
+                run.map_err(|_| Error::value("run", "closed", "open when its session is saved"))?;
+            Session::save(start, &opened, window, &path)?;
+            Ok(path)
+        });
     }
 
     /// Arranges the window as it was when a session was saved. What belongs to this window and its user stays:

@@ -2,13 +2,13 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::canvas::PlotPicture;
-use crate::app::export::Export;
+use crate::app::export::{free_path, write_table};
 use crate::app::plots::{PlotData, WorldCurve, draw};
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::live::Command;
 use crate::sim::{Observables, QUANTITIES, Quantity};
+use crate::study::png::write_png;
 
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -94,20 +94,28 @@ fn switches(ui: &mut Ui, state: &mut AppState) {
 /// From the right: what saves the plots, how they were thinned, and in the room that is left the other piles.
 fn files(ui: &mut Ui, state: &mut AppState) {
     let stem = format!("{}-curves", super::see::file_stem(state));
-    let folder = state.preferences.folder.clone();
     let all: Vec<usize> = (0..state.frame.worlds.len()).collect();
     if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
         let data = data(ui, state);
         let size = state.preferences.picture_size;
-        let picture = PlotPicture { data, size, dark: ui.visuals().dark_mode };
-        let export = Export::Plots(Box::new(picture), state.texts_of(&all, false));
-        state.exports.files.submit(ui.ctx(), export, &folder, &stem);
+        let (dark, texts) = (ui.visuals().dark_mode, state.texts_of(&all, false));
+        let stem = stem.clone();
+        state.export(ui.ctx(), move |folder, printers| {
+            let path = free_path(folder, &stem, "png");
+            write_png(&path, &printers.canvas()?.print(&data, size, dark)?, &texts)?;
+            Ok(path)
+        });
     }
     let hint = "Save all observables of all worlds; a text beside the table says what they are of.";
     if ui.button("CSV").on_hover_text(hint).clicked() {
-        let curves = state.frame.worlds.iter().map(|world| world.curve.clone()).collect();
-        let export = Export::Curves(curves, state.texts_of(&all, false));
-        state.exports.files.submit(ui.ctx(), export, &folder, &stem);
+        let worlds = state.frame.worlds.iter();
+        let curves: Vec<_> = worlds.map(|world| world.curve.clone()).collect();
+        let texts = state.texts_of(&all, false);
+        state.export(ui.ctx(), move |folder, _| {
+            let path = free_path(folder, &stem, "csv");
+            write_table(&path, &curves, &texts)?;
+            Ok(path)
+        });
     }
     if state.frame.worlds.iter().any(|world| world.curve.stride() > 1) {
         let stride = state.frame.worlds.iter().map(|world| world.curve.stride()).max();

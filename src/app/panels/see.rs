@@ -4,13 +4,14 @@ use egui::{ComboBox, RichText, ThemePreference, Ui};
 use glam::DVec2;
 
 use super::scene::{columns, shared_style, view};
-use crate::app::export::{Export, ScenePicture, stem};
+use crate::app::export::{PicturedWorld, ScenePicture, free_path, stem};
 use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::state::AppState;
 use crate::app::{theme, work};
 use crate::error::Result;
 use crate::headless::{VIDEO_RATES_HZ, check_video};
 use crate::render::{ColourBy, Style, panel_size};
+use crate::study::png::write_png;
 
 /// What grains can be coloured by, as the panel calls it.
 const COLOURS: [(ColourBy, &str); 5] = [
@@ -171,8 +172,12 @@ pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
     }
     let style = shared_style(state, context.theme() == egui::Theme::Dark);
     let picture = scene_picture(state, style, state.preferences.picture_size, true);
-    let (folder, stem) = (state.preferences.folder.clone(), file_stem(state));
-    state.exports.files.submit(context, Export::Scene(Box::new(picture)), &folder, &stem);
+    let stem = file_stem(state);
+    state.export(context, move |folder, printers| {
+        let path = free_path(folder, &stem, "png");
+        write_png(&path, &picture.draw(printers.renderer()?)?, &picture.texts)?;
+        Ok(path)
+    });
 }
 
 /// Saves what was recorded of the worlds as moving pictures, or the stretch of it that data would be exported of.
@@ -215,7 +220,8 @@ fn scene_picture(
     };
     let camera = state.camera.for_picture(view(state), &of_one, size_of_one, window);
     let worlds = state.frame.worlds.iter().enumerate().map(|(index, world)| {
-        (world.snapshot.clone(), super::compare::numbered(state, index), note(state, index))
+        let title = super::compare::numbered(state, index);
+        PicturedWorld { snapshot: world.snapshot.clone(), title, note: note(state, index) }
     });
     let worlds = worlds.collect();
     let all: Vec<usize> = (0..count).collect();

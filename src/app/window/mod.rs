@@ -23,7 +23,7 @@ use crate::live::{Live, LiveOptions};
 use crate::render::RendererChoice;
 use export_state::StateFile;
 pub(crate) use start::WindowOptions;
-use start::{First, attributes, no_display};
+use start::{attributes, first, no_display};
 use surface::{Drawn, WindowSurface};
 
 /// Least time between two frames that only the run asks for. A software rasteriser takes processor
@@ -53,8 +53,8 @@ pub(crate) fn run(
     }
     let mut stored = load();
     stored.preferences.follow(pictures)?;
-    let first =
-        First::of(config, pictures.saving.restart.as_deref(), options, &stored.preferences)?;
+    let restart = pictures.saving.restart.as_deref();
+    let open_first = first(config, restart, options, &stored.preferences)?;
     let events =
         EventLoop::<Repaint>::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();
@@ -65,7 +65,7 @@ pub(crate) fn run(
         ..LiveOptions::default()
     })?;
     let mut state = AppState::idle(live, stored.preferences.clone());
-    first.open(&mut state);
+    open_first(&mut state);
     let mut app = App {
         context: context(&proxy, stored.layout),
         proxy,
