@@ -112,7 +112,7 @@ impl Printers {
 }
 
 /// Writes a file into a folder and says which.
-type Job = Box<dyn FnOnce(&Path, &mut Printers) -> Result<PathBuf> + Send>;
+type WriteJob = Box<dyn FnOnce(&Path, &mut Printers) -> Result<PathBuf> + Send>;
 
 /// Hands files to the thread that writes them, which starts with the first one.
 #[derive(Default)]
@@ -122,7 +122,7 @@ pub(crate) struct Exporter {
 }
 
 struct Order {
-    job: Job,
+    job: WriteJob,
     folder: PathBuf,
     context: egui::Context,
 }

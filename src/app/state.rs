@@ -38,7 +38,7 @@ pub struct AppState {
     /// What was loaded last.
     pub(crate) config: Config,
     /// What is being opened, and what was.
-    pub(super) opening: Opening,
+    pub(super) opening: OpeningState,
     /// What outlives the window.
     pub preferences: Preferences,
     /// Which part of the scene shows.
@@ -63,7 +63,7 @@ pub struct AppState {
 
 /// What is being opened, and what was.
 #[derive(Default)]
-pub(super) struct Opening {
+pub(super) struct OpeningState {
     /// What was opened last.
     pub last: LastOpened,
     /// The window of a session that is being opened, …
@@ -116,7 +116,7 @@ impl AppState {
             wanted: Vec::new(),
             selected: 0,
             config: Config::default(),
-            opening: Opening::default(),
+            opening: OpeningState::default(),
             preferences,
             camera: SceneCamera::default(),
             mouse: Grabbing::default(),

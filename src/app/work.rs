@@ -58,13 +58,29 @@ impl Work {
     }
 
     /// How far it has come, 0 … 1.
-    pub(crate) fn part(&self) -> f32 {
+    fn part(&self) -> f32 {
         self.shared.done.load(Ordering::Relaxed) as f32 / WHOLE as f32
     }
 
     /// Ends it where it next looks.
-    pub(crate) fn cancel(&self) {
+    fn cancel(&self) {
         self.shared.is_cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Shows how far it is by that `name`, and the button that stops it.
+    pub(super) fn show(&self, ui: &mut Ui, name: &str, stop: &str, hint: &str) {
+        ui.horizontal(|ui| {
+            // Not where the button was that started it: a second click there is none on this one.
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button(stop).on_hover_text(hint).clicked() {
+                    self.cancel();
+                }
+                let bar = ui.add(egui::ProgressBar::new(self.part()).desired_height(14.0));
+                bar.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name)
+                });
+            });
+        });
     }
 
     /// What became of it, and whether it failed, once it has ended.
@@ -117,20 +133,4 @@ impl Reporter {
         }
         Ok(None)
     }
-}
-
-/// How far work is, and the button that stops it, with its hint.
-pub(super) fn show_bar(ui: &mut Ui, work: &Work, [name, stop, hint]: [&str; 3]) {
-    ui.horizontal(|ui| {
-        // Not where the button was that started it: a second click there is none on this one.
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button(stop).on_hover_text(hint).clicked() {
-                work.cancel();
-            }
-            let bar = ui.add(egui::ProgressBar::new(work.part()).desired_height(14.0));
-            bar.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name)
-            });
-        });
-    });
 }

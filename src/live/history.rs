@@ -29,7 +29,7 @@ const STEPS_AT_ONCE: u64 = 8;
 /// follow to within half a step of their own.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Run {
+pub(super) struct LiveRun {
     #[serde(rename = "tracks")]
     pub worlds: Vec<WorldHistory>,
     /// What their user calls them; empty where nothing.
@@ -50,7 +50,7 @@ fn each(
     }
 }
 
-impl Run {
+impl LiveRun {
     pub(super) fn settings(&self) -> Vec<Settings> {
         self.worlds.iter().map(|world| *world.simulation.settings()).collect()
     }
@@ -163,7 +163,7 @@ pub struct PastWorld {
 }
 
 impl PastRun {
-    fn of(run: &Run) -> Self {
+    fn of(run: &LiveRun) -> Self {
         let of_world = |world: &WorldHistory| PastWorld {
             controls: Controls::of(&world.simulation),
             curve: world.curve.clone(),
@@ -185,9 +185,9 @@ impl PastRun {
 #[serde(deny_unknown_fields)]
 pub struct RunHistory {
     #[serde(rename = "worlds")]
-    pub(super) present: Run,
+    pub(super) present: LiveRun,
     /// The oldest first.
-    past: Vec<Run>,
+    past: Vec<LiveRun>,
     /// What a window is told of them.
     #[serde(skip)]
     told: Arc<[PastRun]>,
@@ -228,7 +228,7 @@ impl RunHistory {
 
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
-        self.present = Run::default();
+        self.present = LiveRun::default();
         self.past.clear();
         self.tell();
     }
@@ -240,7 +240,7 @@ impl RunHistory {
             WorldHistory::new(&start.simulation, start.tally, settings, budget_bytes)
         };
         let worlds = all.iter().map(world).collect();
-        self.put_in_place(Run { worlds, ..Run::default() });
+        self.put_in_place(LiveRun { worlds, ..LiveRun::default() });
     }
 
     /// Goes back to an earlier run; the present one is kept. Whether there is such a run.
@@ -254,7 +254,7 @@ impl RunHistory {
         true
     }
 
-    fn put_in_place(&mut self, run: Run) {
+    fn put_in_place(&mut self, run: LiveRun) {
         let before = std::mem::replace(&mut self.present, run);
         self.keep(before);
         self.tell();
@@ -281,13 +281,13 @@ impl RunHistory {
     }
 
     /// Keeps the present run as it was before it branched off: from now on it is another one.
-    fn keep_copy(&mut self, before: Run) {
+    fn keep_copy(&mut self, before: LiveRun) {
         self.keep(before);
         self.present.name.clear();
     }
 
     /// Keeps a run of which something is recorded, with a part of the memory for keyframes.
-    fn keep(&mut self, mut run: Run) {
+    fn keep(&mut self, mut run: LiveRun) {
         if !run.worlds.iter().any(|world| world.record.has_steps()) {
             return;
         }
@@ -365,12 +365,12 @@ impl RunHistory {
             }
         }
         let worlds = planned.into_iter().map(|(world, _)| world).collect();
-        Ok(Self { present: Run { worlds, ..Run::default() }, ..Self::default() })
+        Ok(Self { present: LiveRun { worlds, ..LiveRun::default() }, ..Self::default() })
     }
 
     /// Whether one that was read holds together.
     pub fn is_sound(&self) -> bool {
-        let is_sound = |run: &Run| {
+        let is_sound = |run: &LiveRun| {
             !run.worlds.is_empty() && run.worlds.iter().all(|world| world.record.is_sound())
         };
         is_sound(&self.present) && self.past.iter().all(is_sound)

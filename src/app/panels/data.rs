@@ -4,7 +4,7 @@ use egui::{Button, DragValue, RichText, TextEdit, Ui};
 
 use crate::app::data_export::DataOrder;
 use crate::app::state::AppState;
-use crate::app::{theme, work};
+use crate::app::theme;
 use crate::data::{FormatName, check_format};
 
 /// Shortest and longest simulated time between two frames, s.
@@ -158,7 +158,7 @@ fn export(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
         start(ui, state, is_ready);
         return;
     };
-    work::show_bar(ui, export, ["Exporting data", "Stop export", "Frames that are written stay."]);
+    export.show(ui, "Exporting data", "Stop export", "Frames that are written stay.");
 }
 
 fn start(ui: &mut Ui, state: &mut AppState, is_ready: bool) {

@@ -7,7 +7,7 @@ use super::scene::{columns, shared_style, view};
 use crate::app::export::{PicturedWorld, ScenePicture, free_path, stem};
 use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::state::AppState;
-use crate::app::{theme, work};
+use crate::app::theme;
 use crate::error::Result;
 use crate::headless::{VIDEO_RATES_HZ, check_video};
 use crate::render::{ColourBy, Style, panel_size};
@@ -103,8 +103,7 @@ fn films(ui: &mut Ui, state: &mut AppState) {
     if let Some((format, work)) = &state.exports.film {
         let name = format.name();
         let hint = format!("No {name} is left; what was computed stays in the window.");
-        let words = [&format!("Making a {name}"), &format!("Stop {name}"), &hint];
-        return work::show_bar(ui, work, words.map(String::as_str));
+        return work.show(ui, &format!("Making a {name}"), &format!("Stop {name}"), &hint);
     }
     ui.horizontal(|ui| {
         let hint = "Pictures in a second of a video or a GIF, which has at most 50.";
