@@ -13,7 +13,7 @@ use crate::options::{Given, all_names};
 use crate::run::Run;
 use slump_core::error::with_allowed;
 use slump_core::scene::{Scene, Settling};
-use slump_data::config::{Config, Ground, SavedState};
+use slump_data::config::{Config, BaseScene, SavedState};
 
 /// What a scene must be that is given as a dictionary, for messages.
 const FORM: &str = "a scene as slump.scene(name) gives it";
@@ -45,17 +45,17 @@ pub(crate) fn scene(
 ) -> PyResult<Scene> {
     let config = asked(scene, initial, options)?;
     if let Some(table) = initial.filter(|initial| is_data(initial)) {
-        if let Some(step) = config.origin.initial_step {
+        if let Some(step) = config.source.initial_step {
             let allowed = "left out where initial is a table, which is of one moment";
             return Err(refused("initial-step", step, allowed));
         }
         return config.scene_of_discs(discs(table)?).map_err(exception);
     }
-    let ground = match scene.filter(|scene| is_data(scene)) {
-        Some(data) => Ground::of(described(data)?, Path::new("")),
-        None => config.ground(),
+    let base = match scene.filter(|scene| is_data(scene)) {
+        Some(data) => BaseScene::of(described(data)?, Path::new("")),
+        None => config.base_scene(),
     };
-    settled(py, &config, ground.map_err(exception)?)
+    settled(py, &config, base.map_err(exception)?)
 }
 
 /// The run that goes on from the state in a file, with the changes that are asked for.
@@ -113,13 +113,13 @@ fn described(data: &Bound<'_, PyAny>) -> PyResult<Scene> {
     })
 }
 
-fn settled(py: Python<'_>, config: &Config, ground: Ground) -> PyResult<Scene> {
+fn settled(py: Python<'_>, config: &Config, base: BaseScene) -> PyResult<Scene> {
     let mut interrupted = None;
     let look = |_: Settling| {
         interrupted = Python::attach(|py| py.check_signals()).err();
         interrupted.is_none()
     };
-    let scene = py.detach(|| config.scene_on(ground, look));
+    let scene = py.detach(|| config.scene_on(base, look));
     match interrupted {
         Some(interrupted) => Err(interrupted),
         None => scene.map_err(exception),

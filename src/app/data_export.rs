@@ -9,9 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use super::opening::{Opened, TakenRun};
 use super::work::{Reporter, Work};
-use crate::config::about_run;
+use crate::config::run_facts;
 use crate::data::{
-    About, Claim, DEFAULT_FORMAT, DataSettings, FormatName, Recording, Times, formats_of,
+    DEFAULT_FORMAT, DataSettings, FormatName, Recording, RecordingFolder, RunFacts, Times,
+    formats_of,
 };
 use crate::error::{Error, Result};
 use crate::headless::told_of_data;
@@ -126,7 +127,7 @@ fn write(order: &DataOrder, run: &Receiver<TakenRun>, reporter: &Reporter) -> Re
     let Some(run) = reporter.wait_for(run)? else { return Ok(NOTHING.to_owned()) };
     let record = &run.world.record;
     let stretch = order.stretch_of(record)?;
-    let claim = Claim::of(&order.folder, order.overwrite)?;
+    let claim = RecordingFolder::of(&order.folder, order.overwrite)?;
     let (first_secs, last_secs) = (record.start().time_secs(), stretch[1].min(record.end_secs()));
     let mut writing = Writing {
         order,
@@ -198,7 +199,7 @@ struct Writing<'a> {
     record: &'a WorldRecord,
     until_secs: f64,
     /// The folder, until the recording has it.
-    claim: Option<Claim>,
+    claim: Option<RecordingFolder>,
     recording: Option<Recording>,
 }
 
@@ -219,7 +220,7 @@ impl Writing<'_> {
         }
     }
 
-    fn start(&self, claim: Claim, simulation: &Simulation) -> Result<Recording> {
+    fn start(&self, claim: RecordingFolder, simulation: &Simulation) -> Result<Recording> {
         let formats = formats_of(&self.order.settings)?;
         let recording = Recording::start_in(claim, &formats, &self.about(simulation)?)?;
         Ok(match self.order.settings.every_secs {
@@ -230,7 +231,7 @@ impl Writing<'_> {
 
     /// What is to be known of the recording: the scene with the settings of the first moment, and what was
     /// changed later on.
-    fn about(&self, simulation: &Simulation) -> Result<About> {
+    fn about(&self, simulation: &Simulation) -> Result<RunFacts> {
         let mut scene = self.opened.scene.clone();
         scene.set_settings(*simulation.settings());
         let step = simulation.observables().step;
@@ -238,7 +239,7 @@ impl Writing<'_> {
         let settings = changes
             .iter()
             .map(|change| (change.after_step, change.time_secs, change.controls.settings));
-        let mut about = about_run(&scene, &settings.collect::<Vec<_>>())?;
+        let mut about = run_facts(&scene, &settings.collect::<Vec<_>>())?;
         let mut tell = |name: &str, said: String| about.facts.push((name.to_owned(), said));
         tell("exported", format!("from the window, from step {step} to {} s", self.until_secs));
         let start = self.record.start().observables();

@@ -11,8 +11,8 @@ use super::export::{ScenePicture, free_path};
 use super::opening::TakenRun;
 use super::work::{Reporter, Work};
 use crate::error::Result;
-use crate::film::Animation;
-use crate::headless::{KeptStates, VideoFile};
+use crate::film::{Animation, Video};
+use crate::headless::KeptStates;
 use crate::output::{Texts, check_writable, counted};
 use crate::render::{Renderer, RendererChoice, Style, speed_reference};
 use crate::sim::{Simulation, Snapshot};
@@ -20,7 +20,7 @@ use crate::sim::{Simulation, Snapshot};
 /// What the record is made into.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FilmFormat {
-    /// AV1 in MP4.
+    /// MP4.
     Video,
     /// An animation that repeats, with at most 256 colours a picture.
     Gif,
@@ -59,10 +59,10 @@ impl FilmFormat {
         }
     }
 
-    /// Starts a file of pictures of that size (px) that follow each other by so many a second.
-    pub(super) fn start(self, path: &Path, size: [u32; 2], rate_hz: f64) -> Result<FilmFile> {
+    /// Starts a file of so many pictures a second.
+    pub(super) fn start(self, path: &Path, rate_hz: f64) -> Result<FilmFile> {
         Ok(match self {
-            Self::Video => FilmFile::Video(Box::new(VideoFile::start(path, size, rate_hz)?)),
+            Self::Video => FilmFile::Video(Box::new(Video::start(path, rate_hz)?)),
             Self::Gif => FilmFile::Gif(Animation::start(path, rate_hz)?),
         })
     }
@@ -70,7 +70,7 @@ impl FilmFormat {
 
 /// A file that is being made, and is there once it is finished.
 pub(super) enum FilmFile {
-    Video(Box<VideoFile>),
+    Video(Box<Video>),
     Gif(Animation),
 }
 
@@ -140,7 +140,7 @@ impl FilmOrder {
         let mut style = self.picture.style.clone();
         moments.set_scales(&mut style);
         let path = free_path(&self.folder, &self.stem, self.format.ending());
-        let mut film = self.format.start(&path, self.picture.size, self.rate_hz)?;
+        let mut film = self.format.start(&path, self.rate_hz)?;
         let mut renderer = Renderer::new(RendererChoice::Auto)?;
         let (count, slumps) = (times.len(), self.slumps);
         let mut picture = ScenePicture { style, ..self.picture };

@@ -14,7 +14,7 @@ use super::session::{SESSION_ENDING, Session};
 use super::sharing::RunLink;
 use super::state::AppState;
 use super::tour::Station;
-use crate::config::{Config, Origin, SavedState};
+use crate::config::{Config, SavedState, SceneSource};
 use crate::error::Result;
 use crate::live::{Command, LiveStart, LoadingProgress, Preview, RunHistory, WorldHistory};
 use crate::scene::{Scene, Settling};
@@ -376,8 +376,8 @@ fn dropped_file(path: &Path) -> Option<DroppedFile> {
     match ending.as_str() {
         "toml" => path.to_str().map(|path| DroppedFile::Scene(Box::new(Config::of_scene(path)))),
         "csv" => {
-            let origin = Origin { initial: Some(path.to_owned()), ..Origin::default() };
-            Some(DroppedFile::Scene(Box::new(Config { origin, ..Config::default() })))
+            let source = SceneSource { initial: Some(path.to_owned()), ..SceneSource::default() };
+            Some(DroppedFile::Scene(Box::new(Config { source, ..Config::default() })))
         }
         STATE_ENDING | SESSION_ENDING => Some(DroppedFile::SavedRun),
         _ => None,
@@ -450,7 +450,7 @@ mod tests {
     #[test]
     fn endings_tell_scenes_from_discs_and_saved_runs() {
         let config = |path: &str| match dropped_file(path.as_ref()) {
-            Some(DroppedFile::Scene(config)) => config.origin,
+            Some(DroppedFile::Scene(config)) => config.source,
             other => panic!("{path} is {other:?}"),
         };
         assert_eq!(config("a/Box.TOML").scene.as_deref(), Some("a/Box.TOML"));

@@ -15,7 +15,9 @@ use egui::Context;
 
 use super::opening::TakenRun;
 use super::state::AppState;
-use crate::config::{Config, Origin, Provenance, asked_time_secs, joined, words_of, words_up_to};
+use crate::config::{
+    Config, Provenance, SceneSource, asked_time_secs, joined, words_of, words_up_to,
+};
 use crate::error::{Error, Result};
 use crate::live::{ControlsChange, WorldHistory, WorldPlan};
 use crate::output::Texts;
@@ -59,7 +61,7 @@ impl AppState {
     fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
         // How long it was to run says nothing of what it has come to.
         let mut config = self.config.clone();
-        config.origin.duration = None;
+        config.source.duration = None;
         let run = self.provenance(world, config);
         let (Some(run), Some(shown)) = (run, self.frame.worlds.get(world)) else {
             return Texts::default();
@@ -95,7 +97,7 @@ const MOST_SHOWN: usize = 60;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunLink {
     /// Where the scene comes from.
-    pub origin: Origin,
+    pub source: SceneSource,
     worlds: Vec<LinkedWorld>,
 }
 
@@ -128,7 +130,7 @@ fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String])
 /// # Errors
 /// Where the run went on from a file, or its scene is no longer there.
 pub(crate) fn link_of(config: &Config, worlds: &[WorldHistory]) -> Result<String> {
-    let unchanged = Config { origin: config.origin.clone(), ..Config::default() };
+    let unchanged = Config { source: config.source.clone(), ..Config::default() };
     let base = unchanged.without_settling()?.settings();
     let mut query = form_urlencoded::Serializer::new(HEAD.to_owned());
     append(&mut query, &unchanged.words(&base)?);
@@ -165,7 +167,7 @@ impl RunLink {
         let text = text.trim();
         let refuse = || Error::value("link", shortened(text), FORM);
         let query = text.strip_prefix(HEAD).ok_or_else(refuse)?;
-        let mut link = Self { origin: Origin::default(), worlds: Vec::new() };
+        let mut link = Self { source: SceneSource::default(), worlds: Vec::new() };
         let (mut after, mut options) = (0, Vec::new());
         let mut changes = Vec::new();
         for (name, value) in form_urlencoded::parse(query.as_bytes()).into_owned() {
@@ -185,14 +187,14 @@ impl RunLink {
                 Config::of_options(options.iter().map(|(name, value)| (&**name, &**value)))?;
             options.clear();
             let is_first = link.worlds.is_empty() && changes.is_empty();
-            let Config { origin, .. } = &config;
+            let Config { source, .. } = &config;
             if is_first {
-                link.origin = origin.clone();
-            } else if *origin != Origin::default() {
+                link.source = source.clone();
+            } else if *source != SceneSource::default() {
                 let allowed = "said once, before the first step";
                 return Err(Error::value("link: the origin of the scene", "said twice", allowed));
             }
-            changes.push((after, Config { origin: Origin::default(), ..config }));
+            changes.push((after, Config { source: SceneSource::default(), ..config }));
             after = step;
             if name == "to" {
                 link.worlds
@@ -208,7 +210,7 @@ impl RunLink {
 
     /// What asks for the scene.
     pub(crate) fn config(&self) -> Config {
-        Config { origin: self.origin.clone(), ..Config::default() }
+        Config { source: self.source.clone(), ..Config::default() }
     }
 
     /// Checks what can be checked before a pile is made.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::error::Result;
-use crate::study::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
+use crate::study::{ChartOptions, ChartPart, chart_speed};
 
 /// Arguments of `slump chart`.
 #[derive(clap::Args)]
@@ -20,15 +20,12 @@ pub(super) struct ChartCommand {
     /// Chart these alone
     #[arg(long, value_name = "PART", value_delimiter = ',')]
     only: Vec<ChartPart>,
-    /// Folder with the tables of other engines' runs
-    #[arg(long, value_name = "DIR", default_value_os_t = default_peers_folder().to_owned())]
-    peers: PathBuf,
 }
 
 impl ChartCommand {
     /// Does what is asked.
     pub(super) fn run(self) -> Result<()> {
-        let Self { out, quick, large, only, peers } = self;
-        chart_speed(&ChartOptions { out, quick, large, only, peers })
+        let Self { out, quick, large, only } = self;
+        chart_speed(&ChartOptions { out, quick, large, only })
     }
 }

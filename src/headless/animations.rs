@@ -6,9 +6,8 @@ use image::RgbaImage;
 
 use super::HeadlessOptions;
 use super::manifest::PictureEntry;
-use super::video::VideoFile;
 use crate::error::{Error, Result};
-use crate::film::Animation;
+use crate::film::{Animation, Video};
 use crate::output::{Texts, print_line};
 
 /// Pictures a second of a GIF, which viewers keep up with.
@@ -21,7 +20,7 @@ const VIDEO_WORDS: [&str; 2] = ["--video", "video.mp4"];
 #[derive(Default)]
 pub(super) struct Animations {
     gif: Option<Animation>,
-    video: Option<VideoFile>,
+    video: Option<Video>,
 }
 
 impl Animations {
@@ -29,18 +28,18 @@ impl Animations {
     /// they say of themselves, made by a command that ends with such words.
     ///
     /// # Errors
-    /// Names the file and what the system or an encoder says, also of a picture that is no longer there.
+    /// Names the file and what the system or ffmpeg says, also of a picture that is no longer there.
     pub(super) fn start(
         options: &HeadlessOptions,
         pictures: &[PictureEntry],
         told: impl Fn(&[&str]) -> Texts,
     ) -> Result<Self> {
-        let (size, rate_hz) = (options.size()?, options.video_rate_hz()?);
-        let start = |path: &Path| VideoFile::start(path, [size.width, size.height], rate_hz);
+        let rate_hz = options.video_rate_hz()?;
+        let start = |path: &Path| Video::start(path, rate_hz);
         let animate = |path: &Path| Animation::start(path, GIF_RATE_HZ);
         let mut animations = Self {
             gif: options.gif.as_deref().map(animate).transpose()?,
-            video: options.video.video.as_deref().map(start).transpose()?,
+            video: options.video.as_deref().map(start).transpose()?,
         };
         if animations.gif.is_none() && animations.video.is_none() {
             return Ok(animations);
@@ -56,7 +55,7 @@ impl Animations {
     /// Adds a picture to all of them.
     ///
     /// # Errors
-    /// Names the file and what the encoder says; the pictures before stay.
+    /// Names the file and what it says; the pictures before stay.
     pub(super) fn add(&mut self, image: RgbaImage, told: impl Fn(&[&str]) -> Texts) -> Result<()> {
         let video = self.video.as_mut().map(|video| video.add(&image, &told(&VIDEO_WORDS)));
         let gif = self.gif.as_mut().map(|gif| gif.add(image, &told(&GIF_WORDS)));
@@ -68,7 +67,7 @@ impl Animations {
     /// # Errors
     /// Names the file and what the system says.
     pub(super) fn finish(self) -> Result<Finished> {
-        let video = self.video.map_or(Ok(false), VideoFile::finish);
+        let video = self.video.map_or(Ok(false), Video::finish);
         let gif = self.gif.map_or(Ok(false), Animation::finish);
         Ok(Finished { gif: gif?, video: video? })
     }
@@ -83,7 +82,7 @@ pub(super) struct Finished {
 impl Finished {
     /// Says where they are.
     pub(super) fn tell(&self, options: &HeadlessOptions) {
-        let all = [(self.gif, &options.gif), (self.video, &options.video.video)];
+        let all = [(self.gif, &options.gif), (self.video, &options.video)];
         for path in
             all.into_iter().filter(|(is_there, _)| *is_there).filter_map(|(_, path)| path.as_ref())
         {

@@ -129,7 +129,7 @@ impl Schedule {
         let times_secs = options.picture_times(scene.duration_secs)?;
         // Times alone ask for no more than the last of them.
         let until_secs = match times_secs.last() {
-            Some(&last) if !options.times.is_empty() && config.origin.duration.is_none() => last,
+            Some(&last) if !options.times.is_empty() && config.source.duration.is_none() => last,
             _ => scene.duration_secs,
         };
         let times_secs = if options.draws() { times_secs } else { Vec::new() };

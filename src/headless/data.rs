@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::config::{about, parser_of};
-use crate::data::{Claim, DataSettings, FormatName, Recording, Times, formats_of};
+use crate::config::{parser_of, scene_facts};
+use crate::data::{DataSettings, FormatName, Recording, RecordingFolder, Times, formats_of};
 use crate::error::{Error, Result};
 use crate::output::counted;
 use crate::scene::Scene;
@@ -66,7 +66,7 @@ impl DataOptions {
 /// A recording that is to be.
 pub(super) struct RecordingPlan {
     /// A folder of its own; none where a run goes on with the recording that it has.
-    claim: Option<Claim>,
+    claim: Option<RecordingFolder>,
     folder: PathBuf,
     settings: DataSettings,
 }
@@ -81,7 +81,7 @@ impl RecordingPlan {
         overwrite: bool,
         goes_on: bool,
     ) -> Result<Self> {
-        let claim = (!goes_on).then(|| Claim::of(&folder, overwrite)).transpose()?;
+        let claim = (!goes_on).then(|| RecordingFolder::of(&folder, overwrite)).transpose()?;
         Ok(Self { claim, folder, settings })
     }
 
@@ -95,7 +95,7 @@ impl RecordingPlan {
         simulation: &Simulation,
         picture_times: &[f64],
     ) -> Result<Recording> {
-        let mut about = about(scene)?;
+        let mut about = scene_facts(scene)?;
         let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
         let command = words.collect::<Vec<_>>().join(" ").replace(char::is_control, " ");
         about.facts.insert(1, ("command".to_owned(), command));

@@ -32,8 +32,7 @@ pub(super) fn draw(config: &Config, options: &HeadlessOptions, earlier: Earlier)
     let every_secs = options.saving.checkpoint_every;
     let fingerprint = every_secs.map(|_| asked.fingerprint(config, options)).transpose()?;
     let found = left_in(folder.as_ref(), fingerprint.as_deref())?;
-    let files =
-        [("gif", &options.gif), ("video", &options.video.video), ("save", &options.saving.save)];
+    let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.saving.save)];
     for (option, path) in files {
         path.as_deref().map(|path| check_file(option, path)).transpose()?;
     }

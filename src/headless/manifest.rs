@@ -1,13 +1,12 @@
 //! What was run and what came out, beside the pictures.
 
-use std::hash::Hasher;
 use std::path::Path;
 use std::time::{Duration, Instant as Clock};
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::output::Draft;
+use crate::output::PendingFile;
 use crate::scene::Scene;
 use crate::sim::{Alarm, FractureWork, Observables, SweepElasticity, Tally};
 use crate::study::Recorded;
@@ -188,7 +187,7 @@ impl Manifest {
         let mut text =
             serde_json::to_string_pretty(self).map_err(|error| Error::file(path, error))?;
         text.push('\n');
-        let mut draft = Draft::start(path)?;
+        let mut draft = PendingFile::start(path)?;
         draft.write(text.as_bytes())?;
         draft.finish(safe)
     }
@@ -242,15 +241,13 @@ impl RunEntry {
     }
 }
 
+/// FNV-1a, 64 bits (draft-eastlake-fnv, 5).
 fn fingerprint(scene: &Scene) -> u64 {
-    let mut hasher = fnv::FnvHasher::default();
-    for grain in &scene.grains {
+    let numbers = scene.grains.iter().flat_map(|grain| {
         let (position, velocity) = (grain.position, grain.velocity);
-        for number in
-            [position.x, position.y, grain.radius, velocity.x, velocity.y, grain.angular_velocity]
-        {
-            hasher.write(&number.to_le_bytes());
-        }
-    }
-    hasher.finish()
+        [position.x, position.y, grain.radius, velocity.x, velocity.y, grain.angular_velocity]
+    });
+    numbers.flat_map(f64::to_le_bytes).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+    })
 }

@@ -15,8 +15,6 @@ mod saving;
 mod studio;
 mod table;
 mod telling;
-mod video;
-mod video_options;
 
 pub(crate) use begin::settled;
 #[cfg(feature = "window")]
@@ -24,10 +22,6 @@ pub(crate) use data::told as told_of_data;
 #[cfg(feature = "window")]
 pub(crate) use kept::KeptStates;
 pub(crate) use options::HeadlessOptions;
-#[cfg(feature = "window")]
-pub(crate) use video::VideoFile;
-#[cfg(feature = "window")]
-pub(crate) use video_options::{VIDEO_RATES_HZ, check_built as check_video};
 
 use std::path::Path;
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::data::DataOptions;
 use super::saving::SavingOptions;
-use super::video_options::VideoOptions;
 use crate::error::{Error, Result};
+use crate::film::{VIDEO_RATES_HZ, VIDEO_SIDES, check_ffmpeg};
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
 
 /// Width and height of a picture, pixels.
@@ -76,8 +76,13 @@ pub(crate) struct HeadlessOptions {
     /// Write the pictures as an animation too, 25 a second
     #[arg(long, value_name = "FILE", help_heading = "Pictures")]
     pub gif: Option<PathBuf>,
-    #[command(flatten)]
-    pub video: VideoOptions,
+    /// Write the pictures as a video too, at the pace of simulated time: MP4, by ffmpeg
+    #[arg(long, value_name = "FILE", help_heading = "Pictures", conflicts_with = "times")]
+    pub video: Option<PathBuf>,
+    /// Simulated seconds in a second of the video: 0.1 is ten times slower than it was, and asks for 250 pictures
+    /// per simulated second unless --fps says otherwise [default: 1]
+    #[arg(long, value_name = "N", help_heading = "Pictures", allow_negative_numbers = true)]
+    pub video_speed: Option<f64>,
     /// What to lay over the grains
     #[arg(long, value_name = "WHAT", help_heading = "Pictures", value_delimiter = ',')]
     pub show: Vec<Show>,
@@ -142,7 +147,7 @@ impl HeadlessOptions {
 
     /// A file that moves, if there is to be one.
     pub(super) fn animation(&self) -> Option<&Path> {
-        self.gif.as_deref().or(self.video.video.as_deref())
+        self.gif.as_deref().or(self.video.as_deref())
     }
 
     /// The size of a picture.
@@ -196,7 +201,49 @@ impl HeadlessOptions {
     /// # Errors
     /// Where the speed of a video is none.
     pub(super) fn pictures_per_sec(&self) -> Result<f64> {
-        Ok(self.fps.unwrap_or(DEFAULT_FPS / self.video.speed()?))
+        Ok(self.fps.unwrap_or(DEFAULT_FPS / self.video_speed()?))
+    }
+
+    /// Simulated seconds in a second of the video; of pictures without a video in a second of what is shown.
+    ///
+    /// # Errors
+    /// Where it is none, or there is no video.
+    fn video_speed(&self) -> Result<f64> {
+        let Some(speed) = self.video_speed else { return Ok(1.0) };
+        if self.video.is_none() {
+            return Err(Error::value("video-speed", speed, "left out where --video is not given"));
+        }
+        if speed > 0.0 && speed.is_finite() {
+            return Ok(speed);
+        }
+        Err(Error::value("video-speed", speed, "a finite number > 0"))
+    }
+
+    /// How many pictures a second of the video has.
+    ///
+    /// # Errors
+    /// Where nothing can encode videos, or the rate or the size are not those of one.
+    pub(super) fn video_rate_hz(&self) -> Result<f64> {
+        if let Some(path) = &self.video {
+            check_ffmpeg(path.display())?;
+            let PictureSize { width, height } = self.size()?;
+            let [least, most] = VIDEO_SIDES;
+            let is_side = |side: u32| side.is_multiple_of(2) && (least..=most).contains(&side);
+            if !is_side(width) || !is_side(height) {
+                let allowed =
+                    format!("even and from {least} to {most} pixels on both sides for a video");
+                return Err(Error::value("size", format!("{width}x{height}"), allowed));
+            }
+        }
+        let speed = self.video_speed()?;
+        let rate_hz = self.pictures_per_sec()? * speed;
+        let [least, most] = VIDEO_RATES_HZ;
+        if self.video.is_none() || (least..=most).contains(&rate_hz) {
+            return Ok(rate_hz);
+        }
+        let found = format!("{} at --video-speed {speed}", self.pictures_per_sec()?);
+        let allowed = format!("such that a second of the video has {least} to {most} pictures");
+        Err(Error::value("fps", found, allowed))
     }
 
     /// The times of the pictures of a run that lasts `duration_secs`, s, rising.

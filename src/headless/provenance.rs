@@ -34,7 +34,7 @@ impl HeadlessOptions {
             None => {
                 // Frames are the same however long the run goes on after them.
                 let mut config = config.clone();
-                config.origin.duration = None;
+                config.source.duration = None;
                 config.words(&settings)?
             }
             Some(path) => {
@@ -71,7 +71,7 @@ impl HeadlessOptions {
             words = vec!["--times".to_owned(), times.join(",")];
         }
         words.extend(self.words_of_style(style));
-        if let Some(speed) = self.video.video_speed {
+        if let Some(speed) = self.video_speed {
             words.extend(["--video-speed".to_owned(), speed.to_string()]);
         }
         words.extend(last_words.iter().map(|&word| word.to_owned()));

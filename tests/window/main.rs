@@ -28,9 +28,11 @@ mod saved;
 mod sessions;
 mod speed;
 mod tour;
-#[cfg(feature = "video")]
 mod videos;
 
+#[path = "../common/probed.rs"]
+#[allow(dead_code, reason = "tests of the command line use more of it")]
+mod probed;
 #[path = "../recordings/data/tables.rs"]
 #[allow(dead_code, reason = "tests of recordings use more of it")]
 mod tables;

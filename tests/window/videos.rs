@@ -1,31 +1,17 @@
 //! Videos that the window makes of its record.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use egui_kittest::kittest::{NodeT, Queryable};
-use mp4_atom::{Decode, Ftyp, Ilst, Moov, StszSamples};
 use slump::live::Command;
 
 use crate::animations::{self, open};
+use crate::probed::probe;
 use crate::recordings::take_steps;
 use crate::robot::Robot;
 
 fn made(robot: &mut Robot) -> (PathBuf, String) {
     animations::made(robot, "Save video")
-}
-
-fn head(path: &Path) -> Moov {
-    let bytes = std::fs::read(path).expect("a video");
-    let mut rest = &bytes[..];
-    Ftyp::decode(&mut rest).expect("a kind of file");
-    Moov::decode(&mut rest).expect("a head")
-}
-
-fn pictures(moov: &Moov) -> usize {
-    match &moov.trak[0].mdia.minf.stbl.stsz.samples {
-        StszSamples::Different { sizes } => sizes.len(),
-        StszSamples::Identical { count, .. } => *count as usize,
-    }
 }
 
 #[test]
@@ -39,12 +25,9 @@ fn the_record_is_a_video_at_the_pace_of_time() {
     robot.settle();
     let (path, told) = made(&mut robot);
     assert!(told.ends_with(" of 6 pictures"), "0 to 0.2 s at 25 a second: {told}");
-    let moov = head(&path);
-    assert_eq!(pictures(&moov), 6);
-    assert_eq!(moov.trak[0].mdia.mdhd.duration, 6 * 3_600);
-    assert_eq!([moov.trak[0].tkhd.width.integer(), moov.trak[0].tkhd.height.integer()], [162, 100]);
-    let said = moov.udta.and_then(|said| said.meta).expect("metadata");
-    let lines = &said.get::<Ilst>().and_then(|list| list.desc.as_ref()).expect("lines").text;
+    let video = probe(&path);
+    assert_eq!((video.pictures, &*video.rate_hz, video.size), (6, "25/1", [162, 100]));
+    let lines = video.comment;
     assert!(lines.contains("Command line: slump --headless "), "{lines}");
     assert!(lines.contains("--duration 0.2"), "{lines}");
 
@@ -58,7 +41,7 @@ fn the_record_is_a_video_at_the_pace_of_time() {
     robot.state_mut().preferences.video_rate_hz = 50.0;
     robot.state_mut().preferences.video_speed = 0.1;
     let (slow, _) = made(&mut robot);
-    assert_eq!(pictures(&head(&slow)), 101);
+    assert_eq!(probe(&slow).pictures, 101);
 }
 
 #[test]
@@ -75,7 +58,7 @@ fn compared_worlds_stand_side_by_side_in_one_video() {
     let (path, _) = made(&mut robot);
     let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
     assert!(name.starts_with("slump-pile-2worlds-"), "{name}");
-    assert_eq!(pictures(&head(&path)), 25);
+    assert_eq!(probe(&path).pictures, 25);
 }
 
 #[test]

@@ -3,8 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::journal::Entry;
 use super::outcome::{series_cells, series_names};
+use super::runner::FinishedCase;
+use super::sweep::SweptRun;
 use super::{SeriesSettings, record};
 use crate::error::{Error, Result};
 use crate::output::{note_line, remove_folder_if_there, write_file};
@@ -67,10 +68,10 @@ impl<'a> Course<'a> {
 }
 
 /// Whether the course of a finished run is there as it was written. One that is damaged is told of.
-pub(super) fn is_whole(folder: &Path, entry: &Entry) -> bool {
-    let path = series_path(folder, &entry.key);
+pub(super) fn is_whole(folder: &Path, case: &FinishedCase<SweptRun>) -> bool {
+    let path = series_path(folder, &case.key);
     let Ok(bytes) = std::fs::read(&path) else { return false };
-    let whole = entry.course.as_ref() == Some(&record::checksum(&bytes));
+    let whole = case.result.series.as_ref() == Some(&record::checksum(&bytes));
     if !whole {
         note_line(format_args!("{}: is damaged; its run is computed anew", path.display()));
     }

@@ -8,12 +8,13 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 
-use super::{Outcome, record};
+use super::record;
 use crate::error::{Error, Result};
 use crate::output::note_line;
+use crate::runner::FinishedCase;
 
 /// Ending of a journal's name.
 const ENDING: &str = "jsonl";
@@ -21,19 +22,6 @@ const ENDING: &str = "jsonl";
 /// Where the journal of that name lies.
 pub(super) fn path_of(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{name}.{ENDING}"))
-}
-
-/// One finished run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Entry {
-    /// The run's key.
-    pub key: String,
-    /// Wall-clock time that it took, s.
-    pub wall_secs: f64,
-    pub outcome: Outcome,
-    /// Checksum of the file with its course, where one is kept.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub course: Option<String>,
 }
 
 /// A journal that this program writes.
@@ -77,23 +65,25 @@ impl Journal {
     }
 }
 
-/// All finished runs that the journals of some folders tell of, by key.
+/// All finished cases in the journals of some folders, by key.
 ///
 /// # Errors
-/// Where a journal cannot be read, or two disagree about a run.
-pub(super) fn read_all(folders: &[PathBuf]) -> Result<HashMap<String, Entry>> {
-    let mut all: HashMap<String, Entry> = HashMap::new();
+/// Where a journal cannot be read, or two disagree about a case.
+pub(super) fn read_all<T: Serialize + DeserializeOwned>(
+    folders: &[PathBuf],
+) -> Result<HashMap<String, FinishedCase<T>>> {
+    let mut all: HashMap<String, FinishedCase<T>> = HashMap::new();
     for path in journals(folders)? {
-        for entry in read::<Entry>(&path)? {
+        for case in read::<FinishedCase<T>>(&path)? {
             // As they are written: what is not a number is not even equal to itself.
-            let written = |entry: &Entry| serde_json::to_string(&entry.outcome).ok();
-            if let Some(known) = all.get(&entry.key)
-                && written(known) != written(&entry)
+            let written = |case: &FinishedCase<T>| serde_json::to_string(&case.result).ok();
+            if let Some(known) = all.get(&case.key)
+                && written(known) != written(&case)
             {
-                let reason = format!("run {} came out otherwise before", entry.key);
+                let reason = format!("run {} came out otherwise before", case.key);
                 return Err(Error::file(&path, reason));
             }
-            all.insert(entry.key.clone(), entry);
+            all.insert(case.key.clone(), case);
         }
     }
     Ok(all)

@@ -5,7 +5,7 @@ use std::collections::hash_map::Entry;
 
 use serde::Serialize;
 
-use crate::config::{Config, Ground};
+use crate::config::{BaseScene, Config};
 use crate::error::{Error, Result};
 
 /// One run of a study.
@@ -19,25 +19,25 @@ pub struct PlannedRun {
     pub cost: f64,
 }
 
-/// A ground that has been read.
+/// A base that has been read.
 pub(super) struct Known {
-    ground: Ground,
+    base: BaseScene,
     /// Hash of all its discs.
     discs: String,
 }
 
 impl Known {
     fn of(config: &Config) -> Result<Self> {
-        let ground = config.ground()?;
-        let scene = config.change(&ground)?;
+        let base = config.base_scene()?;
+        let scene = config.change(&base)?;
         let discs = short(&hash(&(&scene.grains, &scene.fixed_discs), &scene.name)?);
-        Ok(Self { ground, discs })
+        Ok(Self { base, discs })
     }
 }
 
 impl PlannedRun {
     /// That of a config. Series have these grains; `kept` is what is kept of the run besides its outcome, and
-    /// `grounds` what has been read, by name.
+    /// `bases` what has been read, by name.
     ///
     /// # Errors
     /// Where the config is not sound, or has fewer grains.
@@ -45,17 +45,17 @@ impl PlannedRun {
         config: &Config,
         grains_asked_for: &[usize],
         kept: &impl Serialize,
-        grounds: &mut HashMap<String, Known>,
+        bases: &mut HashMap<String, Known>,
     ) -> Result<Self> {
-        let known = match grounds.entry(config.name_of_ground()) {
+        let known = match bases.entry(config.base_scene_key()) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(place) => place.insert(Known::of(config)?),
         };
-        let mut scene = config.change(&known.ground)?;
+        let mut scene = config.change(&known.base)?;
         // What is kept of runs, the study says.
         scene.data = None;
         let config = config.resolved(&scene);
-        let grains = config.origin.grains.unwrap_or(scene.grains.len());
+        let grains = config.source.grains.unwrap_or(scene.grains.len());
         if let Some(grain) = grains_asked_for.iter().find(|&&grain| grain >= grains) {
             return Err(Error::value("series.grains", grain, format!("below {grains}")));
         }

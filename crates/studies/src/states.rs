@@ -30,7 +30,7 @@ impl States {
         let mut looked_at = HashSet::new();
         for config in configs {
             // A scene file is read once, whatever the number of its runs.
-            if config.origin.makes_new_pile() || looked_at.insert(config.name_of_ground()) {
+            if config.source.makes_new_pile() || looked_at.insert(config.base_scene_key()) {
                 piles.extend(config.new_pile()?.map(|pile| (name(&pile), pile)));
             }
         }

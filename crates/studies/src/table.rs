@@ -6,8 +6,9 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::alarms::Alarms;
-use super::journal::Entry;
 use super::outcome::{cells_of, names_of};
+use super::runner::FinishedCase;
+use super::sweep::SweptRun;
 use super::{Outcome, Status, Study};
 use crate::config::Config;
 use crate::error::{Error, Result};
@@ -26,13 +27,16 @@ pub struct RunsTable {
 
 impl RunsTable {
     /// Puts finished runs in the study's order.
-    pub(super) fn new(study: &Study, entries: &HashMap<String, Entry>) -> Result<Self> {
+    pub(super) fn new(
+        study: &Study,
+        finished: &HashMap<String, FinishedCase<SweptRun>>,
+    ) -> Result<Self> {
         let mut rows = Vec::with_capacity(study.runs.len());
         let mut core_secs = 0.0;
         for run in &study.runs {
-            if let Some(entry) = entries.get(&run.key) {
-                core_secs += entry.wall_secs;
-                rows.push((run.key.clone(), run.config.clone(), entry.outcome));
+            if let Some(case) = finished.get(&run.key) {
+                core_secs += case.wall_secs;
+                rows.push((run.key.clone(), run.config.clone(), case.result.outcome));
             }
         }
         let (found, all) = (rows.len(), study.runs.len());

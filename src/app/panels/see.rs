@@ -9,7 +9,7 @@ use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::error::Result;
-use crate::headless::{VIDEO_RATES_HZ, check_video};
+use crate::film::{VIDEO_RATES_HZ, check_ffmpeg};
 use crate::render::{ColourBy, Style, panel_size};
 use crate::study::png::write_png;
 
@@ -126,14 +126,14 @@ fn films(ui: &mut Ui, state: &mut AppState) {
 }
 
 fn save_video(ui: &mut Ui, state: &mut AppState) {
-    let hint = "What was recorded of all worlds, or the stretch that Data names, as AV1 in MP4. The run may go on meanwhile.";
-    let save = save_button(ui, state, "Save video", check_video("given")).on_hover_text(hint);
+    let hint = "What was recorded of all worlds, or the stretch that Data names, as MP4. The run may go on meanwhile.";
+    let save = save_button(ui, state, "Save video", check_ffmpeg("given")).on_hover_text(hint);
     if save.clicked() {
         super::see::save_film(ui.ctx(), state, FilmFormat::Video);
     }
 }
 
-/// A button that is there where the record is, and says why where this build cannot make what it asks for.
+/// A button that is there where the record is, and says why where there is nothing to make what it asks for.
 fn save_button(
     ui: &mut Ui,
     state: &mut AppState,

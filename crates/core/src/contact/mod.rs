@@ -25,7 +25,8 @@ pub(crate) use features::Feature;
 #[doc(hidden)]
 pub use grid::Grid;
 pub use joined::{JoinedGrains, most_contacts_joined};
-pub(crate) use lanes::Lanes;
+pub use lanes::Lanes;
+pub use law::ContactLaw;
 #[cfg(test)]
 pub(crate) use lanes::levels;
 pub(crate) use look_ahead::LookAhead;

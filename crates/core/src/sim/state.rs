@@ -3,10 +3,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::pull::Pull;
-use super::walls::Walls;
 use crate::contact::{Candidates, ContactList, LookAhead, Reach};
 use crate::error::Result;
+use crate::sim::pull::Pull;
+use crate::sim::walls::Walls;
 use crate::solver::{Kinematics, Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
 

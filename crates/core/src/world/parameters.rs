@@ -222,9 +222,6 @@ fn is_none_given(number: &f64) -> bool {
 
 impl Parameters {
     /// Checks every number against its range.
-    ///
-    /// # Errors
-    /// Names the first field outside its range, its value and the range.
     pub(crate) fn validate(&self) -> Result<()> {
         self.validate_each()
     }

@@ -23,9 +23,6 @@ struct Wrapping {
 
 impl Periodic {
     /// Checks it against what there is in a world, of which the radius of the largest disc and d are given, m.
-    ///
-    /// # Errors
-    /// Names what does not fit.
     pub(crate) fn check(
         self,
         (boundaries, fixed_discs, motions): (&[Boundary], usize, &[Motion]),

@@ -138,7 +138,7 @@ mod tests {
                     if step == STEPS[0] { 0.0 } else { 0.03 * [1.0, -1.0][seed as usize % 2] };
                 let slump = 0.1 * seed as f64 + shift + scatter;
                 let mut config = Config::default();
-                config.origin.seed = Some(seed);
+                config.source.seed = Some(seed);
                 config.parameters.bond = Some(10.0);
                 config.parameters.time_step_secs = Some(step);
                 runs.push((config, Outcome::of_slump(slump)));

@@ -36,10 +36,10 @@ fn chosen(config: &Config) -> Chosen {
             "warm start",
             if config.solver.warm_start == Some(true) { "yes" } else { "no" }.to_owned(),
         ),
-        ("start of k", number(config.origin.start)),
+        ("start of k", number(config.source.start)),
         ("μ", number(parameters.friction)),
         ("δc", number(parameters.debonding_distance)),
-        ("grains", config.origin.grains.map_or_else(String::new, |grains| grains.to_string())),
+        ("grains", config.source.grains.map_or_else(String::new, |grains| grains.to_string())),
     ]
 }
 

@@ -69,7 +69,7 @@ pub(super) fn chart(
         let shown = steps.iter().filter_map(|&step| {
             let is_it = |config: &Config| {
                 config.parameters.time_step_secs == Some(step)
-                    && config.origin.seed == Some(NewPile::default().seed)
+                    && config.source.seed == Some(NewPile::default().seed)
             };
             Some((step, *of_bond.such_that(is_it).outcomes(number).first()?))
         });

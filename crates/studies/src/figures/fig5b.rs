@@ -78,7 +78,7 @@ fn groups(rows: &Rows<'_>, number: impl Fn(&Outcome) -> f64) -> Vec<Alike> {
     for seed in rows.seeds() {
         for bond in rows.values(|config| config.parameters.bond) {
             let here = rows.such_that(|config| {
-                config.origin.seed == Some(seed) && config.parameters.bond == Some(bond)
+                config.source.seed == Some(seed) && config.parameters.bond == Some(bond)
             });
             let pair =
                 |(config, outcome): &(&Config, &Outcome)| (log_step(config), number(outcome));

@@ -81,7 +81,7 @@ fn groups(rows: &Rows<'_>, unit_secs: f64) -> Vec<Alike> {
     for seed in rows.seeds() {
         for bond in rows.values(|config| config.parameters.bond) {
             let here = rows.such_that(|config| {
-                config.origin.seed == Some(seed) && config.parameters.bond == Some(bond)
+                config.source.seed == Some(seed) && config.parameters.bond == Some(bond)
             });
             let place = |(config, outcome): &(&Config, &crate::Outcome)| {
                 (cohesive_time(config, unit_secs).log10(), outcome.slump)

@@ -105,9 +105,9 @@ pub(super) fn agreed(rows: &Rows<'_>) -> usize {
 fn pattern_is_usual(rows: &Rows<'_>) -> Claim {
     let (loose, _) = tolerances(rows);
     let rows = rows.such_that(|config| config.solver.tolerance == Some(loose));
-    let starts = rows.values(|config| config.origin.start);
+    let starts = rows.values(|config| config.source.start);
     let whole = |start: &&f64| {
-        agreed(&rows.such_that(|config| config.origin.start == Some(**start))) == PAPER.len()
+        agreed(&rows.such_that(|config| config.source.start == Some(**start))) == PAPER.len()
     };
     let whole = starts.iter().filter(whole).count();
     let (share, low, high) = statistics::share(whole, starts.len());
@@ -161,7 +161,7 @@ pub(super) fn share(workshop: &Workshop) -> Result<Figure> {
     );
     chart.y.ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].map(|share| (share, share.to_string())).to_vec();
     chart.legend = Corner::UpperRight;
-    let starts = rows.values(|config| config.origin.start);
+    let starts = rows.values(|config| config.source.start);
     let mut told = Vec::new();
     let tolerances = rows.values(|config| config.solver.tolerance);
     for (&tolerance, colour) in tolerances.iter().rev().zip([PALETTE[6], PALETTE[2], PALETTE[1]]) {

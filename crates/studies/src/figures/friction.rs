@@ -39,11 +39,11 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
 }
 
 fn sizes<'a>(rows: &Rows<'a>) -> Vec<Size<'a>> {
-    let grains = rows.values(|config| config.origin.grains.map(|grains| grains as f64));
+    let grains = rows.values(|config| config.source.grains.map(|grains| grains as f64));
     let model_of = |config: &Config| config.solver.friction_model.unwrap_or_default();
     let mut all = Vec::new();
     for grains in grains.into_iter().map(|grains| grains as usize) {
-        let here = rows.such_that(|config| config.origin.grains == Some(grains));
+        let here = rows.such_that(|config| config.source.grains == Some(grains));
         for &model in FrictionModel::ALL {
             let reference = here.such_that(|config| model_of(config) == FrictionModel::Coulomb);
             let other = here.such_that(|config| model_of(config) == model);
@@ -113,8 +113,8 @@ mod tests {
                     let moved = if is_model { scatter * sign } else { 0.0 };
                     let moved = moved + if is_model && bond == 20.0 { shift } else { 0.0 };
                     let mut config = Config::default();
-                    config.origin.seed = Some(seed);
-                    config.origin.grains = Some(138);
+                    config.source.seed = Some(seed);
+                    config.source.grains = Some(138);
                     config.solver.friction_model = Some(model);
                     config.parameters.bond = Some(bond);
                     config.parameters.time_step_secs = Some(1e-3);

@@ -128,9 +128,9 @@ type Pairs = Vec<(Option<u64>, f64, f64)>;
 
 /// The states that ended in both ways.
 pub(super) fn pairs(reference: &Rows<'_>, other: &Rows<'_>) -> Pairs {
-    let with = |seed| other.0.iter().find(move |(config, _)| config.origin.seed == seed);
+    let with = |seed| other.0.iter().find(move |(config, _)| config.source.seed == seed);
     let pair = |(config, outcome): &(&Config, &Outcome)| {
-        let seed = config.origin.seed;
+        let seed = config.source.seed;
         Some((seed, outcome.slump, with(seed)?.1.slump))
     };
     reference.0.iter().filter_map(pair).collect()

@@ -133,7 +133,7 @@ fn groups(rows: &Rows<'_>, unit_secs: f64) -> Vec<Alike> {
             rows.values(|config| config.parameters.bond).into_iter().filter(|bond| *bond > 0.0)
         {
             let here = rows.such_that(|config| {
-                config.origin.seed == Some(seed) && config.parameters.bond == Some(bond)
+                config.source.seed == Some(seed) && config.parameters.bond == Some(bond)
             });
             let run = |(config, outcome): &(&Config, &Outcome)| {
                 (cohesive_time(config, unit_secs).log10(), outcome.slump)

@@ -16,7 +16,7 @@ const FEWEST_STATES: usize = 8;
 
 pub(super) fn size(workshop: &Workshop) -> Result<Figure> {
     let rows = workshop.rows("pile-size")?;
-    let grains = |config: &Config| config.origin.grains.map(|count| count as f64);
+    let grains = |config: &Config| config.source.grains.map(|count| count as f64);
     let counts = rows.values(grains);
     let x = Axis::log("number of grains", 0.8 * counts[0], 1.25 * counts[counts.len() - 1]);
     let (mut sheet, curves) =
@@ -69,7 +69,7 @@ pub(super) fn tolerance(workshop: &Workshop) -> Result<Figure> {
                 .filter_map(|seed| {
                     let slump = |wanted: f64| {
                         let run = of_step
-                            .such_that(|c| c.origin.seed == Some(seed) && c.solver.tolerance == Some(wanted));
+                            .such_that(|c| c.source.seed == Some(seed) && c.solver.tolerance == Some(wanted));
                         run.outcomes(|outcome| outcome.slump).first().copied()
                     };
                     Some(slump(tolerance)? - slump(values[0])?)
@@ -130,7 +130,7 @@ fn series(
         let curve = Layer::curve(name, means.collect(), colour, Look::LineAndDots);
         chart.layers.push(curve.beside(index, 3));
         let of_seed = |seed| {
-            let run = of_step.such_that(|config| config.origin.seed == Some(seed));
+            let run = of_step.such_that(|config| config.source.seed == Some(seed));
             let places = run.0.iter().filter_map(|(c, o)| Some((number(c)?.log10(), o.slump)));
             slope(&places.collect::<Vec<_>>())
         };

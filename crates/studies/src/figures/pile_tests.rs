@@ -50,7 +50,7 @@ impl Asked {
 /// Slumps of each state by log₁₀ Δt, rising.
 pub(super) fn by_state(rows: &Rows<'_>) -> Vec<Alike> {
     let of_seed = |seed| {
-        let rows = rows.such_that(|config| config.origin.seed == Some(seed));
+        let rows = rows.such_that(|config| config.source.seed == Some(seed));
         let mut pairs: Alike = rows
             .0
             .iter()

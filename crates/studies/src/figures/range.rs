@@ -8,7 +8,7 @@ use super::figure::slump_point;
 use super::workshop::Rows;
 use super::{Claim, Figure, Workshop};
 use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
-use crate::config::Origin;
+use crate::config::SceneSource;
 use crate::error::Result;
 use crate::sim::Stepper;
 use crate::statistics::mean;
@@ -140,7 +140,7 @@ fn seconds_per_second(rows: &Rows<'_>, law: Stepper, step: f64, quick: bool) -> 
     let Some((config, _)) = like.0.first() else { return Ok(f64::NAN) };
     // The state that is shipped: no pile is settled for this.
     let mut config = (*config).clone();
-    config.origin = Origin { seed: None, duration: Some(duration), ..config.origin };
+    config.source = SceneSource { seed: None, duration: Some(duration), ..config.source };
     config.parameters.bond = Some(bond);
     config.stepper = Some(law);
     let scene = config.without_settling()?;

@@ -92,7 +92,7 @@ fn places(choice: &Choice<'_>) -> Vec<Place> {
 
 /// That slump does not depend on Δt with that choice.
 fn of_choice(choice: &Choice<'_>, places: &[Place]) -> Claim {
-    let grains = choice.rows.0.iter().filter_map(|(config, _)| config.origin.grains).max();
+    let grains = choice.rows.0.iter().filter_map(|(config, _)| config.source.grains).max();
     let margin = MARGINS[usize::from(grains.is_some_and(|grains| grains > 138))];
     let said = format!(
         "Beyond the paper: under range slump is that at Δt = {:e} s, within {margin}, with {}",

@@ -84,10 +84,10 @@ struct Size<'a> {
 
 impl<'a> Size<'a> {
     fn all(rows: &Rows<'a>) -> Vec<Self> {
-        let counts = rows.values(|config| config.origin.grains.map(|grains| grains as f64));
+        let counts = rows.values(|config| config.source.grains.map(|grains| grains as f64));
         let of_count = |count: f64| {
             let grains = count as usize;
-            Self { grains, rows: rows.such_that(|config| config.origin.grains == Some(grains)) }
+            Self { grains, rows: rows.such_that(|config| config.source.grains == Some(grains)) }
         };
         counts.into_iter().map(of_count).collect()
     }
@@ -211,7 +211,7 @@ mod tests {
 
     fn run(grains: usize, seed: u64, effort: Effort, slump: f64) -> (Config, Outcome) {
         let mut config = Config::default();
-        (config.origin.seed, config.origin.grains) = (Some(seed), Some(grains));
+        (config.source.seed, config.source.grains) = (Some(seed), Some(grains));
         config.parameters.bond = Some(20.0);
         config.parameters.time_step_secs = Some(1e-3);
         let SolverChanges {

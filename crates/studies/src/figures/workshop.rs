@@ -148,7 +148,7 @@ impl<'a> Rows<'a> {
 
     /// Those of initial states that were not chosen for what they show.
     pub(super) fn ensemble(&self) -> Self {
-        self.such_that(|config| config.origin.seed != Some(NewPile::default().seed))
+        self.such_that(|config| config.source.seed != Some(NewPile::default().seed))
     }
 
     /// The different values of a number, rising.
@@ -167,7 +167,7 @@ impl<'a> Rows<'a> {
     /// Seeds that are there, rising.
     pub(super) fn seeds(&self) -> Vec<u64> {
         let mut seeds: Vec<u64> =
-            self.0.iter().filter_map(|(config, _)| config.origin.seed).collect();
+            self.0.iter().filter_map(|(config, _)| config.source.seed).collect();
         seeds.sort_unstable();
         seeds.dedup();
         seeds

@@ -40,22 +40,12 @@
 //! **Not with cohesion.** In the paper's law what touches is bonded, and a bond takes part in a shock.
 //! Then all contacts belong to the first pass, which is the law as it was.
 
-use super::Remedy;
 use crate::contact::ContactList;
-use crate::setting::Value;
 use crate::sim::settings::Settings;
-use crate::sim::steppers::stepper::Stepper;
 use crate::sim::stepping::Stage;
 use crate::solver::{
-    Kinematics, Memory, Method, Model, Row, SolveReport, SolverSettings, StepProblem, for_each_row,
-    relative_velocities, solve as solve_problem,
-};
-
-/// The row of the registry.
-pub(super) const REMEDY: Remedy = Remedy {
-    name: "sequential-impacts",
-    taken_by: &[Stepper::Moreau],
-    robust: Some(Value::Switch(true)),
+    FrictionModel, Kinematics, Memory, Method, Model, Row, SolveReport, SolverSettings,
+    StepProblem, for_each_row, relative_velocities, solve as solve_problem,
 };
 
 /// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
@@ -107,8 +97,8 @@ pub(in crate::sim) fn follow<M: Model>(
         return None;
     }
     let mut report = SolveReport::default();
-    let mut shocks = Shocks::new(problem, &state.contacts);
-    let fastest = shocks.fastest_closing();
+    let mut impacts = ImpactSequence::new(problem, &state.contacts);
+    let fastest = impacts.fastest_closing();
     let step_of_gravity = state.world.gravity.magnitude() * parameters.time_step_secs;
     let threshold = parameters.restitution_threshold.max(LEAST_IN_STEPS_OF_GRAVITY);
     let least = (threshold * step_of_gravity).max(LEAST_IN_FASTEST * fastest);
@@ -117,16 +107,16 @@ pub(in crate::sim) fn follow<M: Model>(
     }
     let mut pass = StepProblem::default();
     for _ in 0..MOST_PASSES {
-        if !shocks.select(problem, &mut pass, parameters.restitution, least) {
+        if !impacts.select(problem, &mut pass, parameters.restitution, least) {
             break;
         }
         report.add(solve_problem::<M>(&mut pass, memory, &PASS));
-        shocks.take(problem, &mut pass);
+        impacts.take(problem, &mut pass);
     }
-    if shocks.fastest_closing() > LEAST_IN_FASTEST * fastest {
-        report.add(shocks.stop_the_rest::<M>(problem, memory, &settings.solver));
+    if impacts.fastest_closing() > LEAST_IN_FASTEST * fastest {
+        report.add(impacts.stop_the_rest::<M>(problem, memory, &settings.solver));
     }
-    shocks.set_rebounds(problem);
+    impacts.set_rebounds(problem);
     Some(report)
 }
 
@@ -156,7 +146,7 @@ fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
 }
 
 /// How far the shocks have gone.
-struct Shocks<K: Kinematics> {
+struct ImpactSequence<K: Kinematics> {
     /// Velocities by now.
     bodies: Vec<K::Body<f64>>,
     /// u of each row, m/s.
@@ -167,7 +157,7 @@ struct Shocks<K: Kinematics> {
     touching: Vec<bool>,
 }
 
-impl<K: Kinematics> Shocks<K> {
+impl<K: Kinematics> ImpactSequence<K> {
     /// Nothing has happened yet.
     fn new(problem: &StepProblem<K>, contacts: &ContactList) -> Self {
         let bodies = problem.before.clone();
@@ -227,41 +217,36 @@ impl<K: Kinematics> Shocks<K> {
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
-    /// Stops all contacts that still close, by the step's own method: there may be many of them.
+    /// Stops all contacts that still close, without friction, by the step's own method: there may be many of them.
     fn stop_the_rest<M: Model<Kinematics = K>>(
         &mut self,
-        problem: &mut StepProblem<K>,
+        problem: &StepProblem<K>,
         memory: &mut Memory<K>,
         settings: &SolverSettings,
     ) -> SolveReport {
-        let free = std::mem::replace(&mut problem.free, self.bodies.clone());
-        let friction = std::mem::take(&mut problem.friction);
-        let model = std::mem::take(&mut problem.friction_model);
-        let (fixed, pairs) = (problem.fixed_rows.clone(), problem.pair_rows.clone());
-        for ((row, wall_speed), &touches) in problem.rows_with_walls().zip(&self.touching) {
+        let mut rest = problem.clone();
+        rest.free.clone_from(&self.bodies);
+        rest.friction = 0.0;
+        rest.friction_model = FrictionModel::Coulomb;
+        for ((row, wall_speed), &touches) in rest.rows_with_walls().zip(&self.touching) {
             if touches {
                 row.restitution_velocity = -wall_speed;
             }
             row.shifted_impulse = 0.0;
             row.tangential_impulse = 0.0;
         }
-        problem.form_velocities();
-        let report = solve_problem::<M>(problem, memory, settings);
-        for (number, row) in problem.rows() {
+        rest.form_velocities();
+        let report = solve_problem::<M>(&mut rest, memory, settings);
+        for (number, row) in rest.rows() {
             self.impulses[number] += row.shifted_impulse;
         }
-        self.bodies.clone_from(&problem.bodies);
+        self.bodies = rest.bodies;
         relative_velocities(problem, &self.bodies, &mut self.speeds);
-        problem.free = free;
-        problem.friction = friction;
-        problem.friction_model = model;
-        problem.fixed_rows = fixed;
-        problem.pair_rows = pairs;
         report
     }
 
     /// Asks each contact that was struck for the speed that it has come to. One that was not may not
-    /// bounce. The step starts from the impulses of the shocks.
+    /// bounce. The step starts from the impulses of the impacts.
     fn set_rebounds(&self, problem: &mut StepProblem<K>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];

@@ -119,7 +119,7 @@ mod tests {
                         let slump = 0.01 * seed as f64 - 0.1 * counted.log10() + moved;
                         let mut config = Config::of_scene("pile");
                         config.stepper = Some(law);
-                        config.origin.seed = Some(seed);
+                        config.source.seed = Some(seed);
                         config.parameters.bond = Some(bond);
                         config.parameters.time_step_secs = Some(1e-4);
                         config.parameters.debonding_distance =

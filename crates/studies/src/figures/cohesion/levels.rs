@@ -2,7 +2,7 @@
 
 use super::super::paired::Paired;
 use super::super::workshop::Rows;
-use crate::config::{Config, Origin};
+use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::Stepper;
@@ -28,8 +28,8 @@ impl Level<'_> {
 
 /// The scene of a run, but for its grains, which are those of the shipped state.
 fn scene(config: &Config) -> Result<Scene> {
-    let origin = Origin { seed: None, ..config.origin.clone() };
-    Config { origin, ..config.clone() }.without_settling()
+    let source = SceneSource { seed: None, ..config.source.clone() };
+    Config { source, ..config.clone() }.without_settling()
 }
 
 /// The work of fracture of some runs, in m g d.

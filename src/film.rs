@@ -1,0 +1,322 @@
+//! Pictures one after the other: animations, and videos that ffmpeg encodes.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+
+use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Extension, Frame, Repeat};
+use image::RgbaImage;
+use tempfile::NamedTempFile;
+
+use crate::error::{Error, Result};
+use crate::output::{PendingFile, Texts, folder_of};
+
+/// Fewest and most pictures a second that players are asked for.
+pub(crate) const VIDEO_RATES_HZ: [f64; 2] = [1.0, 240.0];
+/// The shortest and longest side of a video, px: encoders take none that are longer.
+pub(crate) const VIDEO_SIDES: [u32; 2] = [16, 16_384];
+/// Encoders of ffmpeg whose videos browsers play, with the options for good pictures. The first one that ffmpeg has
+/// is used.
+const ENCODERS: [(&str, &[&str]); 4] = [
+    ("libx264", &["-crf", "18"]),
+    ("libopenh264", &["-b:v", "8M"]),
+    ("libsvtav1", &["-crf", "24", "-preset", "8"]),
+    ("libvpx-vp9", &["-crf", "24", "-b:v", "0", "-cpu-used", "4"]),
+];
+
+/// Hundredths of a second in a second, the unit in which a file says how long a picture is shown.
+const CENTISECS: f64 = 100.0;
+/// Viewers take what is shorter for a mistake and show it for a tenth of a second.
+const LEAST_CENTISECS: f64 = 2.0;
+/// The encoder looks at every n-th pixel when it chooses colours: at so many pixels, and at all of a small picture, in
+/// which a legend of colours has few.
+const LOOKED_AT: u32 = 100_000;
+/// It looks at one in ten at least.
+const MOST_PASSED: u32 = 10;
+
+/// A GIF that is there once it is finished.
+pub(crate) struct Animation {
+    path: PathBuf,
+    /// Time that each picture is shown.
+    picture_centisecs: u16,
+    /// Two handles of one file: the encoder keeps the one that it writes to.
+    encoder: Option<Encoder<File>>,
+    draft: PendingFile,
+    pictures: usize,
+    /// Length of the pictures that are in the file, bytes; none where it has no lengths.
+    whole: Option<u64>,
+}
+
+impl Animation {
+    /// Pictures a second of an animation that comes nearest to so many, since a file counts in hundredths of a second.
+    #[cfg(feature = "window")]
+    pub(crate) fn nearest_rate_hz(rate_hz: f64) -> f64 {
+        CENTISECS / f64::from(Self::centisecs(rate_hz))
+    }
+
+    fn centisecs(rate_hz: f64) -> u16 {
+        (CENTISECS / rate_hz).round().max(LEAST_CENTISECS) as u16
+    }
+
+    /// Starts an animation of so many pictures a second, or of [`Self::nearest_rate_hz`].
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
+        let draft = PendingFile::start(path)?;
+        let (path, picture_centisecs) = (path.to_owned(), Self::centisecs(rate_hz));
+        Ok(Self { path, picture_centisecs, encoder: None, draft, pictures: 0, whole: None })
+    }
+
+    /// Adds a picture. The first comes after what the animation says of itself, a comment.
+    ///
+    /// # Errors
+    /// Names the file and what the encoder says; the pictures before stay.
+    pub(crate) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
+        let added = self.encode(image, texts);
+        let file = self.draft.file();
+        match (added, self.whole) {
+            (Ok(()), _) => {
+                self.pictures += 1;
+                self.whole = file.stream_position().ok();
+                return Ok(());
+            }
+            (Err(error), Some(whole)) => {
+                // A part of the picture may be there.
+                let _ = file.set_len(whole).and_then(|()| file.seek(SeekFrom::Start(whole)));
+                Err(error)
+            }
+            (Err(error), None) => Err(error),
+        }
+        .map_err(|error| Error::file(&self.path, error))
+    }
+
+    fn encode(
+        &mut self,
+        mut image: RgbaImage,
+        texts: &Texts,
+    ) -> std::result::Result<(), EncodingError> {
+        let side = |pixels: u32| u16::try_from(pixels).map_err(|_| too_large());
+        let (width, height) = (side(image.width())?, side(image.height())?);
+        let encoder = match &mut self.encoder {
+            Some(encoder) => encoder,
+            none => {
+                let mut encoder = Encoder::new(self.draft.file().try_clone()?, width, height, &[])?;
+                encoder.set_repeat(Repeat::Infinite)?;
+                let lines = texts.lines();
+                // A block of a comment holds no more than 255 bytes.
+                let blocks: Vec<&[u8]> = lines.as_bytes().chunks(255).collect();
+                encoder.write_raw_extension(AnyExtension(Extension::Comment as u8), &blocks)?;
+                none.insert(encoder)
+            }
+        };
+        let every = (image.width() * image.height() / LOOKED_AT).clamp(1, MOST_PASSED);
+        let mut frame = Frame::from_rgba_speed(width, height, &mut image, every as i32);
+        (frame.delay, frame.dispose) = (self.picture_centisecs, DisposalMethod::Background);
+        encoder.write_frame(&frame)
+    }
+
+    /// Ends the animation and gives it its name. Whether there is one: none has no picture.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(crate) fn finish(self) -> Result<bool> {
+        // The encoder writes the end of the file when it is dropped.
+        drop(self.encoder);
+        if self.pictures == 0 {
+            return Ok(false);
+        }
+        self.draft.finish(true).map(|()| true)
+    }
+}
+
+fn too_large() -> EncodingError {
+    std::io::Error::new(std::io::ErrorKind::InvalidInput, "a side has more than 65,535 pixels")
+        .into()
+}
+
+/// A video in MP4 that is there once it is finished.
+pub(crate) struct Video {
+    path: PathBuf,
+    rate_hz: f64,
+    /// Runs from the first picture on, which tells the size.
+    ffmpeg: Option<Ffmpeg>,
+}
+
+impl Video {
+    /// Starts a video of so many pictures a second.
+    ///
+    /// # Errors
+    /// Says what is missing where ffmpeg cannot encode it.
+    pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
+        check_ffmpeg(path.display())?;
+        Ok(Self { path: path.to_owned(), rate_hz, ffmpeg: None })
+    }
+
+    /// Adds a picture. All have the size of the first, with even sides. The video carries the first one's texts as a
+    /// comment.
+    ///
+    /// # Errors
+    /// Names the file and what ffmpeg or the system says.
+    pub(crate) fn add(&mut self, image: &RgbaImage, texts: &Texts) -> Result<()> {
+        let added = match &mut self.ffmpeg {
+            Some(ffmpeg) => ffmpeg.add(image),
+            none => Ffmpeg::start(&self.path, image, self.rate_hz, texts)
+                .and_then(|ffmpeg| none.insert(ffmpeg).add(image)),
+        };
+        added.map_err(|error| Error::file(&self.path, error))
+    }
+
+    /// Ends the video and gives it its name. False where it has no picture: then there is no file.
+    ///
+    /// # Errors
+    /// Names the file and what ffmpeg or the system says; then there is no file.
+    pub(crate) fn finish(self) -> Result<bool> {
+        let Some(mut ffmpeg) = self.ffmpeg else { return Ok(false) };
+        ffmpeg.finish().map_err(|error| Error::file(&self.path, error))?;
+        let mut draft = PendingFile::start(&self.path)?;
+        std::io::copy(ffmpeg.encoded.as_file_mut(), draft.file())
+            .map_err(|error| Error::file(&self.path, error))?;
+        draft.finish(true).map(|()| true)
+    }
+}
+
+/// A running ffmpeg. Where it is dropped, it ends, and what it encoded goes.
+struct Ffmpeg {
+    process: Child,
+    /// What ffmpeg writes: it goes back in the file to put the table of pictures before them, so no pipe will do.
+    encoded: NamedTempFile,
+    messages: File,
+}
+
+impl Ffmpeg {
+    fn start(path: &Path, image: &RgbaImage, rate_hz: f64, texts: &Texts) -> std::io::Result<Self> {
+        let (encoder, options) = encoder().map_err(std::io::Error::other)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".slump-").suffix(".mp4");
+        let encoded = builder.tempfile_in(folder_of(path)).or_else(|_| builder.tempfile())?;
+        let messages = tempfile::tempfile()?;
+        let mut command = Command::new("ffmpeg");
+        command
+            .args(["-hide_banner", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba"])
+            .args(["-s", &format!("{}x{}", image.width(), image.height())])
+            .args(["-r", &rate_hz.to_string(), "-i", "-", "-an", "-c:v", encoder])
+            .args(options)
+            // Players can go to each second.
+            .args(["-g", &rate_hz.ceil().to_string()])
+            .args(["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"])
+            .args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"])
+            .args(["-color_range", "tv", "-movflags", "+faststart"])
+            .args(["-metadata", &format!("comment={}", texts.lines()), "-f", "mp4", "-y"])
+            .arg(encoded.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(messages.try_clone()?);
+        // Ctrl-C is for this program, which then finishes the video.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        Ok(Self { process: command.spawn()?, encoded, messages })
+    }
+
+    fn add(&mut self, image: &RgbaImage) -> std::io::Result<()> {
+        let written = self.process.stdin.as_mut().map(|stdin| stdin.write_all(image.as_raw()));
+        match written {
+            Some(Ok(())) => Ok(()),
+            // It closed its end: what it says is the reason.
+            Some(Err(error)) => self.finish().and(Err(error)),
+            None => Err(std::io::Error::other("ffmpeg has ended")),
+        }
+    }
+
+    /// Waits until all of it is encoded.
+    fn finish(&mut self) -> std::io::Result<()> {
+        drop(self.process.stdin.take());
+        let status = self.process.wait()?;
+        if status.success() {
+            return Ok(());
+        }
+        let mut bytes = Vec::new();
+        self.messages.seek(SeekFrom::Start(0))?;
+        self.messages.read_to_end(&mut bytes)?;
+        let text = String::from_utf8_lossy(&bytes);
+        let last = text.lines().rfind(|line| !line.trim().is_empty());
+        let reason = last.map_or_else(|| status.to_string(), |line| line.trim().to_owned());
+        Err(std::io::Error::other(format!("ffmpeg failed: {reason}")))
+    }
+}
+
+impl Drop for Ffmpeg {
+    fn drop(&mut self) {
+        // Neither does anything where it has ended.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// The encoder that is used, with its options; or what is missing.
+fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'static str> {
+    static FOUND: OnceLock<std::result::Result<usize, &str>> = OnceLock::new();
+    let find = || {
+        let listed = Command::new("ffmpeg")
+            .args(["-hide_banner", "-encoders"])
+            .stdin(Stdio::null())
+            .output()
+            .map_err(|_| "left out where there is no ffmpeg: install it (`apt install ffmpeg`)")?;
+        let text = String::from_utf8_lossy(&listed.stdout);
+        let has = |name| text.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
+        ENCODERS.iter().position(|(name, _)| has(*name)).ok_or(
+            "left out where ffmpeg has no encoder that browsers play: install one with libx264, libopenh264, \
+             libsvtav1 or libvpx-vp9",
+        )
+    };
+    FOUND.get_or_init(find).map(|index| ENCODERS[index])
+}
+
+/// Checks that ffmpeg is there to encode videos; `given` is what asks for one.
+///
+/// # Errors
+/// Says what is missing.
+pub(crate) fn check_ffmpeg(given: impl std::fmt::Display) -> Result<()> {
+    encoder().map(drop).map_err(|missing| {
+        Error::value("video", given, format!("{missing}; a GIF and frames need nothing more"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use image::codecs::gif::GifDecoder;
+    use image::{AnimationDecoder, Rgba};
+
+    use super::*;
+
+    /// A legend has few of the pixels of a picture and most of its colours.
+    #[test]
+    fn a_legend_of_colours_keeps_them_in_a_picture_of_any_size() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("legend.gif");
+        for side in [160u32, 480, 960] {
+            let height = side * 5 / 8;
+            let picture = RgbaImage::from_fn(side, height, |x, y| {
+                let part = (255 * y / height) as u8;
+                let is_grain = (x / 20 + y / 20) % 3 == 0;
+                let edge = (x % 20 * 12) as u8;
+                Rgba(match x * 80 / side {
+                    74 => [255 - part, part / 2, part, 255],
+                    0..60 if is_grain => [edge, edge, edge, 255],
+                    _ => [255; 4],
+                })
+            });
+            let mut animation = Animation::start(&path, 25.0).expect("a place");
+            animation.add(picture.clone(), &Texts::default()).expect("a picture");
+            assert!(animation.finish().expect("an animation"));
+            let file = std::io::BufReader::new(File::open(&path).expect("a file"));
+            let frames = GifDecoder::new(file).expect("a GIF").into_frames();
+            let frames = frames.collect_frames().expect("pictures");
+            let channels = picture.as_raw().iter().zip(frames[0].buffer().as_raw());
+            let largest = channels.map(|(one, other)| one.abs_diff(*other)).max();
+            assert!(largest < Some(12), "{side}: {largest:?}");
+        }
+    }
+}
