@@ -1,6 +1,6 @@
-//! Results as they come: a line of JSON a run, appended when the run ends, so that a program that is
-//! killed loses no finished run. Each line has a checksum. A half line at the end, which a kill can
-//! leave, is cut off; a line that is damaged is told of and counts as not there.
+//! Results as they come: a line of JSON a case, appended when the case ends, so that a program that is killed loses
+//! no finished case. Each line has a checksum. A half line at the end, which a kill can leave, is cut off; a damaged
+//! line is named and counts as not there. Other files have such a checksum, too.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -11,7 +11,6 @@ use std::sync::Mutex;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::record;
 use crate::error::{Error, Result};
 use crate::output::note_line;
 use crate::runner::FinishedCase;
@@ -54,7 +53,7 @@ impl Journal {
     /// Adds something finished.
     pub(super) fn add(&self, entry: &impl Serialize) -> Result<()> {
         let line = serde_json::to_string(entry).map_err(|error| Error::file(&self.path, error))?;
-        let line = record::sealed_line(&line);
+        let line = sealed_line(&line);
         let mut file = match self.file.lock() {
             Ok(file) => file,
             // A thread that fell over between two lines leaves the file sound.
@@ -97,7 +96,7 @@ pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
     let mut entries = Vec::new();
     for (number, line) in lines(&bytes) {
-        let entry = record::of_line(line).and_then(|record| serde_json::from_str(record).ok());
+        let entry = record_of(line).and_then(|record| serde_json::from_str(record).ok());
         match entry {
             Some(entry) => entries.push(entry),
             None => tell_of_damage(path, number),
@@ -125,7 +124,7 @@ fn tell_of_damage(path: &Path, line: usize) {
 fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     // What is appended to cannot be written to elsewhere.
     let mut file = OpenOptions::new().write(true).open(path)?;
-    for (number, line) in lines(bytes).filter(|(_, line)| record::of_line(line).is_none()) {
+    for (number, line) in lines(bytes).filter(|(_, line)| record_of(line).is_none()) {
         tell_of_damage(path, number);
         // Both are parts of one allocation.
         let offset = line.as_ptr().addr() - bytes.as_ptr().addr();
@@ -162,4 +161,68 @@ pub(super) fn remove_all(folder: &Path) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Hexadecimal digits of a checksum: 64 bits, far more than damage needs.
+const DIGITS: usize = 16;
+const BEFORE: &str = "{\"checksum\":\"";
+const BETWEEN: &str = "\",\"record\":";
+/// What stands before the checksum at the end of a file whose comments begin with `#`.
+const COMMENT: &str = "# checksum ";
+
+/// The checksum of some bytes.
+pub(super) fn checksum(text: &[u8]) -> String {
+    blake3::hash(text).to_hex()[..DIGITS].to_owned()
+}
+
+/// A line of JSON around a record that is JSON.
+fn sealed_line(record: &str) -> String {
+    format!("{BEFORE}{}{BETWEEN}{record}}}\n", checksum(record.as_bytes()))
+}
+
+/// The record of a line without its end; nothing where it is damaged.
+fn record_of(line: &[u8]) -> Option<&str> {
+    let rest = str::from_utf8(line).ok()?.strip_prefix(BEFORE)?;
+    let (found, rest) = rest.split_at_checked(DIGITS)?;
+    let record = rest.strip_prefix(BETWEEN)?.strip_suffix('}')?;
+    (checksum(record.as_bytes()) == found).then_some(record)
+}
+
+/// A text with its checksum as a last line, a comment.
+pub(super) fn sealed_text(text: &str) -> String {
+    format!("{text}{COMMENT}{}\n", checksum(text.as_bytes()))
+}
+
+/// The text that was sealed; nothing where it is damaged.
+pub(super) fn text_of(bytes: &[u8]) -> Option<&str> {
+    let (text, found) = str::from_utf8(bytes).ok()?.rsplit_once(COMMENT)?;
+    (checksum(text.as_bytes()) == found.strip_suffix('\n')?).then_some(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_flipped_bit_goes_unseen() {
+        let line = sealed_line("{\"key\":\"ab\",\"slump\":0.25}");
+        let line = line.trim_end().as_bytes();
+        let text = sealed_text("# A state.\nx,y,radius\n1,2,3\n");
+        assert_eq!(record_of(line), Some("{\"key\":\"ab\",\"slump\":0.25}"));
+        assert_eq!(text_of(text.as_bytes()), Some("# A state.\nx,y,radius\n1,2,3\n"));
+        let flipped = |bytes: &[u8], bit: usize| {
+            let mut bytes = bytes.to_vec();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            bytes
+        };
+        for bit in 0..8 * line.len() {
+            assert_eq!(record_of(&flipped(line, bit)), None, "bit {bit}");
+        }
+        for bit in 0..8 * text.len() {
+            assert_eq!(text_of(&flipped(text.as_bytes(), bit)), None, "bit {bit}");
+        }
+        for end in 0..text.len() {
+            assert_eq!(text_of(&text.as_bytes()[..end]), None, "cut at {end}");
+        }
+    }
 }

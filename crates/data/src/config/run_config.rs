@@ -43,7 +43,7 @@ pub struct SceneSource {
     #[arg(long, value_name = "NAME|FILE", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
-    /// Start the pile from discs: a CSV (header x,y,radius, optionally vx,vy,omega; metres), or what --data wrote; or the scene of a saved run from its grains
+    /// Start the pile from discs: a CSV (header x,y,radius, optionally vx,vy,omega; metres), or what --data wrote as CSV or Parquet; or the scene of a saved run from its grains
     #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed", "deposition"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial: Option<PathBuf>,

@@ -17,7 +17,7 @@ use super::performance::pareto_front;
 use super::variants::{self, ChartedVariant};
 use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, INK, Layer, Look, Rgb, Sheet, points};
-use crate::config::{Config, Origin};
+use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
 use crate::number;
 use crate::output::Progress;
@@ -185,15 +185,15 @@ impl SimulationPlan {
             restitution_threshold: Some(THRESHOLD),
             ..ParameterChanges::default()
         };
-        let origin = Origin {
+        let source = SceneSource {
             grains: Some(self.made_as.grains),
             box_width: Some(self.made_as.box_width_in_diameters),
             deposition: Some(self.made_as.deposition),
             seed: Some(seed),
             duration: Some(self.duration_secs),
-            ..Origin::default()
+            ..SceneSource::default()
         };
-        Config { origin, stepper: Some(law), parameters, ..Config::default() }
+        Config { source, stepper: Some(law), parameters, ..Config::default() }
     }
 }
 

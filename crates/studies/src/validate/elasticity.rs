@@ -30,7 +30,7 @@ use super::experiment::{
 use super::fit::{DampedWave, damped_wave};
 use crate::error::Result;
 use crate::scene::stability::column_on_line;
-use crate::sim::{Advance, Outcome, Settings, Simulation, Stage, diffusion_of_sweep};
+use crate::sim::{Advance, Settings, Simulation, Stage, StepResult, diffusion_of_sweep};
 use crate::solver::{ContactSystem, Method, Model, Ordering, SolveReport, SolverSettings};
 use crate::statistics::slope;
 
@@ -231,7 +231,7 @@ struct OwnSweeps {
 }
 
 impl Advance for OwnSweeps {
-    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
         stage.prepare(settings, |_approach| 0.0);
         let mut root_masses = Vec::new();
         let mut system = stage.system(&mut root_masses);

@@ -1,12 +1,12 @@
-//! Fig. 8: where j goes after the shock, on the paper's axes; and what else the paper says of these courses.
+//! Fig. 8: where j goes after the shock, on the paper's axes; and what else the paper says of these runs.
 
 use super::fig8::{OPEN_GAP, PHASE_SECS};
-use super::{Claim, Figure, Workshop};
+use super::{Claim, Figure, StudyRunner};
 use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
-/// Time steps that the courses are shown for, s: both sides of the threshold, and steps at which the
+/// Time steps that are shown, s: both sides of the threshold, and steps at which the
 /// outcome is a matter of phase.
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
 /// Where the paper's axes end, s and d.
@@ -23,90 +23,89 @@ const ONE_VELOCITY: f64 = 1.1;
 const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states none), the stop and the cold start: \
                        cradle-choices";
 
-/// A moment of a course: the time since k first touched i, s, and the places of i, j and k, in diameters.
-struct Moment {
+/// A row of a series: the time since k first touched i, s, and the places of i, j and k, in diameters.
+struct SeriesRow {
     secs: f64,
     places: [f64; 3],
 }
 
-impl Moment {
+impl SeriesRow {
     /// Between i and j, in diameters.
     fn gap(&self) -> f64 {
         self.places[1] - self.places[0] - 1.0
     }
 }
 
-/// What the discs of one run do.
-struct Course {
+/// Where the discs of one run are over time.
+struct DiscSeries {
     step_secs: f64,
-    moments: Vec<Moment>,
+    rows: Vec<SeriesRow>,
 }
 
-impl Course {
-    fn after_shock(&self) -> impl DoubleEndedIterator<Item = &Moment> {
-        self.moments.iter().filter(|moment| moment.secs >= 0.0)
+impl DiscSeries {
+    fn after_shock(&self) -> impl DoubleEndedIterator<Item = &SeriesRow> {
+        self.rows.iter().filter(|row| row.secs >= 0.0)
     }
 
-    fn last(&self) -> Option<&Moment> {
-        self.moments.last()
+    fn last(&self) -> Option<&SeriesRow> {
+        self.rows.last()
     }
 
     fn ends_open(&self) -> bool {
-        self.last().is_some_and(|moment| moment.gap() > OPEN_GAP)
+        self.last().is_some_and(|row| row.gap() > OPEN_GAP)
     }
 
     /// The largest gap of i and j after the shock.
     fn widest(&self) -> f64 {
-        self.after_shock().map(Moment::gap).fold(0.0, f64::max)
+        self.after_shock().map(SeriesRow::gap).fold(0.0, f64::max)
     }
 
     /// Whether j has come back from the farthest that it has been.
     fn turns_back(&self) -> bool {
-        let farthest = self.after_shock().map(|moment| moment.places[1]).fold(1.0, f64::max);
-        self.last().is_some_and(|moment| moment.places[1] < farthest - OPEN_GAP)
+        let farthest = self.after_shock().map(|row| row.places[1]).fold(1.0, f64::max);
+        self.last().is_some_and(|row| row.places[1] < farthest - OPEN_GAP)
     }
 
     /// Mean velocity of j over the last quarter of a second, d/s.
     fn final_velocity(&self) -> f64 {
         let Some(last) = self.last() else { return 0.0 };
-        let before = self.after_shock().find(|moment| moment.secs >= last.secs - 0.25);
+        let before = self.after_shock().find(|row| row.secs >= last.secs - 0.25);
         before.map_or(0.0, |one| (last.places[1] - one.places[1]) / (last.secs - one.secs))
     }
 }
 
-pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
+pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let diameter = cradle().mean_diameter;
-    let mut courses = Vec::new();
-    for (config, text) in workshop.courses("cradle-courses")? {
+    let mut runs = Vec::new();
+    for (config, text) in studies.series("cradle-courses")? {
         let step_secs = config.parameters.time_step_secs.unwrap_or(0.0);
-        courses.push(Course { step_secs, moments: read(&text, diameter)? });
+        runs.push(DiscSeries { step_secs, rows: read(&text, diameter)? });
     }
-    let mut near = chart(&courses, "place of j after the shock", (-0.1, 0.8))?;
+    let mut near = chart(&runs, "place of j after the shock", (-0.1, 0.8))?;
     let highest = highest(&near);
     (near.y.from, near.y.to) = (1.0 - 0.05 * (highest - 1.0), 1.0 + 1.05 * (highest - 1.0));
-    let mut far = chart(&courses, "the same on the paper's axes", (0.0, ENDS.0))?;
+    let mut far = chart(&runs, "the same on the paper's axes", (0.0, ENDS.0))?;
     (far.y.from, far.y.to) = (0.0, ENDS.1);
     let mut sheet = Sheet { size: (2000, 860), charts: vec![near, far], caption: Vec::new() };
     sheet.caption =
         vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
-    let claims =
-        vec![swings(&courses), caught(&courses), cluster(&courses), one_velocity(&courses)];
+    let claims = vec![swings(&runs), caught(&runs), cluster(&runs), one_velocity(&runs)];
     let claims = claims.into_iter().map(|claim| claim.hanging_on(CHOICES)).collect();
     Ok(Figure { name: "fig8", sheet, claims, table: None })
 }
 
-fn chart(courses: &[Course], title: &str, (from, to): (f64, f64)) -> Result<Chart> {
+fn chart(runs: &[DiscSeries], title: &str, (from, to): (f64, f64)) -> Result<Chart> {
     let axes = (Axis::linear("t − t_shock (s)", from, to), Axis::linear("x_j / d", 0.98, 1.2));
     let mut chart = Chart::new(format!("Fig. 8: {title}"), axes.0, axes.1);
     chart.legend = Corner::UpperLeft;
     for (index, shown) in SHOWN_SECS.into_iter().enumerate() {
-        let found = courses.iter().find(|course| course.step_secs == shown);
-        let course = found.ok_or_else(|| Error::value("dt", shown, "part of the study"))?;
-        let on_axes = |one: &&Moment| (from..=to).contains(&one.secs) && one.places[1] <= ENDS.1;
-        let shown_moments = course.moments.iter().filter(on_axes);
-        let places = points(shown_moments.map(|one| (one.secs, one.places[1])));
+        let run = runs.iter().find(|run| run.step_secs == shown);
+        let run = run.ok_or_else(|| Error::value("dt", shown, "part of the study"))?;
+        let on_axes = |one: &&SeriesRow| (from..=to).contains(&one.secs) && one.places[1] <= ENDS.1;
+        let shown_rows = run.rows.iter().filter(on_axes);
+        let places = points(shown_rows.map(|one| (one.secs, one.places[1])));
         let name = format!("Δt = {shown:e} s").replace('-', "−");
-        // Its course is that of 1e-3 s as long as the bond holds in both.
+        // Its curve is that of 1e-3 s as long as the bond holds in both.
         let look = if shown == CAUGHT_SECS { Look::Dashes(3) } else { Look::Line(3) };
         chart.layers.push(Layer::curve(name, places, PALETTE[index], look));
     }
@@ -121,75 +120,75 @@ fn highest(chart: &Chart) -> f64 {
     curves.flatten().map(|point| point.y).fold(1.1, f64::max)
 }
 
-/// A course from its file.
-fn read(text: &str, diameter: f64) -> Result<Vec<Moment>> {
+/// A series from its file.
+fn read(text: &str, diameter: f64) -> Result<Vec<SeriesRow>> {
     let refuse = |error: csv::Error| Error::file("series", error);
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let headers = reader.headers().map_err(refuse)?.clone();
     let column = |name: &str| headers.iter().position(|header| header == name).unwrap_or(0);
     let columns = ["time_secs", "x0", "x1", "x2"].map(column);
-    let mut moments = Vec::new();
+    let mut rows: Vec<SeriesRow> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(refuse)?;
         let [secs, i, j, k] = columns.map(|index| {
             record.get(index).and_then(|cell| cell.parse::<f64>().ok()).unwrap_or(0.0)
         });
-        moments.push(Moment { secs, places: [i, j, k].map(|place| place / diameter) });
+        rows.push(SeriesRow { secs, places: [i, j, k].map(|place| place / diameter) });
     }
     // Within a hundredth of a diameter: rows are further apart than the touch lasts.
-    let touches = |moment: &&Moment| moment.places[0] - moment.places[2] <= 1.01;
-    let shock_secs = moments.iter().find(touches).map_or(0.0, |moment| moment.secs);
-    moments.iter_mut().for_each(|moment| moment.secs -= shock_secs);
-    Ok(moments)
+    let touches = |row: &&SeriesRow| row.places[0] - row.places[2] <= 1.01;
+    let shock_secs = rows.iter().find(touches).map_or(0.0, |row| row.secs);
+    rows.iter_mut().for_each(|row| row.secs -= shock_secs);
+    Ok(rows)
 }
 
-/// Those of the courses with a Δt in a range, its ends among them.
-fn between(courses: &[Course], (least, most): (f64, f64)) -> impl Iterator<Item = &Course> {
-    courses.iter().filter(move |course| (least..=most).contains(&course.step_secs))
+/// The runs with a Δt in a range, its ends among them.
+fn between(runs: &[DiscSeries], (least, most): (f64, f64)) -> impl Iterator<Item = &DiscSeries> {
+    runs.iter().filter(move |run| (least..=most).contains(&run.step_secs))
 }
 
-fn swings(courses: &[Course]) -> Claim {
-    let agree = courses.iter().filter(|one| one.turns_back() != one.ends_open()).count();
-    let closed = courses.iter().filter(|one| !one.ends_open()).count();
-    let ways = statrs::function::factorial::binomial(courses.len() as u64, closed as u64);
+fn swings(runs: &[DiscSeries]) -> Claim {
+    let agree = runs.iter().filter(|one| one.turns_back() != one.ends_open()).count();
+    let closed = runs.iter().filter(|one| !one.ends_open()).count();
+    let ways = statrs::function::factorial::binomial(runs.len() as u64, closed as u64);
     Claim::new(
         "Fig. 8: where the bond holds j swings back with i, and where it is lost j goes on",
         format!(
             "so in {agree} of {} runs; in {closed} of them the bond holds at the end",
-            courses.len()
+            runs.len()
         ),
-        (agree == courses.len()).into(),
+        (agree == runs.len()).into(),
     )
-    .by_chance(format!("in 1 of {ways:.0} ways to choose {closed} of {} runs", courses.len()))
+    .by_chance(format!("in 1 of {ways:.0} ways to choose {closed} of {} runs", runs.len()))
 }
 
-fn caught(courses: &[Course]) -> Claim {
+fn caught(runs: &[DiscSeries]) -> Claim {
     let said = "§4: at Δt = 5·10⁻³ s the bond opens and i catches up with j";
-    let Some(course) = courses.iter().find(|course| course.step_secs == CAUGHT_SECS) else {
+    let Some(run) = runs.iter().find(|run| run.step_secs == CAUGHT_SECS) else {
         return Claim::new(said, "no run", false.into());
     };
-    let open = |moment: &&Moment| moment.gap() > OPEN_GAP;
-    let (first, last) = (course.after_shock().find(open), course.after_shock().rev().find(open));
+    let open = |row: &&SeriesRow| row.gap() > OPEN_GAP;
+    let (first, last) = (run.after_shock().find(open), run.after_shock().rev().find(open));
     let measured = match (first, last) {
         (Some(first), Some(last)) => format!(
             "i and j are up to {:.4} d apart, from {:.3} to {:.3} s after the shock",
-            course.widest(),
+            run.widest(),
             first.secs,
             last.secs
         ),
         _ => "i and j are never apart".to_owned(),
     };
-    let holds = course.widest() > OPEN_GAP && !course.ends_open();
+    let holds = run.widest() > OPEN_GAP && !run.ends_open();
     let phase = format!(
         "at Δt ≥ {PHASE_SECS} s the outcome is a matter of phase: fig8-share has how often"
     );
     Claim::new(said, measured, holds.into()).by_chance(phase.replace("0.0035", "3.5·10⁻³"))
 }
 
-fn cluster(courses: &[Course]) -> Claim {
-    let ends: Vec<f64> = between(courses, CLUSTER_SECS)
-        .filter_map(|course| course.last())
-        .map(|moment| moment.places[0] - moment.places[2] - 1.0)
+fn cluster(runs: &[DiscSeries]) -> Claim {
+    let ends: Vec<f64> = between(runs, CLUSTER_SECS)
+        .filter_map(|run| run.last())
+        .map(|row| row.places[0] - row.places[2] - 1.0)
         .collect();
     let apart = ends.iter().filter(|gap| **gap > OPEN_GAP).count();
     let [least, most] = [f64::min, f64::max].map(|pick| ends.iter().copied().fold(ends[0], pick));
@@ -205,14 +204,13 @@ fn cluster(courses: &[Course]) -> Claim {
     .by_chance("nothing is drawn at random: one start, four time steps")
 }
 
-fn one_velocity(courses: &[Course]) -> Claim {
-    let told: Vec<(f64, f64)> = between(courses, FREE_SECS)
-        .map(|course| (course.step_secs, course.final_velocity()))
-        .collect();
+fn one_velocity(runs: &[DiscSeries]) -> Claim {
+    let velocities: Vec<(f64, f64)> =
+        between(runs, FREE_SECS).map(|run| (run.step_secs, run.final_velocity())).collect();
     let [least, most] = [f64::min, f64::max]
-        .map(|pick| told.iter().map(|(_, velocity)| *velocity).fold(told[0].1, pick));
+        .map(|pick| velocities.iter().map(|(_, velocity)| *velocity).fold(velocities[0].1, pick));
     let listed: Vec<String> =
-        told.iter().map(|(step, velocity)| format!("{velocity:.3} at {step:e}")).collect();
+        velocities.iter().map(|(step, velocity)| format!("{velocity:.3} at {step:e}")).collect();
     Claim::new(
         "Fig. 8: at Δt = 1…6·10⁻⁴ s j leaves with one velocity, whatever Δt is",
         format!(

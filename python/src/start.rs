@@ -1,19 +1,20 @@
-//! What a simulation begins with: a scene by its name, from a file or as a dictionary, or a saved run, and changes
-//! to it.
+//! What a simulation begins with: a scene by its name, from a file or as a dictionary, an initial state out of arrays,
+//! or a saved run, and changes to it.
 
 use std::path::Path;
 
+use numpy::{AllowTypeChange, PyArrayLike1};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-use crate::errors::{InputError, exception, refused};
-use crate::initial::discs;
-use crate::json::{data_of, text_of};
-use crate::options::{Given, all_names};
+use crate::conversion::{InputError, data_of, exception, refused, text_of};
+use crate::options::{GivenOptions, all_names};
 use crate::run::Run;
-use slump_core::error::with_allowed;
+use slump_core::error::{Error, with_allowed};
 use slump_core::scene::{Scene, Settling};
-use slump_data::config::{Config, BaseScene, SavedState};
+use slump_data::config::{BaseScene, Config, SavedState};
+use slump_data::data::{RecordedGrains, Values, grains_of};
 
 /// What a scene must be that is given as a dictionary, for messages.
 const FORM: &str = "a scene as slump.scene(name) gives it";
@@ -43,7 +44,7 @@ pub(crate) fn scene(
     initial: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Scene> {
-    let config = asked(scene, initial, options)?;
+    let config = config_of(scene, initial, options)?;
     if let Some(table) = initial.filter(|initial| is_data(initial)) {
         if let Some(step) = config.source.initial_step {
             let allowed = "left out where initial is a table, which is of one moment";
@@ -69,7 +70,7 @@ pub(crate) fn restarted(
     initial: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Run> {
-    let config = asked(scene, initial, options)?;
+    let config = config_of(scene, initial, options)?;
     let restarted = py.detach(|| {
         let mut state = SavedState::open(file)?;
         config.change_state(&mut state)?;
@@ -79,12 +80,12 @@ pub(crate) fn restarted(
 }
 
 /// What is asked for, as the command line has it.
-fn asked(
+fn config_of(
     scene: Option<&Bound<'_, PyAny>>,
     initial: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Config> {
-    let mut given = Given::default();
+    let mut given = GivenOptions::default();
     for (name, value, data) in [("scene", scene, A_DICTIONARY), ("initial", initial, A_TABLE)] {
         match value {
             Some(value) if is_data(value) => given.add_text(name, data),
@@ -123,5 +124,67 @@ fn settled(py: Python<'_>, config: &Config, base: BaseScene) -> PyResult<Scene> 
     match interrupted {
         Some(interrupted) => Err(interrupted),
         None => scene.map_err(exception),
+    }
+}
+
+/// What a start is called in messages.
+const INITIAL: &str = "initial";
+
+/// The discs of a table: a dictionary of arrays, or a data frame, with the columns of the table of grains or the
+/// first of them.
+///
+/// # Errors
+/// Names the column that is missing, unknown, or no list as long as the others, or the row that is no disc.
+fn discs(table: &Bound<'_, PyAny>) -> PyResult<RecordedGrains> {
+    let named = |name: String| {
+        let values = values_of(&name, &table.get_item(&name)?)?;
+        Ok((name, values))
+    };
+    let columns = names_of(table)?.into_iter().map(named).collect::<PyResult<Vec<_>>>()?;
+    // What is told of as of a file is of no file.
+    let refuse = |error: Error| InputError::new_err(error.to_string());
+    grains_of(Path::new(INITIAL), &columns).map_err(refuse)
+}
+
+fn names_of(table: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    let listed = if table.hasattr("columns")? {
+        table.getattr("columns")
+    } else {
+        table.call_method0("keys")
+    };
+    let names = listed.and_then(|listed| listed.try_iter()?.map(|name| name?.extract()).collect());
+    names.map_err(|_| {
+        let found = table.get_type();
+        let allowed = "a file of discs, or a dictionary or data frame with x, y and radius";
+        PyTypeError::new_err(format!("{INITIAL} is {found}, but must be {allowed}"))
+    })
+}
+
+fn values_of(name: &str, column: &Bound<'_, PyAny>) -> PyResult<Values> {
+    let refuse = |allowed: &str| {
+        let found = column.get_type();
+        refused(format!("{INITIAL}[\"{name}\"]"), found, format!("{allowed}, one a disc"))
+    };
+    match name {
+        "kind" => {
+            let words: PyResult<Vec<String>> =
+                column.try_iter()?.map(|word| word?.extract()).collect();
+            let words = words.map_err(|_| refuse("a list of words"))?;
+            Ok(Values::Words { codes: (0..words.len() as u32).collect(), words })
+        }
+        "id" => {
+            let counts: PyResult<Vec<u64>> =
+                column.try_iter()?.map(|count| count?.extract()).collect();
+            counts.map(Values::Counts).map_err(|_| refuse("a list of whole numbers ≥ 0"))
+        }
+        // As long as it is, but not read, whatever it holds.
+        name if !RecordedGrains::NUMBERS.contains(&name) => {
+            Ok(Values::Flags(vec![None; column.len()?]))
+        }
+        _ => {
+            let numbers: PyResult<PyArrayLike1<'_, f64, AllowTypeChange>> = column.extract();
+            let numbers = numbers.map_err(|_| refuse("a list of numbers"))?;
+            Ok(Values::Numbers(numbers.as_array().iter().copied().collect()))
+        }
     }
 }

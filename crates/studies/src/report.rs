@@ -1,9 +1,24 @@
-//! A table beside a figure: as CSV, and in the report.
+//! What studies leave beside their report: charts and tables.
 
+use std::path::Path;
+
+use crate::chart::{self, Sheet};
 use crate::error::{Error, Result};
+use crate::output::write_file;
+
+/// Writes a sheet of charts as `name.csv`, `.png` and `.svg`. The picture says which command made it.
+///
+/// # Errors
+/// Names the file and what the system says.
+pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &str) -> Result<()> {
+    let path = |ending: &str| folder.join(format!("{name}.{ending}"));
+    write_file(&path("csv"), &sheet.to_csv()?)?;
+    write_file(&path("png"), &chart::png(sheet, command)?)?;
+    write_file(&path("svg"), chart::svg(sheet)?.as_bytes())
+}
 
 /// Numbers that a figure's claims rest on.
-pub(crate) struct Table {
+pub(crate) struct ReportTable {
     /// Name of its file, without the ending.
     pub name: &'static str,
     pub columns: Vec<&'static str>,
@@ -11,7 +26,7 @@ pub(crate) struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
-impl Table {
+impl ReportTable {
     /// The table as CSV.
     ///
     /// # Errors
