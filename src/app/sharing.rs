@@ -52,7 +52,7 @@ impl AppState {
         let mut texts = Texts::default();
         for &world in worlds {
             for (keyword, text) in self.texts_of_world(world, is_of_a_moment).iter().skip(1) {
-                texts.add(format!("LinkedWorld {}: {keyword}", world + 1), text);
+                texts.add(format!("World {}: {keyword}", world + 1), text);
             }
         }
         texts
