@@ -20,46 +20,11 @@ const INTERVAL: Duration = Duration::from_millis(200);
 #[derive(Default)]
 pub(crate) struct Distributions {
     /// Those that were counted last.
-    pub histograms: Vec<Histogram>,
+    histograms: Vec<Histogram>,
     /// World and step that they are of, or are being counted of.
     of: Option<(usize, u64)>,
     asked: Option<Instant>,
     coming: Option<Receiver<Vec<Histogram>>>,
-}
-
-impl Distributions {
-    /// Whether a moment is to be counted: it is another one, none is being counted, and the last was a while ago.
-    pub(crate) fn wants(&mut self, world: usize, step: u64) -> bool {
-        if let Some(counted) = self.coming.as_ref().and_then(|coming| coming.try_recv().ok()) {
-            self.histograms = counted;
-            self.coming = None;
-        }
-        let rested = self.asked.is_none_or(|at| at.elapsed() >= INTERVAL);
-        self.coming.is_none() && rested && self.of != Some((world, step))
-    }
-
-    /// Whether a moment is being counted.
-    pub(crate) fn is_coming(&self) -> bool {
-        self.coming.is_some()
-    }
-
-    /// Counts the moment of a run that is on its way.
-    pub(crate) fn count(
-        &mut self,
-        run: Receiver<TakenRun>,
-        of: (usize, u64),
-        context: egui::Context,
-    ) {
-        let (sender, coming) = channel();
-        std::thread::spawn(move || {
-            if let Ok(TakenRun { world, .. }) = run.recv() {
-                // The panel may have been closed.
-                let _ = sender.send(histograms(&world.simulation.moment()));
-                context.request_repaint();
-            }
-        });
-        (self.of, self.asked, self.coming) = (Some(of), Some(Instant::now()), Some(coming));
-    }
 }
 
 /// Height of the plot, points.
@@ -101,14 +66,29 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     ui.label(RichText::new(text).small().weak());
 }
 
-/// Has the moment that is shown counted, where that is due.
+/// Has the moment that is shown counted, where it is another one, none is being counted, and the last was a while ago.
 fn count(ui: &Ui, state: &mut AppState) {
     let Some(world) = state.world() else { return };
-    let of = (state.selected, world.snapshot.observables.step);
-    if state.distributions.wants(of.0, of.1) && !state.frame.seeking {
-        let run = state.take_run();
-        state.distributions.count(run, of, ui.ctx().clone());
-    } else if state.frame.playing || state.distributions.is_coming() {
+    let of = Some((state.selected, world.snapshot.observables.step));
+    let counted = &mut state.distributions;
+    if let Some(histograms) = counted.coming.as_ref().and_then(|coming| coming.try_recv().ok()) {
+        (counted.histograms, counted.coming) = (histograms, None);
+    }
+    let has_rested = counted.asked.is_none_or(|at| at.elapsed() >= INTERVAL);
+    let is_due = counted.coming.is_none() && has_rested && counted.of != of;
+    if is_due && !state.frame.seeking {
+        let (run, context) = (state.take_run(), ui.ctx().clone());
+        let (sender, coming) = channel();
+        std::thread::spawn(move || {
+            if let Ok(TakenRun { world, .. }) = run.recv() {
+                // The panel may have been closed.
+                let _ = sender.send(histograms(&world.simulation.moment()));
+                context.request_repaint();
+            }
+        });
+        let counted = &mut state.distributions;
+        (counted.of, counted.asked, counted.coming) = (of, Some(Instant::now()), Some(coming));
+    } else if state.frame.playing || state.distributions.coming.is_some() {
         ui.ctx().request_repaint_after_secs(0.1);
     }
 }
