@@ -8,7 +8,7 @@ use std::hint::black_box;
 use common::timing::{criterion, least_secs};
 use slump::solver::{PlaneBody, SolverSettings, SpinningPlane, StepModel, StepProblem, sweep};
 
-type Full = StepModel<SpinningPlane, true, false>;
+type Full = StepModel<SpinningPlane, true>;
 
 /// The rows of one kind, one list a field.
 #[derive(Clone, Default)]
@@ -36,21 +36,22 @@ struct Lists {
 
 impl Lists {
     fn of(problem: &StepProblem<SpinningPlane>) -> Self {
-        let mut lists = Self { friction: problem.friction(), ..Self::default() };
-        for body in problem.bodies() {
+        let mut lists = Self { friction: problem.law.friction, ..Self::default() };
+        for body in &problem.bodies.now {
             lists.x.push(body.velocity[0]);
             lists.y.push(body.velocity[1]);
             lists.spin.push(body.spin);
         }
-        for (rows, source) in
-            [(&mut lists.fixed, problem.fixed_rows()), (&mut lists.pairs, problem.pair_rows())]
-        {
-            for row in source {
+        let fixed = problem.rows.fixed.iter().map(|row| (&row.row, 1.0));
+        let pairs = problem.rows.pairs.iter().map(|row| (&row.row, row.share));
+        let sources: [Vec<_>; 2] = [fixed.collect(), pairs.collect()];
+        for (rows, source) in [&mut lists.fixed, &mut lists.pairs].into_iter().zip(sources) {
+            for (row, share) in source {
                 rows.i.push(row.i);
                 rows.j.push(row.j);
                 rows.nx.push(row.normal[0]);
                 rows.ny.push(row.normal[1]);
-                rows.share.push(row.share());
+                rows.share.push(share);
                 rows.restitution.push(row.restitution_velocity);
                 rows.shifted.push(row.shifted_impulse);
                 rows.tangential.push(row.tangential_impulse);
@@ -144,10 +145,10 @@ fn main() {
             sweep::<Full, false>(&mut structures);
             lists.sweep();
         }
-        for (k, PlaneBody { velocity, spin }) in structures.bodies().iter().enumerate() {
+        for (k, PlaneBody { velocity, spin }) in structures.bodies.now.iter().enumerate() {
             assert_eq!([*velocity, [*spin, 0.0]], [[lists.x[k], lists.y[k]], [lists.spin[k], 0.0]]);
         }
-        let updates = structures.contact_of_row().len() as f64;
+        let updates = structures.rows.len() as f64;
         let of_structures = least_secs(&mut criterion, &format!("structures/{count}"), || {
             black_box(sweep::<Full, false>(&mut structures));
         });

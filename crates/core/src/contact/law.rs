@@ -29,12 +29,19 @@ pub struct ContactLaw {
 
 impl ContactLaw {
     /// The law of a friction μ, a capture speed C₀Δt/m_ij (m/s; 0 without cohesion) and a cone.
+    #[inline(always)]
     pub fn new(friction: f64, capture_speed: f64, cone: FrictionCone) -> Self {
         let tip = match cone {
             FrictionCone::Shifted => 0.0,
             FrictionCone::Compressive => capture_speed,
         };
         Self { friction, capture_speed, tip, cone }
+    }
+
+    /// The same with another capture speed, m/s.
+    #[inline(always)]
+    pub(crate) fn with_capture_speed(self, capture_speed: f64) -> Self {
+        Self::new(self.friction, capture_speed, self.cone)
     }
 
     /// C₀Δt/m_ij = Bond·g·Δt, m/s; 0 in a scene without cohesion.

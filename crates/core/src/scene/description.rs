@@ -248,17 +248,17 @@ impl Scene {
 
     /// Bodies that move and borders that wrap.
     fn validate_motions(&self) -> Result<()> {
-        let bodies = (&*self.boundaries, self.fixed_discs.len());
-        check_motions(&self.motions, bodies, self.physics.axes, self.periodic)?;
-        self.settings().check_drives(&self.motions)?;
-        self.settings().check_tilt(&self.gravity, self.physics)?;
+        let Self { boundaries, motions, gravity, physics, .. } = self;
+        let fixed_discs = self.fixed_discs.len();
+        check_motions(motions, boundaries, fixed_discs, physics.axes, self.periodic)?;
+        self.settings().check_drives(motions)?;
+        self.settings().check_tilt(gravity, *physics)?;
         self.settings().check_shear(self.periodic)?;
         let Some(periodic) = self.periodic else { return Ok(()) };
         let radii = self.grains.iter().map(|grain| grain.radius);
         let radii = radii.chain(self.fixed_discs.iter().map(|disc| disc.radius));
         let lengths = [radii.fold(0.0, f64::max), self.mean_diameter];
-        let bodies = (&*self.boundaries, self.fixed_discs.len(), &*self.motions);
-        periodic.check(bodies, &self.gravity, self.physics, lengths)
+        periodic.check(boundaries, fixed_discs, motions, gravity, *physics, lengths)
     }
 
     /// A scene on a line must lie on the line.

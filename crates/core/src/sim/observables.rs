@@ -137,7 +137,7 @@ pub(super) fn after_step<M: Model>(
     before: &Observables,
     initial_heights: f64,
 ) -> Observables {
-    let moving = stage.problem.bodies.iter().zip(&stage.state.world.grains.masses);
+    let moving = stage.problem.bodies.now.iter().zip(&stage.state.world.grains.masses);
     let kinetic_energy =
         moving.map(|(body, &mass)| M::Kinematics::kinetic_energy(body, mass)).sum();
     Observables {

@@ -319,7 +319,7 @@ impl Steady {
 pub trait ProblemVisitor {
     /// What it gives.
     type Output;
-    /// Does it; row `k` of the problem is contact `problem.contact_of_row()[k]` of `contacts`.
+    /// Does it; row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
     fn visit<M: Model>(
         self,
         problem: &mut StepProblem<M::Kinematics>,

@@ -1,12 +1,11 @@
 //! What all ways to step share: the step's problem on its stage, the cut into pieces, the step's result.
 
 use crate::contact::{ContactList, LookAhead};
-use crate::sim::pull;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::solver::{
-    Approach, BodySystem, Kinematics, Measures, Memory, Model, ProblemNumbers, Slot, SolveReport,
-    StepProblem, measure, solve,
+    Approach, BodySystem, Kinematics, Measures, Memory, Model, MovingSurfaces, ProblemNumbers,
+    Slot, SolveReport, StepProblem, cone_of, measure, solve,
 };
 use crate::world::World;
 
@@ -100,7 +99,7 @@ impl<'a, M: Model> Stage<'a, M> {
         BodySystem::new(self.problem, root_masses)
     }
 
-    /// The contacts of the step; row k of the problem is contact `contact_of_row()[k]` of them.
+    /// The contacts of the step; row k of the problem is contact `problem.rows.contacts[k]` of them.
     pub fn contacts(&self) -> &ContactList {
         &self.state.contacts
     }
@@ -136,16 +135,21 @@ impl<'a, M: Model> Stage<'a, M> {
         } else {
             0.0
         };
-        let numbers =
-            ProblemNumbers { time_step_secs, friction: parameters.friction, capture_speed };
-        problem.prepare::<M>(world, contacts, numbers, &settings.solver, rebound);
-        if walls.any_move() {
-            problem.driven.walls.extend(walls.driven(world, time_step_secs));
-            problem.drive::<M>(contacts, rebound, |contact| walls.surface(world, contact));
-        }
+        let numbers = ProblemNumbers {
+            time_step_secs,
+            friction: parameters.friction,
+            capture_speed,
+            cone: cone_of(*physics, parameters),
+        };
+        let surface_of = |contact: &_| walls.surface(world, contact);
+        let surfaces = walls.any_move().then(|| MovingSurfaces {
+            driven: walls.driven(world, time_step_secs).collect(),
+            of: &surface_of,
+        });
+        problem.prepare_among::<M>(world, contacts, numbers, &settings.solver, rebound, surfaces);
         if let Some(push) = push {
-            pull::apply::<M::Kinematics>(&mut problem.free, push);
-            pull::apply::<M::Kinematics>(&mut problem.bodies, push);
+            push.apply::<M::Kinematics>(&mut problem.bodies.free);
+            push.apply::<M::Kinematics>(&mut problem.bodies.now);
         }
     }
 
@@ -159,11 +163,11 @@ impl<'a, M: Model> Stage<'a, M> {
         let Self { state, problem, .. } = self;
         let measures = measure::<M>(problem);
         problem.store_impulses(&mut state.contacts);
-        let drive_work = state.walls.take_driven(&mut state.world, &problem.driven.walls);
+        let drive_work = state.walls.take_driven(&mut state.world, &problem.walls.driven);
         let mut gravity_work = 0.0;
-        for (index, body) in problem.bodies.iter().enumerate() {
+        for (index, body) in problem.bodies.now.iter().enumerate() {
             M::Kinematics::store(body, &mut state.world, index);
-            let (before, free) = (&problem.before[index], &problem.free[index]);
+            let (before, free) = (&problem.bodies.before[index], &problem.bodies.free[index]);
             let mass = state.world.grains.masses[index];
             gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
         }

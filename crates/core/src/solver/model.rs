@@ -1,8 +1,8 @@
 //! The models that a step is compiled for, and where their problems are kept.
 
 use super::kinematics::{Kinematics, Line, Plane, ShearedPlane, SpinningPlane};
-use super::methods::Memory;
 use super::problem::StepProblem;
+use super::solve::Memory;
 use crate::world::{FrictionCone, Parameters, Periodic, Physics};
 
 /// What a step computes. Everything here is known when the step is compiled, so a leaner model
@@ -97,9 +97,7 @@ impl Slots {
             ModelParts { sheared: true, .. } => {
                 visitor.visit::<StepModel<ShearedPlane, true>>(&mut self.sheared_plane)
             }
-            ModelParts { axes: 1, .. } => {
-                visitor.visit::<StepModel<Line, false>>(&mut self.line)
-            }
+            ModelParts { axes: 1, .. } => visitor.visit::<StepModel<Line, false>>(&mut self.line),
             ModelParts { friction: false, .. } => {
                 visitor.visit::<StepModel<Plane, false>>(&mut self.plane)
             }

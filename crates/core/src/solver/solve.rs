@@ -190,10 +190,7 @@ impl<K: Kinematics> Islands<K> {
     }
 
     /// Puts in the place of what was not solved the solution under bounds of friction, island by island.
-    fn fall_back<M: Model<Kinematics = K>>(
-        &mut self,
-        problem: &mut StepProblem<K>,
-    ) -> SolveReport {
+    fn fall_back<M: Model<Kinematics = K>>(&mut self, problem: &mut StepProblem<K>) -> SolveReport {
         let islands = &mut self.islands[..self.count];
         for island in islands.iter_mut().filter(|island| !island.report.converged) {
             let Island { problem, memory, report, .. } = island;

@@ -4,7 +4,8 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::world::motion::{at_time, is_zero};
+use crate::number::is_zero;
+use crate::world::motion::at_time;
 use crate::world::motion_check::check_table;
 use crate::world::{Physics, World};
 
@@ -161,7 +162,7 @@ impl GravityTurn {
             TurnCourse::Rate { .. } => Ok(()),
             TurnCourse::Table { times_secs, angles } => {
                 let finite = angles.iter().map(|angle| angle.is_finite());
-                check_table(&format!("{field}.course"), times_secs, ("angles", finite))
+                check_table(&format!("{field}.course"), times_secs, "angles", finite)
             }
         }
     }

@@ -55,14 +55,14 @@ impl World {
         if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
             turn.check(&self.gravity, physics)?;
         }
-        let bodies = (&*self.boundaries, self.fixed_discs.len());
-        check_motions(&self.motions, bodies, physics.axes, self.periodic)?;
+        let Self { boundaries, motions, gravity, .. } = self;
+        let fixed_discs = self.fixed_discs.len();
+        check_motions(motions, boundaries, fixed_discs, physics.axes, self.periodic)?;
         let Some(periodic) = self.periodic else { return Ok(()) };
         let fixed = self.fixed_discs.iter().map(|disc| disc.radius);
         let largest_radius = self.grains.radii.iter().copied().chain(fixed).fold(0.0, f64::max);
         let lengths = [largest_radius, self.mean_diameter];
-        let bodies = (&*self.boundaries, self.fixed_discs.len(), &*self.motions);
-        periodic.check(bodies, &self.gravity, physics, lengths)
+        periodic.check(boundaries, fixed_discs, motions, gravity, physics, lengths)
     }
 
     /// Whether anything can move that no grain moves.

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use crate::number::is_zero;
 use crate::world::Periodic;
 
 /// Boundaries and fixed discs that move together.
@@ -241,11 +242,6 @@ pub struct Drive {
     /// m/s along the direction.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed: f64,
-}
-
-/// What files leave out.
-pub(super) fn is_zero(number: &f64) -> bool {
-    *number == 0.0
 }
 
 impl Drive {

@@ -9,7 +9,8 @@ use crate::error::{Error, Result};
 /// for.
 pub(crate) fn check_motions(
     motions: &[Motion],
-    (boundaries, fixed_discs): (&[Boundary], usize),
+    boundaries: &[Boundary],
+    fixed_discs: usize,
     axes: u8,
     periodic: Option<Periodic>,
 ) -> Result<()> {
@@ -114,12 +115,12 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
         }
         Some(MotionCourse::Table { times_secs, offsets }) => {
             let finite = offsets.iter().map(|offset| offset.is_finite());
-            check_table(&format!("{field}.course"), times_secs, ("offsets", finite))
+            check_table(&format!("{field}.course"), times_secs, "offsets", finite)
         }
         Some(MotionCourse::AngleTable { pivot, times_secs, angles }) => {
             finite_point("course.pivot", *pivot)?;
             let finite = angles.iter().map(|angle| angle.is_finite());
-            check_table(&format!("{field}.course"), times_secs, ("angles", finite))
+            check_table(&format!("{field}.course"), times_secs, "angles", finite)
         }
     }
 }
@@ -128,7 +129,8 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
 pub(super) fn check_table(
     field: &str,
     times_secs: &[f64],
-    (name, values): (&str, impl ExactSizeIterator<Item = bool>),
+    name: &str,
+    values: impl ExactSizeIterator<Item = bool>,
 ) -> Result<()> {
     if times_secs.is_empty() || times_secs.len() != values.len() {
         let found = format!("{} values at {} times", values.len(), times_secs.len());

@@ -17,6 +17,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use crate::number::is_zero;
 use crate::world::World;
 
 /// Borders that wrap: left and right, below and above, or both. All that a scene has is there again a period to either
@@ -36,10 +37,6 @@ pub struct Periodic {
     /// By how much the cell above is off this one along x now, m; up to a width to either side at the start.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shift: f64,
-}
-
-fn is_zero(number: &f64) -> bool {
-    *number == 0.0
 }
 
 impl Periodic {

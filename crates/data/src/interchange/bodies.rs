@@ -5,9 +5,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{ProblemFile, pairs};
+use crate::contact::ContactLaw;
 use crate::error::{Error, Result};
 use crate::solver::{
-    Assembled, Kinematics, Model, ModelParts, ModelVisitor, Row, StepProblem, visit_model,
+    Assembled, FixedRow, Kinematics, Model, ModelParts, ModelVisitor, PairRow, Row, StepProblem,
+    visit_model,
 };
 use crate::world::FrictionCone;
 
@@ -114,7 +116,6 @@ impl BodyForm {
             sheared: false,
             friction: self.axes == 2 && friction > 0.0,
             rotation: self.rotation,
-            compressive_cone: file.cone == FrictionCone::Compressive && self.capture_speed > 0.0,
         })
     }
 
@@ -134,12 +135,12 @@ impl BodyForm {
         };
         let free: Vec<_> = (0..self.mass.len()).map(coordinates).collect();
         let mut problem = StepProblem::<M::Kinematics>::default();
-        problem.before.clone_from(&free);
-        problem.free = free;
-        problem.friction = file.friction()[0];
-        problem.capture_speed = self.capture_speed;
-        problem.masses.clone_from(&self.mass);
-        problem.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
+        problem.bodies.before.clone_from(&free);
+        problem.bodies.free = free;
+        let cone = if self.capture_speed > 0.0 { file.cone } else { FrictionCone::Shifted };
+        problem.law = ContactLaw::new(file.friction()[0], self.capture_speed, cone);
+        problem.bodies.masses.clone_from(&self.mass);
+        problem.bodies.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
         let starts: Vec<[f64; 2]> = match &file.start {
             Some(start) => pairs(start).collect(),
             None => vec![[0.0; 2]; file.nc],
@@ -158,15 +159,16 @@ impl BodyForm {
                     i,
                     j: j.unwrap_or(0),
                     normal: M::Kinematics::normal(self.normal[contact]),
-                    of_other: share.unwrap_or(surface_speed),
                     restitution_velocity: self.restitution_velocity[contact],
                     shifted_impulse: normal / effective_mass + self.capture_speed,
                     tangential_impulse: tangential / effective_mass,
                     effective_mass,
                 };
-                problem.contact_of_row.push(contact as u32);
-                let rows = if pass { &mut problem.pair_rows } else { &mut problem.fixed_rows };
-                rows.push(row);
+                problem.rows.contacts.push(contact as u32);
+                match share {
+                    Some(share) => problem.rows.pairs.push(PairRow { row, share }),
+                    None => problem.rows.fixed.push(FixedRow { row, surface_speed }),
+                }
             }
         }
         problem.form_velocities();
@@ -192,7 +194,7 @@ impl ModelVisitor for BodiesCheck<'_> {
         let Self { bodies, file } = self;
         let problem = bodies.step_problem::<M>(file);
         let assembled = Assembled::of(&problem)?;
-        let place = |index: u32| 2 * problem.contact_of_row[index as usize / 2] + index % 2;
+        let place = |index: u32| 2 * problem.rows.contacts[index as usize / 2] + index % 2;
         let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
         let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         let mut diagonal = vec![0.0; 2 * file.nc];
@@ -222,8 +224,8 @@ impl ModelVisitor for BodiesCheck<'_> {
             }
         }
         let cohesion = file.cohesion_impulses();
-        let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-        for (row, &contact) in rows.zip(&problem.contact_of_row) {
+        let rows = problem.rows.iter();
+        for (row, &contact) in rows.zip(&problem.rows.contacts) {
             let expected = row.effective_mass * bodies.capture_speed;
             let found = cohesion[contact as usize];
             if !agree(found, expected, expected) {

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{Assembled, Kinematics, Model, StepProblem};
-use crate::world::{FrictionCone, Grains};
+use crate::world::Grains;
 
 /// The problem of the step that begins at `at_secs`, the simulation of `scene` having got there by
 /// itself. `progress` is told the simulated time, s.
@@ -66,8 +66,8 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
         check(problem)?;
         let Assembled { matrix, free_velocities } = Assembled::of(problem)?;
         let grains = self.grains;
-        let rows = || problem.fixed_rows.iter().chain(&problem.pair_rows);
-        let fixed = problem.fixed_rows.len();
+        let rows = || problem.rows.iter();
+        let fixed = problem.rows.fixed.len();
         let free_velocity = |(body, radius): (_, &f64)| {
             let [x, y, spin] = M::Kinematics::coordinates(body);
             [x, y, spin / radius]
@@ -75,11 +75,17 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
         let bodies = BodyForm {
             axes: M::Kinematics::AXES as u8,
             rotation: M::Kinematics::ROTATION,
-            capture_speed: problem.capture_speed,
+            capture_speed: problem.law.capture_speed(),
             mass: grains.masses.clone(),
             inertia: (0..grains.len()).map(|body| grains.inertia(body)).collect(),
             radius: grains.radii.clone(),
-            free_velocity: problem.free.iter().zip(&grains.radii).map(free_velocity).collect(),
+            free_velocity: problem
+                .bodies
+                .free
+                .iter()
+                .zip(&grains.radii)
+                .map(free_velocity)
+                .collect(),
             pair: (0..)
                 .zip(rows())
                 .map(|(at, row)| (row.i, (at >= fixed).then_some(row.j)))
@@ -99,18 +105,14 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
         });
         Ok(ProblemFile {
             comment: None,
-            nc: problem.contact_of_row.len(),
-            mu: Friction::Same(if M::FRICTION { problem.friction } else { 0.0 }),
-            cone: if M::COMPRESSIVE_CONE {
-                FrictionCone::Compressive
-            } else {
-                FrictionCone::Shifted
-            },
+            nc: problem.rows.contacts.len(),
+            mu: Friction::Same(if M::FRICTION { problem.law.friction } else { 0.0 }),
+            cone: problem.law.cone(),
             q: free_velocities,
-            c0: (problem.capture_speed > 0.0).then(|| cohesions().collect()),
+            c0: (problem.law.capture_speed() > 0.0).then(|| cohesions().collect()),
             start: Some(starts.collect()),
             // Bodies know of one capture speed alone.
-            bodies: problem.captures.is_empty().then_some(bodies),
+            bodies: problem.rows.captures.is_empty().then_some(bodies),
             matrix,
         })
     }

@@ -146,7 +146,7 @@ impl ModelVisitor for BodiesSolver<'_> {
             solve::<M>(problem, &mut Memory::default(), settings)
         });
         let mut impulses = vec![[0.0; 2]; file.nc];
-        for ((number, row), &contact) in problem.rows().zip(&problem.contact_of_row) {
+        for ((number, row), &contact) in problem.rows().zip(&problem.rows.contacts) {
             impulses[contact as usize] =
                 problem.reduced_impulse(number, row).map(|impulse| row.effective_mass * impulse);
         }
@@ -154,7 +154,7 @@ impl ModelVisitor for BodiesSolver<'_> {
             let [x, y, spin] = M::Kinematics::coordinates(body);
             [x, y, spin / radius]
         };
-        let velocities = problem.bodies.iter().zip(&bodies.radius).map(velocity).collect();
+        let velocities = problem.bodies.now.iter().zip(&bodies.radius).map(velocity).collect();
         Ok(TimedSolution { seconds, report, impulses, velocities: Some(velocities) })
     }
 }

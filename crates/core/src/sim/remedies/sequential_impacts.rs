@@ -44,7 +44,7 @@ use crate::contact::ContactList;
 use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{
-    FrictionModel, Kinematics, Memory, Method, Model, Row, SolveReport, SolverSettings,
+    Bodies, FrictionModel, Kinematics, Memory, Method, Model, SolveReport, SolverSettings,
     StepProblem, for_each_row, relative_velocities, solve as solve_problem,
 };
 
@@ -93,7 +93,7 @@ pub(in crate::sim) fn follow<M: Model>(
 ) -> Option<SolveReport> {
     let Stage { state, problem, memory, .. } = stage;
     let parameters = &settings.parameters;
-    if problem.capture_speed > 0.0 || parameters.restitution == 0.0 {
+    if problem.law.capture_speed() > 0.0 || parameters.restitution == 0.0 {
         return None;
     }
     let mut report = SolveReport::default();
@@ -160,12 +160,12 @@ struct ImpactSequence<K: Kinematics> {
 impl<K: Kinematics> ImpactSequence<K> {
     /// Nothing has happened yet.
     fn new(problem: &StepProblem<K>, contacts: &ContactList) -> Self {
-        let bodies = problem.before.clone();
+        let bodies = problem.bodies.before.clone();
         let mut speeds = Vec::new();
         relative_velocities(problem, &bodies, &mut speeds);
         let impulses = vec![0.0; speeds.len()];
         let touches = |&index: &u32| contacts.is_in_touch(index as usize);
-        let touching = problem.contact_of_row.iter().map(touches).collect();
+        let touching = problem.rows.contacts.iter().map(touches).collect();
         Self { bodies, speeds, impulses, touching }
     }
 
@@ -183,37 +183,30 @@ impl<K: Kinematics> ImpactSequence<K> {
         restitution: f64,
         least: f64,
     ) -> bool {
-        let StepProblem { fixed_rows, pair_rows, contact_of_row, before, free, bodies, .. } = pass;
-        fixed_rows.clear();
-        pair_rows.clear();
-        contact_of_row.clear();
-        for (number, row) in problem.rows() {
+        pass.rows.clear();
+        for number in 0..problem.rows.len() {
             let speed = self.speeds[number];
             if speed >= -least || !self.touching[number] {
                 continue;
             }
-            let rows =
-                if number < problem.fixed_rows.len() { &mut *fixed_rows } else { &mut *pair_rows };
-            rows.push(Row {
-                restitution_velocity: restitution * speed - problem.wall_speed(number),
-                shifted_impulse: 0.0,
-                tangential_impulse: 0.0,
-                ..*row
+            pass.rows.push_copy(&problem.rows, number, |row| {
+                row.restitution_velocity = restitution * speed - problem.wall_speed(number);
+                (row.shifted_impulse, row.tangential_impulse) = (0.0, 0.0);
             });
-            contact_of_row.push(number as u32);
         }
+        let Bodies { now: bodies, before, free, .. } = &mut pass.bodies;
         for copy in [before, free, bodies] {
             copy.clone_from(&self.bodies);
         }
-        !contact_of_row.is_empty()
+        !pass.rows.is_empty()
     }
 
     /// Takes over what a pass has led to.
     fn take(&mut self, problem: &StepProblem<K>, pass: &mut StepProblem<K>) {
-        for ((_, row), &number) in pass.rows().zip(&pass.contact_of_row) {
+        for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
         }
-        std::mem::swap(&mut self.bodies, &mut pass.bodies);
+        std::mem::swap(&mut self.bodies, &mut pass.bodies.now);
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
@@ -225,9 +218,9 @@ impl<K: Kinematics> ImpactSequence<K> {
         settings: &SolverSettings,
     ) -> SolveReport {
         let mut rest = problem.clone();
-        rest.free.clone_from(&self.bodies);
-        rest.friction = 0.0;
-        rest.friction_model = FrictionModel::Coulomb;
+        rest.bodies.free.clone_from(&self.bodies);
+        rest.law.friction = 0.0;
+        rest.friction.model = FrictionModel::Coulomb;
         for ((row, wall_speed), &touches) in rest.rows_with_walls().zip(&self.touching) {
             if touches {
                 row.restitution_velocity = -wall_speed;
@@ -240,7 +233,7 @@ impl<K: Kinematics> ImpactSequence<K> {
         for (number, row) in rest.rows() {
             self.impulses[number] += row.shifted_impulse;
         }
-        self.bodies = rest.bodies;
+        self.bodies = rest.bodies.now;
         relative_velocities(problem, &self.bodies, &mut self.speeds);
         report
     }

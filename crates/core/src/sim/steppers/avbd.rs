@@ -23,7 +23,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::contact::law;
+use crate::contact::{ContactLaw, law};
 use crate::sim::pull::gravity_that_scales;
 use crate::sim::settings::Settings;
 use crate::sim::steppers::StepperInfo;
@@ -54,7 +54,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
     let substep_secs = substepping.substep_secs;
     let gap_tolerance = stage.state.candidates.gap_tolerance();
-    let capture_speed = stage.problem.capture_speed / f64::from(substeps);
+    let capture_speed = stage.problem.law.capture_speed() / f64::from(substeps);
     let warm_secs = if settings.solver.warm_start { substep_secs } else { 0.0 };
     let mut contacts = substeps::touching(stage, warm_secs);
     let mut descent = BlockDescent::new(stage, substep_secs);
@@ -74,7 +74,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
             descent.minimise::<M>(problem, &substepping.free, &contacts, keep_gaps);
             descent.multiply::<M>(problem, &mut contacts, keep_gaps);
         }
-        let reached = problem.bodies.clone();
+        let reached = problem.bodies.now.clone();
         let margin = descent.margin;
         let push_out = |gap: f64| {
             if gap > 0.0 { gap / substep_secs } else { (gap + margin).min(0.0) / substep_secs }
@@ -83,8 +83,8 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         substepping.place(stage);
         let problem = &mut *stage.problem;
         substeps::follow_gaps(problem, &mut contacts, substep_secs);
-        problem.bodies = reached;
-        substepping.add_gravity_work(&problem.bodies, &stage.state.world.grains.masses);
+        problem.bodies.now = reached;
+        substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
         substeps::end_substep(problem, &mut contacts, substepping);
         // The spring that pulls a grain looks at its velocity.
         substepping.store(stage);
@@ -119,7 +119,7 @@ struct Side {
 /// What the iterations of a step need beside problem and contacts.
 struct BlockDescent {
     substep_secs: f64,
-    friction: f64,
+    law: ContactLaw,
     /// g·h, m/s.
     speed_scale: f64,
     /// Overlap that is left, m.
@@ -135,7 +135,7 @@ struct BlockDescent {
 impl BlockDescent {
     fn new<M: Model>(stage: &Stage<'_, M>, substep_secs: f64) -> Self {
         let (world, problem) = (stage.world(), stage.problem());
-        let fixed = problem.fixed_rows.len();
+        let fixed = problem.rows.fixed.len();
         let mut of_bodies: Vec<(u32, Side)> = Vec::new();
         for (number, row) in problem.rows() {
             let row_number = number as u32;
@@ -145,15 +145,15 @@ impl BlockDescent {
             }
         }
         of_bodies.sort_by_key(|&(body, _)| body);
-        let ends = 0..problem.bodies.len() as u32;
+        let ends = 0..problem.bodies.now.len() as u32;
         let side_ends = ends.map(|body| of_bodies.partition_point(|side| side.0 <= body)).collect();
         let g = gravity_that_scales(world);
         Self {
             substep_secs,
-            friction: problem.friction,
+            law: problem.law,
             speed_scale: g * substep_secs,
             margin: MARGIN * world.mean_diameter,
-            stiffness: vec![[SOFTEST; 2]; problem.contact_of_row.len()],
+            stiffness: vec![[SOFTEST; 2]; problem.rows.contacts.len()],
             sides: of_bodies.into_iter().map(|(_, side)| side).collect(),
             side_ends,
         }
@@ -162,7 +162,7 @@ impl BlockDescent {
     /// Takes the stiffnesses from where the step before left them.
     fn stiffen<M: Model>(&mut self, stage: &Stage<'_, M>) {
         let memories = stage.state.contacts.memories();
-        let rows = stage.problem.rows().zip(&stage.problem.contact_of_row);
+        let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
         for (stiffness, ((_, row), &contact)) in self.stiffness.iter_mut().zip(rows) {
             let to_reduced = self.substep_secs * self.substep_secs / row.effective_mass;
             *stiffness =
@@ -173,7 +173,7 @@ impl BlockDescent {
     /// Leaves the stiffnesses to the next step.
     fn remember<M: Model>(&self, stage: &mut Stage<'_, M>) {
         let (_, _, memories) = stage.state.contacts.parts_mut();
-        let rows = stage.problem.rows().zip(&stage.problem.contact_of_row);
+        let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
         for (stiffness, ((_, row), &contact)) in self.stiffness.iter().zip(rows) {
             let per_reduced = row.effective_mass / (self.substep_secs * self.substep_secs);
             memories[contact as usize].stiffness = stiffness.map(|reduced| per_reduced * reduced);
@@ -187,7 +187,7 @@ impl BlockDescent {
             *stiffness = (KEPT * *stiffness).clamp(SOFTEST, STIFFEST);
         }
         let mut first = 0;
-        for ((body, start), &end) in problem.bodies.iter_mut().zip(start).zip(&self.side_ends) {
+        for ((body, start), &end) in problem.bodies.now.iter_mut().zip(start).zip(&self.side_ends) {
             if first < end {
                 *body = *start;
             }
@@ -212,19 +212,16 @@ impl BlockDescent {
                 continue;
             }
             let coordinates = |body| DVec3::from_array(M::Kinematics::coordinates(body));
-            let now = coordinates(&problem.bodies[body]);
+            let now = coordinates(&problem.bodies.now[body]);
             let mut force = inertia * (coordinates(&free[body]) - now);
             let mut matrix = DMat3::from_diagonal(diagonal);
             for &Side { row: number, end } in &self.sides[first..end] {
                 let (number, end) = (number as usize, usize::from(end));
                 let contact = &contacts[number];
                 let push = self.push::<M>(problem, number, contact, bias(contact.gap));
-                let row = problem.row_at(number);
-                let share = match (number < problem.fixed_rows.len(), end) {
-                    (true, _) => 1.0,
-                    (false, 0) => row.share(),
-                    (false, _) => 1.0 - row.share(),
-                };
+                let row = problem.rows.get(number);
+                let share = problem.rows.share(number);
+                let share = if end == 0 { share } else { 1.0 - share };
                 let directions = if M::FRICTION { 0..2 } else { 0..1 };
                 for direction in directions {
                     let gradient = gradient::<M::Kinematics>(row, end, direction);
@@ -237,7 +234,7 @@ impl BlockDescent {
             }
             first = end;
             let reached = now + matrix.inverse() * force;
-            M::Kinematics::set(&mut problem.bodies[body], reached.to_array());
+            M::Kinematics::set(&mut problem.bodies.now[body], reached.to_array());
         }
     }
 
@@ -270,12 +267,12 @@ impl BlockDescent {
         contact: &Touching,
         bias: f64,
     ) -> Push {
-        let row = problem.row_at(number);
-        let i = &problem.bodies[row.i as usize];
-        let [normal_velocity, tangential_velocity] = if number < problem.fixed_rows.len() {
+        let row = problem.rows.get(number);
+        let i = &problem.bodies.now[row.i as usize];
+        let [normal_velocity, tangential_velocity] = if number < problem.rows.fixed.len() {
             M::Kinematics::velocity(row.normal, i)
         } else {
-            M::Kinematics::relative_velocity(row.normal, i, &problem.bodies[row.j as usize])
+            M::Kinematics::relative_velocity(row.normal, i, &problem.bodies.now[row.j as usize])
         };
         let stiffness = self.stiffness[number];
         let closing = normal_velocity - contact.wall_speed + bias;
@@ -289,7 +286,8 @@ impl BlockDescent {
         if M::FRICTION {
             let slip = tangential_velocity - contact.surface_speed;
             let wanted = contact.impulse[1] - stiffness[1] * slip;
-            let bound = M::friction_bound(self.friction, shifted, contact.capture_speed);
+            let law = self.law.with_capture_speed(contact.capture_speed);
+            let bound = law.friction_bound(shifted);
             push.impulse[1] = law::coulomb(wanted, bound);
             push.violation[1] = slip;
             push.is_cut[1] = wanted.abs() > bound;

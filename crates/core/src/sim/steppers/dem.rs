@@ -7,7 +7,7 @@
 //! Spring and dashpot together never pull: N ≥ −C₀, as everywhere here, and the cone is that of the
 //! contact laws. Where friction slides, ξ is shortened to what gives T at the bound.
 
-use crate::contact::{Contact, ContactMemory, Impulse, law};
+use crate::contact::{Contact, ContactLaw, ContactMemory, Impulse, law};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::spring_dashpot::{
@@ -16,7 +16,7 @@ use crate::sim::steppers::spring_dashpot::{
 use crate::sim::steppers::substeps::{Substepping, Works, set_drive_speeds};
 use crate::sim::steppers::{MeanPair, StepperInfo};
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{DrivenWall, Kinematics, Model};
+use crate::solver::{DrivenWall, Kinematics, Model, cone_of};
 
 /// The row of the registry. Springs carry their stretch on whether asked to or not, so nothing is told of a
 /// warm start.
@@ -59,7 +59,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let elements = Elements {
         springs: SpringDashpot::of(world, physics.axes, parameters),
         cohesive_acceleration: cohesion * world.gravity.magnitude(),
-        friction: parameters.friction,
+        law: ContactLaw::new(parameters.friction, 0.0, cone_of(physics, parameters)),
         substep_secs: parameters.time_step_secs / f64::from(substeps),
     };
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
@@ -73,7 +73,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         }
         substepping.begin(stage);
         elements.push(stage, &substepping.start, &mut totals, &mut pushes);
-        let bodies = &stage.problem.bodies;
+        let bodies = &stage.problem.bodies.now;
         let list = stage.state.contacts.contacts();
         for (contact, &(mass, impulse, of_wall)) in list.iter().zip(&pushes) {
             let normal = M::Kinematics::normal_of(&stage.state.world, contact);
@@ -110,7 +110,7 @@ struct Elements {
     springs: SpringDashpot,
     /// C₀/m_ij = Bond·g, m/s².
     cohesive_acceleration: f64,
-    friction: f64,
+    law: ContactLaw,
     substep_secs: f64,
 }
 
@@ -131,7 +131,7 @@ impl Elements {
         memory.normal_force = push - cohesion;
         if M::FRICTION {
             let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
-            let bound = M::friction_bound(self.friction, push, cohesion);
+            let bound = self.law.with_capture_speed(cohesion).friction_bound(push);
             let dashpot = part * damping * tangential_velocity;
             let spring = part * stiffness;
             let stretch = memory.tangential_displacement + self.substep_secs * tangential_velocity;
@@ -152,7 +152,7 @@ impl Elements {
     ) {
         let h = self.substep_secs;
         let State { world, contacts, walls, .. } = &mut *stage.state;
-        let bodies = &mut stage.problem.bodies;
+        let bodies = &mut stage.problem.bodies.now;
         let masses = &world.grains.masses;
         let (list, impulses, memories) = contacts.parts_mut();
         pushes.clear();

@@ -7,7 +7,6 @@
 //! limit mean nothing.
 
 use crate::contact::ContactMemory;
-use crate::sim::pull;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::moreau::set_up;
@@ -47,7 +46,7 @@ impl<K: Kinematics> Substepping<K> {
         substeps: u32,
     ) -> Self {
         set_up(stage, settings);
-        stage.problem.bodies.clone_from(&stage.problem.before);
+        stage.problem.bodies.now.clone_from(&stage.problem.bodies.before);
         Self {
             substep_secs: settings.parameters.time_step_secs / f64::from(substeps),
             start: Vec::new(),
@@ -77,7 +76,7 @@ impl<K: Kinematics> Substepping<K> {
     /// Begins a substep: gravity and a spring that pulls act on the bodies.
     pub(super) fn begin<M: Model<Kinematics = K>>(&mut self, stage: &mut Stage<'_, M>) {
         let push = stage.state.push_of_pull(K::AXES, self.substep_secs);
-        let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies);
+        let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);
         self.start.clone_from(bodies);
         for (index, body) in bodies.iter_mut().enumerate() {
             if world.grains.feels_gravity[index] {
@@ -85,7 +84,7 @@ impl<K: Kinematics> Substepping<K> {
             }
         }
         if let Some(push) = push {
-            pull::apply::<K>(bodies, push);
+            push.apply::<K>(bodies);
         }
         self.free.clone_from(bodies);
     }
@@ -98,7 +97,7 @@ impl<K: Kinematics> Substepping<K> {
 
     /// Hands the bodies' velocities to the world.
     pub(super) fn store<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
-        for (index, body) in stage.problem.bodies.iter().enumerate() {
+        for (index, body) in stage.problem.bodies.now.iter().enumerate() {
             K::store(body, &mut stage.state.world, index);
         }
     }
@@ -173,7 +172,6 @@ impl Touching {
 /// The contacts in the order of the rows, with the forces of the step before for so long (s).
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
-    let fixed = problem.fixed_rows().len();
     let contact = |((number, row), &index): ((usize, &Row<M::Kinematics>), &u32)| {
         let memory = contacts.memories()[index as usize];
         let per_mass = warm_secs / row.effective_mass;
@@ -181,16 +179,16 @@ pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<To
         Touching {
             gap: contacts.contacts()[index as usize].gap,
             wall_speed,
-            driven: problem.driven.row(number).copied(),
+            driven: problem.walls.driven_row(number).copied(),
             answers: [1.0; 2],
             rebound: row.restitution_velocity + wall_speed,
-            surface_speed: if number < fixed { row.surface_speed() } else { 0.0 },
+            surface_speed: problem.rows.surface_speed(number),
             capture_speed: 0.0,
             impulse: [per_mass * memory.normal_force, per_mass * memory.tangential_force],
             total: [0.0; 2],
         }
     };
-    problem.rows().zip(&problem.contact_of_row).map(contact).collect()
+    problem.rows().zip(&problem.rows.contacts).map(contact).collect()
 }
 
 /// Has the gaps follow the bodies' velocities for h.
@@ -199,7 +197,7 @@ pub(super) fn follow_gaps<K: Kinematics>(
     contacts: &mut [Touching],
     substep_secs: f64,
 ) {
-    let velocities = velocities(problem, &problem.bodies);
+    let velocities = velocities(problem, &problem.bodies.now);
     for (contact, [normal_velocity, _]) in contacts.iter_mut().zip(velocities) {
         contact.gap += substep_secs * (normal_velocity - contact.wall_speed);
     }
@@ -213,8 +211,8 @@ pub(super) fn end_substep<K: Kinematics>(
 ) {
     let Substepping { works, start, .. } = substepping;
     let start = velocities(problem, start);
-    let end = velocities(problem, &problem.bodies);
-    let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
+    let end = velocities(problem, &problem.bodies.now);
+    let rows = problem.rows.iter();
     for (((row, contact), start), end) in rows.zip(contacts).zip(start).zip(end) {
         contact.total[0] += contact.impulse[0];
         contact.total[1] += contact.impulse[1];
@@ -232,8 +230,8 @@ pub(super) fn remember<M: Model>(
 ) {
     let Stage { state: State { contacts: list, .. }, problem, .. } = stage;
     let (_, _, memories) = list.parts_mut();
-    let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-    for ((row, contact), &index) in rows.zip(contacts).zip(&problem.contact_of_row) {
+    let rows = problem.rows.iter();
+    for ((row, contact), &index) in rows.zip(contacts).zip(&problem.rows.contacts) {
         let per_secs = row.effective_mass / substep_secs;
         memories[index as usize] = ContactMemory {
             normal_force: per_secs * contact.impulse[0],
@@ -245,9 +243,8 @@ pub(super) fn remember<M: Model>(
 
 /// Gives the problem of the step the impulses that were summed up.
 pub(super) fn hand_over<K: Kinematics>(problem: &mut StepProblem<K>, contacts: &[Touching]) {
-    let capture_speed = problem.capture_speed;
-    for (row, contact) in problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows).zip(contacts)
-    {
+    let capture_speed = problem.law.capture_speed();
+    for (row, contact) in problem.rows.iter_mut().zip(contacts) {
         row.shifted_impulse = contact.total[0] + capture_speed;
         row.tangential_impulse = contact.total[1];
     }
@@ -258,9 +255,7 @@ pub(super) fn velocities<'a, K: Kinematics>(
     problem: &'a StepProblem<K>,
     bodies: &'a [K::Body<f64>],
 ) -> impl Iterator<Item = [f64; 2]> + 'a {
-    let of_fixed = |row: &Row<K>| K::velocity(row.normal, &bodies[row.i as usize]);
-    let of_pair = |row: &Row<K>| {
-        K::relative_velocity(row.normal, &bodies[row.i as usize], &bodies[row.j as usize])
-    };
-    problem.fixed_rows.iter().map(of_fixed).chain(problem.pair_rows.iter().map(of_pair))
+    let fixed = problem.rows.fixed.iter();
+    let of_fixed = fixed.map(|row| K::velocity(row.normal, &bodies[row.i as usize]));
+    of_fixed.chain(problem.rows.pairs.iter().map(|row| row.velocity(bodies)))
 }

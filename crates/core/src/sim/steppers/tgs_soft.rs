@@ -19,7 +19,7 @@
 //! begins, and so a force that depends on neither Δt nor h; with a gap the bound is 0, and the
 //! contact only keeps the grains from closing the gap by more than it is.
 
-use crate::contact::law;
+use crate::contact::{ContactLaw, law};
 use crate::sim::pull::gravity_that_scales;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
@@ -60,11 +60,11 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let substeps = substeps(&settings.parameters);
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
     let substep_secs = substepping.substep_secs;
-    let softness = Softness::new(&stage.state.world, &settings.parameters, substep_secs);
+    let softness = Softness::new(&stage.state.world, stage.problem.law, substep_secs);
     let gap_tolerance = stage.state.candidates.gap_tolerance();
     let warm_secs = if settings.solver.warm_start { substep_secs } else { 0.0 };
     let mut contacts = substeps::touching(stage, warm_secs);
-    let capture_speed = stage.problem.capture_speed / f64::from(substeps);
+    let capture_speed = stage.problem.law.capture_speed() / f64::from(substeps);
     stage.in_pieces(substeps, settings, StepResult::nothing_yet(), |stage, _, _| {
         substepping.begin(stage);
         let walls = &mut begin_walls(stage, &mut contacts, substep_secs);
@@ -83,7 +83,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         update(problem, walls, &mut contacts, |_, contact, velocity| {
             softness.solve::<M, false>(contact, velocity)
         });
-        substepping.add_gravity_work(&problem.bodies, &stage.state.world.grains.masses);
+        substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
         substepping.works.drives += take_walls(stage, &mut contacts, walls);
         substeps::end_substep(stage.problem, &mut contacts, substepping);
         correct_wall_works(stage.problem, &contacts, walls, &mut substepping.works);
@@ -134,19 +134,19 @@ fn update<K: Kinematics>(
     contacts: &mut [Touching],
     mut change: impl FnMut(&Row<K>, &mut Touching, [f64; 2]) -> [f64; 2],
 ) {
-    let StepProblem { bodies, fixed_rows, pair_rows, .. } = problem;
-    let (of_fixed, of_pairs) = contacts.split_at_mut(fixed_rows.len());
-    for (row, contact) in fixed_rows.iter().zip(of_fixed) {
+    let (bodies, rows) = (&mut problem.bodies.now, &problem.rows);
+    let (of_fixed, of_pairs) = contacts.split_at_mut(rows.fixed.len());
+    for (row, contact) in rows.fixed.iter().zip(of_fixed) {
         let i = &mut bodies[row.i as usize];
         contact.see(walls);
         let impulse = change(row, contact, K::velocity(row.normal, i));
         K::push_single(i, row.normal, impulse);
         contact.push_back(walls, row.effective_mass, impulse);
     }
-    for (row, contact) in pair_rows.iter().zip(of_pairs) {
+    for (row, contact) in rows.pairs.iter().zip(of_pairs) {
         let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
         let impulse = change(row, contact, K::relative_velocity(row.normal, &i, &j));
-        K::push_pair(&mut i, &mut j, row.normal, impulse, row.share());
+        K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
         bodies[row.i as usize] = i;
         bodies[row.j as usize] = j;
     }
@@ -182,11 +182,11 @@ struct Softness {
     compliance: f64,
     /// m/s.
     push_out_speed: f64,
-    friction: f64,
+    law: ContactLaw,
 }
 
 impl Softness {
-    fn new(world: &World, parameters: &Parameters, substep_secs: f64) -> Self {
+    fn new(world: &World, law: ContactLaw, substep_secs: f64) -> Self {
         let diameter = world.mean_diameter;
         let g = gravity_that_scales(world);
         let highest = FREQUENCY_PER_SUBSTEP / substep_secs;
@@ -197,7 +197,7 @@ impl Softness {
             rate: frequency / damping,
             compliance: 1.0 / (1.0 + substep_secs * frequency * damping),
             push_out_speed: PUSH_OUT_SPEED * (g * diameter).sqrt(),
-            friction: parameters.friction,
+            law,
         }
     }
 
@@ -243,7 +243,10 @@ impl Softness {
 
     #[inline(always)]
     fn bound<M: Model>(&self, shifted: f64, capture_speed: f64) -> f64 {
-        if M::FRICTION { M::friction_bound(self.friction, shifted, capture_speed) } else { 0.0 }
+        if !M::FRICTION {
+            return 0.0;
+        }
+        self.law.with_capture_speed(capture_speed).friction_bound(shifted)
     }
 }
 
@@ -294,7 +297,7 @@ fn set_answers<K: Kinematics>(
     contacts: &mut [Touching],
     walls: &[DrivenWall],
 ) {
-    for (row, contact) in problem.fixed_rows.iter().zip(contacts) {
+    for (row, contact) in problem.rows.fixed.iter().zip(contacts) {
         if let Some(DrivenRow { by, .. }) = contact.driven {
             let share = walls[by.wall as usize].response * row.effective_mass;
             let [normal, tangential] = by.along.map(|along| share * along * along);
@@ -321,7 +324,7 @@ fn correct_wall_works<K: Kinematics>(
     walls: &[DrivenWall],
     works: &mut Works,
 ) {
-    for (row, contact) in problem.fixed_rows.iter().zip(contacts) {
+    for (row, contact) in problem.rows.fixed.iter().zip(contacts) {
         if let Some(DrivenRow { by, .. }) = contact.driven {
             let wall = &walls[by.wall as usize];
             let along = by.part_along(contact.impulse);

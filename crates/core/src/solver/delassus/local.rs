@@ -49,11 +49,7 @@ impl LocalBlock {
 
     /// (p, P_t), N·s, that solves the contact where the others leave it the velocity `free` (m/s).
     #[inline(always)]
-    pub(super) fn solve(
-        &self,
-        [normal, tangential]: [f64; 2],
-        compressive_cone: bool,
-    ) -> [f64; 2] {
+    pub(super) fn solve(&self, [normal, tangential]: [f64; 2], compressive_cone: bool) -> [f64; 2] {
         if normal >= 0.0 {
             return [0.0, 0.0];
         }

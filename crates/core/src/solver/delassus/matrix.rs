@@ -212,9 +212,8 @@ fn entry<K: Kinematics>(
         let same = number == other_number && axis == other_axis;
         return if same { 1.0 / row.effective_mass } else { 0.0 };
     }
-    let bodies = |row: &Row<K>, number: usize| {
-        [Some(row.i), problem.rows.is_pair(number).then_some(row.j)]
-    };
+    let bodies =
+        |row: &Row<K>, number: usize| [Some(row.i), problem.rows.is_pair(number).then_some(row.j)];
     let gradients = [K::gradients(row.normal), K::gradients(other.normal)];
     let mut sum = 0.0;
     for (side, body) in bodies(row, number).into_iter().enumerate() {

@@ -103,7 +103,7 @@ fn run<M: Model, const D: usize>(
         if is_tested {
             BodySystem::<M>::new(problem, roots).read(&mut directions.before);
         }
-        let balance = directions.apply_<M>(problem, compliance);
+        let balance = directions.apply_law::<M>(problem, compliance);
         if is_tested {
             problem.form_velocities();
             let system = BodySystem::<M>::new(problem, roots);
@@ -139,11 +139,7 @@ fn run<M: Model, const D: usize>(
 
 impl<const D: usize> Directions<D> {
     /// Factorises the matrix of a compliance ε.
-    fn factorise<M: Model>(
-        &mut self,
-        problem: &StepProblem<M::Kinematics>,
-        compliance: f64,
-    ) {
+    fn factorise<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>, compliance: f64) {
         let Self { elimination, matrix, .. } = self;
         matrix.clear(elimination);
         for (body, &mass) in problem.bodies.masses.iter().enumerate() {
@@ -185,7 +181,8 @@ impl<const D: usize> Directions<D> {
 
     /// V and z of the present impulses.
     fn start<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>) {
-        let bodies = self.elimination.body_at.iter().map(|&body| &problem.bodies.now[body as usize]);
+        let bodies =
+            self.elimination.body_at.iter().map(|&body| &problem.bodies.now[body as usize]);
         self.vector.clear();
         self.vector.extend(bodies.map(|body| {
             let coordinates = M::Kinematics::coordinates(body);
@@ -193,9 +190,11 @@ impl<const D: usize> Directions<D> {
         }));
         let mut targets = std::mem::take(&mut self.targets);
         targets.clear();
-        targets.extend(problem.rows().map(|(number, row)| {
-            self.velocity::<M>(row, problem.rows.is_pair(number))
-        }));
+        targets.extend(
+            problem
+                .rows()
+                .map(|(number, row)| self.velocity::<M>(row, problem.rows.is_pair(number))),
+        );
         self.targets = targets;
     }
 
@@ -230,7 +229,7 @@ impl<const D: usize> Directions<D> {
             let is_pair = problem.rows.is_pair(number);
             let [away, along] = match is_pair {
                 true => M::Kinematics::slide_along(problem.rows.get(number).normal),
-                false => [0.0, problem.rows.fixed[number].surface_speed],
+                false => [0.0, problem.rows.surface_speed(number)],
             };
             let row = problem.rows.get_mut(number);
             let [normal, tangential] = self.velocity::<M>(row, is_pair);
@@ -262,11 +261,7 @@ impl<const D: usize> Directions<D> {
     }
 
     /// The right-hand side from impulses and z.
-    fn take_loads<M: Model>(
-        &mut self,
-        problem: &StepProblem<M::Kinematics>,
-        compliance: f64,
-    ) {
+    fn take_loads<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>, compliance: f64) {
         let Self { elimination, vector, targets, .. } = self;
         for (place, &body) in elimination.body_at.iter().enumerate() {
             let free = M::Kinematics::coordinates(&problem.bodies.free[body as usize]);

@@ -125,7 +125,12 @@ fn curvature<S: ContactSystem>(
 }
 
 /// (y − next)·D⁻¹(next − now) > 0.
-fn leads_away<S: ContactSystem>(system: &S, y: &ScaledVector, next: &ScaledVector, now: &ScaledVector) -> bool {
+fn leads_away<S: ContactSystem>(
+    system: &S,
+    y: &ScaledVector,
+    next: &ScaledVector,
+    now: &ScaledVector,
+) -> bool {
     let mut product = 0.0;
     for (contact, ((y, next), now)) in y.iter().zip(next).zip(now).enumerate() {
         product += (y[0] - next[0]) * (next[0] - now[0])

@@ -204,17 +204,16 @@ fn pass_with_driven_walls<M: Model, const MEASURE: bool>(
     let walls = &mut problem.walls;
     let mut change = ImpulseChange::default();
     let fixed_count = fixed.len();
-    let mut solve_fixed =
-        |number: usize, bodies: &mut [_], change: &mut ImpulseChange| {
-            let row: &mut FixedRow<_> = &mut fixed[number];
-            let Some(known) = walls.driven_row(number).copied() else {
-                return row.solve::<M, MEASURE>(bodies, change, project);
-            };
-            let MovingWalls { driven, .. } = &mut *walls;
-            let wall = &mut driven[known.by.wall as usize];
-            let impulse = solve_driven::<M>(&law, row, &known, &mut bodies[row.i as usize], wall);
-            change.add::<M, MEASURE>(row.effective_mass, impulse);
+    let mut solve_fixed = |number: usize, bodies: &mut [_], change: &mut ImpulseChange| {
+        let row: &mut FixedRow<_> = &mut fixed[number];
+        let Some(known) = walls.driven_row(number).copied() else {
+            return row.solve::<M, MEASURE>(bodies, change, project);
         };
+        let MovingWalls { driven, .. } = &mut *walls;
+        let wall = &mut driven[known.by.wall as usize];
+        let impulse = solve_driven::<M>(&law, row, &known, &mut bodies[row.i as usize], wall);
+        change.add::<M, MEASURE>(row.effective_mass, impulse);
+    };
     if backward {
         for row in pairs.iter_mut().rev() {
             row.solve::<M, MEASURE>(bodies, &mut change, project);

@@ -16,7 +16,6 @@ pub(crate) use self::friction::{
     BoundedFriction, ConeFriction, CoulombFriction, FrictionProjection, LaggedFriction,
     project_by_coulomb,
 };
-pub(crate) use self::order::RowGroups;
 use self::order::RowOrder;
 pub use self::residual::{
     Measures, RowVelocities, for_each_row, measure, relative_velocities, residual, worst,

@@ -87,7 +87,14 @@ impl RowOrder {
         let grains = world.grains.len();
         let is_pair = |index: &u32| (contacts[*index as usize].other as usize) < grains;
         let all = 0..contacts.len() as u32;
-        self.append(ordering, world, contacts, all.clone().filter(|index| !is_pair(index)), rows, 0);
+        self.append(
+            ordering,
+            world,
+            contacts,
+            all.clone().filter(|index| !is_pair(index)),
+            rows,
+            0,
+        );
         let fixed = rows.len();
         self.append(ordering, world, contacts, all.filter(is_pair), rows, 1);
         fixed
@@ -162,13 +169,7 @@ impl RowOrder {
     /// Sorts contacts by tiles, those between tiles last, and within a tile by colours: every contact gets
     /// the first colour that neither of its grains has yet, which makes at most 2k − 1 colours where no
     /// grain has more than k contacts.
-    fn colour(
-        &mut self,
-        grains: usize,
-        contacts: &[Contact],
-        rows: &mut Vec<u32>,
-        kind: usize,
-    ) {
+    fn colour(&mut self, grains: usize, contacts: &[Contact], rows: &mut Vec<u32>, kind: usize) {
         self.coloured.clear();
         self.of_their_own.clear();
         self.between.clear();
@@ -341,7 +342,10 @@ mod tests {
 
     /// Discs whose height goes up and down with their number.
     fn uneven() -> World {
-        world((0..138).map(|k| Grain::at_rest(DVec2::new(f64::from(k), f64::from(k * 29 % 138)), 0.4)))
+        world(
+            (0..138)
+                .map(|k| Grain::at_rest(DVec2::new(f64::from(k), f64::from(k * 29 % 138)), 0.4)),
+        )
     }
 
     fn sorted(ordering: Ordering, contacts: &[Contact]) -> (Vec<u32>, Vec<usize>) {

@@ -101,7 +101,9 @@ pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
 
 /// The same of the model of friction that a problem is solved by: the natural map of its projection
 /// (`problem::friction`), over the same scale, so that both can be set side by side.
-pub(super) fn projection_residual<M: Model, P: FrictionProjection>(problem: &StepProblem<M::Kinematics>) -> f64 {
+pub(super) fn projection_residual<M: Model, P: FrictionProjection>(
+    problem: &StepProblem<M::Kinematics>,
+) -> f64 {
     let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         let opening = motion.now[0] + row.restitution_velocity;
@@ -157,7 +159,9 @@ pub fn worst(one: f64, other: f64) -> f64 {
 /// left undone. Where j is an image that slides, u is relative to that, and P·(what it slides by) is the border's work.
 pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
     type Sum = (Sums, Measures);
-    let visit = |(sums, measures): &mut Sum, (number, row): (usize, &Row<_>), motion: RowVelocities| {
+    let visit = |(sums, measures): &mut Sum,
+                 (number, row): (usize, &Row<_>),
+                 motion: RowVelocities| {
         sums.add_error::<M>(problem, (number, row), &motion);
         let [normal, tangential] = problem.reduced_impulse(number, row);
         let half_mass = 0.5 * row.effective_mass;
@@ -241,8 +245,7 @@ impl Sums {
         motion: &RowVelocities,
     ) {
         let now = problem.own_part(number, row, motion.now).unwrap_or(motion.now);
-        let errors =
-            errors::<M, f64>(&problem.law, row.impulse(), row.restitution_velocity, now);
+        let errors = errors::<M, f64>(&problem.law, row.impulse(), row.restitution_velocity, now);
         self.add::<M>(row, errors, motion);
     }
 
@@ -303,7 +306,8 @@ fn duality_gap<M: Model>(problem: &StepProblem<M::Kinematics>) -> Option<f64> {
         let lagged = problem.friction.now.get(number).copied().unwrap_or(0.0);
         let [normal_velocity, tangential_velocity] = motion.now;
         let [shifted, tangential] = row.impulse();
-        let opening = normal_velocity + row.restitution_velocity + if on_cone { lagged } else { 0.0 };
+        let opening =
+            normal_velocity + row.restitution_velocity + if on_cone { lagged } else { 0.0 };
         let across = tangential_velocity.abs();
         let least = if on_cone { problem.law.friction * across } else { 0.0 };
         let lacking = (least - opening).max(0.0);

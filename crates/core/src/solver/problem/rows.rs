@@ -200,6 +200,18 @@ impl<K: Kinematics> ContactRows<K> {
         }
     }
 
+    /// g_i of the row of a number; 1 against a fixed body.
+    #[inline(always)]
+    pub(crate) fn share(&self, number: usize) -> f64 {
+        number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
+    }
+
+    /// How fast the surface behind the row of a number goes along t, m/s; 0 between grains.
+    #[inline(always)]
+    pub(crate) fn surface_speed(&self, number: usize) -> f64 {
+        self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
+    }
+
     /// Adds a copy of row `number` of others, changed by `change`. In the place of the contact behind it stands
     /// that number.
     pub(crate) fn push_copy(

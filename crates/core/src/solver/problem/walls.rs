@@ -129,7 +129,7 @@ pub(crate) struct MovingWalls {
 /// The surfaces that a problem is prepared among.
 pub(crate) struct MovingSurfaces<'a> {
     /// Walls that a force drives.
-    pub driven: &'a mut dyn Iterator<Item = DrivenWall>,
+    pub driven: Vec<DrivenWall>,
     /// The surface that a contact touches, if it moves.
     pub of: &'a dyn Fn(&Contact) -> Option<Surface>,
 }
@@ -218,8 +218,7 @@ impl<K: Kinematics> StepProblem<K> {
         if !self.has_moving_walls() {
             return Vec::new();
         }
-        let of_fixed = self.rows.fixed.iter().map(|row| row.surface_speed);
-        of_fixed.chain(self.rows.pairs.iter().map(|_| 0.0)).collect()
+        (0..self.rows.len()).map(|number| self.rows.surface_speed(number)).collect()
     }
 
     /// True where any surface may move.

@@ -23,7 +23,9 @@ use crate::sim::settings::Settings;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Kinematics, Model, Motion, SolveReport, StepProblem, for_each_row, solve};
+use crate::solver::{
+    Kinematics, Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve,
+};
 
 /// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
 /// and the next step looks at them again.
@@ -111,12 +113,12 @@ impl BondOpening {
     fn of<K: Kinematics>(
         problem: &StepProblem<K>,
         number: usize,
-        motion: &Motion,
+        motion: &RowVelocities,
         shocks: &Shocks,
         bond: Bond,
         numbers: StepNumbers,
     ) -> Self {
-        let row = problem.row_at(number);
+        let row = problem.rows.get(number);
         let closed = shocks.closed(number, bond.alive, numbers.time_step_secs);
         let ClosedBond { part, gained } = closed.unwrap_or(ClosedBond { part: 1.0, gained: 0.0 });
         let [impulse, _] = problem.reduced_impulse(number, row);
@@ -147,8 +149,8 @@ fn update_bonds<K: Kinematics>(
     let StepNumbers { time_step_secs, debonding_distance, .. } = numbers;
     let mut energies = BondEnergies::default();
     for_each_row(problem, |number, row, motion| {
-        let bond = &mut bonds[problem.contact_of_row[number] as usize];
-        let cohesion_force = row.effective_mass * problem.capture_speed / time_step_secs;
+        let bond = &mut bonds[problem.rows.contacts[number] as usize];
+        let cohesion_force = row.effective_mass * problem.law.capture_speed() / time_step_secs;
         let opens = BondOpening::of(problem, number, &motion, shocks, *bond, numbers);
         let opening_speed = opens.opening_speed();
         let before = if bond.alive { cohesion_force * bond.stretch } else { 0.0 };
@@ -159,7 +161,7 @@ fn update_bonds<K: Kinematics>(
         if bond.alive && row.shifted_impulse <= 0.0 {
             let opened = bond.stretch + opens.part * opening_speed * time_step_secs;
             bond.stretch = opened.max(0.0);
-            let broken = problem.capture(number) < opens.part * problem.capture_speed;
+            let broken = problem.capture(number) < opens.part * problem.law.capture_speed();
             bond.alive = !broken && bond.stretch < debonding_distance;
         }
         if bond.alive {
@@ -231,7 +233,7 @@ impl BondLimits<'_> {
         lowered: &mut Vec<(usize, f64)>,
     ) {
         lowered.clear();
-        if problem.captures.is_empty() {
+        if problem.rows.captures.is_empty() {
             return;
         }
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
@@ -240,12 +242,12 @@ impl BondLimits<'_> {
             if before <= 0.0 {
                 return;
             }
-            let bond = self.bonds[problem.contact_of_row[number] as usize];
+            let bond = self.bonds[problem.rows.contacts[number] as usize];
             let opens = BondOpening::of(problem, number, &motion, self.shocks, bond, self.numbers);
             let stretch = if opens.is_closed { 0.0 } else { bond.stretch };
             let left = (debonding_distance - stretch).max(0.0);
             let opening = Opening { left, speed: opens.speed, load: opens.load };
-            let capture_speed = strength * opens.part * problem.capture_speed;
+            let capture_speed = strength * opens.part * problem.law.capture_speed();
             let bound = opening.bound(capture_speed, opens.part * time_step_secs);
             if bound < (1.0 - FALL) * before {
                 lowered.push((number, bound));
@@ -257,8 +259,8 @@ impl BondLimits<'_> {
 /// Lowers the bounds of bonds that do not live to the end of the step.
 fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
-        let before = std::mem::replace(&mut problem.captures[number], bound);
-        let row = problem.row_at_mut(number);
+        let before = std::mem::replace(&mut problem.rows.captures[number], bound);
+        let row = problem.rows.get_mut(number);
         row.shifted_impulse = (row.shifted_impulse - before + bound).max(0.0);
     }
     problem.form_velocities();

@@ -220,7 +220,11 @@ impl PathContact {
 
     /// S⁻¹b.
     #[inline(always)]
-    pub(super) fn load<S: Shape>(&self, numbers: ContactNumbers, targets: &[f64; PAIRS]) -> [f64; 2] {
+    pub(super) fn load<S: Shape>(
+        &self,
+        numbers: ContactNumbers,
+        targets: &[f64; PAIRS],
+    ) -> [f64; 2] {
         self.answer::<S>(numbers, targets, [0.0; 2]).0
     }
 
@@ -277,7 +281,12 @@ impl PathContact {
     /// Within held bounds the smaller slack x and the larger, 2g − x, are to have τ/x − τ/(2g − x) for the
     /// velocity; the second term is left out, which again leaves a quadratic equation. On the cone the
     /// slacks of the nearest point and their multipliers are moved off 0 in the same way.
-    pub(super) fn centre<S: Shape>(&mut self, numbers: ContactNumbers, trial: [f64; 2], centre: f64) {
+    pub(super) fn centre<S: Shape>(
+        &mut self,
+        numbers: ContactNumbers,
+        trial: [f64; 2],
+        centre: f64,
+    ) {
         if S::CONE {
             return self.centre_on_cone(numbers, trial, centre);
         }

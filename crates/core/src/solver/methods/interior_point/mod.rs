@@ -144,7 +144,7 @@ fn convex<M: Model, S: Shape>(
 /// under bounds of friction at those impulses. Where that is not found, leaves them as they are.
 ///
 /// The bounds are nearer to Coulomb's than those of the step before, on which `tresca` stands.
-pub(super) fn fall_back<M: Model>(
+pub(in crate::solver) fn fall_back<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     memory: &mut InteriorMemory,
     report: SolveReport,

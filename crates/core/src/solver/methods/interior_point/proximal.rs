@@ -108,7 +108,11 @@ impl ProximalContact {
 
     /// The piece of Π that a trial is in.
     #[inline(always)]
-    pub(super) fn piece<S: Shape>(&self, numbers: ContactNumbers, trial: [f64; 2]) -> ProjectionPiece {
+    pub(super) fn piece<S: Shape>(
+        &self,
+        numbers: ContactNumbers,
+        trial: [f64; 2],
+    ) -> ProjectionPiece {
         if !S::CONE {
             return ProjectionPiece::Free([trial[0] > 0.0, trial[1].abs() < self.bound]);
         }

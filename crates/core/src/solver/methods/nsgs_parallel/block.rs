@@ -127,7 +127,11 @@ impl ContactBlock {
 
 /// Bodies, one a lane.
 #[inline(always)]
-fn gather<S: Simd, M: Model>(simd: S, slots: &[BodySlot], indices: [u32; LANES]) -> ModelBody<M, f64x4<S>> {
+fn gather<S: Simd, M: Model>(
+    simd: S,
+    slots: &[BodySlot],
+    indices: [u32; LANES],
+) -> ModelBody<M, f64x4<S>> {
     let bodies = indices.map(|index| f64x4::simd_from(simd, slots[index as usize].0));
     let [x, y, spin, _] = transposed(bodies);
     M::Kinematics::from_coordinates([x, y, spin])

@@ -174,7 +174,8 @@ impl<'a, M: Model> Tiled<'a, M> {
         let TileLayout { blocks, places, .. } = &self.memory.layout;
         let of_block = |(block, place): (&ContactBlock, &Range<u32>)| {
             let first = place.start as usize;
-            let capture = |lane: usize| captures.get(first + lane).copied().unwrap_or(capture_speed);
+            let capture =
+                |lane: usize| captures.get(first + lane).copied().unwrap_or(capture_speed);
             block.squared_impulses(std::array::from_fn::<_, LANES, _>(capture))
         };
         blocks.iter().zip(places).map(of_block).sum()

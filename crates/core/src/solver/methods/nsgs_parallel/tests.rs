@@ -190,11 +190,7 @@ fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
                     let between = memory.layout.blocks.len() - blocks_of(&memory.layout.tiles);
                     assert!(between > 100, "contacts between tiles");
                     assert!(
-                        memory
-                            .layout
-                            .tiles
-                            .iter()
-                            .all(|tile| tile.blocks > 100 && tile.fixed > 10)
+                        memory.layout.tiles.iter().all(|tile| tile.blocks > 100 && tile.fixed > 10)
                     );
                     (changes, residual)
                 })

@@ -29,7 +29,7 @@ impl Shocks {
     /// it to end the step with no overlap at all, v_n would have to be above 0 for it and could not be for
     /// others that hold it: v = 0 would no longer obey every contact, and a cluster in which many were struck
     /// is then often not solved. So v_n ≥ 0 is all that is asked for, and what is left of an overlap,
-    /// t v_n⁺ at the most, is pushed out (`range::separation`).
+    /// t v_n⁺ at the most, is pushed out (`range::separate`).
     ///
     /// **Gaps below the touch are none** after a shock as before it. Slacks of the size of rounding between
     /// grains that touch make a contact open or shut by less than a step is solved to.
@@ -42,9 +42,9 @@ impl Shocks {
         for (index, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.struck_in_step)
         {
             moved = true;
-            let before = K::coordinates(&problem.before[index]);
+            let before = K::coordinates(&problem.bodies.before[index]);
             let free = std::array::from_fn(|axis| before[axis] + body.gain[axis]);
-            K::set(&mut problem.free[index], free);
+            K::set(&mut problem.bodies.free[index], free);
         }
         for number in 0..self.pairs.len() {
             let Some((allowed, normal)) = self.closing_left(problem, inputs, number) else {
@@ -57,10 +57,10 @@ impl Shocks {
                 None => problem.wall_speed(number),
             };
             problem.let_close(number, allowed.max(0.0), wall_speed);
-            let row = problem.row_at_mut(number);
+            let row = problem.rows.get_mut(number);
             if let Some([before, after]) = capture {
                 row.shifted_impulse = (row.shifted_impulse - before + after).max(0.0);
-                problem.captures[number] = after;
+                problem.rows.captures[number] = after;
             }
         }
         if moved {
@@ -113,11 +113,11 @@ impl Shocks {
         inputs: &ShockInputs<'_>,
         number: usize,
     ) -> Option<[f64; 2]> {
-        let before = *problem.captures.get(number)?;
+        let before = *problem.rows.captures.get(number)?;
         let is_bonded = inputs.is_bonded(problem, number);
         let ClosedBond { part, .. } =
             self.closed(number, is_bonded, inputs.numbers.time_step_secs)?;
-        Some([before, part * problem.capture_speed])
+        Some([before, part * problem.law.capture_speed()])
     }
 
     /// What a shock has left of the step to the bond of a row, if it closed that: a pair that touches and is
@@ -154,7 +154,7 @@ impl Shocks {
             let [impulse, _] = problem.reduced_impulse(number, row);
             let ShockPair { normal, struck_at, .. } = self.pairs[number];
             let way = -struck_at * impulse * normal;
-            let share = if j.is_some() { row.share() } else { 1.0 };
+            let share = problem.rows.share(number);
             self.bodies[i].rest_of_way += share * way;
             if let Some(j) = j {
                 self.bodies[j].rest_of_way -= (1.0 - share) * way;

@@ -188,7 +188,7 @@ struct ShockBody {
     /// What gravity gives it in the step, m/s.
     gain: [f64; 3],
     /// Whether it rests against something or is bonded, and so does not fall freely.
-    is_held: bool,
+    is_supported: bool,
     /// What the step's last velocity tells too little of its way, m: −½aΔt² of one that falls freely, and
     /// −Σ tλ of the impulses that the step has for pairs that met.
     rest_of_way: DVec2,
@@ -220,25 +220,25 @@ struct ShockInputs<'a> {
 impl ShockInputs<'_> {
     /// The contact behind a row.
     fn contact<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> &Contact {
-        &self.contacts.contacts()[problem.contact_of_row[number] as usize]
+        &self.contacts.contacts()[problem.rows.contacts[number] as usize]
     }
 
     /// Whether its pair is bonded.
     fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
-        self.contacts.is_in_touch(problem.contact_of_row[number] as usize)
+        self.contacts.is_in_touch(problem.rows.contacts[number] as usize)
     }
 
     /// How far its bond is open, m.
     fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
-        let bond = self.contacts.bonds()[problem.contact_of_row[number] as usize];
+        let bond = self.contacts.bonds()[problem.rows.contacts[number] as usize];
         if bond.alive { bond.stretch } else { 0.0 }
     }
 }
 
 /// The grains of a row by its number: i, and j unless that is fixed.
 fn grains<K: Kinematics>(problem: &StepProblem<K>, number: usize) -> (usize, Option<usize>) {
-    let row = problem.row_at(number);
-    let is_pair = number >= problem.fixed_rows.len();
+    let row = problem.rows.get(number);
+    let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
@@ -260,7 +260,7 @@ fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
 
 impl ShockBody {
     /// One of which nothing has happened yet, as it begins and as gravity alone would leave it.
-    fn untouched<K: Kinematics>((before, free): (&K::Body<f64>, &K::Body<f64>)) -> Self {
+    fn untouched<K: Kinematics>(before: &K::Body<f64>, free: &K::Body<f64>) -> Self {
         let [before, free] = [before, free].map(K::coordinates);
         Self {
             offset: [0.0; 3],
@@ -270,7 +270,7 @@ impl ShockBody {
             struck_in_step: false,
             struck_in_pass: false,
             gain: std::array::from_fn(|axis| free[axis] - before[axis]),
-            is_held: false,
+            is_supported: false,
             rest_of_way: DVec2::ZERO,
             root: 0,
             cluster: (NEVER, 0),
@@ -288,9 +288,10 @@ impl Shocks {
     ) {
         let Self { pairs, bodies, .. } = self;
         bodies.clear();
-        bodies.extend(problem.before.iter().zip(&problem.free).map(ShockBody::untouched::<K>));
+        let ends = problem.bodies.before.iter().zip(&problem.bodies.free);
+        bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<K>(before, free)));
         pairs.clear();
-        let is_cohesive = problem.capture_speed > 0.0;
+        let is_cohesive = problem.law.capture_speed() > 0.0;
         for_each_row(problem, |number, _, motion| {
             let Contact { normal, gap, .. } = *inputs.contact(problem, number);
             let touches = gap <= inputs.numbers.touch;
@@ -299,7 +300,8 @@ impl Shocks {
             for grain in std::iter::once(i).chain(j) {
                 let [x, y, _] = bodies[grain].gain;
                 let rests = touches && speed.abs() <= RESTS_BELOW * x.hypot(y);
-                bodies[grain].is_held |= rests || is_cohesive && inputs.is_bonded(problem, number);
+                bodies[grain].is_supported |=
+                    rests || is_cohesive && inputs.is_bonded(problem, number);
             }
             // The step proper stops what comes to a wall that gives way (see the module).
             let touches = touches && !problem.gives_way(number);
@@ -317,7 +319,7 @@ impl Shocks {
                 gained: 0.0,
             });
         });
-        for body in bodies.iter_mut().filter(|body| !body.is_held) {
+        for body in bodies.iter_mut().filter(|body| !body.is_supported) {
             let fallen = along_axes::<K>(&K::from_coordinates(body.gain));
             body.rest_of_way = -0.5 * inputs.numbers.time_step_secs * fallen;
         }

@@ -6,7 +6,7 @@ use super::{
     LEAST_AGAIN, NEVER, NextImpact, Role, SAME_MOMENT, ShockInputs, Shocks, Touch, along_axes,
     grains,
 };
-use crate::contact::Course;
+use crate::contact::RelativeMotion;
 use crate::sim::steppers::range::StepNumbers;
 use crate::solver::{Kinematics, StepProblem};
 
@@ -41,7 +41,7 @@ impl Shocks {
     ) -> f64 {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
-        if j.is_some() || self.bodies[i].is_held || pair.touch == Touch::Met {
+        if j.is_some() || self.bodies[i].is_supported || pair.touch == Touch::Met {
             return 0.0;
         }
         pair.normal.dot(self.fall::<K>(i)) / numbers.time_step_secs
@@ -58,23 +58,23 @@ impl Shocks {
         problem: &StepProblem<K>,
         number: usize,
         time_step_secs: f64,
-    ) -> Course {
+    ) -> RelativeMotion {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
         let offset =
             |grain: usize| along_axes::<K>(&K::from_coordinates(self.bodies[grain].offset));
-        let velocity = |grain: usize| along_axes::<K>(&problem.before[grain]);
+        let velocity = |grain: usize| along_axes::<K>(&problem.bodies.before[grain]);
         let falls = pair.acceleration != 0.0;
         let acceleration = if falls { self.fall::<K>(i) / time_step_secs } else { DVec2::ZERO };
         let of_other = match j {
             None => (DVec2::ZERO, problem.shape_velocity(number, pair.normal)),
             Some(j) => {
-                let slide = K::slide(problem.row_at(number).normal);
+                let slide = K::slide(problem.rows.get(number).normal);
                 (offset(j), velocity(j) + slide * DVec2::X)
             }
         };
         let (offset, velocity) = (offset(i) - of_other.0, velocity(i) - of_other.1);
-        Course { offset, velocity, acceleration }
+        RelativeMotion { offset, velocity, acceleration }
     }
 
     /// The moment from which on both grains of a pair go as they do now, s.
@@ -131,7 +131,7 @@ impl Shocks {
             let was_struck = |grain: usize| self.bodies[grain].struck_in_step;
             let again = was_struck(i) || j.is_some_and(was_struck);
             let again = if again { LEAST_AGAIN * self.fastest } else { 0.0 };
-            let momentum = -pair.speed * problem.row_at(number).effective_mass;
+            let momentum = -pair.speed * problem.rows.get(number).effective_mass;
             let closes = -pair.speed > again && momentum > self.least;
             return if closes { NextImpact::Closes(from) } else { NextImpact::Never };
         }
@@ -156,8 +156,8 @@ impl Shocks {
         let course = self.course(problem, number, end);
         let (world, candidates) = (inputs.world, inputs.candidates);
         let meeting = match K::AXES {
-            1 => course.meeting::<1>(world, candidates, contact, [from, end]),
-            _ => course.meeting::<2>(world, candidates, contact, [from, end]),
+            1 => course.time_of_impact::<1>(world, candidates, contact, [from, end]),
+            _ => course.time_of_impact::<2>(world, candidates, contact, [from, end]),
         };
         meeting.map(|(secs, normal)| NextImpact::Meets { secs, normal })
     }

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::{NEVER, NextImpact, Role, ShockInputs, Shocks, Touch, along_axes, grains, scale};
 use crate::sim::stepping::StepResult;
 use crate::solver::{
-    Kinematics, Measures, Memory, Method, Model, Row, SolveReport, SolverSettings, StepProblem,
+    Kinematics, Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
     StopTest, measure, solve, sweep,
 };
 
@@ -26,7 +26,7 @@ fn solve_together<M: Model>(
     least: f64,
 ) -> SolveReport {
     let mut earlier = SolveReport::default();
-    if part.contact_of_row.len() <= FEW {
+    if part.rows.contacts.len() <= FEW {
         let tolerance = match settings.stop {
             StopTest::Residual => settings.tolerance.min(TIGHTLY.tolerance),
             StopTest::RelativeChange | StopTest::ImpulsePerMass => TIGHTLY.tolerance,
@@ -54,45 +54,41 @@ impl Shocks {
         inputs: &ShockInputs<'_>,
         alone: bool,
     ) -> bool {
-        part.fixed_rows.clear();
-        part.pair_rows.clear();
-        part.contact_of_row.clear();
+        part.rows.clear();
         for number in 0..self.pairs.len() {
-            let row = *problem.row_at(number);
-            let root = self.root(row.i as usize);
+            let root = self.root(problem.rows.get(number).i as usize);
             let (moment, rows) = self.bodies[root].cluster;
             if self.pairs[number].role == Role::Apart || moment == NEVER || (rows == 1) != alone {
                 continue;
             }
-            let row = self.struck_row(problem, inputs, number, row);
-            let is_fixed = number < problem.fixed_rows.len();
-            let rows = if is_fixed { &mut part.fixed_rows } else { &mut part.pair_rows };
-            rows.push(row);
-            part.contact_of_row.push(number as u32);
+            let restitution_velocity = self.strike_row(problem, inputs, number);
+            part.rows.push_copy(&problem.rows, number, |row| {
+                row.restitution_velocity = restitution_velocity;
+                (row.shifted_impulse, row.tangential_impulse) = (0.0, 0.0);
+            });
             self.pairs[number].struck_at = moment;
         }
-        if part.contact_of_row.is_empty() {
+        if part.rows.is_empty() {
             return false;
         }
-        for copy in [&mut part.before, &mut part.free, &mut part.bodies] {
-            copy.clone_from(&problem.before);
+        for copy in [&mut part.bodies.before, &mut part.bodies.free, &mut part.bodies.now] {
+            copy.clone_from(&problem.bodies.before);
         }
-        part.masses.clone_from(&problem.masses);
-        part.mean_mass = problem.mean_mass;
-        part.friction = problem.friction;
+        part.bodies.masses.clone_from(&problem.bodies.masses);
+        part.bodies.mean_mass = problem.bodies.mean_mass;
+        part.law = problem.law.with_capture_speed(0.0);
         // A solve of other shocks may have fallen back to bounds, which are of those shocks' rows.
         part.forget_bounds();
         true
     }
 
-    /// A row as the shock has it, and in the step from now on along the normal of a meeting.
-    fn struck_row<K: Kinematics>(
+    /// What a shock adds to v_n of a row in its law, m/s. From now on the row is along the normal of a meeting.
+    fn strike_row<K: Kinematics>(
         &mut self,
         problem: &mut StepProblem<K>,
         inputs: &ShockInputs<'_>,
         number: usize,
-        mut row: Row<K>,
-    ) -> Row<K> {
+    ) -> f64 {
         let numbers = inputs.numbers;
         let mut wall_speed = problem.wall_speed(number);
         let (i, j) = grains(problem, number);
@@ -100,9 +96,7 @@ impl Shocks {
         let (mut gained, mut closing) = (0.0, pair.speed);
         if let (Role::Struck, NextImpact::Meets { secs, normal }) = (pair.role, pair.next) {
             wall_speed = problem.turn_row(number, normal);
-            let Row { normal: of_row, of_other, .. } = *problem.row_at(number);
-            (row.normal, row.of_other) = (of_row, of_other);
-            let before = &problem.before;
+            let (row, before) = (problem.rows.get(number), &problem.bodies.before);
             let [speed, _] = j.map_or_else(
                 || K::velocity(row.normal, &before[i]),
                 |j| K::relative_velocity(row.normal, &before[i], &before[j]),
@@ -113,7 +107,7 @@ impl Shocks {
             (pair.gap, pair.shift) = (0.0, 0.0);
             pair.gap = -pair.gap_at(secs);
             pair.touch = Touch::Met;
-            let stored = inputs.stretch(problem, number) * problem.capture_speed;
+            let stored = inputs.stretch(problem, number) * problem.law.capture_speed();
             let squared = (pair.speed + gained).powi(2) + 2.0 * stored / numbers.time_step_secs;
             closing = -squared.sqrt();
         }
@@ -124,10 +118,7 @@ impl Shocks {
         } else {
             numbers.parameters.restitution * closing
         };
-        row.restitution_velocity = bounce + gained - wall_speed;
-        row.shifted_impulse = 0.0;
-        row.tangential_impulse = 0.0;
-        row
+        bounce + gained - wall_speed
     }
 
     /// Solves what was set up and takes it over; what is struck alone by one sweep, which is exact.
@@ -164,7 +155,7 @@ impl Shocks {
             border_work,
             ..Measures::default()
         };
-        for ((_, row), &number) in part.rows().zip(&part.contact_of_row) {
+        for ((_, row), &number) in part.rows().zip(&part.rows.contacts) {
             let pair = &mut self.pairs[number as usize];
             pair.impulse += row.shifted_impulse;
             let of_gravity = row.effective_mass * row.shifted_impulse * pair.gained;
@@ -172,13 +163,14 @@ impl Shocks {
             result.gravity_work -= of_gravity;
         }
         result.add(StepResult { report, measures, ..StepResult::default() });
-        for (grain, after) in part.bodies.iter().enumerate() {
+        for (grain, after) in part.bodies.now.iter().enumerate() {
             let root = self.root(grain);
             let (moment, rows) = self.bodies[root].cluster;
             if moment == NEVER || (rows == 1) != alone {
                 continue;
             }
-            let [before, after] = [&problem.before[grain], after].map(M::Kinematics::coordinates);
+            let [before, after] =
+                [&problem.bodies.before[grain], after].map(M::Kinematics::coordinates);
             if before == after {
                 continue;
             }
@@ -189,7 +181,7 @@ impl Shocks {
             body.since = body.since.max(moment);
             body.struck_in_step = true;
             body.struck_in_pass = true;
-            M::Kinematics::set(&mut problem.before[grain], after);
+            M::Kinematics::set(&mut problem.bodies.before[grain], after);
         }
     }
 
@@ -205,7 +197,7 @@ impl Shocks {
             if !is_struck(i) && !j.is_some_and(is_struck) {
                 continue;
             }
-            let before = &problem.before;
+            let before = &problem.bodies.before;
             let [speed, _] = j.map_or_else(
                 || K::velocity(row.normal, &before[i]),
                 |j| K::relative_velocity(row.normal, &before[i], &before[j]),

@@ -11,8 +11,8 @@
 
 use glam::DVec2;
 
-use crate::contact::broad_phase::BroadPhase;
-use crate::contact::features::Feature;
+use super::broad_phase::BroadPhase;
+use super::features::Feature;
 use crate::world::{Periodic, World};
 
 /// The images of a disc that others are looked for around, in periods: half of those around the cell, since of a pair
@@ -24,7 +24,8 @@ const HALF_AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(-1.0
 pub(super) fn pairs<const AXES: usize>(
     broad_phase: &mut BroadPhase,
     periodic: Periodic,
-    (centres, extents): (&[DVec2], impl Iterator<Item = f64> + Clone),
+    centres: &[DVec2],
+    extents: impl Iterator<Item = f64> + Clone,
     mut found: impl FnMut(u32, u32),
 ) {
     let count = centres.len();
