@@ -8,7 +8,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::config::{Config, Ground};
+use crate::config::{BaseScene, Config};
 use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
 
@@ -45,7 +45,7 @@ struct Quick {
     vary: Table,
 }
 
-/// What is kept of the course of each run.
+/// Which rows are kept of a run over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesSettings {
@@ -63,7 +63,9 @@ pub struct Study {
     pub name: String,
     /// Tells studies apart: hash of the keys of all runs.
     pub fingerprint: String,
-    /// What is kept of the course of each run, if anything.
+    /// Whether these are the runs of a quick pass, which differs from the full one.
+    pub is_quick_pass: bool,
+    /// Which rows are kept of each run over time, if any.
     pub series: Option<SeriesSettings>,
     /// What is recorded of each run, if anything: below the results, in a folder that has the run's key.
     pub data: Option<DataSettings>,
@@ -92,19 +94,11 @@ impl Study {
             let place = line.map_or(String::new(), |line| format!("line {line}: "));
             Error::unread(path, format!("{place}{}", one_line(error.message())), FORM)
         })?;
-        if quick {
-            replace(
-                "quick.base",
-                &mut file.base,
-                &mut file.vary,
-                std::mem::take(&mut file.quick.base),
-            )?;
-            replace(
-                "quick.vary",
-                &mut file.vary,
-                &mut file.base,
-                std::mem::take(&mut file.quick.vary),
-            )?;
+        let Quick { base, vary } = std::mem::take(&mut file.quick);
+        let is_quick_pass = quick && !(base.is_empty() && vary.is_empty());
+        if is_quick_pass {
+            replace("quick.base", &mut file.base, &mut file.vary, base)?;
+            replace("quick.vary", &mut file.vary, &mut file.base, vary)?;
         }
         let series_is_sound =
             |series: &SeriesSettings| series.interval > 0.0 && series.interval.is_finite();
@@ -130,6 +124,7 @@ impl Study {
         Ok(Self {
             name: file.name,
             fingerprint: short(&hasher),
+            is_quick_pass,
             series: file.series,
             data: file.data,
             runs,
@@ -176,7 +171,7 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
         }
         axes.push(axis);
     }
-    let mut grounds = HashMap::new();
+    let mut bases = HashMap::new();
     let series = file.series.as_ref();
     let grains: &[usize] = series.map_or(&[], |series| &series.grains);
     let run = |mut number: usize| {
@@ -186,7 +181,7 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
             number /= values.len();
         }
         chosen.extend(&file.base);
-        PlannedRun::new(&config_of("base", chosen)?, grains, &(series, &file.data), &mut grounds)
+        PlannedRun::new(&config_of("base", chosen)?, grains, &(series, &file.data), &mut bases)
     };
     (0..count).map(run).collect()
 }
@@ -256,25 +251,25 @@ pub struct PlannedRun {
     pub cost: f64,
 }
 
-/// A ground that has been read.
+/// A base scene that has been read.
 struct Known {
-    ground: Ground,
+    base: BaseScene,
     /// Hash of all its discs.
     discs: String,
 }
 
 impl Known {
     fn of(config: &Config) -> Result<Self> {
-        let ground = config.ground()?;
-        let scene = config.change(&ground)?;
+        let base = config.base_scene()?;
+        let scene = config.change(&base)?;
         let discs = short(&hash(&(&scene.grains, &scene.fixed_discs), &scene.name)?);
-        Ok(Self { ground, discs })
+        Ok(Self { base, discs })
     }
 }
 
 impl PlannedRun {
     /// That of a config. Series have these grains; `kept` is what is kept of the run besides its outcome, and
-    /// `grounds` what has been read, by name.
+    /// `bases` what has been read, by name.
     ///
     /// # Errors
     /// Where the config is not sound, or has fewer grains.
@@ -282,17 +277,17 @@ impl PlannedRun {
         config: &Config,
         grains_asked_for: &[usize],
         kept: &impl Serialize,
-        grounds: &mut HashMap<String, Known>,
+        bases: &mut HashMap<String, Known>,
     ) -> Result<Self> {
-        let known = match grounds.entry(config.name_of_ground()) {
+        let known = match bases.entry(config.base_scene_key()) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(place) => place.insert(Known::of(config)?),
         };
-        let mut scene = config.change(&known.ground)?;
+        let mut scene = config.change(&known.base)?;
         // What is kept of runs, the study says.
         scene.data = None;
         let config = config.resolved(&scene);
-        let grains = config.origin.grains.unwrap_or(scene.grains.len());
+        let grains = config.source.grains.unwrap_or(scene.grains.len());
         if let Some(grain) = grains_asked_for.iter().find(|&&grain| grain >= grains) {
             return Err(Error::value("series.grains", grain, format!("below {grains}")));
         }

@@ -1,9 +1,9 @@
 //! The sweep engine: runs a study on all cores, keeps each result as it comes, goes on where it
 //! stopped, and joins parts that ran elsewhere.
 //!
-//! A folder of results holds `study.json` (which study it is), journals (results as they come),
-//! `states/` (initial states), `series/` (courses of runs), `data/` (recordings of runs) and, once all runs
-//! are there, `runs.csv`.
+//! A folder of results holds `study.json` (which study it is), journals (results as they come), `states/` (initial
+//! states), `series/` (rows of each run over time), `data/` (recordings of runs) and, once all runs are there,
+//! `runs.csv`.
 
 use std::collections::HashSet;
 use std::io::ErrorKind::NotFound;
@@ -11,13 +11,12 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::course::{self, Course};
 use super::journal::{self, Journal};
-use super::outcome::run_to_end;
+use super::results::{RunResult, RunsTable, run_to_end};
 use super::runner::{Case, Runner, Threads};
+use super::series::{self, SERIES, Series};
 use super::states::States;
-use super::table::RunsTable;
-use super::{Outcome, PlannedRun, Shard, Study};
+use super::{PlannedRun, Study};
 use crate::config::scene_facts;
 use crate::data::{Recording, Times, formats_of};
 use crate::error::{Error, Result};
@@ -33,6 +32,36 @@ const DATA: &str = "data";
 /// The table of a finished study.
 const TABLE: &str = "runs.csv";
 
+/// Part `index` of `count`, counted from 1. Every count-th run belongs to it, so that cheap and dear
+/// runs are dealt out evenly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1 to `count`.
+    pub index: usize,
+    /// Number of parts.
+    pub count: usize,
+}
+
+impl Shard {
+    /// Whether the run of that number belongs to this part.
+    fn has(self, run: usize) -> bool {
+        run % self.count == self.index - 1
+    }
+}
+
+impl std::str::FromStr for Shard {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let refuse = || Error::value("shard", text, "k/n with k between 1 and n, as in 3/16");
+        let (index, count) = text.split_once('/').ok_or_else(refuse)?;
+        match (index.parse(), count.parse()) {
+            (Ok(index), Ok(count)) if (1..=count).contains(&index) => Ok(Self { index, count }),
+            _ => Err(refuse()),
+        }
+    }
+}
+
 /// How a sweep is to run.
 #[derive(Clone, Debug, Default)]
 pub struct SweepOptions {
@@ -47,7 +76,7 @@ pub struct SweepOptions {
 /// What a journal has of one run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SweptRun {
-    pub outcome: Outcome,
+    pub outcome: RunResult,
     /// Checksum of the file with its series, where one is kept.
     #[serde(rename = "course", default, skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
@@ -96,7 +125,7 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     finished.retain(|key, case| {
         keys.contains(key.as_str())
             && (study.data.is_none() || data_path(folder, key).exists())
-            && (study.series.is_none() || course::is_whole(folder, case))
+            && (study.series.is_none() || series::is_whole(folder, case))
     });
     if !finished.is_empty() {
         let (done, all) = (finished.len(), cases.len());
@@ -116,11 +145,10 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
 /// Runs one run to its end.
 fn swept(study: &Study, folder: &Path, states: &States, run: &PlannedRun) -> Result<SweptRun> {
     let scene = states.scene(&run.config)?;
-    let mut course = Course::start(study.series.as_ref());
+    let mut series = study.series.as_ref().map(|settings| Series::start(settings, &scene));
     let mut recording = recording_of(study, folder, run, &scene)?;
-    let row = |simulation: &_| course.add(simulation);
-    let outcome = run_to_end(&scene, study.series.as_ref(), row, recording.as_mut())?;
-    let series = course.finish(folder, &run.key)?;
+    let outcome = run_to_end(&scene, series.as_mut(), recording.as_mut())?;
+    let series = series.map(|series| series.finish(folder, &run.key)).transpose()?;
     recording.map_or(Ok(()), Recording::finish)?;
     Ok(SweptRun { outcome, series })
 }
@@ -220,7 +248,7 @@ fn claim(study: &Study, folder: &Path, redo: bool) -> Result<()> {
 fn throw_away(folder: &Path) -> Result<()> {
     remove_if_there(&folder.join(TABLE))?;
     journal::remove_all(folder)?;
-    course::remove_all(folder)?;
+    remove_folder_if_there(&folder.join(SERIES))?;
     remove_folder_if_there(&folder.join(DATA))
 }
 

@@ -4,8 +4,6 @@
 mod draw;
 
 pub use draw::{png, svg};
-// The names that figures still use.
-pub use self::{LegendCorner as Corner, MapCell as Cell};
 
 use crate::error::{Error, Result};
 

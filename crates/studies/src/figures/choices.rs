@@ -5,7 +5,7 @@ use super::comparison::{PairedSlumps, claim, columns, margin};
 use super::fig8::{PAPER, agreed, is_open};
 use super::studies::Rows;
 use super::{Figure, StudyRunner};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
 use crate::report::ReportTable;
@@ -86,7 +86,7 @@ pub(super) fn of_cradle(studies: &StudyRunner) -> Result<Figure> {
     y.ticks = named.collect();
     let x = Axis::log("Δt (s)", 8e-5, 1.3e-2);
     let mut chart = Chart::new("The bond of i and j with one choice changed", x, y);
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     for (name, open, colour, look) in
         [("open", true, PALETTE[6], Look::Dots(7)), ("closed", false, PALETTE[1], Look::Rings(7))]
     {
@@ -132,7 +132,7 @@ fn chart_of_changes(count: usize, [least, most]: [f64; 2], y: Axis) -> Chart {
     x.ticks = (0..count).map(|index| (index as f64, (index + 1).to_string())).collect();
     let title = format!("Slump at Δt = {most:e} s less that at {least:e} s");
     let mut chart = Chart::new(title.replace("e-", "e−"), x, y);
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     let zero = points([(ends.0, 0.0), (ends.1, 0.0)]);
     chart.layers.push(Layer::quiet("none", zero, PALETTE[0], Look::Dashes(2)));
     chart
@@ -178,7 +178,6 @@ pub(super) fn of_piles(studies: &StudyRunner) -> Result<Figure> {
         ),
         named.collect::<Vec<_>>().join("; "),
     ];
-    sheet.caption.extend(studies.note());
     let own = ["choice", "bond", "slump_least_dt", "slump_most_dt"];
     let columns = [&own[..], &["change", "low", "high", "p_two_sided"]].concat();
     let table = ReportTable { name: "pile-choices-changes", columns, rows: table };
@@ -251,7 +250,6 @@ pub(super) fn of_range(studies: &StudyRunner) -> Result<Figure> {
         ),
         named.collect::<Vec<_>>().join("; "),
     ];
-    sheet.caption.extend(studies.note());
     let claims = variants.iter().zip(&all).map(|(one, pairs)| no_dependence(one, pairs)).collect();
     let row = |variant: &Variant<'_>, one: &PairedSlumps| {
         let own = [variant.name.clone(), one.bond.to_string(), format!("{:e}", one.step)];
@@ -283,7 +281,7 @@ fn of_later_steps(variant: &Variant<'_>) -> Vec<PairedSlumps> {
 
 /// That slump does not depend on Δt in a variant.
 fn no_dependence(variant: &Variant<'_>, pairs: &[PairedSlumps]) -> Claim {
-    let grains = variant.rows.0.iter().filter_map(|(config, _)| config.origin.grains).max();
+    let grains = variant.rows.0.iter().filter_map(|(config, _)| config.source.grains).max();
     let margin = margin(grains.unwrap_or_default());
     let said = format!(
         "Beyond the paper: under range slump is that at Δt = {:e} s, within {margin}, with {}",

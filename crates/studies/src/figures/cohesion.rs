@@ -11,7 +11,7 @@ use super::comparison::{PairedSlumps, claim, columns, margin, pairs};
 use super::studies::Rows;
 use super::{Figure, StudyRunner, slump_point};
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet, points};
-use crate::config::{Config, Origin};
+use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
 use crate::report::ReportTable;
 use crate::scene::Scene;
@@ -31,8 +31,8 @@ struct EqualWork<'a> {
 
 /// The scene of a run, but for its grains, which are those of the shipped state.
 fn scene(config: &Config) -> Result<Scene> {
-    let origin = Origin { seed: None, ..config.origin.clone() };
-    Config { origin, ..config.clone() }.without_settling()
+    let source = SceneSource { seed: None, ..config.source.clone() };
+    Config { source, ..config.clone() }.without_settling()
 }
 
 /// The work of fracture of some runs, in m g d.
@@ -115,8 +115,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
          step stops."
             .into(),
     ];
-    let mut sheet = Sheet { size: (520 * charts.len() as u32, 620), charts, caption };
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (520 * charts.len() as u32, 620), charts, caption };
     let claims = vec![laws_agree(&levels), factor(&bonds, &levels), bonds_agree(&bonds, &levels)];
     Ok(Figure { name: "cohesion", sheet, claims, table: Some(table(&levels)) })
 }
@@ -262,7 +261,7 @@ mod tests {
                         let slump = 0.01 * seed as f64 - 0.1 * counted.log10() + moved;
                         let mut config = Config::of_scene("pile");
                         config.stepper = Some(law);
-                        config.origin.seed = Some(seed);
+                        config.source.seed = Some(seed);
                         config.parameters.bond = Some(bond);
                         config.parameters.time_step_secs = Some(1e-4);
                         config.parameters.debonding_distance =

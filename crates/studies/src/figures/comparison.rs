@@ -99,9 +99,9 @@ impl PairedSlumps {
 
 /// The states that ended in both ways: seed, slump of the reference, that of the other.
 pub(super) fn pairs(reference: &Rows<'_>, other: &Rows<'_>) -> Vec<(Option<u64>, f64, f64)> {
-    let with = |seed| other.0.iter().find(move |(config, _)| config.origin.seed == seed);
+    let with = |seed| other.0.iter().find(move |(config, _)| config.source.seed == seed);
     let pair = |(config, result): &(&Config, &RunResult)| {
-        let seed = config.origin.seed;
+        let seed = config.source.seed;
         Some((seed, result.slump, with(seed)?.1.slump))
     };
     reference.0.iter().filter_map(pair).collect()

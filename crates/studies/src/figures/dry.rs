@@ -4,7 +4,7 @@ use super::claims::Claim;
 use super::comparison::{PairedSlumps, claim, margin};
 use super::studies::Rows;
 use super::{Figure, StudyRunner, slump_point};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet};
 use crate::error::Result;
 use crate::sim::Stepper;
 
@@ -23,12 +23,11 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
             claims.push(agrees(&here, rho, law));
         }
     }
-    let mut sheet = Sheet { size: (1600, 720), charts, caption: Vec::new() };
-    sheet.caption = vec![format!(
+    let caption = vec![format!(
         "Bond 0; means over {} initial states of 138 grains with 95 % intervals.",
         rows.seeds().len()
     )];
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (1600, 720), charts, caption };
     Ok(Figure { name: "dry", sheet, claims, table: None })
 }
 
@@ -41,7 +40,7 @@ fn chart(rows: &Rows<'_>, rho: f64) -> Chart {
     let x = Axis::log("Δt (s)", 7e-5, 7e-3);
     let mut chart =
         Chart::new(format!("Dry piles, ρ = {rho}"), x, Axis::linear("slump Δy_G", 0.4, 0.6));
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     for (index, (law, colour)) in LAWS.into_iter().enumerate() {
         let here = of(rows, law);
         let point = |step: f64| slump_point(step, &here.of_step(step).slumps());

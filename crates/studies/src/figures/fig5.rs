@@ -5,7 +5,7 @@ use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
 use super::studies::{Rows, log_step};
 use super::{Figure, StudyRunner};
 use crate::RunResult;
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Point, Sheet, points};
 use crate::error::Result;
 use crate::scene::NewPile;
 use crate::statistics::{Mean, mean, p_value, slope};
@@ -57,8 +57,7 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
         }));
         states.push(ensemble.seeds().len());
     }
-    let mut sheet = Sheet { size: (2000, 860), charts, caption: Vec::new() };
-    sheet.caption = vec![
+    let caption = vec![
         format!(
             "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no \
              mean.",
@@ -67,7 +66,7 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
         "Left |T| ≤ μ(N + C₀), right |T| ≤ μ max(N, 0): the paper's words can be read either way."
             .into(),
     ];
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (2000, 860), charts, caption };
     Ok(Figure { name: "fig5a", sheet, claims, table: None })
 }
 
@@ -79,18 +78,16 @@ pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let overlap = |result: &RunResult| result.tally.mean_overlap;
     let y = Axis::log("mean overlap δ/d", 1e-5, 0.2);
     let mut of_exponent = chart(&all, "Fig. 5b: mean overlap during 1 s", time_steps(), y, overlap);
-    of_exponent.legend = Corner::UpperLeft;
+    of_exponent.legend = LegendCorner::UpperLeft;
     let x = Axis::linear("Δt (s)", 0.0, 5.5e-3);
     let y = Axis::linear("mean overlap δ/d", 0.0, END_OF_AXIS);
     let mut of_paper = chart(&all, "On the paper's axes", x, y, overlap);
-    of_paper.legend = Corner::UpperLeft;
-    let mut sheet =
-        Sheet { size: (2000, 860), charts: vec![of_exponent, of_paper], caption: Vec::new() };
-    sheet.caption = vec![format!(
+    of_paper.legend = LegendCorner::UpperLeft;
+    let caption = vec![format!(
         "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no mean.",
         rows.seeds().len()
     )];
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (2000, 860), charts: vec![of_exponent, of_paper], caption };
     let cohesive = rows.such_that(|config| config.parameters.bond > Some(0.0));
     let claims = vec![grows(&cohesive), stays_below(&rows), reverses(&cohesive), loses(&cohesive)];
     Ok(Figure { name: "fig5b", sheet, claims, table: None })

@@ -2,7 +2,7 @@
 
 use super::fig8::{OPEN_GAP, PHASE_SECS};
 use super::{Claim, Figure, StudyRunner};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
@@ -86,9 +86,8 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     (near.y.from, near.y.to) = (1.0 - 0.05 * (highest - 1.0), 1.0 + 1.05 * (highest - 1.0));
     let mut far = chart(&runs, "the same on the paper's axes", (0.0, ENDS.0))?;
     (far.y.from, far.y.to) = (0.0, ENDS.1);
-    let mut sheet = Sheet { size: (2000, 860), charts: vec![near, far], caption: Vec::new() };
-    sheet.caption =
-        vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
+    let caption = vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
+    let sheet = Sheet { size: (2000, 860), charts: vec![near, far], caption };
     let claims = vec![swings(&runs), caught(&runs), cluster(&runs), one_velocity(&runs)];
     let claims = claims.into_iter().map(|claim| claim.hanging_on(CHOICES)).collect();
     Ok(Figure { name: "fig8", sheet, claims, table: None })
@@ -97,7 +96,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
 fn chart(runs: &[DiscSeries], title: &str, (from, to): (f64, f64)) -> Result<Chart> {
     let axes = (Axis::linear("t − t_shock (s)", from, to), Axis::linear("x_j / d", 0.98, 1.2));
     let mut chart = Chart::new(format!("Fig. 8: {title}"), axes.0, axes.1);
-    chart.legend = Corner::UpperLeft;
+    chart.legend = LegendCorner::UpperLeft;
     for (index, shown) in SHOWN_SECS.into_iter().enumerate() {
         let run = runs.iter().find(|run| run.step_secs == shown);
         let run = run.ok_or_else(|| Error::value("dt", shown, "part of the study"))?;

@@ -7,7 +7,7 @@ use super::claims::{Claim, SIGNIFICANT, Verdict};
 use super::comparison::PairedSlumps;
 use super::studies::Rows;
 use super::{Figure, StudyRunner, slump_point};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Point, Sheet};
 use crate::config::SceneSource;
 use crate::error::Result;
 use crate::report::ReportTable;
@@ -37,14 +37,13 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         .collect();
     charts.push(against_bond(&of_law[1], &steps));
     charts.push(cost(&of_law, &steps, studies.quick)?);
-    let mut sheet = Sheet { size: (2000, 760), charts, caption: Vec::new() };
-    sheet.caption = vec![format!(
+    let caption = vec![format!(
         "Means over {} initial states of 138 grains with 95 % intervals. Error: mean over the Bonds of the \
          difference of slump from that at Δt = {:e} s; a dot for each larger Δt.",
         rows.seeds().len(),
         steps[0]
     )];
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (2000, 760), charts, caption };
     let named = [(LAWS[0].name(), &of_law[0]), (LAWS[1].name(), &of_law[1])];
     let mut claims = Vec::from(named.map(|(name, rows)| no_dependence(name, rows, &steps)));
     let overlaps = of_law[1].results(|result| result.tally.mean_overlap);
@@ -129,7 +128,7 @@ fn cost(of_law: &[Rows<'_>; 2], steps: &[f64], quick: bool) -> Result<Chart> {
     let x = Axis { ticks: ticks(&[3e-3, 1e-2, 3e-2, 1e-1], left, right), ..x };
     let mut chart =
         Chart::new("Cost at equal error", x, Axis::log("seconds per simulated second", low, high));
-    chart.legend = Corner::UpperRight;
+    chart.legend = LegendCorner::UpperRight;
     for ((name, points), colour) in curves.into_iter().zip([PALETTE[6], PALETTE[1]]) {
         chart.layers.push(Layer::curve(name, points, colour, Look::Dots(6)));
     }
@@ -251,7 +250,7 @@ mod tests {
                     if step == STEPS[0] { 0.0 } else { 0.03 * [1.0, -1.0][seed as usize % 2] };
                 let slump = 0.1 * seed as f64 + shift + scatter;
                 let mut config = Config::default();
-                config.origin.seed = Some(seed);
+                config.source.seed = Some(seed);
                 config.parameters.bond = Some(10.0);
                 config.parameters.time_step_secs = Some(step);
                 runs.push((config, RunResult::of_slump(slump)));

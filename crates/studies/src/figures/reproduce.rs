@@ -54,6 +54,7 @@ pub fn reproduce(
         }
         let mut figure = (info.make)(&studies)?;
         studies.qualify(info.studies, &mut figure.claims);
+        figure.sheet.caption.extend(studies.note(info.studies));
         let quick = if quick { " --quick" } else { "" };
         let command = format!("slump reproduce {} --out figures{quick}", info.name);
         write_sheet(folder, figure.name, &figure.sheet, &command)?;
@@ -153,5 +154,16 @@ impl Report {
             rayon::current_num_threads()
         );
         self.text
+    }
+}
+
+#[cfg(test)]
+mod tmp {
+    #[test]
+    fn tmp_reproduce() {
+        let (Ok(name), Ok(out)) = (std::env::var("TMP_FIG"), std::env::var("TMP_OUT")) else {
+            return;
+        };
+        super::reproduce(&[name], out.as_ref(), true, |_| Ok(())).unwrap();
     }
 }

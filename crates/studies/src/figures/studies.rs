@@ -114,20 +114,16 @@ impl StudyRunner {
         self.folder.join(pass).join(name)
     }
 
-    /// A line for the caption where the pass is quick.
-    pub(super) fn note(&self) -> Vec<String> {
-        if self.quick {
-            vec![
-                "Quick pass: coarser, fewer initial states; run without --quick for the figure."
-                    .into(),
-            ]
-        } else {
-            Vec::new()
-        }
+    /// A line for the caption of a figure of some studies, where one of them has run a quick pass.
+    pub(super) fn note(&self, studies: &[&str]) -> Option<String> {
+        let mut finished = studies.iter().filter_map(|name| self.finished.get(name));
+        finished.any(|(study, _)| study.is_quick_pass).then(|| {
+            "Quick pass: coarser, fewer initial states; run without --quick for the figure.".into()
+        })
     }
 }
 
-/// Runs and what came of them.
+/// Runs and their results.
 pub(super) struct Rows<'a>(pub Vec<(&'a Config, &'a RunResult)>);
 
 impl<'a> Rows<'a> {
@@ -153,7 +149,7 @@ impl<'a> Rows<'a> {
 
     /// Those from an initial state.
     pub(super) fn of_seed(&self, seed: u64) -> Self {
-        self.such_that(|config| config.origin.seed == Some(seed))
+        self.such_that(|config| config.source.seed == Some(seed))
     }
 
     /// Those with a tolerance.

@@ -4,7 +4,7 @@
 use super::comparison::{PairedSlumps, claim_of_size, columns, widest};
 use super::studies::Rows;
 use super::{Figure, StudyRunner};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
 use crate::report::ReportTable;
@@ -134,8 +134,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
          so often."
             .into(),
     ];
-    let mut sheet = Sheet { size: (760 * charts.len().max(2) as u32, 640), charts, caption };
-    sheet.caption.extend(studies.note());
+    let sheet = Sheet { size: (760 * charts.len().max(2) as u32, 640), charts, caption };
     let claims_of = |of_size: &Piles<'_>| {
         let claim = |(_, accuracy): (usize, StepAccuracy)| {
             let how = format!("by {} as by certified ones", accuracy.long());
@@ -159,7 +158,7 @@ fn chart(of_size: &Piles<'_>) -> Chart {
     let reach = all.iter().map(|(_, comparisons)| widest(comparisons)).fold(0.0, f64::max);
     let y = Axis::linear("difference of slump", -1.05 * reach, 1.05 * reach);
     let mut chart = Chart::new(format!("{} grains", of_size.grains), x, y);
-    chart.legend = Corner::LowerLeft;
+    chart.legend = LegendCorner::LowerLeft;
     for (index, &bond) in bonds.iter().enumerate() {
         let here = all.iter().flat_map(|(at, comparisons)| {
             let of_bond = comparisons.iter().filter(|one| one.bond == bond);

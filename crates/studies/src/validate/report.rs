@@ -9,7 +9,7 @@ use super::runs::ExperimentRuns;
 use super::variants::{SolveBudget, StepVariant};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
 use crate::error::{Error, Result};
-use crate::figures::Table;
+use crate::report::ReportTable;
 use crate::solver::Method;
 use crate::statistics::mean;
 
@@ -43,7 +43,7 @@ fn ends(low: f64, high: f64) -> String {
 }
 
 /// Every quantity of every experiment by every variant.
-pub(super) fn table(all: &[ExperimentRuns]) -> Table {
+pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     let mut rows = Vec::new();
     for runs in all {
         for (quantity, verdict) in runs.judged() {
@@ -81,7 +81,7 @@ pub(super) fn table(all: &[ExperimentRuns]) -> Table {
         "wall_secs",
         "share_of_unsolved_steps",
     ];
-    Table { name: "quantities", columns, rows }
+    ReportTable { name: "quantities", columns, rows }
 }
 
 /// The same as JSON: numbers as numbers, and those that do not exist as null.
