@@ -10,7 +10,7 @@
 //! The step then goes on from v⁺ and bounces no more.
 //!
 //! **A pair that meets within the step** bounces in it, with the whole speed u that it has when it
-//! meets, along the normal that it has then (`contact::meeting`). Slowed down to what closes its gap, and
+//! meets, along the normal that it has then (`contact::approach`). Slowed down to what closes its gap, and
 //! left to the next step to bounce, it would have the restitution φρ, φ being the part of the step that
 //! the gap takes: any number from 0 to ρ. An impulse at the moment t moves a grain for what is left of
 //! the step,
