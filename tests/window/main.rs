@@ -34,6 +34,6 @@ mod videos;
 #[path = "../common/probed.rs"]
 #[allow(dead_code, reason = "tests of the command line use more of it")]
 mod probed;
-#[path = "../data/tables.rs"]
+#[path = "../recordings/data/tables.rs"]
 #[allow(dead_code, reason = "tests of recordings use more of it")]
 mod tables;

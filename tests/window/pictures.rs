@@ -1,6 +1,6 @@
 //! What the panels look like at the start, before the first step: what is solved how changes nothing.
 
-#[path = "../golden/compare.rs"]
+#[path = "../pictures/golden/compare.rs"]
 mod compare;
 
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! A simulation in a file: whole, so that it goes on as if it had never been written.
 //!
 //! Left out is what every step makes anew: the step's problem, and what methods keep from one solve to the
-//! next, on which no result depends (`tests/restart.rs` holds all of them to that).
+//! next, on which no result depends (`tests/program/restart/` holds all of them to that).
 
 use std::sync::Arc;
 

@@ -1,0 +1,67 @@
+//! A pile at rest is stepped without a single allocation. Each thread counts its own; so small a pile is not shared out.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use crate::common::{start, take_steps};
+use glam::DVec2;
+use slump::scene::paper_pile;
+use slump::sim::Stepper;
+use slump::world::Boundary;
+
+/// The system's allocator, counting.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+fn allocations() -> u64 {
+    ALLOCATIONS.get()
+}
+
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(allocations() + 1);
+        // SAFETY: as for this function.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as for this function.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.set(allocations() + 1);
+        // SAFETY: as for this function.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_step_at_rest_allocates_nothing() {
+    let before = allocations();
+    let mut scene = paper_pile().expect("the shipped state");
+    assert!(allocations() > before, "allocations are counted");
+    let wall = |side: f64| Boundary::HalfSpace {
+        point: DVec2::new(side * 8.0 * scene.mean_diameter, 0.0),
+        normal: DVec2::new(-side, 0.0),
+    };
+    scene.boundaries = vec![wall(-1.0), wall(1.0)];
+    scene.parameters.bond = 5.0;
+    scene.solver.tolerance = 1e-4;
+    for law in [Stepper::Moreau, Stepper::Range] {
+        scene.stepper = law;
+        let mut simulation = start(&scene);
+        take_steps(&mut simulation, 50);
+        let before = allocations();
+        take_steps(&mut simulation, 500);
+        assert_eq!(allocations() - before, 0, "{law:?}");
+        assert!(simulation.observables().contacts > 138, "the pile stands");
+    }
+}

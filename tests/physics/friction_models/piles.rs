@@ -1,0 +1,158 @@
+//! Piles under every convex model: what is solved is the model, and has one solution.
+
+use rand::RngExt;
+use slump::contact::ContactList;
+use slump::scene::Scene;
+use slump::sim::ProblemVisitor;
+use slump::solver::{
+    BodySystem, ContactSystem, FrictionModel, Kinematics, Memory, Method, Model, SolverSettings,
+    StepProblem, solve,
+};
+use slump::world::{FrictionCone, Parameters, Physics};
+
+use crate::common::natural_map::judge;
+use crate::common::{UNTURNING, parameters, pressed_pile, random, start, take_steps};
+
+pub const CONVEX: [FrictionModel; 3] =
+    [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce];
+
+/// Piles under every convex model, with both cones where the model takes them.
+fn piles(count: usize, bond: f64, speed: f64, dt: f64) -> Vec<Scene> {
+    let mut all = Vec::new();
+    for model in CONVEX {
+        for restitution in [0.0, 0.9] {
+            for cone in FrictionCone::ALL {
+                if model != FrictionModel::Tresca && *cone == FrictionCone::Compressive {
+                    continue;
+                }
+                for physics in [UNTURNING, Physics::FULL] {
+                    let parameters = parameters(bond, dt, restitution, MU_OF_PILES);
+                    let mut pile = pressed_pile(count, speed, 11, parameters);
+                    (pile.physics, pile.parameters.cone) = (physics, *cone);
+                    if !physics.rotation {
+                        pile.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
+                    }
+                    pile.solver.friction_model = model;
+                    (pile.solver.tolerance, pile.solver.max_sweeps) = (1e-11, 300_000);
+                    for method in [Method::Nsgs, Method::InteriorPoint] {
+                        pile.solver.method = method;
+                        all.push(pile.clone());
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+fn what(pile: &Scene) -> String {
+    let SolverSettings { method, friction_model, .. } = pile.solver;
+    let (parameters, turning) = (pile.parameters, pile.physics.rotation);
+    let Parameters { cone, restitution, .. } = parameters;
+    format!("{method}, {friction_model}, {cone}, rho {restitution}, turning {turning}")
+}
+
+#[test]
+fn solved_steps_obey_the_model_as_world_data_show_it() {
+    for pile in piles(30, 2.0, 0.3, 1e-3) {
+        let what = what(&pile);
+        let mut simulation = start(&pile);
+        take_steps(&mut simulation, 2);
+        let (contacts, impulses) =
+            (simulation.contacts().contacts().to_vec(), simulation.contacts().impulses().to_vec());
+        let before = simulation.world().grains.clone();
+        let row = *simulation.step().expect("a finite state");
+        assert!(row.converged, "{what}: {:?} after {} sweeps", row.model_residual, row.sweeps);
+        assert!(row.model_residual.is_some_and(|residual| residual <= 1e-11), "{what}");
+        let mut slid = 0;
+        let judged = judge(&simulation, &before);
+        let now = simulation.contacts();
+        for ((contact, found), impulse) in judged.iter().zip(now.contacts()).zip(now.impulses()) {
+            let p = impulse.normal + contact.cohesion_impulse;
+            let rebound = pile.parameters.restitution * contact.before[0];
+            let (mut w, v) = (contact.after[0] + rebound, contact.after[1]);
+            let scale = contact.normal_mass * 0.05;
+            let small = |value: f64| value.abs() <= 1e-7 * scale;
+            let mass = contact.normal_mass;
+            if pile.solver.friction_model == FrictionModel::Tresca {
+                let then = contacts
+                    .iter()
+                    .position(|old| (old.grain, old.other) == (found.grain, found.other));
+                let Some(then) = then else { continue };
+                let rubbing = match pile.parameters.cone {
+                    FrictionCone::Shifted => impulses[then].normal + contact.cohesion_impulse,
+                    FrictionCone::Compressive => impulses[then].normal,
+                };
+                let bound = MU_OF_PILES * rubbing.max(0.0);
+                assert!(small((-p).max(0.0)) && small(mass * (-w).max(0.0)), "{what}");
+                assert!(small(p.min(mass * w)), "{what}: p {p:e}, w {w:e}");
+                let stuck = impulse.tangential - contact.tangential_mass * v;
+                assert!(small(impulse.tangential - stuck.clamp(-bound, bound)), "{what}");
+                slid += usize::from(mass * v.abs() > 1e-3 * scale);
+            } else {
+                if pile.solver.friction_model == FrictionModel::Desaxce {
+                    w += MU_OF_PILES * contact.before[1].abs();
+                }
+                assert!(small((impulse.tangential.abs() - MU_OF_PILES * p).max(0.0)), "{what}");
+                assert!(
+                    small(mass * (MU_OF_PILES * v.abs() - w).max(0.0)),
+                    "{what}: w {w:e}, v {v:e}"
+                );
+                let work = p * w + impulse.tangential * v;
+                assert!(
+                    work.abs() <= 1e-6 * (p.abs() * w.abs()).max(scale * 0.05),
+                    "{what}: {work:e}"
+                );
+                slid += usize::from(mass * v.abs() > 1e-3 * scale);
+            }
+        }
+        assert!(judged.len() > 20 && slid > 3, "{what}: {} contacts, {slid} slide", judged.len());
+    }
+}
+
+/// μ of [`piles`].
+const MU_OF_PILES: f64 = 0.5;
+
+/// Velocities of the bodies where a problem is solved from impulses at random.
+struct FromRandomStarts<'a>(&'a SolverSettings, u64);
+
+impl ProblemVisitor for FromRandomStarts<'_> {
+    type Output = Vec<f64>;
+
+    fn visit<M: Model>(
+        self,
+        problem: &mut StepProblem<M::Kinematics>,
+        _: &ContactList,
+    ) -> Vec<f64> {
+        let mut random = random(self.1);
+        let mut root_masses = Vec::new();
+        let mut system = BodySystem::<M>::new(problem, &mut root_masses);
+        let mut impulse = || random.random_range(-1.0..1.0) * 0.05;
+        let impulses: Vec<_> = (0..system.len())
+            .map(|contact| [0, 1].map(|_| impulse() * system.root_mass(contact)))
+            .collect();
+        system.write(&impulses);
+        let report = solve::<M>(problem, &mut Memory::default(), self.0);
+        assert!(report.converged, "{report:?}");
+        problem.bodies().iter().flat_map(M::Kinematics::coordinates).collect()
+    }
+}
+
+#[test]
+fn the_velocities_of_a_convex_model_are_the_same_from_any_start() {
+    for pile in piles(25, 20.0, 0.05, 1e-5) {
+        let what = what(&pile);
+        let mut simulation = start(&pile);
+        take_steps(&mut simulation, 3);
+        let settings = pile.solver;
+        let solution = |seed| simulation.next_problem(FromRandomStarts(&settings, seed));
+        let first = solution(0);
+        let fastest = first.iter().fold(0f64, |fastest, speed| fastest.max(speed.abs()));
+        assert!(fastest > 1e-3, "{what}: nothing moves");
+        for seed in 1..10 {
+            for (one, other) in first.iter().zip(solution(seed)) {
+                assert!((one - other).abs() < 1e-8 * fastest, "{what}: {one:e} and {other:e}");
+            }
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! What no measure may hang on: where the pile is, which side it is seen from, and how grains are numbered.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use rand::RngExt;
+use rand::seq::SliceRandom;
+use slump::granular::{Column, Measured, measure};
+use slump::sim::{ContactState, ContactStatus, Moment, OtherBody, Surroundings};
+use slump::world::{Boundary, Disc};
+
+use super::by_hand::{among, disc, discs, lean, touch};
+use crate::common::{fixed, random};
+
+const CASES: u32 = 64;
+const FLOOR: usize = 0;
+
+fn for_random_moments(property: impl Fn(u64, Moment) -> Result<(), TestCaseError>) {
+    let config = Config { cases: CASES, failure_persistence: None, ..Config::default() };
+    let mut runner =
+        TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    let run = |(seed, count)| property(seed, heap(seed, count));
+    let inputs = (any::<u64>(), 1usize..60);
+    runner.run(&inputs, run).unwrap_or_else(|failure| panic!("{failure}"));
+}
+
+/// Discs at random over a floor and some fixed discs, with forces at random where they overlap, one of them lost.
+fn heap(seed: u64, count: usize) -> Moment {
+    let mut random = random(seed);
+    let grains = (0..count).map(|_| {
+        let place = DVec2::new(random.random_range(0.0..6.0), random.random_range(0.5..6.0));
+        let mut grain = disc(place, random.random_range(0.3..0.7));
+        grain.velocity = DVec2::new(random.random_range(-1.0..1.0), random.random_range(-1.0..1.0));
+        grain
+    });
+    let mut heap = discs(grains.collect());
+    let base = (0..4).map(|k| fixed(DVec2::new(2.0 * f64::from(k), -0.2), 0.5)).collect();
+    let floor = Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y };
+    let end = Boundary::Segment { from: DVec2::new(3.0, 3.0), to: DVec2::new(4.0, 4.5) };
+    heap = among(heap, vec![floor, end], base);
+    let mut forces = || [random.random_range(-1.0..3.0), random.random_range(-1.0..1.0)];
+    let overlap = |heap: &Moment, i: usize, j: usize| {
+        let (first, second) = (heap.grains[i], heap.grains[j]);
+        first.position.distance(second.position) < first.radius + second.radius
+    };
+    for i in 0..count {
+        for j in i + 1..count {
+            if overlap(&heap, i, j) {
+                touch(&mut heap, [i, j], forces());
+            }
+        }
+        if heap.grains[i].position.y < 1.0 {
+            lean(&mut heap, i, FLOOR, forces());
+        }
+    }
+    for (index, contact) in heap.contacts.iter_mut().enumerate() {
+        contact.status = [ContactStatus::Slip, ContactStatus::Stick][index % 2];
+    }
+    heap.grains[count / 2].lost = count > 9;
+    heap
+}
+
+/// Every place through one function and every vector through another.
+fn mapped(
+    moment: &Moment,
+    place: impl Fn(DVec2) -> DVec2,
+    vector: impl Fn(DVec2) -> DVec2,
+) -> Moment {
+    let mut mapped = moment.clone();
+    for grain in &mut mapped.grains {
+        grain.position = place(grain.position);
+        grain.velocity = vector(grain.velocity);
+    }
+    for contact in &mut mapped.contacts {
+        contact.normal = vector(contact.normal);
+        contact.branch = vector(contact.branch);
+        contact.point = place(contact.point);
+    }
+    let boundary = |boundary: &Boundary| match *boundary {
+        Boundary::HalfSpace { point, normal } => {
+            Boundary::HalfSpace { point: place(point), normal: vector(normal) }
+        }
+        Boundary::Segment { from, to } => Boundary::Segment { from: place(from), to: place(to) },
+        ref other => panic!("{other:?}"),
+    };
+    let Surroundings { centre_of_attraction, mean_diameter, gravity_magnitude, .. } =
+        *moment.surroundings;
+    let discs = &moment.surroundings.fixed_discs;
+    mapped.surroundings = Arc::new(Surroundings {
+        fixed_discs: discs
+            .iter()
+            .map(|disc| Disc { position: place(disc.position), ..*disc })
+            .collect(),
+        boundaries: moment.surroundings.boundaries.iter().map(boundary).collect(),
+        centre_of_attraction,
+        periodic: None,
+        mean_diameter,
+        gravity_magnitude,
+        moving: Vec::new(),
+    });
+    mapped
+}
+
+/// How the columns of a row change: what each is to be, of what all were.
+type Expected<'a> = &'a dyn Fn(&str, &dyn Fn(&str) -> f64) -> f64;
+
+fn compare<Row>(
+    columns: &'static [Column<Row>],
+    [before, after]: [&Row; 2],
+    expected: Expected,
+) -> Result<(), TestCaseError> {
+    let was = |name: &str| {
+        let column = columns.iter().find(|column| column.name == name);
+        column.expect("a column").value.number(before)
+    };
+    for column in columns {
+        let (found, expected) = (column.value.number(after), expected(column.name, &was));
+        let off = if column.name.ends_with("_direction") {
+            // 0 and 180 are one.
+            (found - expected).to_radians().sin().abs()
+        } else {
+            (found - expected).abs() / expected.abs().max(1.0)
+        };
+        let same = off < 1e-8 || (found.is_nan() && expected.is_nan());
+        prop_assert!(same, "{}: {found} instead of {expected}", column.name);
+    }
+    Ok(())
+}
+
+fn compare_all(
+    before: &Measured,
+    after: &Measured,
+    order: &[usize],
+    expected: Expected,
+) -> Result<(), TestCaseError> {
+    use slump::granular::{GrainMeasures, PileMeasures};
+    compare(PileMeasures::COLUMNS, [&before.pile, &after.pile], expected)?;
+    for (index, grain) in before.grains.iter().enumerate() {
+        compare(GrainMeasures::COLUMNS, [grain, &after.grains[order[index]]], expected)?;
+    }
+    Ok(())
+}
+
+fn as_numbered(moment: &Moment) -> Vec<usize> {
+    (0..moment.grains.len()).collect()
+}
+
+fn is_shear(name: &str) -> bool {
+    name.ends_with("_xy") || name.ends_with("_yx")
+}
+
+#[test]
+fn a_pile_that_is_moved_has_the_same_measures() {
+    for_random_moments(|_, heap| {
+        let by = DVec2::new(30.0, -70.0);
+        let (before, after) = (measure(&heap), measure(&mapped(&heap, |at| at + by, |way| way)));
+        compare_all(&before, &after, &as_numbered(&heap), &|name, was| was(name))?;
+        prop_assert_eq!(before.histograms, after.histograms);
+        Ok(())
+    });
+}
+
+#[test]
+fn in_a_mirror_shear_changes_its_sign() {
+    for_random_moments(|_, heap| {
+        let flip = |at: DVec2| DVec2::new(-at.x, at.y);
+        let mut mirrored = mapped(&heap, flip, flip);
+        mirrored.contacts.iter_mut().for_each(|contact| contact.tangential_force *= -1.0);
+        let (before, after) = (measure(&heap), measure(&mirrored));
+        compare_all(&before, &after, &as_numbered(&heap), &|name, was| match name {
+            _ if is_shear(name) => -was(name),
+            _ if name.ends_with("_direction") => 180.0 - was(name),
+            _ => was(name),
+        })?;
+        let directions = |measured: &Measured| measured.histograms[1].counts.clone();
+        let (mut counts, bins) = (directions(&before), directions(&before).len());
+        counts[1..bins].reverse();
+        prop_assert_eq!(counts, directions(&after));
+        Ok(())
+    });
+}
+
+#[test]
+fn a_quarter_turn_changes_x_for_y() {
+    for_random_moments(|_, heap| {
+        let (before, after) = (measure(&heap), measure(&mapped(&heap, DVec2::perp, DVec2::perp)));
+        compare_all(&before, &after, &as_numbered(&heap), &|name, was| {
+            let (kind, axes) = name.rsplit_once('_').unwrap_or((name, ""));
+            match axes {
+                "xx" => was(&format!("{kind}_yy")),
+                "yy" => was(&format!("{kind}_xx")),
+                "xy" if kind == "stress" => -was("stress_yx"),
+                "xy" | "yx" => -was(&format!("{kind}_xy")),
+                "direction" => was(name) + 90.0,
+                _ => was(name),
+            }
+        })
+    });
+}
+
+#[test]
+fn numbers_of_grains_are_names_alone() {
+    for_random_moments(|seed, heap| {
+        let mut order = as_numbered(&heap);
+        order.shuffle(&mut random(seed));
+        let mut renumbered = heap.clone();
+        for (index, &grain) in heap.grains.iter().enumerate() {
+            renumbered.grains[order[index]] = grain;
+        }
+        for contact in &mut renumbered.contacts {
+            let grain = order[contact.grain as usize] as u32;
+            *contact = match contact.other {
+                OtherBody::Grain(other) => {
+                    by_number(*contact, [grain, order[other as usize] as u32])
+                }
+                other => ContactState { grain, other, ..*contact },
+            };
+        }
+        renumbered.contacts.shuffle(&mut random(seed + 1));
+        let (before, after) = (measure(&heap), measure(&renumbered));
+        compare_all(&before, &after, &order, &|name, was| was(name))?;
+        prop_assert_eq!(before.histograms, after.histograms);
+        Ok(())
+    });
+}
+
+/// A contact of these grains, seen from that of the smaller number.
+fn by_number(contact: ContactState, [grain, other]: [u32; 2]) -> ContactState {
+    if grain < other {
+        return ContactState { grain, other: OtherBody::Grain(other), ..contact };
+    }
+    ContactState {
+        grain: other,
+        other: OtherBody::Grain(grain),
+        normal: -contact.normal,
+        branch: -contact.branch,
+        ..contact
+    }
+}

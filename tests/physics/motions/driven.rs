@@ -1,0 +1,274 @@
+//! Walls that a force drives: they carry it, their momentum and energy balance, and how light they are is no matter.
+
+use super::{goes, level, saved_and_read, straight, through_a_file};
+use crate::common::{
+    LINE, assert_close, fixed, moving, parameters, scene, start, take_steps, tight,
+};
+use glam::DVec2;
+use slump::scene::Scene;
+use slump::sim::{OtherBody, Simulation};
+use slump::solver::{METHODS, Method};
+use slump::world::{Boundary, Drive, Grain, Motion, Periodic, Physics};
+
+/// Methods that know of such walls.
+fn methods() -> impl Iterator<Item = Method> {
+    METHODS.iter().filter(|info| info.takes_drives).map(|info| info.method)
+}
+
+pub(super) fn by_force(direction: DVec2, force: f64, mass: f64) -> Drive {
+    let force = Some(force);
+    Drive { direction, force, pressure: None, width: None, mass, damping: 0.0, speed: 0.0 }
+}
+
+pub(super) fn driven(boundaries: &[usize], drive: Drive) -> Motion {
+    Motion { boundaries: boundaries.to_vec(), drive: Some(drive), ..Motion::default() }
+}
+
+pub(super) fn drive(run: &Simulation) -> &Drive {
+    run.world().motions[0].drive.as_ref().expect("it is driven")
+}
+
+/// The level, and one upside down above.
+fn between(height: f64) -> Vec<Boundary> {
+    vec![level(), Boundary::HalfSpace { point: height * DVec2::Y, normal: DVec2::NEG_Y }]
+}
+
+/// Five columns of logs side by side in a periodic cell, and a piston of that mass on them under 40 N/m.
+pub(super) fn pressed(mass: f64) -> Scene {
+    let (radius, spacing) = (0.01, 0.05);
+    let place = |k: i32| DVec2::new(spacing * f64::from(k / 3), 0.01 + 0.02 * f64::from(k % 3));
+    let grains = (0..15).map(|k| Grain::at_rest(place(k), radius)).collect();
+    let gravity = -9.8 * DVec2::Y;
+    let mut scene = scene(Physics::FULL, gravity, parameters(0.0, 1e-3, 0.0, 0.5), grains);
+    scene.boundaries = between(0.06);
+    // What touches at the start touches in the first step.
+    scene.gap_tolerance = 1e-8;
+    scene.periodic = Some(Periodic::along_x([-0.025, 0.225]));
+    let pressure = Drive { force: None, pressure: Some(40.0), ..by_force(DVec2::NEG_Y, 0.0, mass) };
+    scene.motions = vec![driven(&[1], pressure)];
+    scene
+}
+
+/// Σ N of the contacts of a boundary, N.
+pub(super) fn carried(run: &Simulation, boundary: u32) -> f64 {
+    let contacts = run.moment().contacts.into_iter();
+    let of_it = contacts.filter(|contact| contact.other == OtherBody::Boundary(boundary));
+    of_it.map(|contact| contact.normal_force).sum()
+}
+
+#[test]
+fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
+    for method in methods() {
+        // On several columns a light wall's load goes from one to the other by its share of the mass a sweep.
+        for (mass_ratio, grains) in [(1e-6, 3), (0.1, 15), (1.0, 15), (1e4, 15)] {
+            // What treats all contacts at once does not get a heavy wall's push through light columns in time.
+            let sweeps = [Method::Nsgs, Method::Nncg, Method::Auto].contains(&method);
+            if mass_ratio > 1.0 && !sweeps {
+                continue;
+            }
+            let mut scene = pressed(1.0);
+            scene.grains.truncate(grains);
+            let of_grain = std::f64::consts::PI * 1e-4;
+            scene.motions[0].drive.as_mut().expect("a drive").mass = mass_ratio * of_grain;
+            (scene.solver.method, scene.solver.tolerance) = (method, 1e-10);
+            let mut run = start(&through_a_file(&scene));
+            take_steps(&mut run, 40);
+            let what = format!("{method}, {mass_ratio}");
+            assert!(run.observables().converged, "{what}: {:?}", run.observables());
+            assert_close(carried(&run, 1), 40.0 * 0.25, 1e-8, &what);
+            let weight = grains as f64 * of_grain * 9.8;
+            assert_close(carried(&run, 0), 40.0 * 0.25 + weight, 1e-8, &what);
+            // Its speed is what the solver's tolerance leaves of F Δt/M.
+            let left = 1e-10 * 10.0 * 1e-3 / (mass_ratio * of_grain);
+            assert!(drive(&run).speed.abs() < 1e-9 + left, "{what}: {:?}", drive(&run));
+        }
+    }
+}
+
+#[test]
+fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
+    let grain = Grain::at_rest(-10.0 * DVec2::Y, 0.1);
+    let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
+    scene.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::NEG_Y }];
+    scene.motions = vec![driven(&[0], by_force(DVec2::Y, 3.0, 2.0))];
+    let mut run = start(&scene);
+    take_steps(&mut run, 100);
+    assert_close(drive(&run).speed, 0.15, 1e-12, "F t/M");
+    let Boundary::HalfSpace { point, .. } = run.world().boundaries[0] else {
+        panic!("it stays one")
+    };
+    // Σ Δt V over steps, the first of which ends with V = FΔt/M.
+    assert_close(point.y, 0.5 * 1.5 * 0.1 * 0.101, 1e-12, "the way");
+    scene.motions[0].drive.as_mut().expect("a drive").damping = 60.0;
+    let mut run = start(&scene);
+    take_steps(&mut run, 1000);
+    assert_close(drive(&run).speed, 3.0 / 60.0, 1e-9, "F/c");
+}
+
+#[test]
+fn a_grain_that_hits_a_wall_of_a_mass_gets_the_impulse_of_both_masses() {
+    let (radius, mass) = (0.1, 0.7);
+    let of_grain = std::f64::consts::PI * radius * radius;
+    for method in methods() {
+        for restitution in [0.0, 0.5, 1.0] {
+            let parameters = parameters(0.0, 1e-4, restitution, 0.0);
+            let grain = moving(DVec2::new(0.0, 0.10001), radius, -2.0 * DVec2::Y);
+            let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters, vec![grain]);
+            scene.solver.method = method;
+            // A disc that goes along y alone, hit askew: its guide takes what is across.
+            let normal = DVec2::new(0.6, 0.8);
+            scene.fixed_discs = vec![fixed(scene.grains[0].position - 0.2 * normal, 0.1)];
+            let disc = by_force(DVec2::Y, 0.0, mass);
+            scene.motions =
+                vec![Motion { fixed_discs: vec![0], drive: Some(disc), ..Motion::default() }];
+            let mut run = start(&scene);
+            take_steps(&mut run, 3);
+            // 1/m_eff = 1/m + n_y²/M; the approach is 2 n_y.
+            let effective = 1.0 / (1.0 / of_grain + 0.64 / mass);
+            let impulse = (1.0 + restitution) * effective * 1.6;
+            let what = format!("{method}, {restitution}");
+            let expected = -2.0 * DVec2::Y + impulse / of_grain * normal;
+            let found = run.world().grains.velocities[0];
+            // The way of the first step turns the normal.
+            assert!(found.distance(expected) < 1e-2, "{what}: {found} {expected}");
+            let momentum = of_grain * found.y + mass * drive(&run).speed;
+            assert_close(momentum, -2.0 * of_grain, 1e-12, &what);
+            let energy = 0.5 * of_grain * found.length_squared() + drive(&run).kinetic_energy();
+            if restitution == 1.0 {
+                assert_close(energy, 2.0 * of_grain, 1e-12, &what);
+            }
+        }
+    }
+}
+
+#[test]
+fn on_a_line_a_driven_wall_is_as_good_as_a_bead_of_its_mass() {
+    let radius = 0.1;
+    let mass = std::f64::consts::PI * radius * radius;
+    let beads = |count: i32| -> Vec<Grain> {
+        let mut beads: Vec<Grain> =
+            (0..count).map(|k| Grain::at_rest(0.21 * f64::from(k) * DVec2::X, radius)).collect();
+        beads[0].velocity = DVec2::X;
+        beads
+    };
+    for method in methods() {
+        let of = |grains| {
+            let mut scene = scene(LINE, DVec2::ZERO, parameters(0.0, 1e-3, 0.7, 0.0), grains);
+            scene.solver.method = method;
+            scene
+        };
+        let mut all = start(&of(beads(5)));
+        let mut walled = of(beads(4));
+        let point = (0.84 - radius) * DVec2::X;
+        walled.boundaries = vec![Boundary::HalfSpace { point, normal: DVec2::NEG_X }];
+        walled.motions = vec![driven(&[0], by_force(DVec2::X, 0.0, mass))];
+        let mut walled = start(&walled);
+        take_steps(&mut all, 400);
+        take_steps(&mut walled, 400);
+        let speeds = &all.world().grains.velocities;
+        assert!(speeds[4].x > 0.1, "{speeds:?}");
+        assert_close(drive(&walled).speed, speeds[4].x, 1e-9, &format!("{method}"));
+        for (one, other) in speeds.iter().zip(&walled.world().grains.velocities) {
+            assert!((one.x - other.x).abs() < 1e-9, "{method}: {one} {other}");
+        }
+    }
+}
+
+/// Grains between a level and a rough plate that is drawn along x and pressed down by a force.
+fn sheared(mass: f64) -> Scene {
+    let grains = (0..24).map(|k| {
+        let place = DVec2::new(0.011 * f64::from(k % 6), 0.0051 + 0.0101 * f64::from(k / 6));
+        Grain::at_rest(place, 0.005 * (0.9 + 0.1 * (0.618 * f64::from(k)).fract()))
+    });
+    let mut scene =
+        scene(Physics::FULL, -9.8 * DVec2::Y, parameters(0.0, 5e-4, 0.3, 0.5), grains.collect());
+    scene.boundaries = vec![level()];
+    scene.fixed_discs =
+        (0..6).map(|k| fixed(DVec2::new(0.011 * f64::from(k), 0.046), 0.005)).collect();
+    scene.periodic = Some(Periodic::along_x([-0.0055, 0.0605]));
+    let drive = Drive { damping: 0.2, ..by_force(DVec2::NEG_Y, 2.0, mass) };
+    let course = Some(straight(0.1 * DVec2::X));
+    scene.motions = vec![Motion {
+        fixed_discs: (0..6).collect(),
+        course,
+        drive: Some(drive),
+        ..Motion::default()
+    }];
+    scene
+}
+
+#[test]
+fn energy_and_momentum_of_a_driven_wall_balance_in_every_step() {
+    for method in methods() {
+        for mass in [1e-4, 0.05] {
+            let mut scene = sheared(mass);
+            (scene.solver.method, scene.solver.tolerance) = (method, 1e-6);
+            scene.solver.max_sweeps = 500;
+            // The level takes part in no wall's work, and the plate's along x is not the drive's.
+            let mut run = start(&scene);
+            let (mut turned, mut moved) = (0.0, 0f64);
+            for step in 0..120 {
+                let before = drive(&run).clone();
+                take_steps(&mut run, 1);
+                let (now, observables) = (drive(&run), run.observables());
+                let secs = scene.parameters.time_step_secs;
+                let mut push = DVec2::ZERO;
+                for contact in &run.moment().contacts {
+                    if matches!(contact.other, OtherBody::FixedDisc(_)) {
+                        push -= contact.force();
+                    }
+                }
+                let along = push.dot(DVec2::NEG_Y);
+                let what = format!("{method}, {mass} kg, step {step}");
+                let change = mass * (now.speed - before.speed);
+                let found = secs * (2.0 - 0.2 * now.speed + along);
+                assert!((change - found).abs() < 1e-12, "{what}: {change} {found} N s");
+                let mean = 0.5 * (now.speed + before.speed);
+                let by_walls = -secs * (along * mean + push.x * 0.1);
+                let off = (observables.wall_work - by_walls).abs();
+                assert!(off < 1e-12, "{what}: {off} J of {by_walls}");
+                let energy = now.kinetic_energy() - before.kinetic_energy();
+                let given = secs * (2.0 - 0.2 * now.speed) * mean + secs * along * mean;
+                assert!((energy - given).abs() < 1e-12, "{what}: {energy} {given} J");
+                turned += by_walls.abs();
+                moved = moved.max(now.speed.abs());
+            }
+            assert!(turned > 1e-4 && moved > 1e-2, "{method}: {turned} J, {moved} m/s");
+        }
+    }
+}
+
+#[test]
+fn a_run_with_a_driven_wall_goes_on_from_a_file_bit_for_bit() {
+    let scene = through_a_file(&sheared(0.01));
+    let mut run = start(&scene);
+    take_steps(&mut run, 50);
+    let read = saved_and_read(&scene, &run);
+    assert_eq!(read.as_start().motions, run.world().motions, "a new start takes its speed along");
+    let mut read = read.simulation;
+    take_steps(&mut run, 50);
+    take_steps(&mut read, 50);
+    assert_eq!(run.world(), read.world());
+    assert!(drive(&run).speed != 0.0);
+}
+
+#[test]
+fn a_motion_of_another_wall_stays_what_it_was() {
+    // A driven wall that nothing touches changes no bit of a scene.
+    let grain = |x: f64| moving(DVec2::new(x, 0.02), 0.01, DVec2::new(0.3, -0.2));
+    let mut scene = scene(
+        Physics::FULL,
+        -9.8 * DVec2::Y,
+        parameters(0.0, 1e-3, 0.4, 0.5),
+        vec![grain(0.0), grain(0.021)],
+    );
+    scene.solver = tight();
+    scene.boundaries = between(5.0);
+    scene.motions = vec![goes(&[0], straight(DVec2::new(0.1, 0.02)))];
+    let mut alone = start(&scene);
+    scene.motions.push(driven(&[1], by_force(DVec2::Y, 1.0, 1.0)));
+    let mut with = start(&scene);
+    take_steps(&mut alone, 200);
+    take_steps(&mut with, 200);
+    assert_eq!(alone.world().grains, with.world().grains);
+}

@@ -1,0 +1,229 @@
+//! The same run is the same, bit for bit; and physics does not depend on how a scene is written.
+
+use crate::common::{
+    G, SMOOTH, assert_close, bits, every_way, fixed, moving, parameters, pressed_pile, scene,
+    start, take_steps, tight, to_residual,
+};
+use glam::DVec2;
+use slump::scene::{Scene, paper_pile};
+use slump::sim::Simulation;
+use slump::solver::{Method, SolverSettings};
+use slump::world::{Disc, Grain, Physics};
+
+fn collapse() -> Scene {
+    let mut scene = paper_pile().expect("the shipped state");
+    scene.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
+    scene.solver.tolerance = 1e-3;
+    scene
+}
+
+fn run(scene: &Scene, steps: usize) -> Simulation {
+    let mut simulation = start(scene);
+    take_steps(&mut simulation, steps);
+    simulation
+}
+
+#[test]
+fn a_run_repeats_bitwise_alone_and_in_pools_of_threads() {
+    let first = run(&collapse(), 200);
+    assert!(first.observables().slump > 0.02, "the pile has moved");
+    let again = run(&collapse(), 200);
+    assert!(bits(&first) == bits(&again));
+    assert_eq!(first.observables(), again.observables());
+    for threads in [1, 4] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let runs: Vec<Simulation> = pool.install(|| {
+            use rayon::prelude::*;
+            (0..3).into_par_iter().map(|_| run(&collapse(), 200)).collect()
+        });
+        for inside in runs {
+            assert!(bits(&first) == bits(&inside), "{threads} threads");
+            assert_eq!(first.observables(), inside.observables(), "{threads} threads");
+        }
+    }
+}
+
+#[test]
+fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
+    // Whoever came first has made the pool; on a machine with one core there is nothing to be shared out.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(3).build_global();
+    assert!(rayon::current_num_threads() > 1, "several threads");
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    // Some touch, others come near: a lattice whose discs go this way and that.
+    let at = |k: usize| {
+        let [column, row] = [k % 110, k / 110].map(|number| number as f64);
+        let shift = 0.05 * DVec2::new((k as f64).sin(), (1.7 * k as f64).cos());
+        let velocity = 0.02 * DVec2::new((3.1 * k as f64).cos(), (2.3 * k as f64).sin());
+        moving(0.01 * (DVec2::new(column + 0.5 * row, 0.87 * row) + shift), 0.005, velocity)
+    };
+    for (stepper, method) in every_way() {
+        let parameters = parameters(20.0, 1e-3, 0.3, 0.5);
+        let mut scene =
+            scene(Physics::FULL, -G * DVec2::Y, parameters, (0..110 * 160).map(at).collect());
+        (scene.stepper, scene.solver.method, scene.solver.max_sweeps) = (stepper, method, 3);
+        // What a direct method does is its own; three steps of it would take the time of all the others.
+        if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {
+            continue;
+        }
+        let shared = run(&scene, 3);
+        let by_one = alone.install(|| run(&scene, 3));
+        let what = format!("{stepper} {}", method.name());
+        assert!(
+            shared.contacts().contacts().len() > 9_000,
+            "{what}: contacts of several stretches"
+        );
+        assert_eq!(shared.contacts().contacts(), by_one.contacts().contacts(), "{what}");
+        assert_eq!(shared.contacts().impulses(), by_one.contacts().impulses(), "{what}");
+        assert!(bits(&shared) == bits(&by_one), "{what}");
+        assert_eq!(shared.observables(), by_one.observables(), "{what}");
+    }
+}
+
+#[test]
+fn a_clone_goes_on_as_the_original_does() {
+    // Steps 50 … 250 build the candidate list anew at times that depend on the past.
+    let mut original = run(&collapse(), 50);
+    let mut clone = original.clone();
+    take_steps(&mut original, 200);
+    take_steps(&mut clone, 200);
+    assert!(bits(&original) == bits(&clone));
+    assert_eq!(original.contacts().impulses(), clone.contacts().impulses());
+    assert_eq!(original.observables(), clone.observables());
+}
+
+/// A pile with overlaps, solved far enough that only the scene's symmetry decides.
+fn pressed(bond: f64) -> Scene {
+    let mut scene = pressed_pile(40, 0.05, 11, parameters(bond, 1e-3, 0.3, 0.4));
+    scene.solver.max_sweeps = 200;
+    scene
+}
+
+fn largest_distance(a: &[DVec2], b: &[DVec2], map: impl Fn(DVec2) -> DVec2) -> f64 {
+    a.iter().zip(b).map(|(&a, &b)| map(a).distance(b)).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_moved_scene_moves_alike() {
+    let shift = DVec2::new(1.25, -0.7);
+    for bond in [0.0, 20.0] {
+        let here = pressed(bond);
+        let mut there = here.clone();
+        there.grains.iter_mut().for_each(|grain| grain.position += shift);
+        there.fixed_discs.iter_mut().for_each(|disc| disc.position += shift);
+        // A few steps: a pile is chaotic, and roundings grow.
+        let (here, there) = (run(&here, 5), run(&there, 5));
+        let (a, b) = (&here.world().grains, &there.world().grains);
+        assert!(here.observables().contacts > 60, "{}", here.observables().contacts);
+        assert!(here.observables().kinetic_energy > 1e-7, "{}", here.observables().kinetic_energy);
+        assert!(largest_distance(&a.velocities, &b.velocities, |v| v) < 1e-11);
+        assert!(largest_distance(&a.positions, &b.positions, |x| x + shift) < 1e-13);
+        assert_eq!(here.observables().contacts, there.observables().contacts);
+    }
+}
+
+#[test]
+fn a_mirrored_scene_moves_mirrored() {
+    let mirror = |vector: DVec2| DVec2::new(-vector.x, vector.y);
+    for bond in [0.0, 20.0] {
+        let mut scene = pressed(bond);
+        let right = run(&scene, 30);
+        for grain in &mut scene.grains {
+            grain.position = mirror(grain.position);
+            grain.velocity = mirror(grain.velocity);
+            grain.angular_velocity = -grain.angular_velocity;
+        }
+        scene.fixed_discs.iter_mut().for_each(|disc: &mut Disc| {
+            disc.position = mirror(disc.position);
+        });
+        let left = run(&scene, 30);
+        let (a, b) = (&right.world().grains, &left.world().grains);
+        // No operation of a step knows left from right, so not even roundings differ.
+        assert_eq!(largest_distance(&a.positions, &b.positions, mirror), 0.0);
+        assert_eq!(largest_distance(&a.velocities, &b.velocities, mirror), 0.0);
+        assert!(a.angles.iter().zip(&b.angles).all(|(a, b)| a == &-b));
+        assert!(a.angles.iter().any(|angle| angle.abs() > 1e-3), "they turned");
+    }
+}
+
+#[test]
+fn renumbered_grains_move_alike_where_the_solution_is_unique() {
+    // Without friction the velocities that solve a step are unique, so the order of the sweep, which
+    // follows the numbering, may change nothing but what the tolerance leaves.
+    for bond in [0.0, 20.0] {
+        let mut scene = Scene { physics: SMOOTH, solver: tight(), ..pressed(bond) };
+        scene.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
+        let forth = run(&scene, 5);
+        assert!(forth.observables().converged && forth.observables().contacts > 60);
+        scene.grains.reverse();
+        scene.fixed_discs.reverse();
+        let back = run(&scene, 5);
+        let mut velocities = back.world().grains.velocities.clone();
+        velocities.reverse();
+        let off = largest_distance(&forth.world().grains.velocities, &velocities, |v| v);
+        assert!(off < 1e-9, "off by {off:e}");
+        assert!(off > 0.0, "another order of the sweep was taken");
+    }
+}
+
+/// A chain of 12 that hangs: dozens of sweeps from a cold start, one from the right impulses.
+fn chain() -> Scene {
+    let radius = 0.05;
+    let place = |k: usize| -DVec2::Y * (k as f64 * (2.0 * radius - 1e-9));
+    Scene {
+        fixed_discs: vec![fixed(DVec2::ZERO, radius)],
+        solver: to_residual(1e-11),
+        ..scene(
+            Physics::FULL,
+            -G * DVec2::Y,
+            parameters(50.0, 1e-3, 0.1, 0.5),
+            (1..=12).map(|k| Grain::at_rest(place(k), radius)).collect(),
+        )
+    }
+}
+
+/// Sweeps of the next step to a residual of 1e-8.
+fn sweeps_of_next_step(simulation: &mut Simulation, warm_start: bool) -> u32 {
+    let settings = SolverSettings { warm_start, ..to_residual(1e-8) };
+    simulation.set_solver(settings).expect("proper settings");
+    simulation.step().expect("a finite state");
+    simulation.observables().sweeps
+}
+
+#[test]
+fn a_contact_that_goes_leaves_the_others_their_impulses() {
+    // A disc in front of the chain in the order of contacts falls off the fixed disc.
+    let mut scene = chain();
+    let place = DVec2::new(0.1 - 1e-9, 0.0);
+    let velocity = DVec2::new(3.0, 0.0);
+    scene.grains.insert(0, Grain { velocity, ..Grain::at_rest(place, 0.05) });
+    let mut simulation = start(&scene);
+    take_steps(&mut simulation, 1);
+    assert_eq!(simulation.observables().contacts, 13);
+    let next = sweeps_of_next_step(&mut simulation.clone(), false);
+    assert!(next > 20, "a cold start is dear: {next} sweeps");
+    assert_eq!(sweeps_of_next_step(&mut simulation, true), 1);
+    assert_eq!(simulation.observables().contacts, 12, "one has gone");
+}
+
+#[test]
+fn a_change_of_the_time_step_leaves_the_forces() {
+    let mut simulation = start(&chain());
+    take_steps(&mut simulation, 10);
+    assert!(sweeps_of_next_step(&mut simulation.clone(), false) > 20, "a cold start is dear");
+    let forces = |simulation: &Simulation| -> Vec<f64> {
+        simulation.snapshot().contacts.iter().map(|contact| contact.normal_force).collect()
+    };
+    let before = forces(&simulation);
+    for dt in [5e-4, 4e-3, 1e-3] {
+        let mut parameters = *simulation.parameters();
+        parameters.time_step_secs = dt;
+        simulation.set_parameters(parameters).expect("proper parameters");
+        for (now, then) in forces(&simulation).iter().zip(&before) {
+            assert_close(*now, *then, 1e-7, "a force between two steps");
+        }
+        assert_eq!(sweeps_of_next_step(&mut simulation, true), 1, "Δt {dt}");
+        for (now, then) in forces(&simulation).iter().zip(&before) {
+            assert_close(*now, *then, 1e-7, "a force");
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What the registries say of their rows is so: a setting that is said to be read changes what happens.
+
+use std::path::Path;
+
+use crate::common::{parameters, pressed_pile};
+use slump::config::read_scene;
+use slump::scene::Scene;
+use slump::setting::{About, Kind, Value};
+use slump::sim::{Observables, REMEDIES, Settings, Stepper};
+
+/// Enough for grains to meet, and for a step to start from the impulses of another.
+const STEPS: usize = 6;
+
+/// A pile that meets and bounces, with and without cohesion, and one that is not solved to the end.
+fn piles() -> [Scene; 3] {
+    let pile = |bond| pressed_pile(12, 0.5, 7, parameters(bond, 1e-3, 0.3, 0.5));
+    let mut unsolved = pile(0.0);
+    unsolved.solver.max_sweeps = 3;
+    [pile(20.0), pile(0.0), unsolved]
+}
+
+/// Values of a setting, of which some may be refused.
+fn values(about: &About) -> Vec<Value> {
+    match about.kind {
+        Kind::Number => [1e-4, 1e-3, 0.01, 0.1, 0.9, 2.0, 50.0].map(Value::Number).to_vec(),
+        Kind::Count => [1, 2, 7].map(Value::Count).to_vec(),
+        Kind::Switch => [true, false].map(Value::Switch).to_vec(),
+        Kind::Word(words) => words.iter().map(|word| Value::Word(word.name)).collect(),
+    }
+}
+
+/// All that happens, to the last bit; nothing where the settings are refused.
+fn course(pile: &Scene, settings: Settings) -> Option<String> {
+    let mut scene = pile.clone();
+    scene.set_settings(settings);
+    let mut simulation = scene.simulation().ok()?;
+    for _ in 0..STEPS {
+        simulation.step().ok()?;
+    }
+    let grains = &simulation.world().grains;
+    Some(format!("{:?}{:?}{:?}", grains.positions, grains.velocities, simulation.observables()))
+}
+
+/// Whether a setting changes anything, or can only be what it is.
+fn matters(about: &About, stepper: Stepper) -> bool {
+    let mut taken = 0;
+    for pile in piles() {
+        let settings = Settings { stepper, ..pile.settings() };
+        let before = course(&pile, settings).expect("sound settings");
+        for value in values(about) {
+            let mut changed = settings;
+            assert!(changed.set(about.name, value), "{} as {value:?}", about.name);
+            if changed == settings {
+                continue;
+            }
+            let Some(after) = course(&pile, changed) else { continue };
+            taken += 1;
+            if after != before {
+                return true;
+            }
+        }
+    }
+    taken == 0
+}
+
+#[test]
+fn a_setting_that_a_stepper_reads_and_a_remedy_that_it_takes_change_its_steps() {
+    for &stepper in Stepper::ALL {
+        let takes =
+            |name| REMEDIES.iter().any(|row| row.name == name && row.taken_by.contains(&stepper));
+        for about in
+            Settings::about().filter(|about| stepper.reads(about.name) || takes(about.name))
+        {
+            assert!(matters(about, stepper), "{stepper}: {} changes nothing", about.name);
+        }
+    }
+}
+
+#[test]
+fn scene_files_that_do_not_know_the_newest_settings_are_read() {
+    let hourglass = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/hourglass.toml");
+    let text = std::fs::read_to_string(&hourglass).expect("it is there");
+    assert!(!text.contains("substeps") && !text.contains("remedies"), "it is older than they are");
+    read_scene(&hourglass).expect("a sound scene");
+}
+
+#[test]
+fn a_stepper_has_the_observables_that_it_says() {
+    for &stepper in Stepper::ALL {
+        let [mut pile, ..] = piles();
+        pile.stepper = stepper;
+        let mut simulation = pile.simulation().expect("a sound scene");
+        simulation.step().expect("a finite state");
+        let columns = |row: &Observables| match serde_json::to_value(row) {
+            Ok(serde_json::Value::Object(columns)) => columns,
+            other => panic!("{other:?}"),
+        };
+        let of_all = columns(&Observables::default());
+        let mut more = columns(simulation.observables());
+        more.retain(|column, _| !of_all.contains_key(column));
+        let said = stepper.info().observables;
+        let has_all = said.iter().all(|column| more.contains_key(*column));
+        assert!(has_all && said.len() == more.len(), "{stepper}: {more:?}");
+    }
+}

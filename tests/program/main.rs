@@ -1,0 +1,18 @@
+//! The program from outside: options, refusals, files, runs that are stopped, saved and gone on with, studies.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/probed.rs"]
+mod probed;
+#[path = "../common/tested.rs"]
+mod tested;
+
+mod command_line;
+mod house;
+mod limits;
+mod output_places;
+mod restart;
+mod scene_errors;
+mod stopped_runs;
+mod study_sweep;
+mod video;

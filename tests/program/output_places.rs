@@ -1,0 +1,251 @@
+//! Where results go: links, pipes, devices, streams that are closed, names that are not UTF-8.
+#![cfg(unix)]
+
+use std::ffi::{OsStr, OsString};
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::{FileTypeExt, PermissionsExt};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use tempfile::TempDir;
+
+const PROBLEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/problems/bond_0.json");
+
+fn slump() -> Command {
+    Command::new(crate::tested::program())
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+/// Has a solution written to `out`.
+fn solve_to(out: &Path) -> Output {
+    let mut command = slump();
+    command.args(["problem", "solve", PROBLEM, "--out"]).arg(out);
+    command.output().expect("the program starts")
+}
+
+fn said(output: &Output) -> String {
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!said.contains("panicked"), "{said}");
+    said
+}
+
+fn is_solution(bytes: &[u8]) -> bool {
+    serde_json::from_slice::<serde_json::Value>(bytes).is_ok_and(|it| it["converged"] == true)
+}
+
+#[test]
+fn a_link_is_followed_and_stays() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::create_dir(at("far")).expect("a folder");
+    std::fs::write(at("far/old.json"), "old").expect("a file");
+    let link = |to: &str, name: &str| std::os::unix::fs::symlink(to, at(name)).expect("a link");
+    link("far/old.json", "to-file");
+    link("to-file", "to-link");
+    link("far/new.json", "to-nothing");
+    for (name, target) in
+        [("to-file", "far/old.json"), ("to-link", "far/old.json"), ("to-nothing", "far/new.json")]
+    {
+        assert!(solve_to(&at(name)).status.success());
+        assert!(at(name).symlink_metadata().expect("a link").is_symlink(), "{name} stays a link");
+        assert!(is_solution(&std::fs::read(at(target)).expect("a file")), "{target}");
+        std::fs::write(at("far/old.json"), "old").expect("a file");
+    }
+    link("round-b", "round-a");
+    link("round-a", "round-b");
+    let output = solve_to(&at("round-a"));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("leads back to itself"));
+}
+
+#[test]
+fn a_pipe_and_a_device_are_written_to_and_stay() {
+    let folder = folder();
+    let pipe = folder.path().join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    // Where nobody opens the pipe, the reader is not to wait for ever.
+    let reader = Command::new("timeout")
+        .args(["20", "cat"])
+        .arg(&pipe)
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("cat");
+    let output = solve_to(&pipe);
+    assert!(pipe.symlink_metadata().expect("a pipe").file_type().is_fifo(), "it stays a pipe");
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(is_solution(&reader.wait_with_output().expect("cat").stdout));
+
+    // A link, so that a program that replaces what is there does no harm to the system.
+    let full = folder.path().join("full");
+    std::os::unix::fs::symlink("/dev/full", &full).expect("a link");
+    let output = solve_to(&full);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("No space left"), "{}", said(&output));
+    assert!(full.symlink_metadata().expect("a link").is_symlink());
+}
+
+#[test]
+fn permissions_follow_the_umask_or_what_was_there() {
+    let folder = folder();
+    let mode = |path: &Path| path.metadata().expect("a file").permissions().mode() & 0o777;
+    for (mask, expected) in [("077", 0o600), ("027", 0o640), ("022", 0o644), ("000", 0o666)] {
+        let out = folder.path().join(mask);
+        let mut masked = Command::new("sh");
+        masked.args(["-c", &format!("umask {mask}; exec \"$@\""), "sh"]).arg(slump().get_program());
+        masked.args(["problem", "solve", PROBLEM, "--out"]).arg(&out).stdout(Stdio::null());
+        assert!(masked.status().expect("sh").success());
+        assert_eq!(mode(&out), expected, "umask {mask}");
+    }
+    let private = folder.path().join("private");
+    std::fs::write(&private, "old").expect("a file");
+    std::fs::set_permissions(&private, PermissionsExt::from_mode(0o600)).expect("mode");
+    assert!(solve_to(&private).status.success());
+    assert_eq!(mode(&private), 0o600);
+    assert!(is_solution(&std::fs::read(&private).expect("a file")));
+}
+
+/// Runs to the end, or fails the test after a while that is far less than the work would take.
+fn at_once(arguments: &[&str], out: &Path) -> Output {
+    let mut command = assert_cmd::Command::from_std(slump());
+    command.args(arguments).arg(out).timeout(Duration::from_secs(10)).output().expect("it starts")
+}
+
+#[test]
+fn where_nothing_can_be_written_is_told_before_the_work() {
+    let folder = folder();
+    let kept = folder.path().join("kept");
+    std::fs::write(&kept, "mine").expect("a file");
+    std::fs::set_permissions(&kept, PermissionsExt::from_mode(0o444)).expect("mode");
+    // Each would take minutes.
+    let works: [&[&str]; 5] = [
+        &["generate", "--grains", "5000", "--out"],
+        &["problem", "dump", "--at", "1000", "--dt", "1e-4", "--out"],
+        &["--headless", "--duration", "1000", "--dt", "1e-4", "--renderer", "cpu", "--gif"],
+        &["stability", "--table"],
+        &["problem", "solve", PROBLEM, "--repeat", "1000000", "--out"],
+    ];
+    for work in works {
+        let places = [
+            (folder.path().to_owned(), "must be a file, and this is a folder"),
+            (kept.clone(), "must be a file that can be written to, and this one is read-only"),
+            (kept.join("inside"), "must be a file in a folder that can be written to ("),
+        ];
+        for (place, reason) in places {
+            let output = at_once(work, &place);
+            let said = said(&output);
+            assert_eq!(output.status.code(), Some(2), "{work:?} {}: {said}", place.display());
+            assert!(said.contains(reason) && said.lines().count() == 1, "{work:?}: {said}");
+            let option = work.last().expect("an option").trim_start_matches('-');
+            let named = format!("slump: {option} is {}, but ", place.display());
+            assert!(said.starts_with(&named), "{work:?}: {said}");
+        }
+    }
+    let study = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/studies/cradle.toml");
+    let works: [&[&str]; 5] = [
+        &["--headless", "--duration", "1000", "--renderer", "cpu", "--frames"],
+        &["sweep", study, "--out"],
+        &["reproduce", "all", "--out"],
+        &["chart", "--out"],
+        &["stability", "--out"],
+    ];
+    for work in works {
+        for place in [kept.clone(), kept.join("inside")] {
+            let output = at_once(work, &place);
+            let option = work.last().expect("an option").trim_start_matches('-');
+            let sentence = format!(
+                "slump: {option} is {}, but must be a folder that can be written to (",
+                place.display()
+            );
+            assert_eq!(output.status.code(), Some(2), "{work:?}");
+            assert!(said(&output).starts_with(&sentence), "{work:?}: {}", said(&output));
+        }
+    }
+    assert_eq!(std::fs::read_to_string(&kept).expect("a file"), "mine");
+}
+
+#[test]
+fn a_full_or_closed_stdout_is_no_panic() {
+    let printing: [&[&str]; 5] = [
+        &["--help"],
+        &["list"],
+        &["scene", "--scene", "cradle"],
+        &["problem", "solve", PROBLEM],
+        &["sweep", "count", "assets/studies/cradle.toml"],
+    ];
+    for arguments in printing {
+        let run = |stdout: Stdio| {
+            let mut command = slump();
+            command.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
+            command.stdout(stdout).stderr(Stdio::piped());
+            command.spawn().and_then(std::process::Child::wait_with_output).expect("it starts")
+        };
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a device");
+        let output = run(full.into());
+        let words = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {words}");
+        assert!(words.contains("stdout") && words.contains("No space left"), "{words}");
+
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let output = run(writer.into());
+        assert_eq!(said(&output), "", "{arguments:?}");
+        assert!(output.status.success(), "{arguments:?}: a reader that left is no failure");
+    }
+}
+
+#[test]
+fn work_goes_on_when_stderr_goes_away() {
+    let folder = folder();
+    let study = folder.path().join("tiny.toml");
+    let text =
+        "name = 'tiny'\n[base]\nscene = 'collision'\nduration = 0.01\n[vary]\nbond = [0, 1, 2]\n";
+    std::fs::write(&study, text).expect("a file");
+    let out = folder.path().join("out");
+    let sweep = |shard: &[&str]| {
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let mut command = slump();
+        command.arg("sweep").arg(&study).arg("--out").arg(&out).args(shard).stderr(writer);
+        command.stdout(Stdio::null()).status().expect("it starts")
+    };
+    assert!(sweep(&["--shard", "1/2"]).success());
+    // Now it has something to say: that some runs were there.
+    assert!(sweep(&[]).success());
+    let rows = std::fs::read_to_string(out.join("runs.csv")).expect("rows");
+    assert_eq!(rows.lines().count(), 1 + 3);
+}
+
+#[test]
+fn names_that_are_not_utf8_work() {
+    let folder = folder();
+    let odd = |ending: &str| -> PathBuf {
+        let mut name = OsString::from(OsStr::from_bytes(b"caf\xe9 \xff"));
+        name.push(ending);
+        folder.path().join(name)
+    };
+    let out = odd(".out");
+    let run = |arguments: &[&str], path: &Path, more: &[&OsStr]| {
+        let output = slump().args(arguments).arg(path).args(more).output().expect("it starts");
+        assert!(output.status.success(), "{arguments:?}: {}", said(&output));
+    };
+    let frames =
+        ["--headless", "--scene", "collision", "--times", "0", "--renderer", "cpu", "--frames"];
+    run(&frames, &out, &[OsStr::new("--gif"), odd(".gif").as_os_str()]);
+    let manifest = std::fs::read_to_string(out.join("manifest.json")).expect("a manifest");
+    assert!(manifest.contains("\"ended\": \"complete\""), "{manifest}");
+    assert!(odd(".gif").exists() && out.join("frame_00000.png").exists());
+    run(&["generate", "--grains", "10", "--out"], &odd(".csv"), &[]);
+    run(&["scene", "--initial"], &odd(".csv"), &[]);
+    run(&["problem", "solve", PROBLEM, "--out"], &odd(".json"), &[]);
+    let study = odd(".toml");
+    std::fs::write(
+        &study,
+        "name = 'tiny'\n[base]\nscene = 'collision'\nduration = 0.01\n[vary]\nbond = [0, 1, 2]\n",
+    )
+    .expect("a file");
+    run(&["sweep"], &study, &[OsStr::new("--out"), odd(".sweep").as_os_str()]);
+}

@@ -1,0 +1,293 @@
+//! Values that no scene can have are refused in one sentence; good scenes survive being written.
+
+use std::path::Path;
+
+use crate::common::{G, fixed, moving, parameters, random, scene};
+use glam::DVec2;
+use rand::RngExt;
+use slump::config::{parse_discs, read_scene, scene_to_toml, write_discs};
+use slump::error::Error;
+use slump::scene::{GrainSource, NewPile, SCENES, Scene, built_in, collision, settle};
+use slump::world::{Boundary, Grain, Gravity, Physics};
+
+/// A scene without fault, in the plane.
+fn good() -> Scene {
+    let grains = vec![Grain::at_rest(DVec2::Y, 0.1), Grain::at_rest(2.0 * DVec2::Y, 0.1)];
+    scene(Physics::FULL, -G * DVec2::Y, parameters(20.0, 1e-3, 0.1, 0.5), grains)
+}
+
+/// The message for a scene with a fault.
+#[track_caller]
+fn refusal(scene: &Scene) -> String {
+    let message = scene.simulation().map(|_| ()).expect_err("a scene with a fault").to_string();
+    assert!(!message.contains('\n'), "one sentence: {message}");
+    message
+}
+
+/// Spoils a good scene and compares the message.
+#[track_caller]
+fn check(spoil: impl FnOnce(&mut Scene), expected: &str) {
+    let mut scene = good();
+    scene.simulation().expect("it was good");
+    spoil(&mut scene);
+    assert_eq!(refusal(&scene), expected);
+}
+
+#[test]
+fn parameters_outside_their_range_are_named_with_value_and_range() {
+    let dt = "but must be a finite number of seconds > 0";
+    check(|s| s.parameters.time_step_secs = f64::NAN, &format!("dt is NaN, {dt}"));
+    check(|s| s.parameters.time_step_secs = 0.0, &format!("dt is 0, {dt}"));
+    check(|s| s.parameters.time_step_secs = -1e-3, &format!("dt is -0.001, {dt}"));
+    check(|s| s.parameters.time_step_secs = f64::INFINITY, &format!("dt is inf, {dt}"));
+    check(|s| s.parameters.restitution = 1.5, "rho is 1.5, but must be between 0 and 1");
+    check(|s| s.parameters.restitution = -0.1, "rho is -0.1, but must be between 0 and 1");
+    check(|s| s.parameters.restitution = f64::NAN, "rho is NaN, but must be between 0 and 1");
+    check(|s| s.parameters.bond = -1.0, "bond is -1, but must be a finite number ≥ 0");
+    check(|s| s.parameters.bond = f64::NAN, "bond is NaN, but must be a finite number ≥ 0");
+    check(|s| s.parameters.friction = -0.5, "mu is -0.5, but must be a finite number ≥ 0");
+    check(|s| s.solver.tolerance = 0.0, "tolerance is 0, but must be a finite number > 0");
+    check(|s| s.solver.max_sweeps = 0, "max-sweeps is 0, but must be at least 1");
+    let stiffness = "but must be a finite number of N/m ≥ 0; 0 takes it from the pile's weight";
+    check(|s| s.parameters.stiffness = -1.0, &format!("stiffness is -1, {stiffness}"));
+    check(|s| s.parameters.stiffness = f64::NAN, &format!("stiffness is NaN, {stiffness}"));
+    let damping = "but must be a finite number ≥ 0; 0 takes it from rho";
+    check(|s| s.parameters.damping_ratio = -0.1, &format!("damping-ratio is -0.1, {damping}"));
+    check(
+        |s| s.parameters.damping_ratio = f64::INFINITY,
+        &format!("damping-ratio is inf, {damping}"),
+    );
+    check(
+        |s| s.parameters.substeps = 100_001,
+        "substeps is 100001, but must be at most 100000; 0 leaves it to the stepper",
+    );
+}
+
+#[test]
+fn a_running_simulation_refuses_them_too_and_keeps_what_it_had() {
+    let mut simulation = good().simulation().expect("good");
+    let before = *simulation.parameters();
+    let spoilt = slump::world::Parameters { restitution: 2.0, ..before };
+    let error = simulation.set_parameters(spoilt).expect_err("outside its range");
+    assert!(matches!(error, Error::Value { ref field, .. } if field == "rho"));
+    assert_eq!(*simulation.parameters(), before);
+    let settings = *simulation.solver();
+    let spoilt = slump::solver::SolverSettings { tolerance: f64::NAN, ..settings };
+    assert!(simulation.set_solver(spoilt).is_err());
+    assert_eq!(*simulation.solver(), settings);
+}
+
+#[test]
+fn bodies_and_lengths_outside_their_range_are_named() {
+    let positive = |unit: &str| format!("but must be a finite number > 0 {unit}");
+    for (value, shown) in [(f64::NAN, "NaN"), (0.0, "0"), (-2.0, "-2"), (f64::INFINITY, "inf")] {
+        let is = |field: &str, unit: &str| format!("{field} is {shown}, {}", positive(unit));
+        check(|s| s.grains[1].radius = value, &is("grains[1].radius", "m"));
+        check(|s| s.areal_density = value, &is("areal_density", "kg/m²"));
+        check(|s| s.duration_secs = value, &is("duration", "s"));
+        check(|s| s.mean_diameter = value, &is("mean_diameter", "m"));
+        let spoil = |s: &mut Scene| s.fixed_discs = vec![fixed(DVec2::ZERO, value)];
+        check(spoil, &is("fixed_discs[0].radius", "m"));
+    }
+    check(|s| s.grains.clear(), "grains is 0, but must be at least one disc");
+    for spoil in [
+        |grain: &mut Grain| grain.position.x = f64::NAN,
+        |grain: &mut Grain| grain.velocity.y = f64::INFINITY,
+        |grain: &mut Grain| grain.angular_velocity = f64::NAN,
+    ] {
+        let mut scene = good();
+        spoil(&mut scene.grains[1]);
+        let message = refusal(&scene);
+        assert!(message.starts_with("grains[1] is ") && message.ends_with("finite throughout"));
+    }
+    for tolerance in [-1e-9, f64::NAN, 0.1] {
+        let mut scene = good();
+        scene.gap_tolerance = tolerance;
+        assert!(refusal(&scene).starts_with(&format!("gap_tolerance is {tolerance}, but must be")));
+    }
+}
+
+#[test]
+fn gravity_that_is_none_is_refused() {
+    let attraction =
+        |magnitude: f64, x: f64| Gravity::Attraction { centre: DVec2::new(x, 0.0), magnitude };
+    let uniform = Gravity::Uniform { acceleration: DVec2::new(f64::NAN, 0.0) };
+    for gravity in
+        [attraction(f64::NAN, 0.0), attraction(-2.0, 0.0), attraction(2.0, f64::NAN), uniform]
+    {
+        let mut scene = good();
+        scene.gravity = gravity;
+        assert!(refusal(&scene).starts_with("gravity"), "{gravity:?}");
+    }
+}
+
+#[test]
+fn a_line_scene_off_its_line_is_refused() {
+    let bad = |spoil: fn(&mut Scene), field: &str| {
+        let mut scene = collision();
+        spoil(&mut scene);
+        let message = refusal(&scene);
+        assert!(message.starts_with(field), "{message}");
+    };
+    bad(|s| s.grains[0].position.y = 1e-9, "grains[0] is ");
+    bad(|s| s.grains[0].velocity.y = 1.0, "grains[0] is ");
+    bad(|s| s.fixed_discs[0].position.y = -1.0, "fixed_discs[0] is ");
+    let segment = |s: &mut Scene| {
+        s.boundaries = vec![Boundary::Segment { from: DVec2::X, to: 2.0 * DVec2::X }];
+    };
+    bad(segment, "boundaries[0] is ");
+    bad(
+        |s| s.physics.friction = true,
+        "physics.friction is true, but must be false where physics.axes is 1",
+    );
+    check(|s| s.physics.axes = 3, "physics.axes is 3, but must be 1 or 2");
+    check(
+        |s| s.physics.friction = false,
+        "physics.rotation is true, but must be false where physics.friction is false",
+    );
+}
+
+#[test]
+fn a_bad_line_of_discs_is_named() {
+    let bad = |text: &str, expected: &str| {
+        let error = parse_discs(text, Path::new("discs.csv")).expect_err("a bad line");
+        let message = error.to_string();
+        assert!(message.starts_with("discs.csv: "), "{message}");
+        assert!(message.contains(expected) && !message.contains('\n'), "{message}");
+    };
+    bad("# made by hand\nx,y,radius\n0,0,1\n0,zero,1\n", "line 4: y: ");
+    bad("x,y,radius\n0,0,1\n0,0,-1\n", "line 3: radius is -1");
+    bad("x,y,radius\n0,0,nan\n", "line 2: radius is NaN");
+    bad("x,y,radius\n\n0,inf,1\n", "line 3: y is inf");
+    bad("x,y,radius\n# one\n0,0,1\n# two\n\n# three\n0,inf,1", "line 7: y is inf");
+    bad("x,y,radius\r\n\r\n# one\r\n0,0,inf\r\n", "line 4: radius is inf");
+    bad("x,y,radius\n0,0,1\n0,0\n", "line");
+    bad("x,y,mass\n0,0,1\n", "'x,y,mass', but must be one that names x, y and radius");
+    bad("x,y,radius,colour\n0,0,1,2\n", "colour");
+    bad("x,y,radius\n", "no disc");
+    bad("", "one that names x, y and radius");
+}
+
+/// Writes a file into a folder of its own and reads it as a scene.
+fn read_text(text: &str) -> Result<Scene, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("test.toml");
+    std::fs::write(&path, text).expect("a file");
+    read_scene(&path).map_err(|error| {
+        let message = error.to_string();
+        assert!(!message.trim_end().contains('\n'), "one sentence: {message}");
+        message.replace(&path.display().to_string(), "test.toml")
+    })
+}
+
+#[test]
+fn a_bad_scene_file_names_its_line() {
+    let text = scene_to_toml(&good()).expect("it can be written");
+    let line_of = |start: &str| {
+        let is = |line: &str| line.starts_with(start);
+        1 + text.lines().position(is).unwrap_or_else(|| panic!("no {start} in\n{text}"))
+    };
+    let bad = |from: &str, to: &str, expected: &[&str]| {
+        assert!(text.contains(from), "no {from} in\n{text}");
+        let message = read_text(&text.replacen(from, to, 1)).expect_err("a fault");
+        for part in expected {
+            assert!(message.contains(part), "{part} in: {message}");
+        }
+    };
+    let line = |start: &str| format!("test.toml: line {}: ", line_of(start));
+    bad("bond = ", "bond == ", &[&line("bond")]);
+    bad("bond = 20.0", "bond = \"much\"", &[&line("bond"), "much"]);
+    bad("bond = ", "bondage = ", &[&line("bond"), "unknown field `bondage`"]);
+    bad("axes = 2", "axes = 2\ncolour = 3", &["unknown field `colour`"]);
+    bad("cone = \"shifted\"", "cone = \"round\"", &["round", "shifted"]);
+    bad("radius = 0.1", "radius = 0.0", &["grains[0].radius is 0, but must be"]);
+    bad("duration_secs", "#", &["missing field `duration_secs`"]);
+    assert!(
+        read_scene(Path::new("no/such.toml")).is_err_and(|e| e.to_string().contains("such.toml"))
+    );
+}
+
+#[test]
+fn grains_come_from_one_place() {
+    let text = scene_to_toml(&good()).expect("it can be written");
+    let with_source = format!("{text}\n[source]\nfrom = \"csv\"\npath = \"discs.csv\"\n");
+    let message = read_text(&with_source).expect_err("two sources");
+    assert!(message.starts_with("source is given, but must be left out"), "{message}");
+    let unknown = with_source.replace("path = ", "colour = 1\npath = ");
+    let message = read_text(&unknown).expect_err("no field of a source");
+    assert!(message.contains("unknown field `colour`"), "{message}");
+    let scene = Scene {
+        source: Some(GrainSource::Csv { path: "absent.csv".into() }),
+        grains: Vec::new(),
+        ..good()
+    };
+    let message =
+        read_text(&scene_to_toml(&scene).expect("it can be written")).expect_err("absent");
+    assert!(message.contains("absent.csv"), "{message}");
+}
+
+#[test]
+fn a_rain_outside_its_range_is_refused() {
+    let refused = |rain: NewPile| settle(&rain, |_| true).expect_err("no rain").to_string();
+    assert!(refused(NewPile { grains: 0, ..NewPile::default() }).starts_with("grains is 0, but"));
+    for width in [0.0, 1.0, f64::NAN, -3.0, 1e9] {
+        let message = refused(NewPile { box_width_in_diameters: width, ..NewPile::default() });
+        assert!(message.starts_with("box-width is "), "{message}");
+    }
+    let interrupted = settle(&NewPile { grains: 5, ..NewPile::default() }, |_| false);
+    assert!(interrupted.is_err_and(|error| error.to_string().contains("interrupted")));
+}
+
+#[test]
+fn an_unknown_built_in_scene_is_told_of_with_those_there_are() {
+    let message = built_in("heap").expect_err("no such scene").to_string();
+    assert!(message.starts_with("scene is heap, but must be one of pile, cradle, collision"));
+}
+
+#[test]
+fn every_built_in_scene_survives_its_own_file() {
+    for info in SCENES {
+        let scene = (info.make)().expect("a built-in scene");
+        let text = scene_to_toml(&scene).expect("it can be written");
+        assert_eq!(read_text(&text).expect("it can be read"), scene, "{}", info.name);
+    }
+    let shapes = Scene {
+        boundaries: vec![
+            Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::new(0.1, 0.3) },
+            Boundary::Segment { from: DVec2::ZERO, to: DVec2::new(1.0 / 3.0, 0.0) },
+            Boundary::Polyline { points: vec![DVec2::ZERO, DVec2::X, DVec2::ONE] },
+            Boundary::ConvexPolygon { points: vec![DVec2::ZERO, DVec2::X, DVec2::ONE] },
+        ],
+        gravity: Gravity::Attraction { centre: DVec2::ONE, magnitude: 0.1 },
+        ..good()
+    };
+    let text = scene_to_toml(&shapes).expect("it can be written");
+    assert_eq!(read_text(&text).expect("it can be read"), shapes);
+}
+
+#[test]
+fn written_discs_read_back_bit_for_bit() {
+    let mut random = random(9);
+    let mut number = || random.random_range(-1.0..1.0) * 10f64.powi(random.random_range(-12..12));
+    for still in [true, false] {
+        let grains: Vec<Grain> = (0..200)
+            .map(|_| {
+                let place = DVec2::new(number(), number());
+                let velocity = DVec2::new(number(), number());
+                let (radius, spin) = (number().abs(), number());
+                if still {
+                    return Grain::at_rest(place, radius);
+                }
+                Grain { angular_velocity: spin, ..moving(place, radius, velocity) }
+            })
+            .collect();
+        let text = write_discs(&grains, "two lines\nof comment");
+        let read = parse_discs(&text, Path::new("discs.csv")).expect("what was written");
+        assert_eq!(read, grains);
+        let bits = |grains: &[Grain]| -> Vec<u64> {
+            let numbers = grains.iter().flat_map(|g| [g.position.x, g.position.y, g.radius]);
+            numbers.map(f64::to_bits).collect()
+        };
+        assert_eq!(bits(&read), bits(&grains));
+    }
+}

@@ -1,0 +1,178 @@
+//! `.vtp` files: what the XML says, and that every number is in them bit by bit.
+
+use std::path::{Path, PathBuf};
+
+use slump::data::{RecordedGrains, read_grains};
+
+use crate::formats::moments::{THIRD, after, moment, start, write};
+
+const GRAINS: &str = r#"<?xml version="1.0"?>
+<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+  <PolyData>
+    <FieldData>
+      <DataArray type="Int64" Name="step" NumberOfTuples="1" format="ascii">10</DataArray>
+      <DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">1.0</DataArray>
+      <Array type="String" Name="columns" NumberOfTuples="20" format="appended" offset="…
+      <Array type="String" Name="about" NumberOfTuples="2" format="appended" offset="…
+      <Array type="String" Name="kind_words" NumberOfTuples="3" format="appended" offset="…
+      <DataArray type="Int64" Name="pile_grains" NumberOfTuples="1" format="appended" offset="…
+…
+      <DataArray type="Float64" Name="pile_strong_share" NumberOfTuples="1" format="appended" offset="…
+    </FieldData>
+    <Piece NumberOfPoints="4" NumberOfVerts="4" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
+      <PointData Scalars="radius">
+        <DataArray type="Int64" Name="id" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Float64" Name="angle" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Float64" Name="velocity" NumberOfComponents="3" ComponentName0="vx" ComponentName1="vy" ComponentName2="z" format="appended" offset="…
+        <DataArray type="Float64" Name="omega" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Float64" Name="radius" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Float64" Name="mass" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Int32" Name="kind" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Float64" Name="coordination" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Int8" Name="rattler" NumberOfComponents="1" format="appended" offset="…
+…
+      </PointData>
+      <CellData></CellData>
+      <Points>
+        <DataArray type="Float64" Name="Points" NumberOfComponents="3" ComponentName0="x" ComponentName1="y" ComponentName2="z" format="appended" offset="0"/>
+      </Points>
+      <Verts>
+        <DataArray type="Int64" Name="connectivity" NumberOfComponents="1" format="appended" offset="…
+        <DataArray type="Int64" Name="offsets" NumberOfComponents="1" format="appended" offset="…
+      </Verts>
+    </Piece>
+  </PolyData>
+  <AppendedData encoding="raw">
+   _"#;
+
+/// A file, taken apart by its words alone.
+struct File {
+    xml: String,
+    data: Vec<u8>,
+}
+
+impl File {
+    fn read(path: &Path) -> Self {
+        let bytes = std::fs::read(path).expect("a file");
+        let start = bytes.windows(2).position(|two| two == b"_\x60" || two == b"_\x90");
+        let start = start.expect("the points' length behind the underscore") + 1;
+        let xml = String::from_utf8(bytes[..start].to_vec()).expect("text");
+        let data = bytes[start..].strip_suffix(b"\n  </AppendedData>\n</VTKFile>\n");
+        Self { xml, data: data.expect("the closing tags").to_vec() }
+    }
+
+    fn bytes(&self, name: &str) -> &[u8] {
+        let line = self.xml.lines().find(|line| line.contains(&format!("Name=\"{name}\"")));
+        let (_, offset) = line.expect(name).split_once("offset=\"").expect("an offset");
+        let offset: usize = offset.trim_end_matches("\"/>").parse().expect("an offset");
+        let (length, rest) = self.data[offset..].split_at(8);
+        let length = u64::from_le_bytes(length.try_into().expect("8 bytes"));
+        &rest[..length as usize]
+    }
+
+    fn numbers(&self, name: &str) -> Vec<f64> {
+        let (numbers, rest) = self.bytes(name).as_chunks();
+        assert!(rest.is_empty(), "{name}");
+        numbers.iter().map(|&number| f64::from_le_bytes(number)).collect()
+    }
+
+    fn wholes(&self, name: &str) -> Vec<i64> {
+        self.bytes(name).as_chunks().0.iter().map(|&number| i64::from_le_bytes(number)).collect()
+    }
+
+    fn words(&self, name: &str) -> Vec<String> {
+        let text = String::from_utf8(self.bytes(name).to_vec()).expect("text");
+        text.strip_suffix('\0').expect("an end").split('\0').map(str::to_owned).collect()
+    }
+}
+
+fn second_frame(kind: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(&mut start(folder.path()), 0..2);
+    let path = folder.path().join(format!("vtk/{kind}_000001.vtp"));
+    (folder, path)
+}
+
+/// Bit by bit, so that −0 is not 0.
+fn assert_same(found: &[f64], expected: &[f64], name: &str) {
+    let bits = |numbers: &[f64]| numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(found), bits(expected), "{name}: {found:?} of {expected:?}");
+}
+
+#[test]
+fn grains_are_points_with_every_column() {
+    let (_folder, path) = second_frame("grains");
+    let file = File::read(&path);
+    assert_eq!(after(&(file.xml.clone() + "\n"), GRAINS), "");
+    let points = [0.0, 0.25, 0.0, 1.0, 0.25, 0.0, -1e6, 0.0, 0.0, 0.0, -1.0, 0.0];
+    assert_same(&file.numbers("Points"), &points, "Points");
+    assert_same(&file.numbers("radius"), &[0.5, THIRD, 0.5, 0.75], "radius");
+    assert_same(&file.numbers("angle"), &[-0.0, -0.0, -0.0, 0.0], "angle");
+    assert_same(&file.numbers("velocity")[..4], &[THIRD, -2e-9, 0.0, THIRD], "velocity");
+    assert_same(&file.numbers("mass"), &[0.125, 0.125, 0.125, f64::NAN], "mass");
+    assert_eq!(file.wholes("id"), [0, 1, 2, 3]);
+    assert_eq!(file.wholes("offsets"), [1, 2, 3, 4]);
+    assert_eq!(file.words("about"), ["program: slump", "bond: 20 <&> 30"]);
+    assert_eq!(file.words("columns")[1], "x [m]: centre");
+    assert_eq!(file.words("kind_words"), ["grain", "fixed", "lost"]);
+    assert_eq!(file.bytes("kind"), [0, 0, 2, 1].map(i32::to_le_bytes).concat());
+    assert_eq!(file.wholes("pile_grains"), [2]);
+    assert_eq!(file.numbers("pile_coordination"), [2.0]);
+    assert_same(&file.numbers("coordination"), &[2.0, 2.0, 0.0, f64::NAN], "coordination");
+}
+
+#[test]
+fn contacts_are_lines_from_centre_to_centre_or_to_the_touched_point() {
+    let (_folder, path) = second_frame("contacts");
+    let file = File::read(&path);
+    let lines = [
+        [0.0, 0.25, 0.0, 1.0, 0.25, 0.0],
+        [0.0, 0.25, 0.0, 0.0, -1.0, 0.0],
+        [1.0, 0.25, 0.0, 1.0, -0.25, 0.0],
+    ];
+    assert_same(&file.numbers("Points"), &lines.concat(), "Points");
+    assert_eq!(file.wholes("connectivity"), [0, 1, 2, 3, 4, 5]);
+    assert_eq!(file.wholes("offsets"), [2, 4, 6]);
+    assert!(file.xml.contains("NumberOfLines=\"3\""), "{}", file.xml);
+    assert_same(&file.numbers("gap"), &[-5e-324; 3], "gap");
+    assert_same(&file.numbers("normal_force"), &[THIRD; 3], "normal_force");
+    assert_same(&file.numbers("tangential_force"), &[-1.5; 3], "tangential_force");
+    assert_same(&file.numbers("point")[..3], &[0.5, 0.25, 0.0], "point");
+    assert_same(&file.numbers("normal")[3..6], &[0.0, 1.0, 0.0], "normal");
+    assert_eq!(file.wholes("id_j"), [1, 3, 4]);
+    assert_eq!(file.wholes("age"), [10; 3]);
+    assert_eq!(file.bytes("bond"), [0xff; 3], "a law without bonds");
+    assert_eq!(file.words("status_words"), ["open", "stick", "slip"]);
+    assert_eq!(file.words("name_j_words"), ["", "half-space 0"]);
+    assert_eq!(file.bytes("name_j"), [0, 0, 1].map(i32::to_le_bytes).concat());
+}
+
+#[test]
+fn discs_read_back_bit_by_bit_from_every_file() {
+    let (folder, path) = second_frame("grains");
+    let RecordedGrains { grains, fixed_discs } = read_grains(&path, None).expect("discs");
+    assert_eq!(grains.len(), 2, "the third is lost");
+    for (read, written) in grains.iter().zip(moment(10).grains) {
+        assert_same(&read.position.to_array(), &written.position.to_array(), "position");
+        assert_same(&read.velocity.to_array(), &written.velocity.to_array(), "velocity");
+        assert_same(&[read.radius], &[written.radius], "radius");
+        assert_same(&[read.angular_velocity], &[written.angular_velocity], "omega");
+    }
+    assert_eq!(fixed_discs, moment(10).surroundings.fixed_discs);
+    let recorded = RecordedGrains { grains, fixed_discs };
+    for name in ["vtk/grains.pvd", "ovito/grains.dump", "."] {
+        for step in [None, Some(0), Some(10)] {
+            let found = read_grains(&folder.path().join(name), step);
+            assert_eq!(found.expect("discs"), recorded, "{name} at {step:?}");
+        }
+        let refused = read_grains(&folder.path().join(name), Some(7)).expect_err("no such step");
+        let refused = refused.to_string();
+        assert!(
+            refused.starts_with("initial-step is 7, but must be one of the steps of "),
+            "{refused}"
+        );
+        assert!(refused.ends_with(": 0, 10"), "{refused}");
+    }
+    std::fs::remove_dir_all(folder.path().join("vtk")).expect("a folder");
+    assert_eq!(read_grains(folder.path(), None).expect("discs of the dump"), recorded);
+}

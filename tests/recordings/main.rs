@@ -1,0 +1,8 @@
+//! Recordings and problem files: what is in them, what stays of them, and what is read back.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod data;
+mod formats;
+mod problem_files;

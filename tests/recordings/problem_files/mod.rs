@@ -1,0 +1,256 @@
+//! Contact problems as files: written from a scene, read back, checked, and solved alone.
+
+mod faults;
+
+use std::path::{Path, PathBuf};
+
+use crate::common::{LINE, SMOOTH, UNTURNING, assert_close, pressed_pile, random};
+use glam::DVec2;
+use rand::RngExt;
+use slump::contact::ContactList;
+use slump::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
+use slump::scene::{Scene, cradle};
+use slump::sim::ProblemVisitor;
+use slump::solver::{
+    DelassusProblem, METHODS, Memory, Method, Model, SolverSettings, StepProblem, StopTest,
+    Triplets, residual, solve, solve_delassus,
+};
+use slump::world::{FrictionCone, Physics};
+
+const SICONOS: &str = "fc2d_granularflowonwall_00667_00000.dat";
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/problems")
+}
+
+fn read(name: &str) -> ProblemFile {
+    ProblemFile::read(&folder().join(name)).expect("a proper problem file")
+}
+
+/// The names of the problems kept here: ours, then the published one.
+fn kept() -> Vec<String> {
+    let entries = std::fs::read_dir(folder()).expect("the folder of problems");
+    let names = entries.map(|entry| entry.expect("an entry").file_name().into_string());
+    let mut names: Vec<_> = names.map(|name| name.expect("UTF-8")).collect();
+    names.retain(|name| name.ends_with(".json"));
+    names.sort();
+    assert_eq!(names.len(), 10);
+    names.push(SICONOS.into());
+    names
+}
+
+fn settings(method: Method, tolerance: f64) -> SolverSettings {
+    let stop = StopTest::Residual;
+    SolverSettings { method, tolerance, max_sweeps: 1_000_000, stop, ..SolverSettings::default() }
+}
+
+/// Scenes of every model, a few steps into their motion.
+fn scenes() -> Vec<(&'static str, Scene, f64)> {
+    let pile = |physics: Physics, bond: f64, cone: FrictionCone| {
+        let parameters = crate::common::parameters(bond, 1e-3, 0.1, 0.5);
+        let mut scene = pressed_pile(40, 0.2, 3, parameters);
+        scene.physics = physics;
+        scene.parameters.cone = cone;
+        if !physics.friction {
+            scene.parameters.friction = 0.0;
+        }
+        if !physics.rotation {
+            for grain in &mut scene.grains {
+                grain.angular_velocity = 0.0;
+            }
+        }
+        scene
+    };
+    let mut line = cradle();
+    line.physics = LINE;
+    for grain in &mut line.grains {
+        // Pressed together, so that there are contacts from the start.
+        grain.position.x *= 0.999;
+        grain.velocity = DVec2::new(-2.0 * grain.position.x, 0.0);
+    }
+    let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
+    vec![
+        ("full", pile(Physics::FULL, 20.0, shifted), 3e-3),
+        ("compressive", pile(Physics::FULL, 20.0, compressive), 3e-3),
+        ("without cohesion", pile(Physics::FULL, 0.0, shifted), 3e-3),
+        ("unturning", pile(UNTURNING, 20.0, shifted), 3e-3),
+        ("smooth", pile(SMOOTH, 20.0, shifted), 3e-3),
+        ("line", line, 0.0),
+    ]
+}
+
+/// Solves a step's problem by a few sweeps, and says what the residual and the impulses then are.
+struct Swept(u32);
+
+impl ProblemVisitor for Swept {
+    type Output = (f64, Vec<[f64; 2]>);
+
+    fn visit<M: Model>(
+        self,
+        problem: &mut StepProblem<M::Kinematics>,
+        _: &ContactList,
+    ) -> Self::Output {
+        if self.0 > 0 {
+            let never = SolverSettings { max_sweeps: self.0, ..settings(Method::Nsgs, 1e-300) };
+            solve::<M>(problem, &mut Memory::default(), &never);
+        }
+        let impulses = problem.rows().map(|(number, row)| {
+            problem.reduced_impulse(number, row).map(|p| row.effective_mass * p)
+        });
+        (residual::<M>(problem), impulses.collect())
+    }
+}
+
+#[test]
+fn the_residual_from_w_is_the_residual_of_the_bodies() {
+    for (name, scene, at_secs) in scenes() {
+        let file = problem_file_at(&scene, at_secs, |_| ()).expect("a problem");
+        let mut delassus = file.delassus().expect("a proper problem");
+        let mut simulation = scene.simulation().expect("a proper scene");
+        while simulation.time_secs() < at_secs - 1e-9 {
+            simulation.step().expect("a finite state");
+        }
+        let mut residuals = Vec::new();
+        for sweeps in [0, 1, 5] {
+            let (of_bodies, impulses) = simulation.next_problem(Swept(sweeps));
+            if sweeps > 0 {
+                delassus.set_impulses(impulses);
+            }
+            assert_close(delassus.residual(), of_bodies, 1e-9, &format!("{name}, {sweeps} sweeps"));
+            residuals.push(of_bodies);
+        }
+        assert!(residuals[0] > 1e-3, "{name}: something was left to do, {residuals:?}");
+    }
+}
+
+#[test]
+fn a_file_reads_back_bit_for_bit_and_solves_as_the_simulation_does() {
+    for (name, mut scene, at_secs) in scenes() {
+        let file = problem_file_at(&scene, at_secs, |_| ()).expect("a problem");
+        let again = ProblemFile::parse(&file.text()).expect("a proper problem");
+        assert_eq!(file, again, "{name}");
+
+        let mut simulation = scene.simulation().expect("a proper scene");
+        while simulation.time_secs() < at_secs - 1e-9 {
+            simulation.step().expect("a finite state");
+        }
+        let few = SolverSettings { max_sweeps: 30, ..settings(Method::Nsgs, 1e-300) };
+        scene.solver = few;
+        simulation.set_solver(few).expect("proper settings");
+        simulation.step().expect("a finite state");
+        let solution = solve_file(&again, &few, 1).expect("a solution");
+        assert!(solution.on_bodies);
+        let velocities = solution.velocities.expect("velocities of bodies");
+        for (at, [x, y, _]) in velocities.into_iter().enumerate() {
+            let found = simulation.world().grains.velocities[at];
+            let expected = DVec2::new(x, if name == "line" { found.y } else { y });
+            assert!((found - expected).length() < 1e-9, "{name}: {found} against {expected}");
+        }
+    }
+}
+
+/// Methods that need bodies say so of a problem in W alone; every other one takes both forms.
+#[test]
+fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
+    let mut on_matrix = 0;
+    for name in kept() {
+        let file = read(&name);
+        let in_matrix = ProblemFile { bodies: None, ..file.clone() };
+        for info in METHODS {
+            let settings = settings(info.method, 1e-6);
+            let judge = |solution: Solution| {
+                let Solution { residual, sweeps, .. } = solution;
+                assert!(solution.converged, "{name} by {}: {residual:e}", info.name);
+                assert!(residual <= 1.000_001e-6, "{name} by {}: {residual:e}", info.name);
+                assert!(sweeps > 0);
+            };
+            if file.bodies.is_some() {
+                judge(solve_file(&file, &settings, 1).expect("bodies are for every method"));
+            }
+            match solve_file(&in_matrix, &settings, 1) {
+                Ok(solution) => {
+                    on_matrix += 1;
+                    judge(solution);
+                }
+                Err(error) => {
+                    let said = error.to_string();
+                    assert!(said.contains(info.name) && said.contains("works on W"), "{said}");
+                }
+            }
+        }
+    }
+    assert!(on_matrix >= kept().len());
+}
+
+/// What Siconos found, written by `tests/problems/make_reference.py`.
+#[derive(serde::Deserialize)]
+struct Reference {
+    residual: f64,
+    u: Vec<f64>,
+}
+
+/// Velocities are unique without friction, and happen to be in these problems with it: cold and
+/// warm starts and both solvers end at the same ones. To 1e-9 of the fastest free velocity.
+#[test]
+fn velocities_are_those_that_siconos_finds() {
+    let with_friction = [SICONOS, "bond_0.json", "bond_20.json", "pile_138_bond_50.json"];
+    for name in with_friction.into_iter().chain(["bond_0_smooth.json", "bond_5_smooth.json"]) {
+        let path = folder().join("reference").join(name).with_extension("json");
+        let text = std::fs::read_to_string(&path).expect("a reference");
+        let reference: Reference = serde_json::from_str(&text).expect("a proper reference");
+        assert!(reference.residual < 1e-11, "{name}: {}", reference.residual);
+        let file = read(name);
+        let fastest = |list: &[f64]| list.iter().fold(0f64, |most, u| most.max(u.abs()));
+        let free = fastest(&file.q);
+        assert!(fastest(&reference.u) > 0.05 * free, "{name}: the grains move");
+        let bodiless = ProblemFile { bodies: None, ..file.clone() };
+        let cold = ProblemFile { start: None, ..file.clone() };
+        for file in [&file, &bodiless, &cold] {
+            let solution = solve_file(file, &settings(Method::Nsgs, 2e-12), 1).expect("a solution");
+            assert!(solution.converged && solution.residual <= 4e-12, "{}", solution.residual);
+            let differences = solution.u.iter().zip(&reference.u).map(|(u, v)| (u - v).abs());
+            let difference = differences.fold(0.0, f64::max) / free;
+            assert!(difference < 1e-9, "{name}: velocities differ by {difference:e}");
+        }
+    }
+}
+
+/// Irregular grains: every contact's own block couples normal and tangent.
+#[test]
+fn methods_on_w_solve_contacts_that_couple_normal_and_tangent() {
+    let mut random = random(5);
+    for cone in [FrictionCone::Shifted, FrictionCone::Compressive] {
+        for _ in 0..20 {
+            let contacts = 12;
+            let size = 2 * contacts;
+            let degrees = 30;
+            let gradients: Vec<f64> =
+                (0..size * degrees).map(|_| random.random_range(-1.0..1.0)).collect();
+            let mut matrix = Triplets::default();
+            for row in 0..size {
+                for col in 0..size {
+                    let pick = |index: usize| &gradients[index * degrees..(index + 1) * degrees];
+                    let value = pick(row).iter().zip(pick(col)).map(|(a, b)| a * b).sum();
+                    matrix.row.push(row as u32);
+                    matrix.col.push(col as u32);
+                    matrix.val.push(value);
+                }
+            }
+            let mut list = |count: usize, from: f64, to: f64| -> Vec<f64> {
+                (0..count).map(|_| random.random_range(from..to)).collect()
+            };
+            let q = list(size, -1.0, 1.0);
+            let friction = list(contacts, 0.0, 0.6);
+            let cohesion = list(contacts, 0.0, 0.1);
+            let problem =
+                DelassusProblem::new(&matrix, &q, &friction, &cohesion, cone).expect("a problem");
+            for method in [Method::Nsgs, Method::Nncg, Method::Apgd, Method::Jacobi] {
+                let mut problem = problem.clone();
+                let settings = settings(method, 1e-11);
+                let report = solve_delassus(&mut problem, &settings).expect("a method on W");
+                let left = problem.residual();
+                assert!(report.converged && left <= 1e-11, "{cone:?}, {method:?}: {left:e}");
+            }
+        }
+    }
+}
