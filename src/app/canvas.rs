@@ -5,13 +5,13 @@ use image::RgbaImage;
 use super::graphics::Screen;
 use crate::error::{Error, Result};
 use crate::render::Gpu;
-use crate::render::offscreen::{FORMAT, Target};
+use crate::render::gpu::{FORMAT, OffscreenTarget};
 
 /// A graphics device without a window.
 pub struct Canvas {
     gpu: Gpu,
     screen: Screen,
-    target: Option<Target>,
+    target: Option<OffscreenTarget>,
 }
 
 impl Canvas {
@@ -52,7 +52,7 @@ impl Canvas {
         }
         let target = match self.target.take() {
             Some(target) if (target.width, target.height) == (width, height) => target,
-            _ => Target::new(gpu, width, height)?,
+            _ => OffscreenTarget::new(gpu, width, height)?,
         };
         context.set_pixels_per_point(pixels_per_point);
         let points = egui::vec2(width as f32, height as f32) / pixels_per_point;

@@ -10,7 +10,7 @@ use super::work::{Telling, Work};
 use crate::config::about_run;
 use crate::data::{About, Claim, DataSettings, Recording, Times, formats_of};
 use crate::error::{Error, Result};
-use crate::headless::told_of_data;
+use crate::headless::recording_sentence;
 use crate::live::{Change, HandMade, Replay};
 use crate::sim::{Edit, Pull, RunEnding, Simulation};
 use crate::world::Disc;
@@ -195,7 +195,7 @@ impl Writing<'_> {
 
     fn finish(self, ended: &RunEnding) -> Result<String> {
         let Some(recording) = self.recording else { return Ok(NOTHING.to_owned()) };
-        let told = told_of_data(recording.folder(), recording.frames());
+        let told = recording_sentence(recording.folder(), recording.frames());
         recording.finish()?;
         Ok(match ended {
             RunEnding::Done => told,

@@ -10,7 +10,7 @@ use image::RgbaImage;
 use crate::config::SavedState;
 use crate::live::Curve;
 use crate::output::{Texts, check_writable, write_file};
-use crate::render::{Camera, Panel, Renderer, RendererChoice, Style, draw_scene, draw_worlds};
+use crate::render::{Camera, Renderer, RendererChoice, Style, WorldPanel, draw_scene, draw_worlds};
 use crate::sim::{Observables, Settings, Snapshot};
 use crate::study::png::write_png;
 use crate::world::Parameters;
@@ -60,7 +60,7 @@ impl ScenePicture {
         if let [(snapshot, ..)] = &worlds[..] {
             return draw_scene(renderer, snapshot, style, camera, size[0], size[1]);
         }
-        let panel = |(snapshot, title, note)| Panel { snapshot, title, note };
+        let panel = |(snapshot, title, note)| WorldPanel { snapshot, title, note };
         let panels: Vec<_> = worlds.iter().map(|(a, b, c)| panel((a, b, c))).collect();
         draw_worlds(renderer, &panels, style, camera, *columns, *size)
     }

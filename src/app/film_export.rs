@@ -10,7 +10,7 @@ use super::film_file::FilmFormat;
 use super::taken::TakenRun;
 use super::work::{Telling, Work};
 use crate::error::Result;
-use crate::headless::KeptStates;
+use crate::headless::WaitingStates;
 use crate::output::{check_writable, counted};
 use crate::render::{Renderer, RendererChoice, Style, speed_reference};
 use crate::sim::{Simulation, Snapshot};
@@ -155,7 +155,7 @@ fn slump(snapshot: &Snapshot, slumps: bool) -> String {
 
 /// The moments that a film shows, on disk: all of them have one scale of colours, and that is known at the end.
 struct Moments {
-    kept: KeptStates,
+    kept: WaitingStates,
     style: Style,
     /// For each world, which of the states each picture shows.
     shown: Vec<Vec<usize>>,
@@ -164,7 +164,7 @@ struct Moments {
 
 impl Moments {
     fn start(folder: &Path, style: &Style) -> Result<Self> {
-        let kept = KeptStates::start(folder)?;
+        let kept = WaitingStates::start(folder)?;
         Ok(Self { kept, style: style.clone(), shown: Vec::new(), speed_reference: 0.0 })
     }
 

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use egui::{PaintCallback, PaintCallbackInfo, Rect};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 
-use crate::render::{Frame, Painter, Picture};
+use crate::render::{Painter, Picture, PictureArea};
 
 /// The format of the target that callbacks draw into; whoever makes an egui renderer puts it among
 /// the callback resources.
@@ -52,7 +52,7 @@ impl CallbackTrait for SceneCallback {
             screen_size_px: screen.size_in_pixels,
         };
         let viewport = info.viewport_in_pixels();
-        let frame = Frame::new(
+        let frame = PictureArea::new(
             viewport.left_px as f32,
             viewport.top_px as f32,
             viewport.width_px as f32,
