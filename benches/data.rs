@@ -9,7 +9,7 @@
 mod common;
 
 use common::timing::{criterion, least_secs};
-use slump::data::{About, FormatName, Recording};
+use slump::data::{FormatName, Recording, RunFacts};
 use slump::sim::Simulation;
 use slump::solver::StopTest;
 
@@ -33,7 +33,7 @@ fn run(start: &Simulation, formats: &[FormatName]) -> u64 {
     let folder = tempfile::tempdir().expect("a folder");
     let mut simulation = start.clone();
     let mut recording = (!formats.is_empty()).then(|| {
-        Recording::start(folder.path(), formats, &About::default(), false).expect("a recording")
+        Recording::start(folder.path(), formats, &RunFacts::default(), false).expect("a recording")
     });
     for step in 1..=STEPS {
         let observables = *simulation.step().expect("a finite state");

@@ -13,7 +13,7 @@ use slump::solver::{
     Memory, Method, Ordering, SolverSettings, SpinningPlane, StepModel, StopTest, solve, sweep,
 };
 
-type Full = StepModel<SpinningPlane, true, false>;
+type Full = StepModel<SpinningPlane, true>;
 
 /// Sweeps of every step that is timed: a fixed amount of work.
 const SWEEPS: u32 = 50;
@@ -33,7 +33,7 @@ fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) 
     let mut time = |name: &str, settings: SolverSettings, pool: Option<&ThreadPool>| {
         let mut problem = common::problem(simulation, &settings);
         let mut memory = Memory::default();
-        let updates = problem.contact_of_row().len() * settings.max_sweeps as usize;
+        let updates = problem.rows.len() * settings.max_sweeps as usize;
         let mut run = || {
             let report = solve::<Full>(&mut problem, &mut memory, &settings);
             assert_eq!(black_box(report).sweeps, settings.max_sweeps);
@@ -73,7 +73,7 @@ fn main() {
         simulation.step().expect("a finite state");
 
         let mut problem = common::problem(&simulation, &SolverSettings::default());
-        let updates = problem.contact_of_row().len();
+        let updates = problem.rows.len();
         let of_sweep = least_secs(&mut criterion, &format!("sweep/{count} discs"), || {
             black_box(sweep::<Full, false>(&mut problem));
         });

@@ -5,7 +5,7 @@
 
 use slump::error::Result;
 use slump::scene::built_in;
-use slump::sim::{Advance, Outcome, Settings, Stage};
+use slump::sim::{Advance, Settings, Stage, StepResult};
 use slump::solver::{Approach, Model};
 
 /// e(v) = 1/(1 + (v/v₀)^⅕).
@@ -21,7 +21,7 @@ impl Viscoelastic {
 }
 
 impl Advance for Viscoelastic {
-    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
         // What the law adds to the normal velocity of a contact: e times the one before.
         stage.prepare(settings, |Approach { velocity, .. }| {
             self.restitution(velocity.abs()) * velocity

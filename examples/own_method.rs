@@ -4,7 +4,7 @@
 
 use slump::error::Result;
 use slump::scene::built_in;
-use slump::sim::{Advance, Outcome, Settings, Stage};
+use slump::sim::{Advance, Settings, Stage, StepResult};
 use slump::solver::{ContactSystem, Model, SolveReport};
 
 /// Sweeps with this ω, down to a residual.
@@ -16,7 +16,7 @@ struct OverRelaxed {
 }
 
 impl Advance for OverRelaxed {
-    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
         let parameters = settings.parameters;
         let gravity = stage.world().gravity.magnitude();
         stage.prepare(settings, |approach| {

@@ -11,7 +11,7 @@ use image::RgbaImage;
 use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result};
-use crate::output::{Draft, Texts, folder_of};
+use crate::output::{PendingFile, Texts, folder_of};
 
 /// Fewest and most pictures a second that players are asked for.
 pub(crate) const VIDEO_RATES_HZ: [f64; 2] = [1.0, 240.0];
@@ -43,7 +43,7 @@ pub(crate) struct Animation {
     picture_centisecs: u16,
     /// Two handles of one file: the encoder keeps the one that it writes to.
     encoder: Option<Encoder<File>>,
-    draft: Draft,
+    draft: PendingFile,
     pictures: usize,
     /// Length of the pictures that are in the file, bytes; none where it has no lengths.
     whole: Option<u64>,
@@ -65,7 +65,7 @@ impl Animation {
     /// # Errors
     /// Names the file and what the system says.
     pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
-        let draft = Draft::start(path)?;
+        let draft = PendingFile::start(path)?;
         let (path, picture_centisecs) = (path.to_owned(), Self::centisecs(rate_hz));
         Ok(Self { path, picture_centisecs, encoder: None, draft, pictures: 0, whole: None })
     }
@@ -176,7 +176,7 @@ impl Video {
     pub(crate) fn finish(self) -> Result<bool> {
         let Some(mut ffmpeg) = self.ffmpeg else { return Ok(false) };
         ffmpeg.finish().map_err(|error| Error::file(&self.path, error))?;
-        let mut draft = Draft::start(&self.path)?;
+        let mut draft = PendingFile::start(&self.path)?;
         std::io::copy(ffmpeg.encoded.as_file_mut(), draft.file())
             .map_err(|error| Error::file(&self.path, error))?;
         draft.finish(true).map(|()| true)

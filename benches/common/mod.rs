@@ -18,12 +18,12 @@ const DIAMETER: f64 = 5e-3;
 /// The simulation's next problem.
 pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProblem<SpinningPlane> {
     let (world, parameters) = (simulation.world(), simulation.parameters());
-    let Parameters { time_step_secs, friction, restitution, .. } = *parameters;
+    let Parameters { time_step_secs, friction, restitution, cone, .. } = *parameters;
     let capture_speed = parameters.capture_speed(world.gravity.magnitude());
-    let numbers = ProblemNumbers { time_step_secs, friction, capture_speed };
+    let numbers = ProblemNumbers { time_step_secs, friction, capture_speed, cone };
     let rebound = |approach: Approach| restitution * approach.velocity;
     let mut problem = StepProblem::default();
-    problem.prepare::<StepModel<SpinningPlane, true, false>>(
+    problem.prepare::<StepModel<SpinningPlane, true>>(
         world,
         simulation.contacts(),
         numbers,

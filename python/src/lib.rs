@@ -3,17 +3,12 @@
 
 #![warn(unreachable_pub)]
 
-mod arrays;
-mod beginning;
-mod errors;
-mod forks;
-mod initial;
-mod json;
-mod lists;
+mod conversion;
 mod options;
 mod problems;
 mod run;
 mod simulation;
+mod start;
 mod stepping;
 mod views;
 
@@ -22,19 +17,19 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _slump {
     #[pymodule_export]
-    use super::beginning::scene_as_data;
-    #[pymodule_export]
-    use super::lists::{_kinds, methods, options, scenes, steppers};
+    use super::options::{_kinds, methods, options, scenes, steppers};
     #[pymodule_export]
     use super::problems::solve;
     #[pymodule_export]
     use super::simulation::Simulation;
+    #[pymodule_export]
+    use super::start::scene_as_data;
 
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        super::forks::remember_this_process();
+        super::stepping::remember_this_process();
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

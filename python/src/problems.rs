@@ -8,10 +8,8 @@ use pyo3::exceptions::{PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-use crate::arrays::rows;
-use crate::errors::{exception, refused};
-use crate::forks::shared_out;
-use crate::json::text_of;
+use crate::conversion::{exception, refused, rows, text_of};
+use crate::stepping::shared_out;
 use slump_core::solver::{METHODS, Method, SolverSettings, StopTest};
 use slump_data::interchange::{ProblemFile, Solution, solve_file};
 

@@ -7,7 +7,7 @@ use slump_core::error::{Error, Result};
 use slump_core::scene::Scene;
 use slump_core::sim::{AlarmKind, Observables, Simulation, Tally};
 use slump_data::config::SavedState;
-use slump_data::config::about;
+use slump_data::config::scene_facts;
 use slump_data::data::{DataSettings, Recording, Times, formats_of};
 
 /// How long steps are taken before someone looks for Ctrl-C. Longer is felt when it is pressed; shorter costs
@@ -85,7 +85,8 @@ impl Run {
         settings.validate("every")?;
         let mut now = self.scene.clone();
         now.set_settings(*self.simulation.settings());
-        let recording = Recording::start(folder, &formats_of(settings)?, &about(&now)?, overwrite)?;
+        let recording =
+            Recording::start(folder, &formats_of(settings)?, &scene_facts(&now)?, overwrite)?;
         let mut recording = recording.at(Times::of(settings), &self.simulation);
         recording.add_if_due(&self.simulation)?;
         self.recording = Some(recording);

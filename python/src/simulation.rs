@@ -7,10 +7,9 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 
-use crate::errors::{exception, refused};
-use crate::json::parsed;
+use crate::conversion::{exception, parsed, refused};
 use crate::run::Run;
-use crate::{beginning, options, stepping};
+use crate::{options, start, stepping};
 use slump_core::sim::AlarmKind;
 use slump_data::data::{DataSettings, FormatName};
 use slump_data::interchange::problem_file_of;
@@ -90,9 +89,9 @@ impl Simulation {
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         if let Some(file) = restart {
-            return beginning::restarted(py, &file, scene, initial, options).map(Self::of);
+            return start::restarted(py, &file, scene, initial, options).map(Self::of);
         }
-        let scene = beginning::scene(py, scene, initial, options)?;
+        let scene = start::scene(py, scene, initial, options)?;
         Run::start(scene).map(Self::of).map_err(exception)
     }
 
@@ -142,7 +141,7 @@ impl Simulation {
     /// Changes settings from the next step on: all that are given, or none.
     #[pyo3(signature = (**settings))]
     fn change(&self, py: Python<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-        let mut given = options::Given::default();
+        let mut given = options::GivenOptions::default();
         given.add_all(settings, &options::setting_names())?;
         let config = given.config()?;
         let mut run = self.run(py);

@@ -6,8 +6,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{columns, first_row, list, rows};
-use crate::json::data_of;
+use crate::conversion::{columns, data_of, first_row, list, rows};
 use crate::simulation::Simulation;
 use slump_data::data::Table;
 

@@ -42,7 +42,7 @@ impl AppState {
     fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
         // How long it was to run says nothing of what it has come to.
         let mut config = self.config.clone();
-        config.origin.duration = None;
+        config.source.duration = None;
         let run = self.provenance(world, config);
         let (Some(run), Some(shown)) = (run, self.frame.worlds.get(world)) else {
             return Texts::default();

@@ -7,8 +7,8 @@ use std::sync::mpsc::Receiver;
 
 use super::taken::{Opened, TakenRun};
 use super::work::{Telling, Work};
-use crate::config::about_run;
-use crate::data::{About, Claim, DataSettings, Recording, Times, formats_of};
+use crate::config::run_facts;
+use crate::data::{DataSettings, Recording, RecordingFolder, RunFacts, Times, formats_of};
 use crate::error::{Error, Result};
 use crate::headless::recording_sentence;
 use crate::live::{Change, HandMade, Replay};
@@ -63,7 +63,7 @@ fn write(order: &DataOrder, run: &Receiver<TakenRun>, telling: &Telling) -> Resu
     let Some(run) = telling.wait_for(run)? else { return Ok(NOTHING.to_owned()) };
     let replay = &run.taken.replay;
     let stretch = order.stretch_of(replay)?;
-    let claim = Claim::of(&order.folder, order.overwrite)?;
+    let claim = RecordingFolder::of(&order.folder, order.overwrite)?;
     let (first_secs, last_secs) = (replay.start().time_secs(), stretch[1].min(replay.end_secs()));
     let mut writing = Writing {
         order,
@@ -135,7 +135,7 @@ struct Writing<'a> {
     replay: &'a Replay,
     until_secs: f64,
     /// The folder, until the recording has it.
-    claim: Option<Claim>,
+    claim: Option<RecordingFolder>,
     recording: Option<Recording>,
 }
 
@@ -156,7 +156,7 @@ impl Writing<'_> {
         }
     }
 
-    fn start(&self, claim: Claim, simulation: &Simulation) -> Result<Recording> {
+    fn start(&self, claim: RecordingFolder, simulation: &Simulation) -> Result<Recording> {
         let formats = formats_of(&self.order.settings)?;
         let recording = Recording::start_in(claim, &formats, &self.about(simulation)?)?;
         Ok(match self.order.settings.every_secs {
@@ -167,7 +167,7 @@ impl Writing<'_> {
 
     /// What is to be known of the recording: the scene with the settings of the first moment, and what was
     /// changed later on.
-    fn about(&self, simulation: &Simulation) -> Result<About> {
+    fn about(&self, simulation: &Simulation) -> Result<RunFacts> {
         let mut scene = self.opened.scene.clone();
         scene.set_settings(*simulation.settings());
         let step = simulation.observables().step;
@@ -175,7 +175,7 @@ impl Writing<'_> {
         let settings = changes
             .iter()
             .map(|change| (change.after_step, change.time_secs, change.controls.settings));
-        let mut about = about_run(&scene, &settings.collect::<Vec<_>>())?;
+        let mut about = run_facts(&scene, &settings.collect::<Vec<_>>())?;
         let mut tell = |name: &str, said: String| about.facts.push((name.to_owned(), said));
         tell("exported", format!("from the window, from step {step} to {} s", self.until_secs));
         let start = self.replay.start().observables();

@@ -7,7 +7,7 @@ use egui::Context;
 use super::export::STATE_ENDING;
 use super::session::SESSION_ENDING;
 use super::state::AppState;
-use crate::config::{Config, Origin};
+use crate::config::{Config, SceneSource};
 
 /// Opens the last file that was dropped in this frame.
 pub(super) fn take_files(context: &Context, state: &mut AppState) {
@@ -41,8 +41,8 @@ fn asked(path: &Path) -> Option<Asked> {
     match ending.as_str() {
         "toml" => path.to_str().map(|path| Asked::Scene(Box::new(Config::of_scene(path)))),
         "csv" => {
-            let origin = Origin { initial: Some(path.to_owned()), ..Origin::default() };
-            Some(Asked::Scene(Box::new(Config { origin, ..Config::default() })))
+            let source = SceneSource { initial: Some(path.to_owned()), ..SceneSource::default() };
+            Some(Asked::Scene(Box::new(Config { source, ..Config::default() })))
         }
         STATE_ENDING | SESSION_ENDING => Some(Asked::SavedRun),
         _ => None,
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn endings_tell_scenes_from_discs_and_saved_runs() {
         let config = |path: &str| match asked(path.as_ref()) {
-            Some(Asked::Scene(config)) => config.origin,
+            Some(Asked::Scene(config)) => config.source,
             other => panic!("{path} is {other:?}"),
         };
         assert_eq!(config("a/Box.TOML").scene.as_deref(), Some("a/Box.TOML"));

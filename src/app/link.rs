@@ -10,7 +10,7 @@
 use std::sync::mpsc::Receiver;
 
 use super::taken::TakenRun;
-use crate::config::{Config, Origin, words_of};
+use crate::config::{Config, SceneSource, words_of};
 use crate::error::{Error, Result};
 use crate::live::{Change, Plan, Taken};
 use crate::sim::Settings;
@@ -27,7 +27,7 @@ const MOST_SHOWN: usize = 60;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Link {
     /// Where the scene comes from.
-    pub origin: Origin,
+    pub source: SceneSource,
     worlds: Vec<World>,
 }
 
@@ -60,7 +60,7 @@ fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String])
 /// # Errors
 /// Where the run went on from a file, or its scene is no longer there.
 pub(crate) fn link_of(config: &Config, worlds: &[Taken]) -> Result<String> {
-    let unchanged = Config { origin: config.origin.clone(), ..Config::default() };
+    let unchanged = Config { source: config.source.clone(), ..Config::default() };
     let base = unchanged.without_settling()?.settings();
     let mut query = form_urlencoded::Serializer::new(HEAD.to_owned());
     append(&mut query, &unchanged.words(&base)?);
@@ -96,7 +96,7 @@ impl Link {
         let text = text.trim();
         let refuse = || Error::value("link", shortened(text), FORM);
         let query = text.strip_prefix(HEAD).ok_or_else(refuse)?;
-        let mut link = Self { origin: Origin::default(), worlds: Vec::new() };
+        let mut link = Self { source: SceneSource::default(), worlds: Vec::new() };
         let (mut after, mut options) = (0, Vec::new());
         let mut changes = Vec::new();
         for (name, value) in form_urlencoded::parse(query.as_bytes()).into_owned() {
@@ -116,14 +116,14 @@ impl Link {
                 Config::of_options(options.iter().map(|(name, value)| (&**name, &**value)))?;
             options.clear();
             let is_first = link.worlds.is_empty() && changes.is_empty();
-            let Config { origin, .. } = &config;
+            let Config { source, .. } = &config;
             if is_first {
-                link.origin = origin.clone();
-            } else if *origin != Origin::default() {
+                link.source = source.clone();
+            } else if *source != SceneSource::default() {
                 let allowed = "said once, before the first step";
                 return Err(Error::value("link: the origin of the scene", "said twice", allowed));
             }
-            changes.push((after, Config { origin: Origin::default(), ..config }));
+            changes.push((after, Config { source: SceneSource::default(), ..config }));
             after = step;
             if name == "to" {
                 link.worlds.push(World { changes: std::mem::take(&mut changes), steps: step });
@@ -138,7 +138,7 @@ impl Link {
 
     /// What asks for the scene.
     pub(crate) fn config(&self) -> Config {
-        Config { origin: self.origin.clone(), ..Config::default() }
+        Config { source: self.source.clone(), ..Config::default() }
     }
 
     /// Checks what can be checked before a pile is made.

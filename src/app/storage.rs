@@ -114,7 +114,7 @@ mod tests {
         }
         let mut stored = Stored::default();
         stored.preferences.speed = 0.5;
-        stored.preferences.scene.origin.grains = Some(40);
+        stored.preferences.scene.source.grains = Some(40);
         stored.layout = context.memory(Clone::clone);
         let text = ron::to_string(&stored).unwrap();
         let back: Stored = ron::from_str(&text).unwrap();

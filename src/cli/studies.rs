@@ -17,7 +17,7 @@ use crate::study::stability::{
 };
 use crate::study::{
     ChartOptions, ChartPart, RunsTable, Shard, Study, SweepOptions, ValidateOptions, chart_speed,
-    default_peers_folder, experiment_names, figure_names, merge, reproduce, sweep, validate,
+    experiment_names, figure_names, merge, reproduce, sweep, validate,
 };
 
 /// `slump sweep`.
@@ -147,15 +147,12 @@ pub(super) struct ChartCommand {
     /// Chart these alone
     #[arg(long, value_name = "PART", value_delimiter = ',')]
     only: Vec<ChartPart>,
-    /// Folder with the tables of other engines' runs
-    #[arg(long, value_name = "DIR", default_value_os_t = default_peers_folder().to_owned())]
-    peers: PathBuf,
 }
 
 impl ChartCommand {
     pub(super) fn run(self) -> Result<()> {
-        let Self { out, quick, large, only, peers } = self;
-        chart_speed(&ChartOptions { out, quick, large, only, peers })
+        let Self { out, quick, large, only } = self;
+        chart_speed(&ChartOptions { out, quick, large, only })
     }
 }
 

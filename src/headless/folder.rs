@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::manifest::{Instant, PictureEntry};
 use crate::config::SavedState;
 use crate::error::{Error, Result};
-use crate::output::{FolderLock, Locked, check_writable, name_of_whole, remove_if_there};
+use crate::output::{FolderLock, Locked, check_writable, final_name, remove_if_there};
 use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 
@@ -94,8 +94,7 @@ impl RunFolder {
             let reason = "is missing, but must be where the checkpoint tells of it";
             return Err(Error::file(self.path.join(&lost.file), reason));
         }
-        let goes =
-            |name: &String| name_of_whole(name) != name || (is_frame(name) && !is_kept(name));
+        let goes = |name: &String| final_name(name) != name || (is_frame(name) && !is_kept(name));
         for name in names.iter().filter(|name| goes(name)) {
             let path = self.path.join(name);
             std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
@@ -127,7 +126,7 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<String>> {
     for entry in std::fs::read_dir(folder).map_err(refuse)? {
         let name = entry.map_err(refuse)?.file_name();
         let name = name.to_string_lossy();
-        let whole = name_of_whole(&name);
+        let whole = final_name(&name);
         let is_ours = is_frame(whole)
             || ["manifest.json", "observables.csv", CHECKPOINT, WAITING].contains(&whole);
         if is_ours && is_plain(&folder.join(&*name)) {

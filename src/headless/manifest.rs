@@ -6,7 +6,7 @@ use std::time::{Duration, Instant as Clock};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::output::Draft;
+use crate::output::PendingFile;
 use crate::scene::Scene;
 use crate::sim::{Alarm, FractureWork, Observables, SweepElasticity, Tally};
 use crate::study::Recorded;
@@ -184,7 +184,7 @@ impl Manifest {
         let mut text =
             serde_json::to_string_pretty(self).map_err(|error| Error::file(path, error))?;
         text.push('\n');
-        let mut draft = Draft::start(path)?;
+        let mut draft = PendingFile::start(path)?;
         draft.write(text.as_bytes())?;
         draft.finish(safe)
     }

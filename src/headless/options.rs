@@ -389,7 +389,7 @@ impl HeadlessOptions {
             None => {
                 // Frames are the same however long the run goes on after them.
                 let mut config = config.clone();
-                config.origin.duration = None;
+                config.source.duration = None;
                 config.words(&settings)?
             }
             Some(path) => {

@@ -8,8 +8,8 @@ use super::folder::{Beginning, Checkpoints, EarlierFiles, Marks, RunFolder, look
 use super::manifest::Instant;
 use super::options::SavingOptions;
 use super::writer::{RunWriter, interrupted};
-use crate::config::{Config, SavedState, about};
-use crate::data::{Claim, DataSettings, Recording, Times, formats_of};
+use crate::config::{Config, SavedState, scene_facts};
+use crate::data::{DataSettings, Recording, RecordingFolder, Times, formats_of};
 use crate::error::{Error, Result};
 use crate::output::{Progress, caught_signal, check_file, note_line, warn_of_steps};
 use crate::render::{Renderer, RendererChoice};
@@ -154,7 +154,7 @@ impl RequestedRun {
         let times_secs = options.picture_times(self.scene().duration_secs)?;
         // Times alone ask for no more than the last of them.
         let until_secs = match times_secs.last() {
-            Some(&last) if !options.times.is_empty() && config.origin.duration.is_none() => last,
+            Some(&last) if !options.times.is_empty() && config.source.duration.is_none() => last,
             _ => self.scene().duration_secs,
         };
         let times_secs = if options.draws() { times_secs } else { Vec::new() };
@@ -239,7 +239,7 @@ pub(crate) fn settled(config: &Config) -> Result<Scene> {
 /// A recording that is to be.
 pub(super) struct RecordingPlan {
     /// A folder of its own; none where a run goes on with the recording that it has.
-    claim: Option<Claim>,
+    claim: Option<RecordingFolder>,
     folder: PathBuf,
     settings: DataSettings,
 }
@@ -254,7 +254,7 @@ impl RecordingPlan {
         overwrite: bool,
         goes_on: bool,
     ) -> Result<Self> {
-        let claim = (!goes_on).then(|| Claim::of(&folder, overwrite)).transpose()?;
+        let claim = (!goes_on).then(|| RecordingFolder::of(&folder, overwrite)).transpose()?;
         Ok(Self { claim, folder, settings })
     }
 
@@ -268,7 +268,7 @@ impl RecordingPlan {
         simulation: &Simulation,
         picture_times: &[f64],
     ) -> Result<Recording> {
-        let mut about = about(scene)?;
+        let mut about = scene_facts(scene)?;
         let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
         let command = words.collect::<Vec<_>>().join(" ").replace(char::is_control, " ");
         about.facts.insert(1, ("command".to_owned(), command));

@@ -50,10 +50,6 @@ for run in pile bonds walls; do
     "$python" "$here/vtk_files.py" "$out/$run"
     [ -n "$fast" ] || "$python" "$here/ovito_files.py" "$out/$run"
 done
-# What PyVista has changed and saved is a pile to start from.
-"$python" "$here/shifted.py" "$out/pile" "$out/shifted.vtp"
-record from-shifted --initial "$out/shifted.vtp" --dt 1e-3 --duration 0.001 --data-every 0.001
-"$python" "$here/shifted.py" "$out/pile" "$out/shifted.vtp" "$out/from-shifted"
 
 if [ -z "$fast" ] && command -v pvpython >/dev/null; then
     # Debian's ParaView draws on a display alone.

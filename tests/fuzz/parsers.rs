@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use slump::config::{Config, Origin, scene_to_toml};
+use slump::config::{Config, SceneSource, scene_to_toml};
 use slump::error::{Error, Result};
 use slump::interchange::{ProblemFile, problem_file_at, solve_file};
 use slump::scene::{GrainSource, NewPile, built_in};
@@ -78,8 +78,8 @@ fn tables_of_discs() {
         texts.push(format!("x,y,radius\n{}", "0,0.01,0.0025\n".repeat(count)));
     }
     fuzz_texts("discs", "csv", texts, |_, path| {
-        let origin = Origin { initial: Some(path.to_owned()), ..Origin::default() };
-        let scene = Config { origin, ..Config::default() }.scene(|_| true)?;
+        let source = SceneSource { initial: Some(path.to_owned()), ..SceneSource::default() };
+        let scene = Config { source, ..Config::default() }.scene(|_| true)?;
         scene.simulation()
     });
 }

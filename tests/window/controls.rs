@@ -1,7 +1,7 @@
 //! Sliders, fields, buttons and keys reach the solver's thread.
 
 use egui_kittest::kittest::Queryable;
-use slump::config::{Config, Origin};
+use slump::config::{Config, SceneSource};
 use slump::scene::Deposition;
 
 use crate::robot::{File, Robot, bits, pile};
@@ -85,7 +85,7 @@ fn a_step_is_exactly_one() {
 #[test]
 fn a_run_pauses_at_the_end_of_its_scene_and_plays_on_from_there() {
     let mut config = pile();
-    config.origin.duration = Some(0.02);
+    config.source.duration = Some(0.02);
     let mut robot = Robot::open(config);
     robot.state_mut().preferences.full_speed = true;
     robot.key(egui::Key::Space);
@@ -145,7 +145,7 @@ fn a_dropped_list_of_discs_is_opened_and_anything_else_is_not() {
 fn a_new_pile_can_be_given_up() {
     let mut robot = Robot::open(pile());
     let mut config = pile();
-    (config.origin.grains, config.origin.seed) = (Some(300), Some(1));
+    (config.source.grains, config.source.seed) = (Some(300), Some(1));
     robot.state_mut().load(config);
     robot.until("progress", |state| {
         state.frame.loading.as_ref().is_some_and(|progress| !progress.text.is_empty())
@@ -233,13 +233,13 @@ fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
 
 #[test]
 fn a_large_pile_that_is_swept_is_offered_what_is_certain() {
-    let origin = Origin {
+    let source = SceneSource {
         grains: Some(2_100),
         box_width: Some(61.0),
         deposition: Some(Deposition::DropAndRoll),
-        ..Origin::default()
+        ..SceneSource::default()
     };
-    let mut robot = Robot::open(Config { origin, ..Config::default() });
+    let mut robot = Robot::open(Config { source, ..Config::default() });
     for section in ["Physics", "Run", "Solver"] {
         robot.click(section);
     }

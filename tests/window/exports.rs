@@ -18,7 +18,7 @@ fn the_window_exports_what_data_writes() {
         let folder = tempfile::tempdir().expect("a folder");
         let (exported, written) = (folder.path().join("window"), folder.path().join("headless"));
         let mut config = Config::of_scene(scene);
-        config.origin.duration = Some(duration_secs);
+        config.source.duration = Some(duration_secs);
         config.parameters.time_step_secs = Some(1e-3);
         let formats: Vec<_> = FormatName::ALL
             .iter()
@@ -55,7 +55,7 @@ fn frames_are_at_the_times_that_data_has_them_at() {
     let folder = tempfile::tempdir().expect("a folder");
     let (exported, written) = (folder.path().join("window"), folder.path().join("headless"));
     let mut config = Config::of_scene("cradle");
-    config.origin.duration = Some(0.05);
+    config.source.duration = Some(0.05);
     config.parameters.time_step_secs = Some(1e-3);
     let mut robot = open(config, &exported, &[slump::data::DEFAULT_FORMAT]);
     robot.state_mut().preferences.data.each_step = false;

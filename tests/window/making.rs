@@ -10,8 +10,8 @@ use crate::robot::{Robot, bits, pile};
 /// So many grains that they fall for a while.
 fn rain() -> Config {
     let mut config = pile();
-    config.origin.grains = Some(400);
-    config.origin.box_width = Some(NewPile::default().box_width_in_diameters);
+    config.source.grains = Some(400);
+    config.source.box_width = Some(NewPile::default().box_width_in_diameters);
     config
 }
 

@@ -19,10 +19,10 @@ const WIDTH: f64 = 5.0;
 
 fn small_pile() -> Config {
     let mut config = Config::default();
-    config.origin.scene = Some("pile".into());
-    (config.origin.grains, config.origin.box_width) = (Some(GRAINS), Some(WIDTH));
-    config.origin.seed = Some(2);
-    config.origin.duration = Some(0.1);
+    config.source.scene = Some("pile".into());
+    (config.source.grains, config.source.box_width) = (Some(GRAINS), Some(WIDTH));
+    config.source.seed = Some(2);
+    config.source.duration = Some(0.1);
     config.parameters.time_step_secs = Some(1e-3);
     config
 }

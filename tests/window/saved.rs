@@ -73,7 +73,7 @@ fn the_window_saves_what_save_writes() {
     for (scene, stepper) in ways {
         let folder = tempfile::tempdir().expect("a folder");
         let mut config = Config::of_scene(scene);
-        config.origin.duration = Some(0.04);
+        config.source.duration = Some(0.04);
         config.parameters.time_step_secs = Some(1e-3);
         config.stepper = Some(stepper);
         let mut robot = open(config, folder.path());

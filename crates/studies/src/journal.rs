@@ -1,6 +1,6 @@
-//! Results as they come: a line of JSON a run, appended when the run ends, so that a program that is
-//! killed loses no finished run. Each line has a checksum. A half line at the end, which a kill can
-//! leave, is cut off; a line that is damaged is told of and counts as not there.
+//! Results as they come: a line of JSON a case, appended when the case ends, so that a program that is killed loses
+//! no finished case. Each line has a checksum. A half line at the end, which a kill can leave, is cut off; a damaged
+//! line is named and counts as not there. Other files have such a checksum, too.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -8,12 +8,12 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 
-use super::{Outcome, record};
 use crate::error::{Error, Result};
 use crate::output::note_line;
+use crate::runner::FinishedCase;
 
 /// Ending of a journal's name.
 const ENDING: &str = "jsonl";
@@ -21,19 +21,6 @@ const ENDING: &str = "jsonl";
 /// Where the journal of that name lies.
 pub(super) fn path_of(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{name}.{ENDING}"))
-}
-
-/// One finished run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Entry {
-    /// The run's key.
-    pub key: String,
-    /// Wall-clock time that it took, s.
-    pub wall_secs: f64,
-    pub outcome: Outcome,
-    /// Checksum of the file with its course, where one is kept.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub course: Option<String>,
 }
 
 /// A journal that this program writes.
@@ -66,7 +53,7 @@ impl Journal {
     /// Adds something finished.
     pub(super) fn add(&self, entry: &impl Serialize) -> Result<()> {
         let line = serde_json::to_string(entry).map_err(|error| Error::file(&self.path, error))?;
-        let line = record::sealed_line(&line);
+        let line = sealed_line(&line);
         let mut file = match self.file.lock() {
             Ok(file) => file,
             // A thread that fell over between two lines leaves the file sound.
@@ -77,23 +64,25 @@ impl Journal {
     }
 }
 
-/// All finished runs that the journals of some folders tell of, by key.
+/// All finished cases in the journals of some folders, by key.
 ///
 /// # Errors
-/// Where a journal cannot be read, or two disagree about a run.
-pub(super) fn read_all(folders: &[PathBuf]) -> Result<HashMap<String, Entry>> {
-    let mut all: HashMap<String, Entry> = HashMap::new();
+/// Where a journal cannot be read, or two disagree about a case.
+pub(super) fn read_all<T: Serialize + DeserializeOwned>(
+    folders: &[PathBuf],
+) -> Result<HashMap<String, FinishedCase<T>>> {
+    let mut all: HashMap<String, FinishedCase<T>> = HashMap::new();
     for path in journals(folders)? {
-        for entry in read::<Entry>(&path)? {
+        for case in read::<FinishedCase<T>>(&path)? {
             // As they are written: what is not a number is not even equal to itself.
-            let written = |entry: &Entry| serde_json::to_string(&entry.outcome).ok();
-            if let Some(known) = all.get(&entry.key)
-                && written(known) != written(&entry)
+            let written = |case: &FinishedCase<T>| serde_json::to_string(&case.result).ok();
+            if let Some(known) = all.get(&case.key)
+                && written(known) != written(&case)
             {
-                let reason = format!("run {} came out otherwise before", entry.key);
+                let reason = format!("run {} came out otherwise before", case.key);
                 return Err(Error::file(&path, reason));
             }
-            all.insert(entry.key.clone(), entry);
+            all.insert(case.key.clone(), case);
         }
     }
     Ok(all)
@@ -107,7 +96,7 @@ pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
     let mut entries = Vec::new();
     for (number, line) in lines(&bytes) {
-        let entry = record::of_line(line).and_then(|record| serde_json::from_str(record).ok());
+        let entry = record_of(line).and_then(|record| serde_json::from_str(record).ok());
         match entry {
             Some(entry) => entries.push(entry),
             None => tell_of_damage(path, number),
@@ -135,7 +124,7 @@ fn tell_of_damage(path: &Path, line: usize) {
 fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     // What is appended to cannot be written to elsewhere.
     let mut file = OpenOptions::new().write(true).open(path)?;
-    for (number, line) in lines(bytes).filter(|(_, line)| record::of_line(line).is_none()) {
+    for (number, line) in lines(bytes).filter(|(_, line)| record_of(line).is_none()) {
         tell_of_damage(path, number);
         // Both are parts of one allocation.
         let offset = line.as_ptr().addr() - bytes.as_ptr().addr();
@@ -172,4 +161,68 @@ pub(super) fn remove_all(folder: &Path) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Hexadecimal digits of a checksum: 64 bits, far more than damage needs.
+const DIGITS: usize = 16;
+const BEFORE: &str = "{\"checksum\":\"";
+const BETWEEN: &str = "\",\"record\":";
+/// What stands before the checksum at the end of a file whose comments begin with `#`.
+const COMMENT: &str = "# checksum ";
+
+/// The checksum of some bytes.
+pub(super) fn checksum(text: &[u8]) -> String {
+    blake3::hash(text).to_hex()[..DIGITS].to_owned()
+}
+
+/// A line of JSON around a record that is JSON.
+fn sealed_line(record: &str) -> String {
+    format!("{BEFORE}{}{BETWEEN}{record}}}\n", checksum(record.as_bytes()))
+}
+
+/// The record of a line without its end; nothing where it is damaged.
+fn record_of(line: &[u8]) -> Option<&str> {
+    let rest = str::from_utf8(line).ok()?.strip_prefix(BEFORE)?;
+    let (found, rest) = rest.split_at_checked(DIGITS)?;
+    let record = rest.strip_prefix(BETWEEN)?.strip_suffix('}')?;
+    (checksum(record.as_bytes()) == found).then_some(record)
+}
+
+/// A text with its checksum as a last line, a comment.
+pub(super) fn sealed_text(text: &str) -> String {
+    format!("{text}{COMMENT}{}\n", checksum(text.as_bytes()))
+}
+
+/// The text that was sealed; nothing where it is damaged.
+pub(super) fn text_of(bytes: &[u8]) -> Option<&str> {
+    let (text, found) = str::from_utf8(bytes).ok()?.rsplit_once(COMMENT)?;
+    (checksum(text.as_bytes()) == found.strip_suffix('\n')?).then_some(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_flipped_bit_goes_unseen() {
+        let line = sealed_line("{\"key\":\"ab\",\"slump\":0.25}");
+        let line = line.trim_end().as_bytes();
+        let text = sealed_text("# A state.\nx,y,radius\n1,2,3\n");
+        assert_eq!(record_of(line), Some("{\"key\":\"ab\",\"slump\":0.25}"));
+        assert_eq!(text_of(text.as_bytes()), Some("# A state.\nx,y,radius\n1,2,3\n"));
+        let flipped = |bytes: &[u8], bit: usize| {
+            let mut bytes = bytes.to_vec();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            bytes
+        };
+        for bit in 0..8 * line.len() {
+            assert_eq!(record_of(&flipped(line, bit)), None, "bit {bit}");
+        }
+        for bit in 0..8 * text.len() {
+            assert_eq!(text_of(&flipped(text.as_bytes(), bit)), None, "bit {bit}");
+        }
+        for end in 0..text.len() {
+            assert_eq!(text_of(&text.as_bytes()[..end]), None, "cut at {end}");
+        }
+    }
 }

@@ -8,46 +8,37 @@
 use slump_core::{contact, error, number, scene, sim, solver, world};
 use slump_data::{config, data, granular, output};
 
-mod alarms;
-mod axis;
 pub mod chart;
-mod collection;
-mod course;
 mod figures;
 mod journal;
 mod machine;
-mod outcome;
 mod paper;
-mod performance;
 mod plan;
-mod planned_run;
 pub mod png;
-mod record;
+mod report;
+mod results;
 mod run;
-mod shard;
+mod runner;
+mod series;
 mod speed;
 pub mod stability;
 mod states;
 mod statistics;
 pub mod sweep;
-mod table;
 pub mod validate;
 
-pub use course::series_path;
 pub use figures::{figure_names, reproduce};
-pub use outcome::{Outcome, Status};
 pub use paper::PILE_SOLVER;
 pub use paper::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, paper_runs,
 };
-pub use plan::{SeriesSettings, Study};
-pub use planned_run::PlannedRun;
+pub use plan::{PlannedRun, SeriesSettings, Study};
+pub use results::{RunResult, RunsTable, Status};
 pub use run::{OnItsWay, Recorded, Recorder, go_on, record};
-pub use shard::Shard;
-pub use speed::{ChartOptions, ChartPart, chart_speed, default_peers_folder};
+pub use series::series_path;
+pub use speed::{ChartOptions, ChartPart, chart_speed};
 pub use states::settled_pile;
 pub use statistics::{Mean, mean};
-pub use sweep::{SweepOptions, merge, sweep};
-pub use table::RunsTable;
-pub use validate::Verdict;
+pub use sweep::{Shard, SweepOptions, merge, sweep};
+pub use validate::Agreement as Verdict;
 pub use validate::{ValidateOptions, experiment_names, validate};

@@ -1,13 +1,13 @@
-//! What a time was measured on, when, and with which command; and the journals of what was measured there.
+//! What a time was measured on, when, and with which command; and the runner of what is measured there.
 
 use std::path::Path;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::journal::{self, Journal};
+use super::runner::Runner;
 use crate::error::{Error, Result};
-use crate::output::{check_writable, note_line};
+use crate::output::check_writable;
 
 /// Where and when times were measured.
 #[derive(Clone, Debug)]
@@ -46,27 +46,21 @@ impl Machine {
         })
     }
 
-    /// A journal for the measurements of this program on this machine, below `folder`, and what it holds. A quick
-    /// pass has its own.
+    /// A runner of the measurements of this program on this machine, whose journal lies below `folder`. A quick pass
+    /// has its own.
     ///
     /// # Errors
-    /// Where it cannot be read or written.
-    pub(super) fn journal<T: Serialize + DeserializeOwned>(
+    /// Where the journal cannot be read or written.
+    pub(super) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         folder: &Path,
         quick: bool,
         name: &str,
-    ) -> Result<(Journal, Vec<T>)> {
+    ) -> Result<Runner<T>> {
         let pass = if quick { "quick" } else { "full" };
         let folder = folder.join("measured").join(&self.fingerprint).join(pass);
         check_writable("out", &folder)?;
-        // Opening cuts off a half line, so it comes first.
-        let journal = Journal::open(&folder, name)?;
-        let done: Vec<T> = journal::read(&journal::path_of(&folder, name))?;
-        if !done.is_empty() {
-            note_line(format_args!("{name}: {} measurements were there", done.len()));
-        }
-        Ok((journal, done))
+        Runner::open(name, &folder, name)
     }
 
     /// A line for a caption.

@@ -6,7 +6,7 @@ use image::{RgbImage, RgbaImage};
 use png::{BitDepth, ColorType, Encoder, EncodingError};
 
 use crate::error::{Error, Result};
-use crate::output::{Draft, Texts};
+use crate::output::{PendingFile, Texts};
 
 /// Writes a picture as PNG. It is not worth waiting for the disk: it can be drawn again.
 ///
@@ -15,7 +15,7 @@ use crate::output::{Draft, Texts};
 pub fn write_png(path: &Path, image: &RgbaImage, texts: &Texts) -> Result<()> {
     let size = image.dimensions();
     let bytes = encoded(size, ColorType::Rgba, image.as_raw(), texts);
-    let mut draft = Draft::start(path)?;
+    let mut draft = PendingFile::start(path)?;
     draft.write(&bytes.map_err(|error| Error::file(path, error))?)?;
     draft.finish(false)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::record;
+use super::journal::{sealed_text, text_of};
 use crate::config::{Config, parse_discs, write_discs};
 use crate::error::{Error, Result};
 use crate::output::{Progress, check_writable, note_line, write_file};
@@ -30,7 +30,7 @@ impl States {
         let mut looked_at = HashSet::new();
         for config in configs {
             // A scene file is read once, whatever the number of its runs.
-            if config.origin.makes_new_pile() || looked_at.insert(config.name_of_ground()) {
+            if config.source.makes_new_pile() || looked_at.insert(config.base_scene_key()) {
                 piles.extend(config.new_pile()?.map(|pile| (name(&pile), pile)));
             }
         }
@@ -76,23 +76,23 @@ pub fn settled_pile(
     progress: impl FnMut(Settling) -> bool,
 ) -> Result<Vec<Grain>> {
     let path = folder.join(format!("{}.csv", name(pile)));
-    if let Some(grains) = kept(&path)? {
+    if let Some(grains) = read(&path)? {
         return Ok(grains);
     }
     let grains = settle(pile, progress)?;
     let text = write_discs(&grains, "An initial state; metres.");
-    write_file(&path, record::sealed_text(&text).as_bytes())?;
+    write_file(&path, sealed_text(&text).as_bytes())?;
     Ok(grains)
 }
 
 /// The grains that a file holds; nothing where it is not there, or damaged, which is told of.
-fn kept(path: &Path) -> Result<Option<Vec<Grain>>> {
+fn read(path: &Path) -> Result<Option<Vec<Grain>>> {
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(Error::file(path, error)),
     };
-    let grains = record::of_text(&bytes).and_then(|text| parse_discs(text, path).ok());
+    let grains = text_of(&bytes).and_then(|text| parse_discs(text, path).ok());
     if grains.is_none() {
         note_line(format_args!("{}: is damaged; the state is settled anew", path.display()));
     }
@@ -101,12 +101,12 @@ fn kept(path: &Path) -> Result<Option<Vec<Grain>>> {
 
 fn name(pile: &NewPile) -> String {
     let NewPile { grains, box_width_in_diameters, seed, deposition } = pile;
-    let way = match deposition {
+    let deposited = match deposition {
         Deposition::Rain => "",
         Deposition::DropAndRoll => "_drop-and-roll",
     };
     format!(
-        "pile_{grains}_width{box_width_in_diameters}_seed{seed}{way}_v{}",
+        "pile_{grains}_width{box_width_in_diameters}_seed{seed}{deposited}_v{}",
         env!("CARGO_PKG_VERSION")
     )
 }

@@ -1,28 +1,27 @@
 //! The sweep engine: runs a study on all cores, keeps each result as it comes, goes on where it
 //! stopped, and joins parts that ran elsewhere.
 //!
-//! A folder of results holds `study.json` (which study it is), journals (results as they come),
-//! `states/` (initial states), `series/` (courses of runs), `data/` (recordings of runs) and, once all runs
-//! are there, `runs.csv`.
+//! A folder of results holds `study.json` (which study it is), journals (results as they come), `states/` (initial
+//! states), `series/` (rows of each run over time), `data/` (recordings of runs) and, once all runs are there,
+//! `runs.csv`.
 
+use std::collections::HashSet;
 use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::course::{self, Course};
-use super::journal::{self, Entry, Journal};
-use super::outcome::run_to_end;
+use super::journal::{self, Journal};
+use super::results::{RunResult, RunsTable, run_to_end};
+use super::runner::{Case, Runner, Threads};
+use super::series::{self, SERIES, Series};
 use super::states::States;
-use super::table::RunsTable;
-use super::{PlannedRun, Shard, Study};
-use crate::config::about;
+use super::{PlannedRun, Study};
+use crate::config::scene_facts;
 use crate::data::{Recording, Times, formats_of};
 use crate::error::{Error, Result};
 use crate::output::{
-    Progress, check_writable, note_line, remove_folder_if_there, remove_if_there, write_file,
+    check_writable, note_line, remove_folder_if_there, remove_if_there, write_file,
 };
 use crate::scene::Scene;
 
@@ -32,8 +31,36 @@ const STUDY_FILE: &str = "study.json";
 const DATA: &str = "data";
 /// The table of a finished study.
 const TABLE: &str = "runs.csv";
-/// Lines that tell of progress where there is no terminal to draw a bar on.
-const LINES_OF_PROGRESS: usize = 20;
+
+/// Part `index` of `count`, counted from 1. Every count-th run belongs to it, so that cheap and dear
+/// runs are dealt out evenly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1 to `count`.
+    pub index: usize,
+    /// Number of parts.
+    pub count: usize,
+}
+
+impl Shard {
+    /// Whether the run of that number belongs to this part.
+    fn has(self, run: usize) -> bool {
+        run % self.count == self.index - 1
+    }
+}
+
+impl std::str::FromStr for Shard {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let refuse = || Error::value("shard", text, "k/n with k between 1 and n, as in 3/16");
+        let (index, count) = text.split_once('/').ok_or_else(refuse)?;
+        match (index.parse(), count.parse()) {
+            (Ok(index), Ok(count)) if (1..=count).contains(&index) => Ok(Self { index, count }),
+            _ => Err(refuse()),
+        }
+    }
+}
 
 /// How a sweep is to run.
 #[derive(Clone, Debug, Default)]
@@ -44,6 +71,15 @@ pub struct SweepOptions {
     pub redo: bool,
     /// Where initial states are kept; in the folder of results where nothing is said.
     pub states: Option<PathBuf>,
+}
+
+/// What a journal has of one run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct SweptRun {
+    pub outcome: RunResult,
+    /// Checksum of the file with its series, where one is kept.
+    #[serde(rename = "course", default, skip_serializing_if = "Option::is_none")]
+    pub series: Option<String>,
 }
 
 /// What `study.json` says.
@@ -70,9 +106,9 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     let folders = [folder.to_owned()];
     let open = || -> Result<_> {
         let journal = Journal::open(folder, &journal_name)?;
-        Ok((journal, journal::read_all(&folders)?))
+        Ok((journal, journal::read_all::<SweptRun>(&folders)?))
     };
-    let (journal, mut done) = match open() {
+    let (journal, mut finished) = match open() {
         Err(error) if options.redo => {
             note_line(format_args!("{error}; thrown away"));
             throw_away(folder)?;
@@ -80,37 +116,41 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
         }
         opened => opened?,
     };
-    if study.data.is_some() {
-        done.retain(|key, _| data_path(folder, key).exists());
-    }
-
     let mine = |index: usize| options.shard.is_none_or(|shard| shard.has(index));
-    let mut part: Vec<&PlannedRun> = study
-        .runs
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| mine(*index))
-        .map(|(_, run)| run)
-        .collect();
-    let of_part = part.len();
-    let is_whole = |entry| study.series.is_none() || course::is_whole(folder, entry);
-    part.retain(|run| !done.get(&run.key).is_some_and(is_whole));
-    if part.len() < of_part {
-        note_line(format_args!(
-            "{}: {} of {of_part} runs were there",
-            study.name,
-            of_part - part.len()
-        ));
+    let part = study.runs.iter().enumerate().filter(|(index, _)| mine(*index));
+    let cases: Vec<Case<&PlannedRun>> =
+        part.map(|(_, run)| Case { key: run.key.clone(), cost: run.cost, setup: run }).collect();
+    // Files of runs that are no part of this are none of its business.
+    let keys: HashSet<&str> = cases.iter().map(|case| case.key.as_str()).collect();
+    finished.retain(|key, case| {
+        keys.contains(key.as_str())
+            && (study.data.is_none() || data_path(folder, key).exists())
+            && (study.series.is_none() || series::is_whole(folder, case))
+    });
+    if !finished.is_empty() {
+        let (done, all) = (finished.len(), cases.len());
+        note_line(format_args!("{}: {done} of {all} runs were there", study.name));
     }
-    // Longest first, so that no core waits long for the last one. The sort is stable.
-    part.sort_by(|one, other| other.cost.total_cmp(&one.cost));
     let states_folder = options.states.clone().unwrap_or_else(|| folder.join("states"));
-    let states = States::of(states_folder, part.iter().map(|run| &run.config))?;
-    run_all(study, folder, &journal, &states, part)?;
+    let pending = cases.iter().filter(|case| !finished.contains_key(&case.key));
+    let states = States::of(states_folder, pending.map(|case| &case.setup.config))?;
+    let runner = Runner::new(&study.name, journal, finished);
+    runner.run(&cases, Threads::All, |run| swept(study, folder, &states, run))?;
     if options.shard.is_some() {
         return Ok(None);
     }
     join(study, &folders, folder).map(Some)
+}
+
+/// Runs one run to its end.
+fn swept(study: &Study, folder: &Path, states: &States, run: &PlannedRun) -> Result<SweptRun> {
+    let scene = states.scene(&run.config)?;
+    let mut series = study.series.as_ref().map(|settings| Series::start(settings, &scene));
+    let mut recording = recording_of(study, folder, run, &scene)?;
+    let outcome = run_to_end(&scene, series.as_mut(), recording.as_mut())?;
+    let series = series.map(|series| series.finish(folder, &run.key)).transpose()?;
+    recording.map_or(Ok(()), Recording::finish)?;
+    Ok(SweptRun { outcome, series })
 }
 
 /// Joins the parts that lie in `folders` into `runs.csv` in `out`.
@@ -140,41 +180,6 @@ fn join(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
     Ok(table)
 }
 
-fn run_all(
-    study: &Study,
-    folder: &Path,
-    journal: &Journal,
-    states: &States,
-    part: Vec<&PlannedRun>,
-) -> Result<()> {
-    let total = part.len();
-    let cost = |run: &PlannedRun| run.cost.ceil() as u64;
-    let progress = Progress::new(&study.name, part.iter().map(|run| cost(run)).sum());
-    let finished = std::sync::atomic::AtomicUsize::new(0);
-    let ended = part.into_iter().par_bridge().try_for_each(|run| {
-        let started = Instant::now();
-        let scene = states.scene(&run.config)?;
-        let mut course = Course::start(study.series.as_ref());
-        let mut recording = recording_of(study, folder, run, &scene)?;
-        let row = |simulation: &_| course.add(simulation);
-        let outcome = run_to_end(&scene, study.series.as_ref(), row, recording.as_mut())?;
-        let course = course.finish(folder, &run.key)?;
-        recording.map_or(Ok(()), Recording::finish)?;
-        let wall_secs = started.elapsed().as_secs_f64();
-        journal.add(&Entry { key: run.key.clone(), wall_secs, outcome, course })?;
-        progress.advance(cost(run));
-        let count = 1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        if !progress.is_drawn()
-            && count * LINES_OF_PROGRESS / total > (count - 1) * LINES_OF_PROGRESS / total
-        {
-            progress.say(&format!("{}: {count} of {total} runs", study.name));
-        }
-        Ok(())
-    });
-    progress.finish();
-    ended
-}
-
 /// The recording of one run, where the study asks for it. What a run that was stopped has left of one is
 /// removed.
 fn recording_of(
@@ -185,7 +190,7 @@ fn recording_of(
 ) -> Result<Option<Recording>> {
     let Some(data) = &study.data else { return Ok(None) };
     let path = data_path(folder, &run.key);
-    let recording = Recording::start(&path, &formats_of(data)?, &about(scene)?, true)?;
+    let recording = Recording::start(&path, &formats_of(data)?, &scene_facts(scene)?, true)?;
     Ok(Some(recording.at(Times::of(data), &scene.simulation()?)))
 }
 
@@ -243,7 +248,7 @@ fn claim(study: &Study, folder: &Path, redo: bool) -> Result<()> {
 fn throw_away(folder: &Path) -> Result<()> {
     remove_if_there(&folder.join(TABLE))?;
     journal::remove_all(folder)?;
-    course::remove_all(folder)?;
+    remove_folder_if_there(&folder.join(SERIES))?;
     remove_folder_if_there(&folder.join(DATA))
 }
 

@@ -36,7 +36,7 @@ pub(super) fn others_of(opened: &Opened) -> Vec<NewPile> {
 /// What the grains of a scene were made of.
 fn pile_of(opened: &Opened) -> Option<NewPile> {
     let Opened { config, scene } = opened;
-    if config.origin.initial.is_some() {
+    if config.source.initial.is_some() {
         return None;
     }
     // A saved run goes by the name of its scene alone.
@@ -60,14 +60,14 @@ pub(super) fn scene_of(
     grains: Vec<Grain>,
     settings: &Settings,
 ) -> Result<Scene> {
-    let Config { mut origin, .. } = opened.config.clone();
-    if opened.config.origin.makes_new_pile() || opened.config.new_pile()?.is_none() {
-        origin.grains = Some(pile.grains);
-        origin.box_width = Some(pile.box_width_in_diameters);
-        origin.seed = Some(pile.seed);
-        origin.deposition = Some(pile.deposition);
+    let Config { mut source, .. } = opened.config.clone();
+    if opened.config.source.makes_new_pile() || opened.config.new_pile()?.is_none() {
+        source.grains = Some(pile.grains);
+        source.box_width = Some(pile.box_width_in_diameters);
+        source.seed = Some(pile.seed);
+        source.deposition = Some(pile.deposition);
     }
-    let config = Config { origin, ..Config::default() };
+    let config = Config { source, ..Config::default() };
     config.with_settings(settings).scene_from(grains)
 }
 
@@ -87,9 +87,9 @@ mod tests {
     fn others_are_of_other_seeds_and_never_the_one_that_was_chosen() {
         assert_eq!(seeds(Config::default()), [1, 2, 3, 4, 5, 6, 7, 9]);
         let mut config = Config::default();
-        config.origin.seed = Some(3);
+        config.source.seed = Some(3);
         assert_eq!(seeds(config.clone()), [1, 2, 4, 5, 6, 7, 9, 10]);
-        config.origin.grains = Some(MOST_GRAINS + 1);
+        config.source.grains = Some(MOST_GRAINS + 1);
         assert_eq!(seeds(config), [0; 0]);
         assert_eq!(seeds(Config::of_scene("cradle")), [0; 0]);
     }

@@ -6,7 +6,7 @@ use super::past;
 use crate::app::effort;
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::config::{Config, Origin};
+use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls};
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
 use crate::solver::SolverChanges;
@@ -60,7 +60,7 @@ impl Draft {
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     scene_box(ui, state);
-    if state.config.origin.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE)
+    if state.config.source.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE)
         == Config::DEFAULT_SCENE
     {
         new_pile(ui, state);
@@ -126,7 +126,7 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
 
 fn new_pile(ui: &mut Ui, state: &mut AppState) {
     let NewPile { grains, seed, box_width_in_diameters, deposition } =
-        state.config.origin.new_pile();
+        state.config.source.new_pile();
     let id = egui::Id::unique("new pile");
     let drafted = ui.data(|data| data.get_temp(id));
     let mut draft = drafted.unwrap_or(Draft { grains, seed, box_width_in_diameters, deposition });
@@ -180,16 +180,16 @@ fn cost(grains: usize) -> String {
 /// A new pile with the numbers that the controls show.
 fn pile_like_this(state: &AppState, draft: Draft) -> Config {
     let Draft { grains, seed, box_width_in_diameters, deposition } = draft;
-    let origin = Origin {
+    let source = SceneSource {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
         grains: Some(grains),
         seed: Some(seed),
         box_width: Some(box_width_in_diameters),
         deposition: (deposition != Deposition::default()).then_some(deposition),
         initial: None,
-        ..state.config.origin.clone()
+        ..state.config.source.clone()
     };
-    let config = Config { origin, ..state.config.clone() };
+    let config = Config { source, ..state.config.clone() };
     let Some(Controls { settings, .. }) = state.wanted.get(state.selected) else { return config };
     let (now, Some(world)) = (settings.solver, state.world()) else { return config };
     let begun_with = effort::for_grains(world.snapshot.grains.len()).settings;

@@ -1,13 +1,13 @@
 //! Places that are known exactly.
 
 use glam::DVec2;
-use slump::scene::{Rest, Support, Surface, dropped};
+use slump::scene::{Deposit, Rest, Support, dropped};
 use slump::world::Disc;
 
 const FLOOR: f64 = -10.0;
 
-fn surface(half_width: f64, discs: &[[f64; 3]]) -> Surface {
-    let mut surface = Surface::new(FLOOR, half_width, 2.0);
+fn surface(half_width: f64, discs: &[[f64; 3]]) -> Deposit {
+    let mut surface = Deposit::new(FLOOR, half_width, 2.0);
     for &[x, y, radius] in discs {
         surface.add(Disc { position: DVec2::new(x, y), radius });
     }

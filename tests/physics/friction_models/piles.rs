@@ -134,7 +134,7 @@ impl ProblemVisitor for FromRandomStarts<'_> {
         system.write(&impulses);
         let report = solve::<M>(problem, &mut Memory::default(), self.0);
         assert!(report.converged, "{report:?}");
-        problem.bodies().iter().flat_map(M::Kinematics::coordinates).collect()
+        problem.bodies.now.iter().flat_map(M::Kinematics::coordinates).collect()
     }
 }
 

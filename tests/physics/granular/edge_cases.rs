@@ -1,7 +1,7 @@
 //! Moments of which little or nothing can be said: no panic, and no number that means nothing.
 
 use glam::DVec2;
-use slump::granular::{Column, GrainMeasures, Measured, PileMeasures, measure};
+use slump::granular::{ColumnSpec, GrainMeasures, MomentMeasures, PileMeasures, measure};
 use slump::scene::built_in;
 use slump::sim::{GrainState, Moment, OtherBody};
 use slump::world::Boundary;
@@ -18,12 +18,12 @@ fn row(places: &[f64]) -> Vec<GrainState> {
 /// Columns that are no number.
 fn missing(pile: &PileMeasures) -> Vec<&'static str> {
     let columns = PileMeasures::COLUMNS.iter();
-    columns.filter(|column| column.value.number(pile).is_nan()).map(|column| column.name).collect()
+    columns.filter(|column| column.value.number(pile).is_none()).map(|column| column.name).collect()
 }
 
 #[test]
 fn columns_are_the_fields() {
-    let Measured { pile, grains, .. } = measure(&discs(row(&[0.0])));
+    let MomentMeasures { pile, grains, .. } = measure(&discs(row(&[0.0])));
     let of_pile: Vec<_> = PileMeasures::COLUMNS.iter().map(|column| column.name).collect();
     let of_grain: Vec<_> = GrainMeasures::COLUMNS.iter().map(|column| column.name).collect();
     for (row, names) in
@@ -38,7 +38,7 @@ fn columns_are_the_fields() {
         assert_eq!(names, fields);
     }
     for column in PileMeasures::COLUMNS {
-        let Column { name, unit, about, .. } = column;
+        let ColumnSpec { name, unit, about, .. } = column;
         assert!(["1", "m²", "N", "N/m", "degree"].contains(unit), "{name} in {unit}");
         assert!(about.ends_with('.') && !about.contains("  ") && about.trim() == *about, "{about}");
     }

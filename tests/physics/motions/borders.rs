@@ -4,7 +4,7 @@ use super::periodic::sliding;
 use super::{goes, level, straight};
 use crate::common::{assert_close, moving, parameters, scene, start, take_steps};
 use glam::DVec2;
-use slump::data::{About, FormatName, Recording, read_grains};
+use slump::data::{FormatName, Recording, RunFacts, read_grains};
 use slump::granular::measure;
 use slump::scene::Scene;
 use slump::world::{Boundary, Grain, Motion, MotionCourse, Periodic, Physics};
@@ -28,7 +28,7 @@ fn measures_of_a_packing_do_not_depend_on_where_the_border_is() {
     assert!(one.pile.closed_cells > 5, "{:?}", one.pile);
     for shift in [0.2, 0.5, 0.77] {
         let other = state(shift);
-        let found = |measured: &slump::granular::Measured| {
+        let found = |measured: &slump::granular::MomentMeasures| {
             let pile = &measured.pile;
             let of_grains = measured.grains.iter().flat_map(|grain| [grain.solid_fraction]);
             [pile.area, pile.box_area, pile.stress_yy, pile.stress_xy, pile.solid_fraction_cells]
@@ -50,7 +50,7 @@ fn a_recording_says_where_the_borders_are_and_is_a_start() {
     let scene = sliding(0.0);
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("run");
-    let about: About = slump::config::about(&scene).expect("facts");
+    let about: RunFacts = slump::config::scene_facts(&scene).expect("facts");
     let mut recording = Recording::start(&place, FormatName::ALL, &about, false).expect("a start");
     let mut run = start(&scene);
     take_steps(&mut run, 100);

@@ -7,7 +7,7 @@ use crate::common::{
 };
 use glam::DVec2;
 use rand::RngExt;
-use slump::data::{About, FormatName, Recording};
+use slump::data::{FormatName, Recording, RunFacts};
 use slump::granular::measure;
 use slump::scene::Scene;
 use slump::sim::{Simulation, Stepper};
@@ -238,7 +238,7 @@ fn measures_and_recordings_know_of_both_borders() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("run");
-    let about: About = slump::config::about(&scene).expect("facts");
+    let about: RunFacts = slump::config::scene_facts(&scene).expect("facts");
     let mut recording = Recording::start(&place, FormatName::ALL, &about, false).expect("a start");
     recording.add(run.moment()).expect("a frame");
     recording.finish().expect("an end");

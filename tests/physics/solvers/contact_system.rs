@@ -130,15 +130,15 @@ impl ProblemVisitor for Check {
 
 /// ‖(m_n v_n^free, m_t v_t^free)‖, N·s.
 fn scale_of_residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
-    let rows = problem.fixed_rows().iter().map(|row| (row, true));
-    let rows = rows.chain(problem.pair_rows().iter().map(|row| (row, false)));
+    let rows = problem.rows.fixed.iter().map(|row| (&row.row, true));
+    let rows = rows.chain(problem.rows.pairs.iter().map(|row| (&row.row, false)));
     let mut sum = 0.0;
     for (row, fixed) in rows {
-        let i = &problem.free_bodies()[row.i as usize];
+        let i = &problem.bodies.free[row.i as usize];
         let [normal, tangential] = if fixed {
             M::Kinematics::velocity(row.normal, i)
         } else {
-            M::Kinematics::relative_velocity(row.normal, i, &problem.free_bodies()[row.j as usize])
+            M::Kinematics::relative_velocity(row.normal, i, &problem.bodies.free[row.j as usize])
         };
         let normal = normal + row.restitution_velocity;
         let tangential =

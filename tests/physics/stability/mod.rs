@@ -12,7 +12,7 @@ mod theory;
 
 use std::sync::OnceLock;
 
-use slump::study::stability::{CHALLENGES, StabilityTable, Verdict};
+use slump::study::stability::{CHALLENGES, StabilityTable, StabilityVerdict};
 
 const RENEW: &str =
     "cargo run --release -- stability --quick --table tests/physics/stability/table.csv";
@@ -61,9 +61,9 @@ fn every_scene_breaks_a_method_at_its_last_level_and_none_at_its_first() {
             let here = quick().cells.iter();
             here.filter(move |cell| cell.scene == challenge.name && cell.level == level)
         };
-        let broken = of(hardest).any(|cell| cell.verdict != Verdict::Holds);
+        let broken = of(hardest).any(|cell| cell.verdict != StabilityVerdict::Holds);
         assert_eq!(broken, !UNBROKEN.contains(&challenge.name), "{}", challenge.name);
-        let held = of(challenge.quick[0]).any(|cell| cell.verdict == Verdict::Holds);
+        let held = of(challenge.quick[0]).any(|cell| cell.verdict == StabilityVerdict::Holds);
         let recovers = challenge.name == "overlap";
         assert!(held || recovers, "{}: nobody holds at the first level", challenge.name);
     }

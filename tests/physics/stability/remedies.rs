@@ -95,7 +95,7 @@ const UNMENDED: [(&str, f64); 2] = [("far", 1e13), ("moving-walls", 2e-2)];
 fn the_robust_preset_holds_everywhere_but_where_nothing_could() {
     for cell in super::quick().cells.iter().filter(|cell| cell.method == "robust") {
         let unmended = UNMENDED.contains(&(cell.scene.as_str(), cell.level));
-        let holds = cell.verdict == slump::study::stability::Verdict::Holds;
+        let holds = cell.verdict == slump::study::stability::StabilityVerdict::Holds;
         assert_eq!(holds, !unmended, "{} at {}: {}", cell.scene, cell.level, cell.error);
     }
 }

@@ -8,7 +8,7 @@ mod validation;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use slump::study::chart::{Axis, Cell, Chart, Layer, Look, PALETTE, Point, Sheet, png, svg};
+use slump::study::chart::{Axis, Chart, Layer, Look, MapCell, PALETTE, Point, Sheet, png, svg};
 
 /// Figures that take no more than a few seconds.
 const FAST: [&str; 6] = ["fig2", "two-body", "fig8", "fig8-strip", "cradle-choices", "cradle-map"];
@@ -81,7 +81,7 @@ fn sheet() -> Sheet {
         let (x, y) = (number(2).expect("x"), number(3).expect("y"));
         if let Some(value) = number(6) {
             let edges = if y < 1e-3 { [1e-4, 1e-3] } else { [1e-3, 1e-2] };
-            cells.push(Cell { x: (x, [x - 0.5, x + 0.5]), y: (y, edges), value });
+            cells.push(MapCell { x: (x, [x - 0.5, x + 0.5]), y: (y, edges), value });
             continue;
         }
         let point = Point { x, y, interval: number(4).zip(number(5)) };

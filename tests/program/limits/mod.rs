@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use assert_cmd::Command;
 use glam::DVec2;
-use slump::config::{Config, Origin};
+use slump::config::{Config, SceneSource};
 use slump::scene::{Scene, collision};
 use slump::world::Grain;
 use tempfile::TempDir;
@@ -81,8 +81,10 @@ fn a_disc_out_of_reach_of_the_base_is_named_rather_than_reached_by_the_base() {
 fn a_disc_that_is_merely_dropped_from_high_up_is_taken() {
     let folder = folder();
     let csv = write(&folder, "discs.csv", "x,y,radius\n0,0.01,0.0025\n0,4.9,0.0025\n");
-    let config =
-        Config { origin: Origin { initial: Some(csv), ..Default::default() }, ..Config::default() };
+    let config = Config {
+        source: SceneSource { initial: Some(csv), ..Default::default() },
+        ..Config::default()
+    };
     let scene = config.scene(|_| true).expect("a scene");
     assert!(scene.fixed_discs.len() > 9000 && scene.simulation().is_ok());
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use slump::config::{Config, Origin};
+use slump::config::{Config, SceneSource};
 use slump::data::{FormatName, RecordedGrains, read_grains};
 use slump::scene::Scene;
 use slump::sim::{Moment, Simulation};
@@ -56,8 +56,8 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 
 fn config(path: &Path, step: Option<u64>) -> Config {
     let initial = Some(path.to_owned());
-    let origin = Origin { initial, initial_step: step, ..Origin::default() };
-    Config { origin, ..Config::default() }
+    let source = SceneSource { initial, initial_step: step, ..SceneSource::default() };
+    Config { source, ..Config::default() }
 }
 
 fn simulation(scene: &Scene) -> Simulation {

@@ -56,7 +56,7 @@ fn scene(name: &str) -> Scene {
 
 /// Starts a recording of a scene.
 fn start(folder: &Path, formats: &[FormatName], scene: &Scene) -> Recording {
-    let about = slump::config::about(scene).expect("facts");
+    let about = slump::config::scene_facts(scene).expect("facts");
     Recording::start(folder, formats, &about, false).expect("a recording")
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use slump::data::{About, FormatName, Recording, Times};
+use slump::data::{FormatName, Recording, RunFacts, Times};
 use slump::scene::Scene;
 
 use super::{folder, record, scene, start};
@@ -61,7 +61,7 @@ fn what_goes_on_is_what_was_never_stopped() {
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
         drop(recording);
         let mut simulation = saved;
-        let about = slump::config::about(&pile).expect("facts");
+        let about = slump::config::scene_facts(&pile).expect("facts");
         let mut recording =
             Recording::go_on(&path, &formats, &about, stopped_at).expect("it goes on");
         assert_eq!(recording.frames(), stopped_at / 2);
@@ -89,7 +89,7 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     cut("frames.csv", 2);
     let mut simulation = pile.simulation().expect("a scene");
     simulation.take_steps(25).expect("a finite state");
-    let about = slump::config::about(&pile).expect("facts");
+    let about = slump::config::scene_facts(&pile).expect("facts");
     let mut recording = Recording::go_on(&torn, &formats, &about, 25).expect("it goes on");
     record(&mut recording, &mut simulation, 15, 2);
     recording.finish().expect("a recording");
@@ -100,7 +100,7 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
 fn frames_that_are_there_are_not_made_again() {
     let pile = scene("pile");
     let folder = folder();
-    let about = About::default();
+    let about = RunFacts::default();
     let formats = [FormatName::Csv];
     let mut simulation = pile.simulation().expect("a scene");
     let recording = Recording::start(folder.path(), &formats, &about, false);
@@ -132,7 +132,7 @@ fn frames_that_are_there_are_not_made_again() {
 fn one_recording_at_a_time_in_a_folder() {
     let folder = folder();
     let pile = scene("pile");
-    let about = About::default();
+    let about = RunFacts::default();
     let first = start(folder.path(), &[FormatName::Csv], &pile);
     for overwrite in [false, true] {
         let second = Recording::start(folder.path(), &[FormatName::Csv], &about, overwrite);
@@ -150,7 +150,7 @@ fn one_recording_at_a_time_in_a_folder() {
 fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
     let folder = folder();
     let pile = scene("pile");
-    let about = About::default();
+    let about = RunFacts::default();
     whole(folder.path(), &pile, FormatName::ALL, 8);
     std::fs::write(folder.path().join("note.txt"), "mine").expect("a file");
     std::fs::write(folder.path().join("grains/note.parquet"), "mine").expect("a file");
@@ -179,7 +179,7 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
 fn a_recording_goes_on_in_its_own_formats_alone() {
     let folder = folder();
     whole(folder.path(), &scene("pile"), &[FormatName::Csv], 8);
-    let about = About::default();
+    let about = RunFacts::default();
     let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4);
     let said = other.err().expect("a refusal").to_string();
     assert!(said.starts_with("data-format is parquet, but must be as "), "{said}");

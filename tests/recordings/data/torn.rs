@@ -124,7 +124,7 @@ fn what_a_kill_leaves_of_a_file_that_was_whole_is_no_rows_and_goes_with_the_next
 
     plant();
     let scene = super::scene("pile");
-    let about = slump::config::about(&scene).expect("facts");
+    let about = slump::config::scene_facts(&scene).expect("facts");
     let formats = [slump::data::FormatName::Parquet];
     drop(slump::data::Recording::go_on(folder.path(), &formats, &about, 0).expect("goes on"));
     assert_eq!(hidden(folder.path()), Vec::<String>::new());

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DVec2;
-use slump::data::{About, FormatName, Recording};
+use slump::data::{FormatName, Recording, RunFacts};
 use slump::sim::{
     ContactState, ContactStatus, GrainState, Moment, Observables, OtherBody, Settings, Surroundings,
 };
@@ -13,8 +13,10 @@ use slump::world::{Boundary, Disc};
 /// A number whose shortest form has all digits.
 pub const THIRD: f64 = 1.0 / 3.0;
 
-pub fn about() -> About {
-    About { facts: vec![("program".into(), "slump".into()), ("bond".into(), "20 <&> 30".into())] }
+pub fn about() -> RunFacts {
+    RunFacts {
+        facts: vec![("program".into(), "slump".into()), ("bond".into(), "20 <&> 30".into())],
+    }
 }
 
 /// Three grains, the last of them lost, on a fixed disc and a floor.

@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use slump::data::{RecordedGrains, read_grains};
-
-use crate::formats::moments::{THIRD, after, moment, start, write};
+use crate::formats::moments::{THIRD, after, start, write};
 
 const GRAINS: &str = r#"<?xml version="1.0"?>
 <VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
@@ -109,6 +107,7 @@ fn grains_are_points_with_every_column() {
     assert_same(&file.numbers("radius"), &[0.5, THIRD, 0.5, 0.75], "radius");
     assert_same(&file.numbers("angle"), &[-0.0, -0.0, -0.0, 0.0], "angle");
     assert_same(&file.numbers("velocity")[..4], &[THIRD, -2e-9, 0.0, THIRD], "velocity");
+    assert_same(&file.numbers("omega"), &[1e22, 1e22, 1e22, 0.0], "omega");
     assert_same(&file.numbers("mass"), &[0.125, 0.125, 0.125, f64::NAN], "mass");
     assert_eq!(file.wholes("id"), [0, 1, 2, 3]);
     assert_eq!(file.wholes("offsets"), [1, 2, 3, 4]);
@@ -145,34 +144,4 @@ fn contacts_are_lines_from_centre_to_centre_or_to_the_touched_point() {
     assert_eq!(file.words("status_words"), ["open", "stick", "slip"]);
     assert_eq!(file.words("name_j_words"), ["", "half-space 0"]);
     assert_eq!(file.bytes("name_j"), [0, 0, 1].map(i32::to_le_bytes).concat());
-}
-
-#[test]
-fn discs_read_back_bit_by_bit_from_every_file() {
-    let (folder, path) = second_frame("grains");
-    let RecordedGrains { grains, fixed_discs } = read_grains(&path, None).expect("discs");
-    assert_eq!(grains.len(), 2, "the third is lost");
-    for (read, written) in grains.iter().zip(moment(10).grains) {
-        assert_same(&read.position.to_array(), &written.position.to_array(), "position");
-        assert_same(&read.velocity.to_array(), &written.velocity.to_array(), "velocity");
-        assert_same(&[read.radius], &[written.radius], "radius");
-        assert_same(&[read.angular_velocity], &[written.angular_velocity], "omega");
-    }
-    assert_eq!(fixed_discs, moment(10).surroundings.fixed_discs);
-    let recorded = RecordedGrains { grains, fixed_discs };
-    for name in ["vtk/grains.pvd", "ovito/grains.dump", "."] {
-        for step in [None, Some(0), Some(10)] {
-            let found = read_grains(&folder.path().join(name), step);
-            assert_eq!(found.expect("discs"), recorded, "{name} at {step:?}");
-        }
-        let refused = read_grains(&folder.path().join(name), Some(7)).expect_err("no such step");
-        let refused = refused.to_string();
-        assert!(
-            refused.starts_with("initial-step is 7, but must be one of the steps of "),
-            "{refused}"
-        );
-        assert!(refused.ends_with(": 0, 10"), "{refused}");
-    }
-    std::fs::remove_dir_all(folder.path().join("vtk")).expect("a folder");
-    assert_eq!(read_grains(folder.path(), None).expect("discs of the dump"), recorded);
 }

@@ -1,9 +1,20 @@
-//! Which discs are near each other: by the grid, or by the tree where their sizes differ much.
+//! Which discs are near each other: by a grid, or by a tree where their sizes differ much.
+//!
+//! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. Cells are square and as wide as the pairs looked for are apart at most, so that the two points
+//! of a pair lie in one cell or in neighbouring ones. Each point looks at its own cell and at half
+//! of the 8 around it (of the 2 on a line), so each pair is seen once. A cell's number is hashed into as many
+//! buckets as there are points: a grain that flies off far away costs one bucket, not a larger
+//! grid, and a scene far from the origin costs nothing. Points are sorted by bucket with a counting
+//! sort; points of other cells in the same bucket are told apart by the stored cell.
+//!
+//! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. A grid's cells are as wide as the largest disc, so that each of many small ones looks at very
+//! many others. The tree has no such length. It is built once and then refitted to the moved discs
+//! and put in better order bit by bit: built anew each time it loses to the grid
+//! (`cargo bench --bench broad_phase`).
 
 use glam::DVec2;
-
-use super::grid::Grid;
-use super::tree::Tree;
+use parry2d_f64::bounding_volume::Aabb;
+use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
 /// Where the largest disc, with or without its skin, is more than this many times as large as the
 /// smallest, the tree finds the pairs, else the grid. At 1:1.5 the two take about the same time, at
@@ -14,16 +25,16 @@ const SIZE_RATIO_OF_TREE: f64 = 4.0;
 #[derive(Clone, Debug, Default)]
 pub struct BroadPhase {
     radii_differ: bool,
-    kind: Kind,
+    finder: PairFinder,
 }
 
 #[derive(Clone, Debug)]
-enum Kind {
+enum PairFinder {
     Grid(Grid),
     Tree(Box<Tree>),
 }
 
-impl Default for Kind {
+impl Default for PairFinder {
     fn default() -> Self {
         Self::Grid(Grid::default())
     }
@@ -38,8 +49,8 @@ impl BroadPhase {
 
     /// Has the next search begin anew, of another number of discs.
     pub(crate) fn forget_discs(&mut self) {
-        if matches!(self.kind, Kind::Tree(_)) {
-            self.kind = Kind::default();
+        if matches!(self.finder, PairFinder::Tree(_)) {
+            self.finder = PairFinder::default();
         }
     }
 
@@ -53,15 +64,16 @@ impl BroadPhase {
     ) {
         let (extents_differ, largest) = spread(extents.clone());
         let by_tree = self.radii_differ || extents_differ;
-        if by_tree != matches!(self.kind, Kind::Tree(_)) {
-            self.kind = if by_tree { Kind::Tree(Box::default()) } else { Kind::default() };
+        if by_tree != matches!(self.finder, PairFinder::Tree(_)) {
+            self.finder =
+                if by_tree { PairFinder::Tree(Box::default()) } else { PairFinder::default() };
         }
-        match &mut self.kind {
-            Kind::Grid(grid) => {
+        match &mut self.finder {
+            PairFinder::Grid(grid) => {
                 grid.rebuild::<AXES>(centres, 2.0 * largest);
                 grid.pairs::<AXES>(found);
             }
-            Kind::Tree(tree) => {
+            PairFinder::Tree(tree) => {
                 let on_axes = |&centre: &DVec2| match AXES {
                     1 => DVec2::new(centre.x, 0.0),
                     _ => centre,
@@ -78,4 +90,166 @@ fn spread(sizes: impl Iterator<Item = f64> + Clone) -> (bool, f64) {
     let largest = sizes.clone().fold(0.0, f64::max);
     let smallest = sizes.fold(f64::INFINITY, f64::min);
     (largest > SIZE_RATIO_OF_TREE * smallest, largest)
+}
+
+/// The number of a grid's cell along each axis.
+type GridCell = [i64; 2];
+
+/// A cell list. All its memory is kept between rebuilds.
+#[derive(Clone, Debug, Default)]
+pub struct Grid {
+    cells_per_metre: f64,
+    /// Bucket b holds entries `starts[b] .. starts[b + 1]`; the number of buckets is a power of two.
+    starts: Vec<u32>,
+    /// Point indices, bucket by bucket, rising within a bucket.
+    entries: Vec<u32>,
+    /// The cell of each entry.
+    cells: Vec<GridCell>,
+}
+
+impl Grid {
+    /// Sorts `positions` (m) into cells `cell_width` (m) wide.
+    pub fn rebuild<const AXES: usize>(&mut self, positions: &[DVec2], cell_width: f64) {
+        self.cells_per_metre = 1.0 / cell_width;
+        let buckets = positions.len().next_power_of_two();
+        self.starts.clear();
+        self.starts.resize(buckets + 1, 0);
+        for &position in positions {
+            let bucket = self.bucket(self.cell::<AXES>(position));
+            self.starts[bucket + 1] += 1;
+        }
+        for bucket in 0..buckets {
+            self.starts[bucket + 1] += self.starts[bucket];
+        }
+        self.entries.resize(positions.len(), 0);
+        self.cells.resize(positions.len(), [0; 2]);
+        // Each bucket is filled from its end, so that its start is left in place: walking the
+        // points backwards leaves them rising within the bucket.
+        for (index, &position) in positions.iter().enumerate().rev() {
+            let cell = self.cell::<AXES>(position);
+            let bucket = self.bucket(cell);
+            self.starts[bucket + 1] -= 1;
+            let slot = self.starts[bucket + 1] as usize;
+            self.entries[slot] = index as u32;
+            self.cells[slot] = cell;
+        }
+        // Now entry b + 1 is the start of bucket b: move the list down by one.
+        self.starts.copy_within(1.., 0);
+        self.starts[buckets] = positions.len() as u32;
+    }
+
+    /// Calls `found` once with every pair of points in the same or in neighbouring cells: all pairs
+    /// within one cell width are among them.
+    pub fn pairs<const AXES: usize>(&self, mut found: impl FnMut(u32, u32)) {
+        /// Neighbours in front, row by row; the first is the only one on a line.
+        const FORWARD: [GridCell; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
+        let forward = if AXES == 1 { &FORWARD[..1] } else { &FORWARD };
+        for (slot, (&point, &cell)) in self.entries.iter().zip(&self.cells).enumerate() {
+            let own_bucket_end = self.starts[self.bucket(cell) + 1] as usize;
+            for other in slot + 1..own_bucket_end {
+                if self.cells[other] == cell {
+                    found(point, self.entries[other]);
+                }
+            }
+            for step in forward {
+                let neighbour = [cell[0].wrapping_add(step[0]), cell[1].wrapping_add(step[1])];
+                let bucket = self.bucket(neighbour);
+                for other in self.starts[bucket] as usize..self.starts[bucket + 1] as usize {
+                    if self.cells[other] == neighbour {
+                        found(point, self.entries[other]);
+                    }
+                }
+            }
+        }
+    }
+
+    fn cell<const AXES: usize>(&self, position: DVec2) -> GridCell {
+        let along = |coordinate: f64| (coordinate * self.cells_per_metre).floor() as i64;
+        [along(position.x), if AXES == 1 { 0 } else { along(position.y) }]
+    }
+
+    fn bucket(&self, [x, y]: GridCell) -> usize {
+        // Odd multipliers with well-mixed high bits (the golden ratio's and a like one's) spread
+        // neighbouring cells over the buckets; the high half is folded in because only low bits are kept.
+        let mixed = (x as u64)
+            .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            .wrapping_add((y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f));
+        (mixed ^ (mixed >> 32)) as usize & (self.starts.len() - 2)
+    }
+}
+
+/// A tree over discs. Which pairs it finds depends on the discs alone, not on how it came about.
+#[derive(Clone, Default)]
+struct Tree {
+    tree: Bvh,
+    workspace: BvhWorkspace,
+}
+
+impl std::fmt::Debug for Tree {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_struct("Tree").finish_non_exhaustive()
+    }
+}
+
+impl Tree {
+    /// Brings the tree up to date with discs (centre, radius; m), always the same number of them.
+    fn update(&mut self, discs: impl Iterator<Item = (DVec2, f64)>) {
+        let boxes = discs
+            .map(|(centre, radius)| Aabb::from_half_extents(centre, DVec2::splat(radius)))
+            .enumerate();
+        if self.tree.is_empty() {
+            self.tree = Bvh::from_iter(BvhBuildStrategy::Binned, boxes);
+            return;
+        }
+        for (index, reach) in boxes {
+            self.tree.insert_or_update_partially(reach, index as u32, 0.0);
+        }
+        self.tree.refit_without_opt();
+        self.tree.optimize_incremental(&mut self.workspace);
+    }
+
+    /// Calls `found` once with every pair of discs whose bounding squares overlap.
+    fn pairs(&mut self, mut found: impl FnMut(u32, u32)) {
+        self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut found);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_pairs_within_one_cell_width_are_found_and_none_twice() {
+        for origin in [DVec2::ZERO, DVec2::new(1e6, -3e5)] {
+            let positions: Vec<DVec2> = (0..400)
+                .map(|k| {
+                    let k = k as f64;
+                    origin + DVec2::new((k * 0.618).fract() * 9.0, (k * 0.414).fract() * 7.0)
+                })
+                .collect();
+            let mut grid = Grid::default();
+            grid.rebuild::<2>(&positions, 0.7);
+            let mut found = std::collections::HashSet::new();
+            grid.pairs::<2>(|i, j| {
+                assert!(found.insert((i.min(j), i.max(j))), "{i} and {j} were found twice");
+            });
+            let mut close = 0;
+            for i in 0..positions.len() {
+                for j in i + 1..positions.len() {
+                    if positions[i].distance(positions[j]) <= 0.7 {
+                        close += 1;
+                        assert!(found.contains(&(i as u32, j as u32)));
+                    }
+                }
+            }
+            assert!(close > 400, "{close} pairs are close");
+        }
+    }
+
+    #[test]
+    fn a_far_outlier_costs_no_memory() {
+        let mut grid = Grid::default();
+        grid.rebuild::<2>(&[DVec2::ZERO, DVec2::splat(1e12)], 1e-3);
+        assert_eq!(grid.starts.len(), 3);
+    }
 }

@@ -1,18 +1,13 @@
 //! The contacts of one step, with the impulses of the step before where a contact lives on.
 
-mod contact;
-mod kept;
-mod search;
+use std::ops::Range;
 
 use glam::DVec2;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 
-pub use self::contact::{Contact, ContactMemory, Impulse};
-use self::kept::Kept;
-use self::search::Search;
+use super::approach::{LookAhead, approach};
 use super::candidates::Candidates;
-use super::look_ahead::LookAhead;
 use super::numbering::{Numbering, Other};
 use super::range::Bond;
 use crate::threads;
@@ -21,17 +16,63 @@ use crate::world::World;
 /// Grains whose contacts one thread finds at a time: a hundred microseconds of work.
 const GRAINS_IN_PART: usize = 2048;
 
+/// One touching pair.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Grain i.
+    pub grain: u32,
+    /// Body j, numbered through ([`Numbering`]).
+    pub other: u32,
+    /// n, from j to i. On a line its y component is 0.
+    pub normal: DVec2,
+    /// m; negative is overlap.
+    pub gap: f64,
+}
+
+impl Contact {
+    /// The bodies (i, other), which contacts are sorted by.
+    pub(crate) fn pair(&self) -> (u32, u32) {
+        (self.grain, self.other)
+    }
+}
+
+/// The impulses of one contact, N·s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Impulse {
+    /// P_n.
+    pub normal: f64,
+    /// P_t.
+    pub tangential: f64,
+}
+
+/// What a stepping scheme keeps of a contact from one substep to the next, whatever its length. A
+/// method that solves the step's problem neither reads nor writes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactMemory {
+    /// How far the tangential spring is stretched, m; positive as v_t is.
+    pub tangential_displacement: f64,
+    /// N of the last substep, newton.
+    pub normal_force: f64,
+    /// T of the last substep, newton.
+    pub tangential_force: f64,
+    /// Stiffness of the penalty along normal and tangent, N/m.
+    pub stiffness: [f64; 2],
+}
+
 /// The contacts of a step, sorted by (i, other), and their impulses. Memory is kept between steps.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactList {
-    now: Kept,
+    now: ContactColumns,
     /// Memory alone: the next step fills it.
     #[serde(skip)]
-    before: Kept,
+    before: ContactColumns,
     /// Memory alone: what threads find, each of some grains.
     #[serde(skip)]
-    parts: Vec<Kept>,
+    parts: Vec<ContactColumns>,
     /// Whether pairs with a gap are among the contacts.
     looks_ahead: bool,
     /// The step that contacts are found in from now on.
@@ -50,7 +91,7 @@ impl ContactList {
         self.now.found_in.iter().map(|&found_in| self.step - found_in)
     }
 
-    /// Whether no step has been solved with a contact yet. Those that a run begins with were found before its
+    /// True until a contact's first solve. Contacts that a run begins with were found before its
     /// first step, and a pair that touches is found once, however often its step is cut.
     pub(crate) fn is_unsolved(&self, index: usize) -> bool {
         let is_young = self.step <= 1 || self.now.found_in[index] == self.step;
@@ -79,7 +120,7 @@ impl ContactList {
 
     /// The contacts, with impulses and memories to be changed, one a contact.
     pub(crate) fn parts_mut(&mut self) -> (&[Contact], &mut [Impulse], &mut [ContactMemory]) {
-        let Kept { contacts, impulses, memories, .. } = &mut self.now;
+        let ContactColumns { contacts, impulses, memories, .. } = &mut self.now;
         (contacts, impulses, memories)
     }
 
@@ -118,7 +159,7 @@ impl ContactList {
 
     /// Drops the contacts of a body, and numbers those after it one lower.
     pub(crate) fn remove_body(&mut self, body: u32) {
-        let Kept { contacts, impulses, memories, bonds, found_in } = &mut self.now;
+        let ContactColumns { contacts, impulses, memories, bonds, found_in } = &mut self.now;
         let stays = |contact: &Contact| contact.grain != body && contact.other != body;
         let stay = contacts.iter().map(stays).collect::<Vec<_>>().into_iter();
         let [mut of_impulses, mut of_memories, mut of_bonds, mut of_steps] =
@@ -145,7 +186,7 @@ impl ContactList {
     /// Whether its lists are of one length and tell of bodies that exist, of which there are so many, the
     /// first of them grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
-        let Kept { contacts, impulses, memories, bonds, found_in } = &self.now;
+        let ContactColumns { contacts, impulses, memories, bonds, found_in } = &self.now;
         let lengths = [impulses.len(), memories.len(), bonds.len(), found_in.len()];
         let is_past = |&step: &u64| step <= self.step;
         let exists = |contact: &Contact| {
@@ -206,16 +247,156 @@ impl ContactList {
     ) {
         std::mem::swap(&mut self.now, &mut self.before);
         let Self { now, before, parts, looks_ahead, step } = self;
-        let search = Search { world, candidates, before, looks_ahead: *looks_ahead, step: *step };
+        let search =
+            ContactSearch { world, candidates, before, looks_ahead: *looks_ahead, step: *step };
         let grains = world.grains.len();
         if grains <= GRAINS_IN_PART || !threads::are_there() {
             return search.find::<AXES>(0..grains, &keep, now);
         }
-        parts.resize_with(grains.div_ceil(GRAINS_IN_PART), Kept::default);
+        parts.resize_with(grains.div_ceil(GRAINS_IN_PART), ContactColumns::default);
         parts.par_iter_mut().enumerate().for_each(|(number, part)| {
             let first = number * GRAINS_IN_PART;
             search.find::<AXES>(first..grains.min(first + GRAINS_IN_PART), &keep, part);
         });
         now.take_all(parts);
+    }
+
+    /// Moves grains that overlap by more than `allowed` (m) apart, pair by pair, each grain by the
+    /// other's share of the mass. Velocities, and so kinetic energy, stay as they are. Whether there
+    /// were any: one pass opens a pair and may close the next.
+    pub(crate) fn separate<const AXES: usize>(
+        &self,
+        world: &mut World,
+        candidates: &Candidates,
+        allowed: f64,
+    ) -> bool {
+        let mut found = false;
+        let numbering = Numbering::of(world);
+        for contact in self.contacts() {
+            let (i, other) = (contact.grain as usize, numbering.other(contact.other));
+            let disc = (world.grains.positions[i], world.grains.radii[i]);
+            let Some((normal, gap)) = approach::<AXES>(world, candidates, disc, other) else {
+                continue;
+            };
+            if gap >= -allowed {
+                continue;
+            }
+            found = true;
+            let push = -gap * normal;
+            let grains = &mut world.grains;
+            if let Other::Grain(j) = other {
+                let share = grains.masses[j] / (grains.masses[i] + grains.masses[j]);
+                grains.positions[i] += share * push;
+                grains.positions[j] -= (1.0 - share) * push;
+            } else {
+                grains.positions[i] += push;
+            }
+        }
+        found
+    }
+}
+
+/// What is kept of contacts from one step to the next, a column each.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ContactColumns {
+    contacts: Vec<Contact>,
+    impulses: Vec<Impulse>,
+    memories: Vec<ContactMemory>,
+    bonds: Vec<Bond>,
+    /// The step that each was first found in.
+    found_in: Vec<u64>,
+}
+
+impl ContactColumns {
+    fn clear(&mut self) {
+        let Self { contacts, impulses, memories, bonds, found_in } = self;
+        contacts.clear();
+        impulses.clear();
+        memories.clear();
+        bonds.clear();
+        found_in.clear();
+    }
+
+    /// Takes what several have, one after the other, in place of its own.
+    fn take_all(&mut self, parts: &[Self]) {
+        fn join<'a, T: Copy + 'a>(all: &mut Vec<T>, parts: impl Iterator<Item = &'a Vec<T>>) {
+            parts.for_each(|part| all.extend_from_slice(part));
+        }
+        self.clear();
+        let Self { contacts, impulses, memories, bonds, found_in } = self;
+        let parts = || parts.iter();
+        rayon::join(
+            || {
+                join(contacts, parts().map(|part| &part.contacts));
+                join(bonds, parts().map(|part| &part.bonds));
+            },
+            || {
+                join(memories, parts().map(|part| &part.memories));
+                join(impulses, parts().map(|part| &part.impulses));
+                join(found_in, parts().map(|part| &part.found_in));
+            },
+        );
+    }
+}
+
+/// How contacts are found.
+struct ContactSearch<'a> {
+    world: &'a World,
+    candidates: &'a Candidates,
+    /// The contacts of the step before.
+    before: &'a ContactColumns,
+    /// Whether pairs with a gap are among the contacts.
+    looks_ahead: bool,
+    step: u64,
+}
+
+impl ContactSearch<'_> {
+    /// Finds the contacts of some grains, one after the other.
+    #[inline(always)]
+    fn find<const AXES: usize>(
+        &self,
+        grains: Range<usize>,
+        keep: impl Fn(&Contact, &mut Bond) -> bool,
+        now: &mut ContactColumns,
+    ) {
+        let Self { world, candidates, before: old, looks_ahead, step } = *self;
+        let numbering = Numbering::of(world);
+        now.clear();
+        let mut before =
+            old.contacts.partition_point(|contact| (contact.grain as usize) < grains.start);
+        for index in grains {
+            let (position, radius) = (world.grains.positions[index], world.grains.radii[index]);
+            for &other in candidates.of(index) {
+                let body = numbering.other(other);
+                let Some((normal, gap)) =
+                    approach::<AXES>(world, candidates, (position, radius), body)
+                else {
+                    continue;
+                };
+                let contact = Contact { grain: index as u32, other, normal, gap };
+                // Both lists are sorted alike, so one walk over the old one serves all.
+                while before < old.contacts.len() && old.contacts[before].pair() < contact.pair() {
+                    before += 1;
+                }
+                let lives_on =
+                    old.contacts.get(before).is_some_and(|then| then.pair() == contact.pair());
+                let (impulse, memory, mut bond) = if lives_on {
+                    (old.impulses[before], old.memories[before], old.bonds[before])
+                } else {
+                    Default::default()
+                };
+                // What only came near so far is found where it touches.
+                let was_found = lives_on && (bond.alive || !looks_ahead);
+                if !keep(&contact, &mut bond) {
+                    continue;
+                }
+                now.found_in.push(if was_found { old.found_in[before] } else { step });
+                now.impulses.push(impulse);
+                now.memories.push(memory);
+                now.bonds.push(bond);
+                now.contacts.push(contact);
+            }
+        }
     }
 }

@@ -10,9 +10,63 @@
 //! C₀Δt/m_ij = Bond·g·Δt is the capture speed, the same for every contact of a scene: in σ, cohesion
 //! is nothing but a constant pull that the contact pushes against, and the law without cohesion is
 //! that with a capture speed of 0. Coulomb's law in the shifted cone is |λ_t| ≤ μσ; on the compressive
-//! part alone it is |λ_t| ≤ μ max(σ − capture speed, 0).
+//! part alone it is |λ_t| ≤ μ max(σ − capture speed, 0). Both are |λ_t| ≤ μ max(σ − c, 0) with the tip of the
+//! cone at c: the shifted one's is at 0, and a σ that the law allows is at least that.
 
 use super::lanes::Lanes;
+use crate::world::FrictionCone;
+
+/// The numbers of the contact law that all contacts of a step share.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactLaw {
+    /// μ.
+    pub friction: f64,
+    capture_speed: f64,
+    /// c, m/s.
+    tip: f64,
+    cone: FrictionCone,
+}
+
+impl ContactLaw {
+    /// The law of a friction μ, a capture speed C₀Δt/m_ij (m/s; 0 without cohesion) and a cone.
+    #[inline(always)]
+    pub fn new(friction: f64, capture_speed: f64, cone: FrictionCone) -> Self {
+        let tip = match cone {
+            FrictionCone::Shifted => 0.0,
+            FrictionCone::Compressive => capture_speed,
+        };
+        Self { friction, capture_speed, tip, cone }
+    }
+
+    /// The same with another capture speed, m/s.
+    #[inline(always)]
+    pub(crate) fn with_capture_speed(self, capture_speed: f64) -> Self {
+        Self::new(self.friction, capture_speed, self.cone)
+    }
+
+    /// C₀Δt/m_ij = Bond·g·Δt, m/s; 0 in a scene without cohesion.
+    #[inline(always)]
+    pub fn capture_speed(&self) -> f64 {
+        self.capture_speed
+    }
+
+    /// Which part of the normal force rubs.
+    pub fn cone(&self) -> FrictionCone {
+        self.cone
+    }
+
+    /// σ that rubs, m/s.
+    #[inline(always)]
+    pub(crate) fn rubbing<T: Lanes>(&self, shifted_impulse: T) -> T {
+        shifted_impulse - shifted_impulse.same(self.tip)
+    }
+
+    /// The largest |λ_t| that a shifted normal impulse allows, m/s.
+    #[inline(always)]
+    pub fn friction_bound<T: Lanes>(&self, shifted_impulse: T) -> T {
+        shifted_impulse.same(self.friction) * signorini(self.rubbing(shifted_impulse))
+    }
+}
 
 /// C₀ = Bond · m_ij · g, newton (paper eq. 10).
 pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: f64) -> f64 {
@@ -23,21 +77,6 @@ pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, gravity_magnitude: 
 #[inline(always)]
 pub(crate) fn signorini<T: Lanes>(shifted_impulse: T) -> T {
     shifted_impulse.larger(shifted_impulse.same(0.0))
-}
-
-/// The largest |λ_t| that a shifted normal impulse allows, m/s.
-#[inline(always)]
-pub(crate) fn friction_bound<const COMPRESSIVE_CONE: bool, T: Lanes>(
-    friction: f64,
-    shifted_impulse: T,
-    capture_speed: f64,
-) -> T {
-    let rubbing = if COMPRESSIVE_CONE {
-        signorini(shifted_impulse - shifted_impulse.same(capture_speed))
-    } else {
-        shifted_impulse
-    };
-    rubbing.same(friction) * rubbing
 }
 
 /// Projects a tangential impulse on its absolute value ≤ `bound`, any unit.
@@ -81,9 +120,10 @@ mod tests {
 
     #[test]
     fn the_two_cones_differ_where_the_contact_pulls() {
-        let (pulling, capture_speed) = (1.0, 2.0);
-        assert_eq!(friction_bound::<false, _>(0.5, pulling, capture_speed), 0.5);
-        assert_eq!(friction_bound::<true, _>(0.5, pulling, capture_speed), 0.0);
+        let pulling = 1.0;
+        let bound = |cone| ContactLaw::new(0.5, 2.0, cone).friction_bound(pulling);
+        assert_eq!(bound(FrictionCone::Shifted), 0.5);
+        assert_eq!(bound(FrictionCone::Compressive), 0.0);
         assert_eq!(coulomb(-3.0, 0.5), -0.5);
     }
 }

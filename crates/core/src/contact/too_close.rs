@@ -18,9 +18,6 @@ const LEAST_DISTANCE_IN_RADII: f64 = 0.5;
 /// that distance: a grain would touch them all.
 const MOST_FIXED_TOO_CLOSE: usize = 1000;
 
-/// The number of a cell along each axis.
-type Cell = [i64; 2];
-
 /// Checks that no two discs are too close, in time and memory that grow with their number.
 ///
 /// # Errors
@@ -59,7 +56,8 @@ fn first_too_close(discs: &[(DVec2, f64)], grain_count: usize) -> Option<(usize,
     let mut levels: Vec<u64> = discs.iter().map(|&(_, radius)| level(radius)).collect();
     levels.sort_unstable();
     levels.dedup();
-    let mut places: Vec<(Cell, u32)> = Vec::with_capacity(discs.len());
+    // Cells by their numbers along each axis, with the discs in them.
+    let mut places: Vec<([i64; 2], u32)> = Vec::with_capacity(discs.len());
     // The largest first: what a smaller disc sees of them is then known to keep its distance.
     for &now in levels.iter().rev() {
         let width = f64::from_bits(now << 52).max(f64::MIN_POSITIVE);

@@ -1,13 +1,15 @@
 //! Everything that a scene says.
 
 use std::fmt::Arguments;
+use std::path::PathBuf;
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::pile::tone_in_layers;
-use super::{DataSettings, NewPile};
 use crate::error::{Error, Result};
+use crate::scene::NewPile;
+use crate::scene::paper::tone_in_layers;
+use crate::setting::words;
 use crate::sim::{Remedies, Settings, Simulation, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{
@@ -135,6 +137,38 @@ fn within_reach(field: Arguments<'_>, place: DVec2, radius: f64) -> Result<()> {
 }
 
 impl Scene {
+    /// Grains by themselves, with all physics, under the paper's law: what else a scene has is changed in it.
+    pub(super) fn of(
+        name: &str,
+        mean_diameter: f64,
+        gravity: Gravity,
+        parameters: Parameters,
+        grains: Vec<Grain>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            mean_diameter,
+            areal_density: 1.0,
+            gap_tolerance: 0.0,
+            duration_secs: 1.0,
+            physics: Physics::FULL,
+            gravity,
+            gravity_turn: None,
+            periodic: None,
+            stepper: Stepper::Moreau,
+            parameters,
+            solver: SolverSettings::default(),
+            remedies: Remedies::default(),
+            view: None,
+            source: None,
+            data: None,
+            boundaries: Vec::new(),
+            fixed_discs: Vec::new(),
+            motions: Vec::new(),
+            grains,
+        }
+    }
+
     /// How it is stepped.
     pub fn settings(&self) -> Settings {
         let Self { stepper, parameters, solver, remedies, .. } = *self;
@@ -214,17 +248,17 @@ impl Scene {
 
     /// Bodies that move and borders that wrap.
     fn validate_motions(&self) -> Result<()> {
-        let bodies = (&*self.boundaries, self.fixed_discs.len());
-        check_motions(&self.motions, bodies, self.physics.axes, self.periodic)?;
-        self.settings().check_drives(&self.motions)?;
-        self.settings().check_tilt(&self.gravity, self.physics)?;
+        let Self { boundaries, motions, gravity, physics, .. } = self;
+        let fixed_discs = self.fixed_discs.len();
+        check_motions(motions, boundaries, fixed_discs, physics.axes, self.periodic)?;
+        self.settings().check_drives(motions)?;
+        self.settings().check_tilt(gravity, *physics)?;
         self.settings().check_shear(self.periodic)?;
         let Some(periodic) = self.periodic else { return Ok(()) };
         let radii = self.grains.iter().map(|grain| grain.radius);
         let radii = radii.chain(self.fixed_discs.iter().map(|disc| disc.radius));
         let lengths = [radii.fold(0.0, f64::max), self.mean_diameter];
-        let bodies = (&*self.boundaries, self.fixed_discs.len(), &*self.motions);
-        periodic.check(bodies, &self.gravity, self.physics, lengths)
+        periodic.check(boundaries, fixed_discs, motions, gravity, *physics, lengths)
     }
 
     /// A scene on a line must lie on the line.
@@ -303,5 +337,49 @@ impl Scene {
             mean_diameter: self.mean_diameter,
         };
         Simulation::new(world, self.physics, self.settings(), self.gap_tolerance)
+    }
+}
+
+words! {
+    /// Files that a recording is written as.
+    pub enum FormatName {
+        /// Apache Parquet.
+        Parquet = "parquet", "Parquet, for pandas, polars and their like";
+        /// Comma-separated values.
+        Csv = "csv", "Text with commas";
+        /// The Visualization Toolkit's.
+        Vtk = "vtk", "Files of VTK, for ParaView";
+        /// LAMMPS'.
+        Ovito = "ovito", "Dumps as LAMMPS writes them, for OVITO";
+    }
+}
+
+/// What scene files and studies say of a recording.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DataSettings {
+    /// Where it goes; in a scene file, relative to that file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub folder: Option<PathBuf>,
+    /// Simulated time between two frames, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub every_secs: Option<f64>,
+    /// The files that are written; the reader's default where nothing is said.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub formats: Vec<FormatName>,
+}
+
+impl DataSettings {
+    /// Checks the time between frames, under the name that it is said by.
+    ///
+    /// # Errors
+    /// Where it is outside its range.
+    pub fn validate(&self, field: &str) -> Result<()> {
+        match self.every_secs {
+            Some(secs) if !(secs > 0.0 && secs.is_finite()) => {
+                Err(Error::value(field, secs, "a finite number of seconds > 0"))
+            }
+            _ => Ok(()),
+        }
     }
 }

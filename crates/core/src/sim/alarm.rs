@@ -1,13 +1,12 @@
 //! What a run says when it goes wrong: in which way, since when, and the one change that is most
 //! likely to help.
 
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::losses::Losses;
-use super::{Observables, Settings};
 use crate::contact::Feature;
 use crate::error::legible;
+use crate::sim::losses::Losses;
+use crate::sim::{Observables, Settings};
 use crate::solver::Method;
 use crate::world::{Physics, World};
 
@@ -141,7 +140,7 @@ fn rounded_down(number: f64) -> f64 {
 pub(super) struct Watch {
     unfinished_in_a_row: u32,
     alarms: Vec<Alarm>,
-    losses: Losses,
+    pub losses: Losses,
 }
 
 impl Watch {
@@ -155,17 +154,13 @@ impl Watch {
         &self.alarms
     }
 
-    /// Whether that grain is lost.
-    pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.losses.is_lost(grain)
-    }
-
     /// Looks at the state after a step, and leaves grains that are lost out of its slump; `features`
     /// are those of the boundaries where they are now.
     pub(super) fn look(
         &mut self,
         world: &World,
-        (features, walls_move): (&[Feature], bool),
+        features: &[Feature],
+        walls_move: bool,
         observables: &mut Observables,
         finite: bool,
     ) {
@@ -177,64 +172,36 @@ impl Watch {
         observables.lost_grains = self.losses.count();
         if observables.lost_grains > 0 {
             observables.slump = self.losses.slump(world);
-            self.raise(AlarmKind::GrainLost, observables);
+            self.raise(AlarmKind::GrainLost, observables, None);
         }
         if !finite {
             observables.converged = false;
-            self.raise(AlarmKind::NotFinite, observables);
+            self.raise(AlarmKind::NotFinite, observables, None);
             return;
         }
         if self.unfinished_in_a_row >= STEPS_AT_LIMIT {
-            self.raise(AlarmKind::SweepLimit, observables);
+            self.raise(AlarmKind::SweepLimit, observables, None);
         }
         if observables.max_overlap > LARGEST_OVERLAP {
-            self.raise(AlarmKind::Overlap, observables);
+            self.raise(AlarmKind::Overlap, observables, None);
         }
     }
 
     /// Tells of a step that was too long for its bonds, where one was: `longest_secs` is the longest that is not.
     pub(super) fn look_at_length(&mut self, longest_secs: Option<f64>, observables: &Observables) {
-        let Some(longest_secs) = longest_secs else { return };
-        if !self.has(AlarmKind::BreakUnseen) {
-            let Observables { step, time_secs, .. } = *observables;
-            let longest_time_step_secs = Some(longest_secs);
-            self.alarms.push(Alarm {
-                kind: AlarmKind::BreakUnseen,
-                step,
-                time_secs,
-                longest_time_step_secs,
-            });
+        if longest_secs.is_some() {
+            self.raise(AlarmKind::BreakUnseen, observables, longest_secs);
         }
     }
 
-    /// Whether it watches over so many grains.
-    pub(super) fn is_of(&self, grains: usize) -> bool {
-        self.losses.is_of(grains)
-    }
-
-    /// Forgets a grain, which is taken out of the world.
-    pub(super) fn remove_grain(&mut self, grain: usize) {
-        self.losses.remove(grain);
-    }
-
-    /// Watches over one grain more, the last.
-    pub(super) fn add_grain(&mut self, position: DVec2) {
-        self.losses.add(position);
-    }
-
-    /// Walls, whose `features` are these, may go from now on.
-    pub(super) fn let_walls_move(&mut self, features: &[Feature]) {
-        self.losses.let_walls_move(features);
-    }
-
-    fn has(&self, kind: AlarmKind) -> bool {
-        self.alarms.iter().any(|alarm| alarm.kind == kind)
-    }
-
-    fn raise(&mut self, kind: AlarmKind, observables: &Observables) {
-        if !self.has(kind) {
-            let Observables { step, time_secs, .. } = *observables;
-            self.alarms.push(Alarm { kind, step, time_secs, longest_time_step_secs: None });
+    fn raise(
+        &mut self,
+        kind: AlarmKind,
+        &Observables { step, time_secs, .. }: &Observables,
+        longest_time_step_secs: Option<f64>,
+    ) {
+        if self.alarms.iter().all(|alarm| alarm.kind != kind) {
+            self.alarms.push(Alarm { kind, step, time_secs, longest_time_step_secs });
         }
     }
 }

@@ -1,11 +1,10 @@
 //! The step, what it measures, and what it shows.
 
 mod alarm;
-mod check;
-mod edit;
-mod elasticity;
+mod edits;
 mod losses;
 mod moment;
+mod numbers;
 mod observables;
 mod pull;
 mod remedies;
@@ -14,27 +13,20 @@ mod settings;
 mod simulation;
 mod snapshot;
 mod state;
-mod steady;
 mod steppers;
 mod stepping;
-mod tally;
-mod views;
-mod visits;
 mod walls;
 
 pub use alarm::{Alarm, AlarmKind};
-pub use edit::{Edit, NEW_GRAIN_DIAMETERS, place_of};
-pub use elasticity::SweepElasticity;
-pub use elasticity::diffusion_of_sweep;
+pub use edits::{Edit, NEW_GRAIN_DIAMETERS, place_of};
 pub use moment::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
+pub use numbers::{SweepElasticity, diffusion_of_sweep};
 pub use observables::{Beside, Observables, QUANTITIES, Quantity};
 pub use pull::Pull;
 pub use remedies::{ROWS as REMEDIES, Remedies, Remedy, RemedyChanges};
-pub use run::RunEnding;
+pub use run::{RunEnding, Tally};
 pub use settings::Settings;
-pub use simulation::Simulation;
+pub use simulation::{ProblemVisitor, Simulation};
 pub use snapshot::{ContactView, GrainView, MotionView, Snapshot, Surroundings};
 pub use steppers::{FractureWork, SpringDashpot, Stepper, StepperInfo};
-pub use stepping::{Advance, BondEnergies, Outcome, Stage};
-pub use tally::Tally;
-pub use visits::ProblemVisitor;
+pub use stepping::{Advance, BondEnergies, Stage, StepResult};

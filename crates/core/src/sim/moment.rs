@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::observables::Observables;
-use super::settings::Settings;
-use super::simulation::Simulation;
-use super::snapshot::Surroundings;
-use super::state::State;
-use super::steppers::Stepper;
 use crate::contact::law::cohesion_force;
 use crate::contact::{Contact, Impulse, Numbering, Other};
+use crate::sim::observables::Observables;
+use crate::sim::settings::Settings;
+use crate::sim::simulation::Simulation;
+use crate::sim::snapshot::Surroundings;
+use crate::sim::state::State;
+use crate::sim::steppers::Stepper;
 use crate::world::{FrictionCone, Parameters, World};
 
 /// How close to its bound a friction force slips, as a part of the bound. Smaller: contacts that slip stick

@@ -44,28 +44,34 @@ impl Pull {
         time_step_secs * acceleration / (1.0 + 2.0 * turn + turn * turn)
     }
 
-    /// The push of the spring in the next `time_step_secs`: which grain, along which unit vector,
-    /// how fast (m/s). None where it does not push.
+    /// The push of the spring in the next `time_step_secs`, where it pushes.
     pub(super) fn push(
         self,
         world: &World,
         axes: usize,
         time_step_secs: f64,
-    ) -> Option<(usize, DVec2, f64)> {
+    ) -> Option<SpringPush> {
         let mut change = self.added_velocity(world, time_step_secs);
         if axes == 1 {
             change.y = 0.0;
         }
-        let speed = change.length();
-        (speed > 0.0).then(|| (self.grain as usize, change / speed, speed))
+        let (grain, speed) = (self.grain as usize, change.length());
+        (speed > 0.0).then(|| SpringPush { grain, direction: change / speed, speed })
     }
 }
 
-/// Adds the push of a spring to bodies.
-pub(super) fn apply<K: Kinematics>(
-    bodies: &mut [K::Body<f64>],
-    (grain, direction, speed): (usize, DVec2, f64),
-) {
-    // A normal impulse against a fixed body changes the velocity by just itself.
-    K::push_single(&mut bodies[grain], K::normal(direction.to_array()), [speed, 0.0]);
+/// What a spring does to a grain in a step: by how much (m/s) it changes its velocity, and along which unit vector.
+pub(crate) struct SpringPush {
+    grain: usize,
+    direction: DVec2,
+    speed: f64,
+}
+
+impl SpringPush {
+    /// Pushes its grain among bodies.
+    pub(super) fn apply<K: Kinematics>(&self, bodies: &mut [K::Body<f64>]) {
+        // A normal impulse against a fixed body changes the velocity by just itself.
+        let normal = K::normal(self.direction.to_array());
+        K::push_single(&mut bodies[self.grain], normal, [self.speed, 0.0]);
+    }
 }

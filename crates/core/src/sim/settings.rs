@@ -1,12 +1,16 @@
-//! All that a simulation can be told between two steps.
+//! All that a simulation can be told between two steps, and whether it goes together. Every simulation asks that, so no
+//! door leads around it.
 
 use serde::{Deserialize, Serialize};
 
-use super::remedies::declared::Remedies;
-use super::steppers::stepper::Stepper;
+use crate::contact::{Reach, check_distances};
+use crate::error::{Error, Result};
 use crate::setting::{About, Control, Group, Needs, Settable, Value};
-use crate::solver::SolverSettings;
-use crate::world::Parameters;
+use crate::sim::remedies::{ROWS, Remedies};
+use crate::sim::state::SKIN_IN_DIAMETERS;
+use crate::sim::steppers::Stepper;
+use crate::solver::{Fallback, FrictionModel, METHODS, SolverSettings};
+use crate::world::{FrictionCone, Gravity, Motion, Parameters, Periodic, Physics, World};
 
 /// How a simulation steps. Whether its parts go together is checked where a simulation takes them on
 /// ([`Settings::validate`]).
@@ -99,5 +103,159 @@ impl Settings {
     /// The same with another Δt, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { parameters: self.parameters.over(time_step_secs), ..self }
+    }
+}
+
+fn names_of<'a>(steppers: impl Iterator<Item = &'a Stepper>) -> Vec<&'static str> {
+    steppers.map(|stepper| stepper.name()).collect()
+}
+
+/// The diameter that lengths are measured in is at most this many radii of the largest grain: the
+/// skin goes with it, and all that lie within the skin are candidates.
+const MOST_RADII_OF_DIAMETER: f64 = 200.0;
+
+/// How far a world's candidate search looks, where its lengths leave each disc few others to touch.
+pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
+    let diameter = world.mean_diameter;
+    if !(diameter > 0.0 && diameter.is_finite()) {
+        return Err(Error::value("mean_diameter", diameter, "a finite length > 0 m"));
+    }
+    let most = MOST_RADII_OF_DIAMETER * world.grains.radii.iter().copied().fold(0.0, f64::max);
+    if diameter > most {
+        let allowed = format!("at most {most} m, 100 times the diameter of the largest grain");
+        return Err(Error::value("mean_diameter", diameter, allowed));
+    }
+    let skin = SKIN_IN_DIAMETERS * diameter;
+    // Of much smaller discs, all within the tolerance would touch.
+    let least_radius = world.grains.radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = (0.1 * skin).min(least_radius);
+    if !(0.0..most).contains(&gap_tolerance) {
+        let allowed = format!("≥ 0 and below {most} m");
+        return Err(Error::value("gap_tolerance", gap_tolerance, allowed));
+    }
+    check_distances(world)?;
+    Ok(Reach { skin, gap_tolerance })
+}
+
+impl Settings {
+    /// Checks every number against its range, and what goes with the stepper.
+    ///
+    /// # Errors
+    /// Names the first setting that is outside its range or that the stepper does not take.
+    pub fn validate(&self) -> Result<()> {
+        self.parameters.validate()?;
+        (self.stepper.info().check)(&self.parameters)?;
+        self.solver.validate()?;
+        self.check_friction_model()?;
+        self.remedies.validate_each()?;
+        for remedy in &ROWS {
+            if remedy.is_on(&self.remedies) && !remedy.taken_by.contains(&self.stepper) {
+                let takers = names_of(remedy.taken_by.iter()).join(" and ");
+                let stepper = self.stepper;
+                let allowed = format!("left out where stepper is {stepper}: it goes with {takers}");
+                return Err(Error::value(remedy.name, "given", allowed));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the model of friction goes with the stepper and its cone.
+    fn check_friction_model(&self) -> Result<()> {
+        let (model, cone) = (self.solver.friction_model, self.parameters.cone);
+        if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
+            let readers = Stepper::ALL.iter().filter(|stepper| stepper.reads("friction-model"));
+            let (stepper, readers) = (self.stepper, names_of(readers).join(" and "));
+            let allowed =
+                format!("coulomb where stepper is {stepper}: other models go with {readers}");
+            return Err(Error::value("friction-model", model, allowed));
+        }
+        if model.needs_shifted_cone() && cone != FrictionCone::Shifted {
+            let allowed = format!(
+                "shifted where friction-model is {model}: the compressive cone is not convex where contacts \
+                 cohere; tresca takes both"
+            );
+            return Err(Error::value("cone", cone, allowed));
+        }
+        Ok(())
+    }
+
+    /// Whether all that a world has goes with the settings.
+    pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
+        self.check_drives(&world.motions)?;
+        self.check_tilt(&world.gravity, physics)?;
+        self.check_shear(world.periodic)
+    }
+
+    /// Whether there is a gravity that can be tilted, if it is.
+    pub(crate) fn check_tilt(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
+        let refuse = |of: &str| {
+            let allowed = format!("left out or 0 where {of}");
+            Err(Error::value("tilt", self.parameters.tilt, allowed))
+        };
+        match gravity {
+            _ if self.parameters.tilt == 0.0 => Ok(()),
+            Gravity::Attraction { .. } => refuse("gravity is not uniform"),
+            Gravity::Uniform { .. } if physics.axes == 1 => refuse("physics.axes is 1"),
+            Gravity::Uniform { .. } => Ok(()),
+        }
+    }
+
+    /// Whether there is a way to move walls that a force drives, if any of the motions is one.
+    pub(crate) fn check_drives(&self, motions: &[Motion]) -> Result<()> {
+        if motions.iter().all(|motion| motion.drive.is_none()) {
+            return Ok(());
+        }
+        let refuse = |field: &str, found: String, takers: Vec<&str>| {
+            let allowed = format!("{} where a motion has a drive", takers.join(" or "));
+            Err(Error::value(field, found, allowed))
+        };
+        if !self.stepper.info().takes_drives {
+            let takers = Stepper::ALL.iter().filter(|stepper| stepper.info().takes_drives);
+            return refuse("stepper", self.stepper.to_string(), names_of(takers));
+        }
+        if self.stepper.uses_method() && !self.solver.method.info().takes_drives {
+            let takers = METHODS.iter().filter(|info| info.takes_drives).map(|info| info.name);
+            return refuse("solver", self.solver.method.to_string(), takers.collect());
+        }
+        let model = self.solver.friction_model;
+        if model != FrictionModel::Coulomb {
+            return refuse("friction-model", model.to_string(), vec!["coulomb"]);
+        }
+        if self.stepper.uses_method() && self.solver.fallback == Fallback::Tresca {
+            return refuse("fallback", Fallback::Tresca.to_string(), vec!["none", "of-method"]);
+        }
+        if self.remedies.sequential_impacts {
+            return refuse("sequential-impacts", "given".into(), vec!["left out"]);
+        }
+        Ok(())
+    }
+
+    /// Whether the method knows of images that slide, if there are any.
+    pub(crate) fn check_shear(&self, periodic: Option<Periodic>) -> Result<()> {
+        let method = self.solver.method;
+        let is_taken = !self.stepper.uses_method() || method.info().takes_shear;
+        if is_taken || !periodic.is_some_and(Periodic::is_sheared) {
+            return Ok(());
+        }
+        let takers = METHODS.iter().filter(|info| info.takes_shear).map(|info| info.name);
+        let takers: Vec<_> = takers.collect();
+        let allowed = format!("{} where periodic borders shear", takers.join(" or "));
+        Err(Error::value("solver", method, allowed))
+    }
+
+    /// The same without the remedies and the model of friction that its stepper or its method do not take, and
+    /// without further solves of a model that has nothing to take anew.
+    pub fn with_only_what_is_taken(mut self) -> Self {
+        self.solver = self.solver.by(self.solver.method);
+        if !self.stepper.reads("friction-model") {
+            self.solver = self.solver.with_coulombs_law();
+        }
+        if !self.solver.friction_model.is_taken_anew() {
+            self.solver.model_solves = 1;
+        }
+        for remedy in ROWS.iter().filter(|remedy| !remedy.taken_by.contains(&self.stepper)) {
+            remedy.leave_out(&mut self.remedies);
+        }
+        self
     }
 }

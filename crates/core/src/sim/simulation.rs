@@ -1,47 +1,48 @@
 //! A running simulation: a world and what is needed to step it.
 
-mod edits;
-mod numbers;
-mod saved;
-
 use std::sync::Arc;
 
-use super::alarm::Watch;
-use super::check::reach_in;
-use super::remedies::max_travel;
-use super::snapshot::Surroundings;
-use super::state::State;
-use super::steady::Steady;
-use super::steppers::{Memory, Stepper};
-use super::stepping::Advance;
-use super::visits::{ProblemVisitor, Show, Start, Step};
-use super::walls::Walls;
-use super::{Alarm, Observables, Pull, Settings};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use crate::contact::{Candidates, ContactList};
 use crate::error::{Error, Result};
-use crate::solver::{Slots, SolverSettings};
+use crate::sim::alarm::Watch;
+use crate::sim::observables::{self, Observables};
+use crate::sim::settings::{Settings, reach_in};
+use crate::sim::snapshot::Surroundings;
+use crate::sim::state::State;
+use crate::sim::steppers::{Stepper, StepperMemory};
+use crate::sim::stepping::{Advance, Stage, StepResult};
+use crate::sim::walls::Walls;
+use crate::sim::{Alarm, Pull, remedies};
+use crate::solver::{Model, Slot, SlotVisitor, Slots, SolverSettings, StepProblem};
 use crate::threads;
 use crate::world::{Parameters, Physics, World};
 
 /// A world in motion.
 ///
-/// Cloning it gives a second simulation that goes on bitwise as the first one would.
-#[derive(Clone, Debug)]
+/// Cloning it gives a second simulation that goes on bitwise as the first one would, and so does writing it to a file.
+/// Left out is what every step makes anew: the step's problem, and what methods keep from one solve to the next, on
+/// which no result depends (`tests/program/restart/` holds all of them to that).
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(remote = "Self", deny_unknown_fields)]
 pub struct Simulation {
     pub(super) state: State,
-    settings: Settings,
+    pub(super) settings: Settings,
     steady: Steady,
+    #[serde(skip)]
     slots: Slots,
-    memory: Memory,
+    memory: StepperMemory,
     observables: Observables,
     /// Σ y_i(0), m, of eq. 11.
-    initial_heights: f64,
+    pub(super) initial_heights: f64,
     /// The way that the last step was taken: the contacts' memories are its own.
     last_stepper: Option<Stepper>,
-    watch: Watch,
+    pub(super) watch: Watch,
     pub(super) surroundings: Arc<Surroundings>,
     /// How often a hand has changed the world.
-    edits: u32,
+    pub(super) edits: u32,
 }
 
 impl Simulation {
@@ -80,7 +81,7 @@ impl Simulation {
             settings,
             steady: Steady::default(),
             slots: Slots::default(),
-            memory: Memory::default(),
+            memory: StepperMemory::default(),
             observables: Observables::default(),
             last_stepper: None,
             surroundings,
@@ -98,7 +99,7 @@ impl Simulation {
     pub fn step(&mut self) -> Result<&Observables> {
         self.become_of(Some(self.settings.stepper));
         let mut memory = std::mem::take(&mut self.memory);
-        let pieces = max_travel::pieces(&self.state, &self.settings);
+        let pieces = remedies::pieces(&self.state, &self.settings);
         self.take_step(pieces, &mut memory);
         self.watch.look_at_length(memory.take_longest_step_secs(), &self.observables);
         self.memory = memory;
@@ -108,14 +109,14 @@ impl Simulation {
     /// Takes one step in a way of your own, in place of the settings' stepper.
     ///
     /// ```
-    /// use slump::sim::{Advance, Outcome, Settings, Stage};
+    /// use slump::sim::{Advance, StepResult, Settings, Stage};
     /// use slump::solver::Model;
     ///
     /// /// Contacts that never throw grains back.
     /// struct Dead;
     ///
     /// impl Advance for Dead {
-    ///     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+    ///     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     ///         stage.prepare(settings, |_approach| 0.0);
     ///         let report = stage.solve(settings);
     ///         stage.move_by(report, settings)
@@ -148,7 +149,7 @@ impl Simulation {
         let parts = state.leanest_model(&settings.parameters);
         let initial_heights = *initial_heights;
         state.contacts.begin_step(observables.step + 1);
-        let step = Step { state, settings, pieces, advance, observables, initial_heights };
+        let step = TakeStep { state, settings, pieces, advance, observables, initial_heights };
         threads::together(step.state.world.grains.len(), || slots.visit(parts, step));
         let work_of_crossing = state.world.wrap();
         if let Some(border_work) = &mut observables.border_work {
@@ -160,8 +161,8 @@ impl Simulation {
     fn look(&mut self) -> Result<&Observables> {
         let finite = self.state.is_finite();
         let State { world, candidates, .. } = &self.state;
-        let walls = (candidates.features(), world.has_motion());
-        self.watch.look(world, walls, &mut self.observables, finite);
+        let features = candidates.features();
+        self.watch.look(world, features, world.has_motion(), &mut self.observables, finite);
         if finite {
             return Ok(&self.observables);
         }
@@ -175,8 +176,10 @@ impl Simulation {
     fn observe_start(&mut self) {
         let Self { state, settings, slots, memory, observables, initial_heights, .. } = self;
         let parts = state.leanest_model(&settings.parameters);
-        *observables = slots
-            .visit(parts, Start { state, settings, memory, initial_heights: *initial_heights });
+        *observables = slots.visit(
+            parts,
+            MeasureStart { state, settings, memory, initial_heights: *initial_heights },
+        );
     }
 
     /// Shows the first problem of the next step, as its method would get it, to `visitor`: that of the
@@ -186,9 +189,10 @@ impl Simulation {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
         let parts = state.leanest_model(&settings.parameters);
         state.contacts.begin_step(self.observables.step + 1);
-        let pieces = max_travel::pieces(&state, &settings);
+        let pieces = remedies::pieces(&state, &settings);
         let settings = &settings.over(settings.parameters.time_step_secs / f64::from(pieces));
-        slots.visit(parts, Show { state: &mut state, memory: &mut memory, settings, visitor })
+        slots
+            .visit(parts, ShowProblem { state: &mut state, memory: &mut memory, settings, visitor })
     }
 
     /// The world as it is now.
@@ -281,11 +285,155 @@ impl Simulation {
 
     /// Whether a grain went through a wall or left the world.
     pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.watch.is_lost(grain)
+        self.watch.losses.is_lost(grain)
     }
 
     /// Simulated time, s.
     pub fn time_secs(&self) -> f64 {
         self.observables.time_secs
+    }
+}
+
+/// The moment since which Δt has been what it is.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Steady {
+    step: u64,
+    time_secs: f64,
+}
+
+impl Steady {
+    /// Since the moment of these observables.
+    fn since(observables: &Observables) -> Self {
+        let Observables { step, time_secs, .. } = *observables;
+        Self { step, time_secs }
+    }
+
+    /// The step whose end is nearest to a simulated time, s.
+    fn step_at(self, secs: f64, parameters: &Parameters) -> u64 {
+        self.step.saturating_add(parameters.steps_in(secs - self.time_secs))
+    }
+}
+
+/// Something to be done with a step's problem, before it is solved.
+pub trait ProblemVisitor {
+    /// What it gives.
+    type Output;
+    /// Does it; row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
+    fn visit<M: Model>(
+        self,
+        problem: &mut StepProblem<M::Kinematics>,
+        contacts: &ContactList,
+    ) -> Self::Output;
+}
+
+/// A step, and what is observed after it.
+struct TakeStep<'a, A> {
+    state: &'a mut State,
+    settings: &'a Settings,
+    /// Of equal length, one after the other.
+    pieces: u32,
+    advance: &'a mut A,
+    /// Those before, and then those after the step.
+    observables: &'a mut Observables,
+    initial_heights: f64,
+}
+
+impl<A: Advance> SlotVisitor for TakeStep<'_, A> {
+    type Output = ();
+
+    fn visit<M: Model>(self, slot: &mut Slot<M::Kinematics>) {
+        let Self { state, settings, pieces, advance, observables, initial_heights } = self;
+        let stage = &mut Stage::<M>::new(state, slot);
+        let mut result = if pieces == 1 {
+            advance.advance(stage, settings)
+        } else {
+            stage.in_pieces(pieces, settings, StepResult::nothing_yet(), |stage, piece, result| {
+                result.add(advance.advance(stage, piece));
+            })
+        };
+        if settings.may_solve_models() {
+            result.measures.measure_as_a_model();
+        }
+        let time_step_secs = settings.parameters.time_step_secs;
+        *observables =
+            observables::after_step(stage, result, time_step_secs, observables, initial_heights);
+    }
+}
+
+/// What is observed of an initial state.
+struct MeasureStart<'a> {
+    state: &'a mut State,
+    settings: &'a Settings,
+    memory: &'a StepperMemory,
+    initial_heights: f64,
+}
+
+impl SlotVisitor for MeasureStart<'_> {
+    type Output = Observables;
+
+    fn visit<M: Model>(self, slot: &mut Slot<M::Kinematics>) -> Observables {
+        let Self { state, settings, memory, initial_heights } = self;
+        memory.prepare(&mut Stage::<M>::new(state, slot), settings);
+        observables::at_start::<M>(state, settings, initial_heights)
+    }
+}
+
+/// The first problem of a step, shown to a visitor.
+struct ShowProblem<'a, V> {
+    state: &'a mut State,
+    memory: &'a mut StepperMemory,
+    settings: &'a Settings,
+    visitor: V,
+}
+
+impl<V: ProblemVisitor> SlotVisitor for ShowProblem<'_, V> {
+    type Output = V::Output;
+
+    fn visit<M: Model>(self, slot: &mut Slot<M::Kinematics>) -> V::Output {
+        let Self { state, memory, settings, visitor } = self;
+        let stage = &mut Stage::<M>::new(state, slot);
+        memory.set_up(stage, settings);
+        visitor.visit::<M>(stage.problem, &stage.state.contacts)
+    }
+}
+
+impl Serialize for Simulation {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        Self::serialize(self, serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Simulation {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        Self::deserialize(deserializer)?.complete().map_err(D::Error::custom)
+    }
+}
+
+impl Simulation {
+    /// One that was read, once its parts are found to go together: none of them is looked for later on.
+    fn complete(mut self) -> Result<Self> {
+        self.settings.validate()?;
+        self.state.physics.validate()?;
+        self.state.world.validate(self.state.physics)?;
+        self.settings.check_in(&self.state.world, self.state.physics)?;
+        self.state.candidates = self.state.candidates.complete(&self.state.world)?;
+        let Self { state, watch, .. } = &self;
+        let grains = state.world.grains.len();
+        let bodies = grains + state.world.fixed_discs.len() + state.candidates.features().len();
+        let refuse = |field: &str| Error::value(field, "of other grains", "of those of the state");
+        if !state.contacts.is_sound(bodies, grains) {
+            return Err(refuse("contacts"));
+        }
+        if !watch.losses.is_of(grains) {
+            return Err(refuse("watch"));
+        }
+        if state.pull.is_some_and(|pull| pull.grain as usize >= grains) {
+            return Err(refuse("pull"));
+        }
+        if state.is_held && state.world.motions.is_empty() {
+            return Err(Error::value("hand", "on no wall", "on the wall of the last motion"));
+        }
+        Ok(self)
     }
 }

@@ -3,10 +3,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::pull::Pull;
-use super::walls::Walls;
 use crate::contact::{Candidates, ContactList, LookAhead, Reach};
 use crate::error::Result;
+use crate::sim::pull::{Pull, SpringPush};
+use crate::sim::walls::Walls;
 use crate::solver::{Kinematics, Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
 
@@ -76,13 +76,9 @@ impl State {
         contacts.detect_ahead::<AXES>(world, candidates, ahead);
     }
 
-    /// The push of the spring on a grain in the next `time_step_secs` ([`Pull::push`]).
-    pub(crate) fn push_of_pull(
-        &self,
-        axes: usize,
-        time_step_secs: f64,
-    ) -> Option<(usize, DVec2, f64)> {
-        self.pull.and_then(|pull| pull.push(&self.world, axes, time_step_secs))
+    /// The push of the spring on a grain in the next `time_step_secs`.
+    pub(crate) fn push_of_pull(&self, axes: usize, time_step_secs: f64) -> Option<SpringPush> {
+        self.pull?.push(&self.world, axes, time_step_secs)
     }
 
     /// Speed of the fastest grain or wall of a step that has begun, m/s.

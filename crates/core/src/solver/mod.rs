@@ -1,39 +1,40 @@
 //! One step's contact problem, the methods that solve it, and the residual that judges them all.
 //!
+//! * `kinematics`, `model`: how bodies move, and what a step is compiled for.
 //! * `problem/`: the problem's data, how it is set up, and its residual.
-//! * `methods/`: what solves it, a file or folder a method, and the registry of all.
-//! * `linear/`: the sparse factorisation that some of them use.
+//! * `method`, `settings`: the methods by name, and how well a step is to be solved.
+//! * `methods/`: what solves a problem, a file or folder a method. `solve` picks from them.
+//! * `linear/`: the sparse factorisations that some of them use.
 //! * `delassus/`: problems in the Delassus operator alone.
 
 mod delassus;
-mod friction_model;
+mod kinematics;
 mod linear;
+mod method;
 mod methods;
-mod ordering;
+mod model;
 mod problem;
 mod settings;
-mod slots;
+mod solve;
 
-pub use delassus::Assembled;
-pub use delassus::{DelassusProblem, Triplets, solve_delassus};
-pub use friction_model::{Fallback, FrictionModel};
+pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
+pub use kinematics::{
+    Kinematics, Line, LineBody, Plane, PlaneBody, ShearedPlane, SlidingNormal, SpinningPlane,
+};
+pub use method::{METHODS, Method, MethodInfo, MethodOrder, Ordering};
 pub(crate) use methods::picked;
 #[doc(hidden)]
 pub use methods::sweep;
-pub use methods::{
-    BodySystem, ContactSystem, METHODS, Memory, Method, MethodInfo, MethodOrder, Pairs,
-    SolveReport, solve,
+pub use methods::{BodySystem, ContactSystem, ScaledVector, SolveReport};
+pub(crate) use model::cone_of;
+pub use model::{
+    Model, ModelParts, ModelVisitor, Slot, SlotVisitor, Slots, StepModel, visit_model,
 };
-pub use ordering::Ordering;
-pub use problem::prepare::{Approach, ProblemNumbers};
-pub use problem::worst;
+pub(crate) use problem::MovingSurfaces;
 pub use problem::{
-    DrivenBy, DrivenRow, DrivenWall, ModelParts, ModelVisitor, Surface, for_each_row, measure,
-    relative_velocities,
+    Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures, PairRow,
+    ProblemNumbers, Row, RowVelocities, StepProblem, Surface, for_each_row, measure,
+    relative_velocities, residual, worst,
 };
-pub use problem::{
-    Kinematics, Line, LineBody, Measures, Model, Motion, Plane, PlaneBody, Row, ShearedPlane,
-    SlidingNormal, SpinningPlane, StepModel, StepProblem, residual,
-};
-pub use settings::{SolverChanges, SolverSettings, StopTest};
-pub use slots::{Slot, SlotVisitor, Slots, visit_model};
+pub use settings::{Fallback, FrictionModel, SolverChanges, SolverSettings, StopTest};
+pub use solve::{Memory, solve};

@@ -4,8 +4,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::carry::{Carry, RigidVelocity};
-use super::motion::within;
+use super::motion::{Carry, RigidVelocity, within};
 
 /// A disc that no grain moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -101,9 +101,6 @@ impl Grains {
     }
 
     /// Checks that there are discs, and that each list says something of each.
-    ///
-    /// # Errors
-    /// Names the first list that is not as long as `positions`.
     pub(crate) fn validate(&self) -> Result<()> {
         let count = self.len();
         if count == 0 {

@@ -1,37 +1,28 @@
 //! Bodies, boundaries, gravity and parameters: plain data, in SI units and f64.
 
 mod boundary;
-mod carry;
-mod drive;
 mod grains;
 mod gravity;
-mod gravity_turn;
 mod motion;
 mod motion_check;
 mod parameters;
 mod periodic;
 mod periodic_check;
-mod physics;
-mod shearing;
-mod tilt;
 
 pub use boundary::{Boundary, Disc, Edge};
-pub(crate) use carry::{Carry, RigidVelocity};
-pub use drive::Drive;
 pub use grains::{Grain, Grains};
-pub use gravity::Gravity;
-pub use gravity_turn::{GravityTurn, TurnCourse, TurningGravity};
-pub use motion::{Motion, MotionCourse};
+pub use gravity::{Gravity, GravityTurn, TurnCourse, TurningGravity};
+pub(crate) use motion::{Carry, RigidVelocity};
+pub use motion::{Drive, Motion, MotionCourse};
 pub(crate) use motion_check::check_motions;
 pub(crate) use parameters::MAX_SUBSTEPS;
 pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};
 pub use periodic::Periodic;
-pub use physics::Physics;
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Everything that a step reads and moves. Plain data, checked where a simulation takes it on; a running
 /// one shows its own and lends none.
@@ -59,22 +50,19 @@ pub struct World {
 
 impl World {
     /// Checks its grains and motions, how its gravity turns, and its borders.
-    ///
-    /// # Errors
-    /// Names the first of them that does not fit.
     pub(crate) fn validate(&self, physics: Physics) -> Result<()> {
         self.grains.validate()?;
         if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
             turn.check(&self.gravity, physics)?;
         }
-        let bodies = (&*self.boundaries, self.fixed_discs.len());
-        check_motions(&self.motions, bodies, physics.axes, self.periodic)?;
+        let Self { boundaries, motions, gravity, .. } = self;
+        let fixed_discs = self.fixed_discs.len();
+        check_motions(motions, boundaries, fixed_discs, physics.axes, self.periodic)?;
         let Some(periodic) = self.periodic else { return Ok(()) };
         let fixed = self.fixed_discs.iter().map(|disc| disc.radius);
         let largest_radius = self.grains.radii.iter().copied().chain(fixed).fold(0.0, f64::max);
         let lengths = [largest_radius, self.mean_diameter];
-        let bodies = (&*self.boundaries, self.fixed_discs.len(), &*self.motions);
-        periodic.check(bodies, &self.gravity, physics, lengths)
+        periodic.check(boundaries, fixed_discs, motions, gravity, physics, lengths)
     }
 
     /// Whether anything can move that no grain moves.
@@ -89,6 +77,42 @@ impl World {
         match self.periodic {
             None => offset,
             Some(periodic) => periodic.shortest(offset),
+        }
+    }
+}
+
+/// The physics that a scene needs. A step is compiled for just that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Physics {
+    /// 1 (all on the x axis) or 2.
+    pub axes: u8,
+    /// Whether contacts carry tangential impulses.
+    pub friction: bool,
+    /// Whether grains turn. Without friction nothing changes a disc's spin, so this asks for
+    /// friction.
+    pub rotation: bool,
+    /// Whether contacts can pull.
+    pub cohesion: bool,
+}
+
+impl Physics {
+    /// Two axes, friction, rotation and cohesion.
+    pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
+
+    /// Checks that the parts fit each other.
+    pub(crate) fn validate(&self) -> Result<()> {
+        match (self.axes, self.friction, self.rotation) {
+            (1 | 2, false, true) => {
+                Err(Error::value("physics.rotation", true, "false where physics.friction is false"))
+            }
+            (1, true, _) => Err(Error::value(
+                "physics.friction",
+                true,
+                "false where physics.axes is 1: a line has no tangent",
+            )),
+            (1 | 2, ..) => Ok(()),
+            (axes, ..) => Err(Error::value("physics.axes", axes, "1 or 2")),
         }
     }
 }

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::carry::{Carry, RigidVelocity};
-use super::drive::{Drive, is_zero};
+use crate::number::is_zero;
+use crate::world::Periodic;
 
 /// Boundaries and fixed discs that move together.
 ///
@@ -215,6 +215,149 @@ where
     };
     let part = (time - times_secs[before]) / (times_secs[next] - times_secs[before]);
     values[before] + part * (values[next] - values[before])
+}
+
+/// What drives the bodies of a motion along an axis, and what they have against it. Weight is no part of it.
+///
+/// Its state is in itself: `speed` is that of the end of the last step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drive {
+    /// Along which vector; its length means nothing.
+    pub direction: DVec2,
+    /// N along it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<f64>,
+    /// In place of a force: N along it for each m of `width`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<f64>,
+    /// What the pressure acts on, m; the period across it where borders are periodic, unless it is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width: Option<f64>,
+    /// Of all bodies of the motion together, kg.
+    pub mass: f64,
+    /// Force against the speed, kg/s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub damping: f64,
+    /// m/s along the direction.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub speed: f64,
+}
+
+impl Drive {
+    /// The direction, of length 1.
+    pub fn axis(&self) -> DVec2 {
+        self.direction.normalize_or_zero()
+    }
+
+    /// The force along the axis, N.
+    pub fn force_in(&self, periodic: Option<Periodic>) -> f64 {
+        let width = self.width.or_else(|| self.period_across(periodic));
+        self.force.unwrap_or_else(|| self.pressure.unwrap_or(0.0) * width.unwrap_or(0.0))
+    }
+
+    /// The period along the one axis, m, where borders wrap along that and the direction is along the other.
+    pub(super) fn period_across(&self, periodic: Option<Periodic>) -> Option<f64> {
+        let [width, height] = periodic?.periods();
+        let DVec2 { x, y } = self.direction;
+        if x == 0.0 {
+            width
+        } else if y == 0.0 {
+            height
+        } else {
+            None
+        }
+    }
+
+    /// ½mv², J.
+    pub fn kinetic_energy(&self) -> f64 {
+        0.5 * self.mass * self.speed * self.speed
+    }
+}
+
+/// How a body goes during a step: straight on, or round a pivot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RigidVelocity {
+    /// m/s; none of a body that turns.
+    pub velocity: DVec2,
+    /// rad/s, positive anticlockwise.
+    pub spin: f64,
+    /// m.
+    pub pivot: DVec2,
+}
+
+/// A way of a rigid body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carry {
+    /// m; none of a body that turns.
+    pub by: DVec2,
+    /// rad.
+    pub angle: f64,
+    pivot: DVec2,
+    /// (cos, sin) of the angle.
+    turn: DVec2,
+}
+
+impl RigidVelocity {
+    /// That of a body which stays.
+    pub(crate) const NONE: Self = Self { velocity: DVec2::ZERO, spin: 0.0, pivot: DVec2::ZERO };
+
+    pub(super) fn straight(velocity: DVec2) -> Self {
+        Self { velocity, ..Self::NONE }
+    }
+
+    pub(super) fn round(pivot: DVec2, spin: f64) -> Self {
+        Self { spin, pivot, ..Self::NONE }
+    }
+
+    /// The velocity of a point of the body, m/s.
+    #[inline]
+    pub(crate) fn at(&self, place: DVec2) -> DVec2 {
+        if self.spin == 0.0 { self.velocity } else { self.spin * (place - self.pivot).perp() }
+    }
+
+    /// Whether the body does not stay.
+    pub(crate) fn moves(&self) -> bool {
+        self.velocity != DVec2::ZERO || self.spin != 0.0
+    }
+
+    /// The way in `secs`.
+    pub(crate) fn carry(&self, secs: f64) -> Carry {
+        let angle = secs * self.spin;
+        let (sin, cos) = angle.sin_cos();
+        Carry { by: secs * self.velocity, angle, pivot: self.pivot, turn: DVec2::new(cos, sin) }
+    }
+}
+
+impl Carry {
+    /// Where it brings a point of the body.
+    pub(crate) fn place(&self, place: DVec2) -> DVec2 {
+        if self.angle == 0.0 {
+            place + self.by
+        } else {
+            self.pivot + self.turned(place - self.pivot)
+        }
+    }
+
+    /// What it makes of a direction.
+    pub(crate) fn turned(&self, direction: DVec2) -> DVec2 {
+        if self.angle == 0.0 { direction } else { self.turn.rotate(direction) }
+    }
+
+    /// How far it brings any point at most that is no farther than `reach` from the pivot, m.
+    pub(crate) fn longest_way(&self, reach: f64) -> f64 {
+        self.by.length() + self.angle.abs() * reach
+    }
+
+    /// Whether it brings anything anywhere.
+    pub(crate) fn goes(&self) -> bool {
+        self.by != DVec2::ZERO || self.angle != 0.0
+    }
+
+    /// The pivot, m.
+    pub(crate) fn pivot(&self) -> DVec2 {
+        self.pivot
+    }
 }
 
 #[cfg(test)]

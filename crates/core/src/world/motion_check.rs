@@ -1,18 +1,16 @@
-//! Whether the motions of a scene are such as bodies can have.
+//! Whether motions of a scene, and what drives them, are such as bodies can have.
 
 use glam::DVec2;
 
-use super::{Boundary, Motion, MotionCourse, Periodic};
+use super::{Boundary, Drive, Motion, MotionCourse, Periodic};
 use crate::error::{Error, Result};
 
 /// Checks motions against the boundaries, the number of fixed discs, the number of axes and the borders that they are
 /// for.
-///
-/// # Errors
-/// Names the first motion, or body of one, that does not fit.
 pub(crate) fn check_motions(
     motions: &[Motion],
-    (boundaries, fixed_discs): (&[Boundary], usize),
+    boundaries: &[Boundary],
+    fixed_discs: usize,
     axes: u8,
     periodic: Option<Periodic>,
 ) -> Result<()> {
@@ -117,24 +115,22 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
         }
         Some(MotionCourse::Table { times_secs, offsets }) => {
             let finite = offsets.iter().map(|offset| offset.is_finite());
-            check_table(&format!("{field}.course"), times_secs, ("offsets", finite))
+            check_table(&format!("{field}.course"), times_secs, "offsets", finite)
         }
         Some(MotionCourse::AngleTable { pivot, times_secs, angles }) => {
             finite_point("course.pivot", *pivot)?;
             let finite = angles.iter().map(|angle| angle.is_finite());
-            check_table(&format!("{field}.course"), times_secs, ("angles", finite))
+            check_table(&format!("{field}.course"), times_secs, "angles", finite)
         }
     }
 }
 
 /// Checks the times of a table, and its values, of which it is known whether each is finite.
-///
-/// # Errors
-/// Names the first time or value that does not fit.
 pub(super) fn check_table(
     field: &str,
     times_secs: &[f64],
-    (name, values): (&str, impl ExactSizeIterator<Item = bool>),
+    name: &str,
+    values: impl ExactSizeIterator<Item = bool>,
 ) -> Result<()> {
     if times_secs.is_empty() || times_secs.len() != values.len() {
         let found = format!("{} values at {} times", values.len(), times_secs.len());
@@ -171,4 +167,53 @@ fn stays_on_line(motion: &Motion) -> bool {
     };
     let is_driven_off = motion.drive.as_ref().is_some_and(|drive| drive.direction.y != 0.0);
     stays && motion.surface_speed == 0.0 && !is_driven_off
+}
+
+impl Drive {
+    /// Checks its numbers; `field` is what users call it.
+    fn check(&self, field: &str, periodic: Option<Periodic>) -> Result<()> {
+        let refuse = |name: &str, found: String, allowed: &str| {
+            Err(Error::value(format!("{field}.{name}"), found, allowed))
+        };
+        let Self { direction, force, pressure, width, mass, damping, speed } = self;
+        if !(direction.is_finite() && direction.length() > 0.0) {
+            return refuse("direction", direction.to_string(), "finite, and not 0");
+        }
+        if !(*mass > 0.0 && mass.is_finite()) {
+            return refuse("mass", mass.to_string(), "a finite number of kg > 0");
+        }
+        if !(*damping >= 0.0 && damping.is_finite()) {
+            return refuse("damping", damping.to_string(), "a finite number of kg/s ≥ 0");
+        }
+        if !speed.is_finite() {
+            return refuse("speed", speed.to_string(), "finite");
+        }
+        match (force, pressure) {
+            (Some(force), None) if !force.is_finite() => {
+                refuse("force", force.to_string(), "a finite number of N")
+            }
+            (None, Some(pressure)) if !pressure.is_finite() => {
+                refuse("pressure", pressure.to_string(), "a finite number of N/m")
+            }
+            (Some(_), None) if width.is_some() => {
+                refuse("width", "given".into(), "left out where no pressure is given")
+            }
+            (Some(_), None) => Ok(()),
+            (None, Some(_)) => match width {
+                Some(width) if !(*width > 0.0 && width.is_finite()) => {
+                    refuse("width", width.to_string(), "a finite number of m > 0")
+                }
+                None if self.period_across(periodic).is_none() => refuse(
+                    "width",
+                    "left out".into(),
+                    "given with a pressure, unless borders are periodic and it acts across their axis",
+                ),
+                _ => Ok(()),
+            },
+            (Some(_), Some(_)) | (None, None) => {
+                let found = if force.is_some() { "given with a pressure" } else { "left out" };
+                refuse("force", found.into(), "given, or else a pressure, and not both")
+            }
+        }
+    }
 }

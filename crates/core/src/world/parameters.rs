@@ -1,6 +1,7 @@
 //! The numbers of the contact laws and the time step, which may change between any two steps.
 
 use crate::error::{Error, Result};
+use crate::number::is_zero;
 use crate::setting::{Group, settings, words};
 
 words! {
@@ -135,7 +136,7 @@ settings! {
             }),
         }
         /// By which angle uniform gravity is turned against how the scene has it, degrees, positive anticlockwise.
-        #[serde(default, skip_serializing_if = "is_none_given")]
+        #[serde(default, skip_serializing_if = "is_zero")]
         tilt: f64 = 0.0, {
             name: "tilt",
             value_name: "DEGREES",
@@ -154,7 +155,7 @@ settings! {
             }),
         }
         /// k of the stepper `dem`, N/m; 0 leaves it to the stepper, which takes it from the weight of the pile.
-        #[serde(default, skip_serializing_if = "is_none_given")]
+        #[serde(default, skip_serializing_if = "is_zero")]
         stiffness: f64 = 0.0, {
             name: "stiffness",
             value_name: "K",
@@ -173,7 +174,7 @@ settings! {
         }
         /// ζ of the stepper `dem`: of a contact by itself, in critical damping; 0 takes that which ρ asks for.
         /// Nothing is lost by that: no damping is ρ = 1.
-        #[serde(default, skip_serializing_if = "is_none_given")]
+        #[serde(default, skip_serializing_if = "is_zero")]
         damping_ratio: f64 = 0.0, {
             name: "damping-ratio",
             value_name: "ZETA",
@@ -212,19 +213,8 @@ fn default_debonding_distance() -> f64 {
     DEBONDING_DISTANCE
 }
 
-fn is_zero(count: &u32) -> bool {
-    *count == 0
-}
-
-fn is_none_given(number: &f64) -> bool {
-    *number == 0.0
-}
-
 impl Parameters {
     /// Checks every number against its range.
-    ///
-    /// # Errors
-    /// Names the first field outside its range, its value and the range.
     pub(crate) fn validate(&self) -> Result<()> {
         self.validate_each()
     }

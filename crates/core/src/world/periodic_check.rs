@@ -23,12 +23,11 @@ struct Wrapping {
 
 impl Periodic {
     /// Checks it against what there is in a world, of which the radius of the largest disc and d are given, m.
-    ///
-    /// # Errors
-    /// Names what does not fit.
     pub(crate) fn check(
         self,
-        (boundaries, fixed_discs, motions): (&[Boundary], usize, &[Motion]),
+        boundaries: &[Boundary],
+        fixed_discs: usize,
+        motions: &[Motion],
         gravity: &Gravity,
         physics: Physics,
         lengths: [f64; 2],
@@ -46,7 +45,7 @@ impl Periodic {
         if matches!(gravity, Gravity::Attraction { .. }) {
             return Err(Error::value("periodic", "given", "left out where gravity is not uniform"));
         }
-        self.check_shear((boundaries.len(), fixed_discs), physics)?;
+        self.check_shear(boundaries.len() + fixed_discs, physics)?;
         for wrapping in self.wrapping() {
             wrapping.check_shapes(boundaries)?;
             wrapping.check_motions(boundaries, motions)?;
@@ -55,11 +54,7 @@ impl Periodic {
     }
 
     /// Whether there is nothing that borders which shear would tear, and all that they need.
-    fn check_shear(
-        self,
-        (boundaries, fixed_discs): (usize, usize),
-        physics: Physics,
-    ) -> Result<()> {
+    fn check_shear(self, fixed_bodies: usize, physics: Physics) -> Result<()> {
         let Self { shear_rate, shift, .. } = self;
         let numbers = [("periodic.shear_rate", shear_rate), ("periodic.shift", shift)];
         if let Some((field, found)) = numbers.into_iter().find(|(_, number)| !number.is_finite()) {
@@ -84,7 +79,7 @@ impl Periodic {
             let allowed = "0 unless physics has friction and rotation; mu = 0 is no matter";
             return Err(Error::value(field, found, allowed));
         }
-        if boundaries + fixed_discs > 0 {
+        if fixed_bodies > 0 {
             let allowed = "0 where there are boundaries or fixed discs, which cannot go with it";
             return Err(Error::value(field, found, allowed));
         }

@@ -1,14 +1,20 @@
 //! What a user asks of a run: where the scene comes from, and changes to it. The same structure is the
 //! command line's options, a run of a study, and what is written beside results.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::file::{read_unsettled, unsettled};
-use super::{Origin, SavedState};
+use serde::Serialize;
+use serde::de::MapAccess;
+
+use super::scene_file::{read_unsettled, unsettled};
+use super::{SavedState, parser_of};
 use crate::data::{RecordedGrains, read_grains};
 use crate::error::{Error, Result};
-use crate::scene::{NewPile, Scene, Settling, built_in, cradle_from, pile_of, put_on_base, settle};
-use crate::setting::{Changes, Value};
+use crate::scene::{
+    Deposition, NewPile, Preset, Scene, Settling, built_in, cradle_from, pile_of, put_on_base,
+    settle,
+};
+use crate::setting::{Changes, Settable, Value};
 use crate::sim::{RemedyChanges, Settings, Stepper};
 use crate::solver::SolverChanges;
 use crate::world::{Grain, ParameterChanges};
@@ -18,7 +24,7 @@ use crate::world::{Grain, ParameterChanges};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Config {
     /// Where the scene comes from.
-    pub origin: Origin,
+    pub source: SceneSource,
     /// The way to step.
     pub stepper: Option<Stepper>,
     /// Numbers of the contact laws, and Δt.
@@ -29,15 +35,109 @@ pub struct Config {
     pub remedies: RemedyChanges,
 }
 
+/// Where a scene comes from, and what of it is not a setting.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, clap::Args)]
+#[serde(rename_all = "kebab-case")]
+pub struct SceneSource {
+    /// Built-in scene (pile, cradle, collision, …: `slump list`) or a scene file (NAME.toml)
+    #[arg(long, value_name = "NAME|FILE", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scene: Option<String>,
+    /// Start the pile from discs: a CSV (header x,y,radius, optionally vx,vy,omega; metres), or what --data wrote as CSV or Parquet; or the scene of a saved run from its grains
+    #[arg(long, value_name = "FILE", help_heading = "Scene", conflicts_with_all = ["grains", "box_width", "seed", "deposition"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial: Option<PathBuf>,
+    /// The step of the recording that the pile starts from [default: its last]
+    #[arg(long, value_name = "N", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_step: Option<u64>,
+    /// Make a new pile of this many grains
+    #[arg(long, value_name = "N", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grains: Option<usize>,
+    /// Width of the box that a new pile is made in, in mean diameters
+    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub box_width: Option<f64>,
+    /// Width of the rough base under a pile, in mean diameters [default: five heights beyond the box on either side]
+    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base_width: Option<f64>,
+    /// Seed of a new pile
+    #[arg(long, value_name = "N", help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// How the grains of a new pile are put in place [default: rain]
+    #[arg(long, value_name = "WAY", value_parser = parser_of::<Deposition>(), help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deposition: Option<Deposition>,
+    /// Where the cradle's k starts, in diameters left of i, centre to centre
+    #[arg(long, value_name = "D", help_heading = "Scene", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start: Option<f64>,
+    /// Settings that go together; what else is given changes them
+    #[arg(long, value_name = "NAME", value_parser = parser_of::<Preset>(), help_heading = "Scene")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preset: Option<Preset>,
+    /// Simulated time, seconds
+    #[arg(long, value_name = "SECONDS", help_heading = "Scene", allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration: Option<f64>,
+}
+
+impl SceneSource {
+    /// Reads the value of the field of that name from a file. Whether there is one.
+    pub(super) fn read<'de, A: MapAccess<'de>>(
+        &mut self,
+        name: &str,
+        map: &mut A,
+    ) -> std::result::Result<bool, A::Error> {
+        match name {
+            "scene" => self.scene = map.next_value()?,
+            "initial" => self.initial = map.next_value()?,
+            "initial-step" => self.initial_step = map.next_value()?,
+            "grains" => self.grains = map.next_value()?,
+            "box-width" => self.box_width = map.next_value()?,
+            "base-width" => self.base_width = map.next_value()?,
+            "seed" => self.seed = map.next_value()?,
+            "deposition" => self.deposition = map.next_value()?,
+            "start" => self.start = map.next_value()?,
+            "preset" => self.preset = map.next_value()?,
+            "duration" => self.duration = map.next_value()?,
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// The pile that `grains`, `box_width`, `seed` and `deposition` ask for.
+    pub fn new_pile(&self) -> NewPile {
+        let default = NewPile::default();
+        NewPile {
+            grains: self.grains.unwrap_or(default.grains),
+            box_width_in_diameters: self.box_width.unwrap_or(default.box_width_in_diameters),
+            seed: self.seed.unwrap_or(default.seed),
+            deposition: self.deposition.unwrap_or(default.deposition),
+        }
+    }
+
+    /// Whether grains have to be put in place and settled.
+    pub fn makes_new_pile(&self) -> bool {
+        self.grains.is_some()
+            || self.box_width.is_some()
+            || self.seed.is_some()
+            || self.deposition.is_some()
+    }
+}
+
 /// A scene before anything of it is changed.
 #[derive(Clone, Debug)]
-pub struct Ground {
+pub struct BaseScene {
     scene: Scene,
     /// What its grains are the start of, where they have to settle.
     new_pile: Option<NewPile>,
 }
 
-impl Ground {
+impl BaseScene {
     /// A scene that is at hand, but for a file of discs that it names: that lies in `folder`.
     ///
     /// # Errors
@@ -56,8 +156,8 @@ impl Config {
 
     /// A scene by name or file, as it says itself.
     pub fn of_scene(name: impl Into<String>) -> Self {
-        let origin = Origin { scene: Some(name.into()), ..Origin::default() };
-        Self { origin, ..Self::default() }
+        let source = SceneSource { scene: Some(name.into()), ..SceneSource::default() };
+        Self { source, ..Self::default() }
     }
 
     /// Whether nothing is asked for.
@@ -80,7 +180,7 @@ impl Config {
     pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies, .. } = self;
         if name == Settings::STEPPER.name {
-            *stepper = crate::setting::Settable::of(value);
+            *stepper = Settable::of(value);
             return stepper.is_some();
         }
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
@@ -93,7 +193,7 @@ impl Config {
     /// # Errors
     /// Names the first field that is unknown or outside its range, or the file that cannot be read.
     pub fn without_settling(&self) -> Result<Scene> {
-        self.change(&self.ground()?)
+        self.change(&self.base_scene()?)
     }
 
     /// The scene with the changes made, checked. A new pile is made here, which takes a while:
@@ -103,7 +203,7 @@ impl Config {
     /// Names the first field that is unknown or outside its range, or the file that cannot be read; and
     /// where the grains do not come to rest.
     pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
-        self.scene_on(self.ground()?, progress)
+        self.scene_on(self.base_scene()?, progress)
     }
 
     /// The same of a scene that is at hand, whatever scene is named.
@@ -112,13 +212,13 @@ impl Config {
     /// As [`Config::scene`].
     pub fn scene_on(
         &self,
-        ground: Ground,
+        base: BaseScene,
         progress: impl FnMut(Settling) -> bool,
     ) -> Result<Scene> {
-        let scene = self.change(&ground)?;
-        match self.new_pile_on(&ground) {
+        let scene = self.change(&base)?;
+        match self.new_pile_on(&base) {
             None => Ok(scene),
-            Some(pile) => self.settled_on(ground, settle(&pile, progress)?),
+            Some(pile) => self.settled_on(base, settle(&pile, progress)?),
         }
     }
 
@@ -127,7 +227,7 @@ impl Config {
     /// # Errors
     /// As [`Config::without_settling`].
     pub fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
-        self.settled_on(self.ground()?, settled)
+        self.settled_on(self.base_scene()?, settled)
     }
 
     /// The scene that starts from these discs, as if `initial` were a file of them.
@@ -135,8 +235,8 @@ impl Config {
     /// # Errors
     /// As [`Config::without_settling`].
     pub fn scene_of_discs(&self, discs: RecordedGrains) -> Result<Scene> {
-        self.check_origin()?;
-        self.change(&Ground { scene: self.pile_of_recorded(discs)?, new_pile: None })
+        self.check_source()?;
+        self.change(&BaseScene { scene: self.pile_of_recorded(discs)?, new_pile: None })
     }
 
     /// The pile that has to be made for this scene, if any.
@@ -144,19 +244,19 @@ impl Config {
     /// # Errors
     /// As [`Config::without_settling`].
     pub fn new_pile(&self) -> Result<Option<NewPile>> {
-        if self.origin.makes_new_pile() {
-            return Ok(Some(self.origin.new_pile()));
+        if self.source.makes_new_pile() {
+            return Ok(Some(self.source.new_pile()));
         }
-        Ok(self.ground()?.new_pile)
+        Ok(self.base_scene()?.new_pile)
     }
 
     /// The scene as its file or its name says it.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
-    pub fn ground(&self) -> Result<Ground> {
-        self.check_origin()?;
-        let Origin { initial, initial_step, start, .. } = &self.origin;
+    pub fn base_scene(&self) -> Result<BaseScene> {
+        self.check_source()?;
+        let SceneSource { initial, initial_step, start, .. } = &self.source;
         let name = self.named();
         let (scene, new_pile) =
             if let Some(path) = initial.as_deref().filter(|path| SavedState::is_in(path)) {
@@ -171,43 +271,43 @@ impl Config {
             } else {
                 (built_in(name)?, None)
             };
-        Ok(Ground { scene, new_pile })
+        Ok(BaseScene { scene, new_pile })
     }
 
-    /// What of a config its [`Config::ground`] hangs on: equal for all that share one.
-    pub fn name_of_ground(&self) -> String {
-        let Origin { initial, initial_step, box_width, start, .. } = &self.origin;
+    /// What of a config its [`Config::base_scene`] hangs on: equal for all that share one.
+    pub fn base_scene_key(&self) -> String {
+        let SceneSource { initial, initial_step, box_width, start, .. } = &self.source;
         let box_width = box_width.filter(|_| initial.is_some());
         format!("{:?}", (self.named(), initial, initial_step, box_width, start))
     }
 
-    /// The scene of [`Config::without_settling`] where its ground is at hand.
+    /// The scene of [`Config::without_settling`] where its base scene is at hand.
     ///
     /// # Errors
     /// As there.
-    pub fn change(&self, ground: &Ground) -> Result<Scene> {
-        self.check_origin()?;
-        let mut scene = ground.scene.clone();
+    pub fn change(&self, base: &BaseScene) -> Result<Scene> {
+        self.check_source()?;
+        let mut scene = base.scene.clone();
         self.change_scene(&mut scene)?;
         Ok(scene)
     }
 
     fn named(&self) -> &str {
-        self.origin.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE)
+        self.source.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE)
     }
 
-    /// Whether what is said of the scene's origin goes together.
-    fn check_origin(&self) -> Result<()> {
+    /// Whether what is said of the scene's source goes together.
+    fn check_source(&self) -> Result<()> {
         let name = self.named();
-        if let (None, Some(step)) = (&self.origin.initial, self.origin.initial_step) {
+        if let (None, Some(step)) = (&self.source.initial, self.source.initial_step) {
             let allowed = "left out where no initial grains are given";
             return Err(Error::value("initial-step", step, allowed));
         }
-        if self.origin.makes_new_pile() {
+        if self.source.makes_new_pile() {
             self.check_pile_alone("grains, box-width, seed or deposition")?;
-            self.origin.new_pile().validate()?;
+            self.source.new_pile().validate()?;
         }
-        match self.origin.start {
+        match self.source.start {
             Some(_) if name != Self::CRADLE => {
                 Err(Error::value("scene", name, "cradle where start is given"))
             }
@@ -227,7 +327,7 @@ impl Config {
 
     fn pile_of_recorded(&self, discs: RecordedGrains) -> Result<Scene> {
         let RecordedGrains { grains, fixed_discs } = discs;
-        let mut pile = pile_of(grains, self.origin.new_pile().box_width_in_diameters)?;
+        let mut pile = pile_of(grains, self.source.new_pile().box_width_in_diameters)?;
         if !fixed_discs.is_empty() {
             // The base that the grains lie on, as wide as it was.
             pile.fixed_discs = fixed_discs;
@@ -235,16 +335,16 @@ impl Config {
         Ok(pile)
     }
 
-    fn new_pile_on(&self, ground: &Ground) -> Option<NewPile> {
-        let new_pile = self.origin.makes_new_pile();
-        if new_pile { Some(self.origin.new_pile()) } else { ground.new_pile.clone() }
+    fn new_pile_on(&self, base: &BaseScene) -> Option<NewPile> {
+        let new_pile = self.source.makes_new_pile();
+        if new_pile { Some(self.source.new_pile()) } else { base.new_pile.clone() }
     }
 
-    fn settled_on(&self, ground: Ground, settled: Vec<Grain>) -> Result<Scene> {
-        let mut scene = if self.origin.makes_new_pile() {
-            pile_of(settled, self.origin.new_pile().box_width_in_diameters)?
+    fn settled_on(&self, base: BaseScene, settled: Vec<Grain>) -> Result<Scene> {
+        let mut scene = if self.source.makes_new_pile() {
+            pile_of(settled, self.source.new_pile().box_width_in_diameters)?
         } else {
-            ground.scene.with_settled(settled)
+            base.scene.with_settled(settled)
         };
         self.change_scene(&mut scene)?;
         Ok(scene)
@@ -253,13 +353,13 @@ impl Config {
     /// The same asked for, with every number that `scene` fills in.
     pub fn resolved(&self, scene: &Scene) -> Self {
         // An initial state may have a scene of its own.
-        let name = if self.origin.initial.is_some() { &scene.name } else { self.named() };
-        let origin = Origin {
+        let name = if self.source.initial.is_some() { &scene.name } else { self.named() };
+        let source = SceneSource {
             scene: Some(name.into()),
             duration: Some(scene.duration_secs),
-            ..self.origin.clone()
+            ..self.source.clone()
         };
-        Self { origin, ..self.clone() }.with_settings(&scene.settings())
+        Self { source, ..self.clone() }.with_settings(&scene.settings())
     }
 
     /// Changes what is given of settings. A preset, which is no setting, is left out.
@@ -270,19 +370,51 @@ impl Config {
         self.remedies.apply(&mut settings.remedies);
     }
 
-    pub(super) fn change_scene(&self, scene: &mut Scene) -> Result<()> {
-        if let Some(width) = self.origin.base_width {
+    fn change_scene(&self, scene: &mut Scene) -> Result<()> {
+        if let Some(width) = self.source.base_width {
             put_on_base(scene, width)?;
         }
         scene.stepper = self.stepper.unwrap_or(scene.stepper);
         // A preset leaves out what the stepper does not take.
-        if let Some(preset) = self.origin.preset {
+        if let Some(preset) = self.source.preset {
             preset.apply(scene);
         }
         let mut settings = scene.settings();
         self.change_settings(&mut settings);
         scene.set_settings(settings);
-        scene.duration_secs = self.origin.duration.unwrap_or(scene.duration_secs);
+        scene.duration_secs = self.source.duration.unwrap_or(scene.duration_secs);
         scene.validate()
+    }
+
+    /// The scene of a saved state, which begins with the state's grains.
+    fn scene_of_state(&self, path: &Path) -> Result<Scene> {
+        let scene = SavedState::open(path)?.as_start();
+        match &self.source.scene {
+            Some(name) if *name != scene.name => {
+                let allowed =
+                    format!("left out, or {}, the scene of the initial state", scene.name);
+                Err(Error::value("scene", name, allowed))
+            }
+            _ => Ok(scene),
+        }
+    }
+
+    /// Makes the changes asked for to a run that goes on: from here on, while all that has been stays.
+    ///
+    /// # Errors
+    /// Names the first setting that is outside its range or does not go with the others, or says that
+    /// another start is asked for.
+    pub fn change_state(&self, state: &mut SavedState) -> Result<()> {
+        let kept = SceneSource { duration: self.source.duration, ..SceneSource::default() };
+        if self.source != kept {
+            let allowed = "left out where scene, initial, grains, box-width, seed, start or preset is \
+                           given: a run that goes on has its own";
+            return Err(Error::value("restart", "given", allowed));
+        }
+        let mut scene = state.scene.clone();
+        self.change_scene(&mut scene)?;
+        state.simulation.change(scene.settings())?;
+        state.scene = scene;
+        Ok(())
     }
 }

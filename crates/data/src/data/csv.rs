@@ -1,13 +1,15 @@
 //! Recordings as text: a growing table of each kind of row, `csv/grains.csv` and so on.
 
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind::NotFound, Write};
 use std::path::{Path, PathBuf};
 
-use super::columns::{empty_tables, steps};
-use super::files;
-use super::format::{About, Format, Frame};
-use super::table::Table;
-use super::text_table::{self, TextTable};
-use crate::error::Result;
+use super::columns::empty_tables_of_frames;
+use super::format::{Format, Frame, RunFacts};
+use super::recording_folder::{make_folder, remove};
+use super::table::{Table, Values};
+use crate::error::{Error, Result};
+use crate::output::GrowingFile;
 use crate::sim::Observables;
 
 /// Where the tables are.
@@ -24,25 +26,17 @@ impl Csv {
     ///
     /// # Errors
     /// Where the folder cannot be made.
-    pub(super) fn start(folder: &Path, about: &About) -> Result<Self> {
+    pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
-        files::make_folder(&folder)?;
+        make_folder(&folder)?;
         let start = |table: Table| {
-            TextTable::new(folder.join(format!("{}.csv", table.name)), about, &table)
+            TextTable::new(folder.join(format!("{}.csv", table.name)), facts, &table)
         };
-        let (of_frames, steps) = empty_tables();
-        Ok(Self { of_frames: of_frames.map(start), steps: start(steps) })
+        Ok(Self {
+            of_frames: empty_tables_of_frames().map(start),
+            steps: start(Table::of_steps(&[])),
+        })
     }
-}
-
-/// The files that are there.
-///
-/// # Errors
-/// Where the folder cannot be read.
-pub(super) fn files(folder: &Path) -> Result<Vec<PathBuf>> {
-    let (of_frames, steps) = empty_tables();
-    let names: Vec<_> = of_frames.iter().chain([&steps]).map(|table| table.name).collect();
-    text_table::named(&folder.join(FOLDER), &names)
 }
 
 impl Format for Csv {
@@ -52,11 +46,7 @@ impl Format for Csv {
     }
 
     fn add_steps(&mut self, rows: &[Observables]) -> Result<()> {
-        self.steps.add(&steps(rows))
-    }
-
-    fn flush(&mut self) -> Result<()> {
-        Ok(())
+        self.steps.add(&Table::of_steps(rows))
     }
 
     fn finish(&mut self) -> Result<()> {
@@ -69,5 +59,168 @@ impl Format for Csv {
             table.roll_back(last_frame)?;
         }
         self.steps.roll_back(Some(step)).map(drop)
+    }
+}
+
+/// What begins a line that is a comment.
+pub(super) const COMMENT: u8 = b'#';
+
+/// A table that is written row by row, below comments that say what the columns are.
+pub(super) struct TextTable {
+    path: PathBuf,
+    /// Comments, and the line of names.
+    head: String,
+    names: String,
+    file: Option<GrowingFile>,
+    rows: Vec<u8>,
+}
+
+/// What of a table stays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct KeptRows {
+    pub rows: u64,
+    /// Of the last row.
+    pub step: Option<u64>,
+}
+
+impl TextTable {
+    /// A table with the columns of `table`. The file begins with the first rows, even if these are none, or is gone on with
+    /// ([`TextTable::roll_back`]).
+    pub(super) fn new(path: PathBuf, run: &RunFacts, table: &Table) -> Self {
+        let names: Vec<_> = table.columns.iter().map(|column| column.name).collect();
+        let names = names.join(",");
+        let facts = run.facts.iter().map(|(name, said)| format!("# {name}: {said}\n"));
+        let columns = table.columns.iter();
+        let columns = columns.map(|column| format!("# column {}\n", column.described(column.name)));
+        let comments: String = facts.chain(columns).collect();
+        let head = format!("{comments}{names}\n");
+        Self { path, head, names, file: None, rows: Vec::new() }
+    }
+
+    /// Adds rows.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(super) fn add(&mut self, table: &Table) -> Result<()> {
+        let mut rows = std::mem::take(&mut self.rows);
+        rows.clear();
+        write_rows(&mut rows, table);
+        self.begun()?.add(&rows)?;
+        self.rows = rows;
+        Ok(())
+    }
+
+    /// The file, with its head at least.
+    fn begun(&mut self) -> Result<&mut GrowingFile> {
+        match &mut self.file {
+            Some(file) => Ok(file),
+            none => {
+                let mut file = GrowingFile::start(self.path.clone())?;
+                file.add(self.head.as_bytes())?;
+                Ok(none.insert(file))
+            }
+        }
+    }
+
+    /// Has all rows on the disk, and the head at least.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(super) fn finish(&mut self) -> Result<()> {
+        self.begun()?.sync();
+        Ok(())
+    }
+
+    /// Drops the rows after a step, or all, and a half row at the end.
+    ///
+    /// # Errors
+    /// Where the file is not such a table.
+    pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
+        self.file = None;
+        let file = match File::open(&self.path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == NotFound => return Ok(KeptRows::default()),
+            Err(error) => return Err(Error::file(&self.path, error)),
+        };
+        let (kept, whole) = self.rows_until(step, BufReader::new(file))?;
+        if kept.rows == 0 {
+            remove(&self.path)?;
+        } else {
+            self.file = Some(GrowingFile::go_on(self.path.clone(), whole)?);
+        }
+        Ok(kept)
+    }
+
+    /// The rows up to a step, and how many bytes reach to their end.
+    fn rows_until(&self, step: Option<u64>, mut file: impl BufRead) -> Result<(KeptRows, u64)> {
+        let (mut kept, mut whole, mut number) = (KeptRows::default(), 0, 0);
+        let mut names_seen = false;
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            let read = file.read_until(b'\n', &mut line);
+            let length = read.map_err(|error| Error::file(&self.path, error))?;
+            number += 1;
+            let Some(text) = line.strip_suffix(b"\n") else { return Ok((kept, whole)) };
+            if names_seen {
+                let there = step_of(text).ok_or_else(|| self.refuse(number, text))?;
+                if Some(there) > step {
+                    return Ok((kept, whole));
+                }
+                kept = KeptRows { rows: kept.rows + 1, step: Some(there) };
+            } else if text.first() != Some(&COMMENT) {
+                if text != self.names.as_bytes() {
+                    return Err(self.refuse(number, text));
+                }
+                names_seen = true;
+            }
+            whole += length as u64;
+        }
+    }
+
+    fn refuse(&self, line: u64, found: &[u8]) -> Error {
+        let found = String::from_utf8_lossy(found);
+        let reason = format!(
+            "line {line} is '{found}', but must be of a table with the columns {}",
+            self.names
+        );
+        Error::file(&self.path, reason)
+    }
+}
+
+fn step_of(row: &[u8]) -> Option<u64> {
+    let step = row.split(|&byte| byte == b',').next()?;
+    str::from_utf8(step).ok()?.parse().ok()
+}
+
+fn write_rows(text: &mut Vec<u8>, table: &Table) {
+    let mut numbers = ryu::Buffer::new();
+    for row in 0..table.len() {
+        for (place, column) in table.columns.iter().enumerate() {
+            if place > 0 {
+                text.push(b',');
+            }
+            match &column.values {
+                Values::Numbers(values) => {
+                    text.extend_from_slice(numbers.format(values[row]).as_bytes());
+                }
+                Values::SomeNumbers(values) => {
+                    let said = values[row].map_or("", |value| numbers.format(value));
+                    text.extend_from_slice(said.as_bytes());
+                }
+                Values::Counts(values) => {
+                    // Memory takes whatever is written to it.
+                    let _ = write!(text, "{}", values[row]);
+                }
+                Values::Flags(values) => {
+                    let said = values[row].map_or("", |so| if so { "true" } else { "false" });
+                    text.extend_from_slice(said.as_bytes());
+                }
+                Values::Words { words, codes } => {
+                    text.extend_from_slice(words[codes[row] as usize].as_bytes());
+                }
+            }
+        }
+        text.push(b'\n');
     }
 }

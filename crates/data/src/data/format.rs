@@ -1,15 +1,22 @@
-//! What all formats have in common.
+//! What all formats have in common, and which there are.
 
-use crate::error::Result;
-use crate::granular::measure;
-use crate::sim::{Moment, Observables};
+use std::path::Path;
 
 use super::columns;
+use super::csv::Csv;
+use super::lammps::Lammps;
+#[cfg(feature = "data")]
+use super::parquet::Parquet;
 use super::table::Table;
+use super::vtk::Vtk;
+use crate::error::{Error, Result};
+use crate::granular::{MomentMeasures, measure};
+use crate::scene::{DataSettings, FormatName};
+use crate::sim::{Moment, Observables};
 
 /// What is to be known of a recording beside its tables: for the metadata of its files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct About {
+pub struct RunFacts {
     /// Names and what is said of them, none with a line break: program, command, and all that the scene
     /// says.
     pub facts: Vec<(String, String)>,
@@ -35,14 +42,14 @@ pub struct Frame {
 impl Frame {
     /// Makes the tables of a moment.
     pub fn new(number: u64, moment: Moment) -> Self {
-        let measured = measure(&moment);
+        let MomentMeasures { pile, grains, histograms } = measure(&moment);
         let now = &moment.observables;
         Self {
             number,
-            grains: columns::grains(&moment, &measured.grains),
-            contacts: columns::contacts(&moment),
-            measures: columns::measures(Some((now, &measured.pile))),
-            histograms: columns::histograms(now, &measured.histograms),
+            grains: columns::grains(&moment, &grains),
+            contacts: Table::of_contacts(&moment),
+            measures: columns::measures(Some((now, &pile))),
+            histograms: columns::histogram_table(now, &histograms),
             moment,
         }
     }
@@ -77,7 +84,9 @@ pub(super) trait Format: Send {
     ///
     /// # Errors
     /// Where it cannot be written.
-    fn flush(&mut self) -> Result<()>;
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
 
     /// Ends the recording.
     ///
@@ -93,4 +102,52 @@ pub(super) trait Format: Send {
     /// # Errors
     /// Where a file is not what this format wrote, or cannot be written.
     fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()>;
+}
+
+/// What is written where nothing is said.
+pub const DEFAULT_FORMAT: FormatName =
+    if cfg!(feature = "data") { FormatName::Parquet } else { FormatName::Csv };
+
+/// The formats that are asked for, each once.
+///
+/// # Errors
+/// Where this build cannot write one of them.
+pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
+    if settings.formats.is_empty() {
+        return Ok(vec![DEFAULT_FORMAT]);
+    }
+    let formats = FormatName::ALL.iter().copied().filter(|it| settings.formats.contains(it));
+    formats.map(|format| check_format(format).map(|()| format)).collect()
+}
+
+/// Whether this build can write it.
+///
+/// # Errors
+/// Says what is missing.
+pub fn check_format(format: FormatName) -> Result<()> {
+    if cfg!(feature = "data") || format != FormatName::Parquet {
+        return Ok(());
+    }
+    let names: Vec<_> =
+        FormatName::ALL.iter().filter(|&&it| it != format).map(|it| it.name()).collect();
+    let allowed = format!("{} in this build, which has not the feature data", names.join(", "));
+    Err(Error::value("data-format", format.name(), allowed))
+}
+
+/// Starts, or goes on with what is there.
+pub(super) fn start_format(
+    format: FormatName,
+    folder: &Path,
+    facts: &RunFacts,
+) -> Result<Box<dyn Format>> {
+    check_format(format)?;
+    match format {
+        #[cfg(feature = "data")]
+        FormatName::Parquet => Ok(Box::new(Parquet::start(folder, facts)?)),
+        #[cfg(not(feature = "data"))]
+        FormatName::Parquet => Err(Error::value("data-format", format.name(), "built in")),
+        FormatName::Csv => Ok(Box::new(Csv::start(folder, facts)?)),
+        FormatName::Vtk => Ok(Box::new(Vtk::start(folder, facts)?)),
+        FormatName::Ovito => Ok(Box::new(Lammps::start(folder, facts)?)),
+    }
 }

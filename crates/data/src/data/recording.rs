@@ -1,23 +1,27 @@
 //! A recording: what a run tells of itself goes to files while it goes on.
 
 use std::path::Path;
-use std::sync::mpsc::{SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-use super::claim::Claim;
-use super::format::About;
-use super::manifest;
-use super::schedule::{Schedule, Times};
-use super::writer::{Message, Writer};
+use super::columns::{FrameRow, frames};
+use super::csv::{KeptRows, TextTable};
+use super::format::{Format, Frame, RunFacts, check_format, start_format};
+use super::recording_folder::{FRAMES, RecordingFolder, check_manifest, write_manifest};
 use crate::error::Result;
-use crate::scene::FormatName;
+use crate::scene::{DataSettings, FormatName};
 use crate::sim::{Moment, Observables, Simulation};
 
+/// Simulated time between two frames where nothing is said, s: that of pictures.
+const DEFAULT_EVERY_SECS: f64 = 0.04;
 /// Messages that wait for being written. Memory is bounded by the frames among them; fewer would have the
 /// run wait for a disk that is busy for a moment.
 const MOST_WAITING: usize = 4;
 /// Rows of steps that wait for being sent.
 const MOST_ROWS: usize = 1024;
+/// Frames that are taken before files are written anew, where the run is faster than the disk. More: more
+/// is lost when the program is killed.
+const FRAMES_AT_ONCE: usize = 8;
 
 /// A recording that grows with a run.
 ///
@@ -25,12 +29,12 @@ const MOST_ROWS: usize = 1024;
 /// not grow with the run: where the disk is too slow, the run waits.
 ///
 /// ```
-/// use slump::data::{About, FormatName, Recording};
+/// use slump::data::{RunFacts, FormatName, Recording};
 ///
 /// let folder = tempfile::tempdir().expect("a folder");
 /// let mut simulation = slump::scene::built_in("cradle")?.simulation()?;
 /// let formats = [FormatName::Csv];
-/// let mut recording = Recording::start(folder.path(), &formats, &About::default(), false)?;
+/// let mut recording = Recording::start(folder.path(), &formats, &RunFacts::default(), false)?;
 /// for _ in 0..10 {
 ///     recording.add_step(simulation.step()?)?;
 ///     recording.add(simulation.moment())?;
@@ -40,20 +44,20 @@ const MOST_ROWS: usize = 1024;
 /// # Ok::<(), slump::error::Error>(())
 /// ```
 pub struct Recording {
-    claim: Claim,
+    folder: RecordingFolder,
     /// Rows that wait for the next frame.
     rows: Vec<Observables>,
     frames: u64,
     /// Step of the last frame that was there when it was gone on with.
     last_step: Option<u64>,
-    schedule: Option<Schedule>,
+    schedule: Option<FrameSchedule>,
     /// None once the recording has ended, be it by an error.
-    writer: Option<Handle>,
+    writer: Option<WriterThread>,
 }
 
 /// The thread that writes.
-struct Handle {
-    sender: SyncSender<Message>,
+struct WriterThread {
+    sender: SyncSender<RecordingMessage>,
     thread: JoinHandle<Result<()>>,
 }
 
@@ -66,23 +70,27 @@ impl Recording {
     pub fn start(
         folder: &Path,
         formats: &[FormatName],
-        about: &About,
+        facts: &RunFacts,
         overwrite: bool,
     ) -> Result<Self> {
-        Self::start_in(Claim::of(folder, overwrite)?, formats, about)
+        Self::start_in(RecordingFolder::of(folder, overwrite)?, formats, facts)
     }
 
-    /// Starts a recording in a folder that has been claimed.
+    /// Starts a recording in a folder that has been taken.
     ///
     /// # Errors
     /// Where the folder cannot be written to.
-    pub fn start_in(claim: Claim, formats: &[FormatName], about: &About) -> Result<Self> {
-        formats.iter().try_for_each(|&format| super::formats::check_format(format))?;
-        claim.clear()?;
+    pub fn start_in(
+        folder: RecordingFolder,
+        formats: &[FormatName],
+        facts: &RunFacts,
+    ) -> Result<Self> {
+        formats.iter().try_for_each(|&format| check_format(format))?;
+        folder.clear()?;
         // First of all: it is by this that others know a recording.
-        manifest::write(claim.path(), formats, about)?;
-        let writer = Writer::start(claim.path(), formats, about)?;
-        Ok(Self::with(claim, writer, 0, None))
+        write_manifest(folder.path(), formats, facts)?;
+        let writer = FormatsWriter::start(folder.path(), formats, facts)?;
+        Ok(Self::with(folder, writer, 0, None))
     }
 
     /// Goes on with the recording in a folder, for a run that goes on from a step: what was recorded after
@@ -90,25 +98,35 @@ impl Recording {
     ///
     /// # Errors
     /// As [`Recording::start`], and where a file there is not what this version writes.
-    pub fn go_on(folder: &Path, formats: &[FormatName], about: &About, step: u64) -> Result<Self> {
-        let claim = Claim::to_go_on(folder)?;
-        manifest::check(folder, formats)?;
-        let mut writer = Writer::start(folder, formats, about)?;
+    pub fn go_on(
+        folder: &Path,
+        formats: &[FormatName],
+        facts: &RunFacts,
+        step: u64,
+    ) -> Result<Self> {
+        let folder = RecordingFolder::to_go_on(folder)?;
+        check_manifest(folder.path(), formats)?;
+        let mut writer = FormatsWriter::start(folder.path(), formats, facts)?;
         let kept = writer.roll_back(step)?;
-        manifest::write(folder, formats, about)?;
-        Ok(Self::with(claim, writer, kept.rows, kept.step))
+        write_manifest(folder.path(), formats, facts)?;
+        Ok(Self::with(folder, writer, kept.rows, kept.step))
     }
 
-    fn with(claim: Claim, writer: Writer, frames: u64, last_step: Option<u64>) -> Self {
+    fn with(
+        folder: RecordingFolder,
+        writer: FormatsWriter,
+        frames: u64,
+        last_step: Option<u64>,
+    ) -> Self {
         let (sender, messages) = sync_channel(MOST_WAITING);
         let thread = std::thread::spawn(move || writer.run(&messages));
-        let writer = Some(Handle { sender, thread });
-        Self { claim, rows: Vec::new(), frames, last_step, schedule: None, writer }
+        let writer = Some(WriterThread { sender, thread });
+        Self { folder, rows: Vec::new(), frames, last_step, schedule: None, writer }
     }
 
     /// Where it is.
     pub fn folder(&self) -> &Path {
-        self.claim.path()
+        self.folder.path()
     }
 
     /// Frames that it has been given.
@@ -132,7 +150,7 @@ impl Recording {
     /// Where something before could not be written.
     pub fn add(&mut self, moment: Moment) -> Result<()> {
         self.send_rows()?;
-        self.send(Message::Frame(self.frames, Box::new(moment)))?;
+        self.send(RecordingMessage::Frame(self.frames, Box::new(moment)))?;
         self.frames += 1;
         Ok(())
     }
@@ -140,7 +158,7 @@ impl Recording {
     /// Has frames made at the steps nearest to some times of a run that is at this state, by
     /// [`Recording::add_if_due`]. Where the recording is gone on with, it has those up to here.
     pub fn at(mut self, times: Times, simulation: &Simulation) -> Self {
-        let mut schedule = Schedule::new(times);
+        let mut schedule = FrameSchedule::new(times);
         if self.last_step.is_some() {
             schedule.is_due(simulation);
         }
@@ -164,7 +182,7 @@ impl Recording {
     pub fn flush(&mut self) -> Result<()> {
         self.send_rows()?;
         let (done, answer) = sync_channel(1);
-        self.send(Message::Flush(done))?;
+        self.send(RecordingMessage::Flush(done))?;
         // No answer comes where the writer has failed, which is told here.
         if answer.recv().is_ok() { Ok(()) } else { self.end() }
     }
@@ -183,10 +201,10 @@ impl Recording {
             return Ok(());
         }
         let rows = std::mem::take(&mut self.rows);
-        self.send(Message::Steps(rows))
+        self.send(RecordingMessage::Steps(rows))
     }
 
-    fn send(&mut self, message: Message) -> Result<()> {
+    fn send(&mut self, message: RecordingMessage) -> Result<()> {
         match &self.writer {
             Some(writer) if writer.sender.send(message).is_ok() => Ok(()),
             Some(_) => self.end(),
@@ -196,7 +214,7 @@ impl Recording {
 
     /// Has the thread end, and tells what went wrong there, once.
     fn end(&mut self) -> Result<()> {
-        let Some(Handle { sender, thread }) = self.writer.take() else { return Ok(()) };
+        let Some(WriterThread { sender, thread }) = self.writer.take() else { return Ok(()) };
         drop(sender);
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     }
@@ -205,9 +223,204 @@ impl Recording {
 impl Drop for Recording {
     fn drop(&mut self) {
         // Before the folder is free for others. Whoever wants to know what went wrong calls `finish`.
-        if let Some(Handle { sender, thread }) = self.writer.take() {
+        if let Some(WriterThread { sender, thread }) = self.writer.take() {
             drop(sender);
             let _ = thread.join();
         }
+    }
+}
+
+/// What a run tells its recording.
+enum RecordingMessage {
+    /// What some steps measured.
+    Steps(Vec<Observables>),
+    /// A frame, by the number of those before.
+    Frame(u64, Box<Moment>),
+    /// Everything is to be written before this is answered.
+    Flush(SyncSender<()>),
+}
+
+/// Writes every format on a thread of its own, and the list of frames that every format has.
+struct FormatsWriter {
+    formats: Vec<Box<dyn Format>>,
+    index: TextTable,
+    /// Frames that formats have taken and may not have written.
+    waiting: Vec<FrameRow>,
+}
+
+impl FormatsWriter {
+    /// Starts in a folder that has no recording, or goes on with the one that is there.
+    ///
+    /// # Errors
+    /// Where a format cannot be written there.
+    fn start(folder: &Path, formats: &[FormatName], facts: &RunFacts) -> Result<Self> {
+        let formats = formats.iter().map(|format| start_format(*format, folder, facts));
+        let formats = formats.collect::<Result<_>>()?;
+        let index = TextTable::new(folder.join(FRAMES), &RunFacts::default(), &frames(&[]));
+        Ok(Self { formats, index, waiting: Vec::new() })
+    }
+
+    /// Drops what was recorded after a step, and frames that not every format has.
+    ///
+    /// # Errors
+    /// Where a file is not what this wrote.
+    fn roll_back(&mut self, step: u64) -> Result<KeptRows> {
+        let kept = self.index.roll_back(Some(step))?;
+        let mut formats = self.formats.iter_mut();
+        formats.try_for_each(|format| format.roll_back(step, kept.step))?;
+        Ok(kept)
+    }
+
+    /// Writes what comes until no more can come. What fails ends the recording; what was written before
+    /// stays.
+    ///
+    /// # Errors
+    /// The first that there is.
+    fn run(mut self, messages: &Receiver<RecordingMessage>) -> Result<()> {
+        let taken = self.take_all(messages);
+        // Where a frame could not be taken, those before it are whole.
+        let flushed = if self.waiting.is_empty() { Ok(()) } else { self.flush() };
+        let written = taken.and(flushed);
+        // Each is tried, whatever became of those before.
+        let finished: Vec<_> = self.formats.iter_mut().map(|format| format.finish()).collect();
+        written.and(finished.into_iter().collect())
+    }
+
+    fn take_all(&mut self, messages: &Receiver<RecordingMessage>) -> Result<()> {
+        while let Ok(message) = messages.recv() {
+            self.take(message)?;
+            while self.waiting.len() < FRAMES_AT_ONCE
+                && let Ok(message) = messages.try_recv()
+            {
+                self.take(message)?;
+            }
+            if !self.waiting.is_empty() {
+                self.flush()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, message: RecordingMessage) -> Result<()> {
+        match message {
+            RecordingMessage::Steps(rows) => {
+                self.formats.iter_mut().try_for_each(|format| format.add_steps(&rows))
+            }
+            RecordingMessage::Frame(number, moment) => {
+                let frame = Frame::new(number, *moment);
+                let Observables { step, time_secs, .. } = frame.moment.observables;
+                self.formats.iter_mut().try_for_each(|format| format.add(&frame))?;
+                self.waiting.push(FrameRow { step, time_secs, number });
+                Ok(())
+            }
+            RecordingMessage::Flush(done) => {
+                self.flush()?;
+                // Whoever asked may have gone.
+                let _ = done.send(());
+                Ok(())
+            }
+        }
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        self.formats.iter_mut().try_for_each(|format| format.flush())?;
+        self.index.add(&frames(&self.waiting))?;
+        self.waiting.clear();
+        Ok(())
+    }
+}
+
+/// The simulated times of frames.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Times {
+    /// From 0 on, with so many seconds from one to the next.
+    Every(f64),
+    /// At these times, s, rising.
+    At(Vec<f64>),
+}
+
+impl Times {
+    /// Those of the frames, where nothing but a rate is asked for.
+    pub fn of(settings: &DataSettings) -> Self {
+        Self::Every(settings.every_secs.unwrap_or(DEFAULT_EVERY_SECS))
+    }
+}
+
+/// The steps of frames.
+#[derive(Clone, Debug, PartialEq)]
+struct FrameSchedule {
+    times: Times,
+    /// Number of the next time.
+    next: usize,
+}
+
+impl FrameSchedule {
+    /// Frames at the steps nearest to some times.
+    fn new(times: Times) -> Self {
+        Self { times, next: 0 }
+    }
+
+    /// Whether a frame is to be made of the present state. Steps are to be asked for in turn.
+    fn is_due(&mut self, simulation: &Simulation) -> bool {
+        let latest_secs = simulation.time_secs() + 0.5 * simulation.parameters().time_step_secs;
+        let step = simulation.observables().step;
+        self.is_due_at(step, latest_secs, |secs| simulation.step_at(secs))
+    }
+
+    /// Whether one is due after a step that stands for all times up to `latest_secs`.
+    fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
+        let mut due = false;
+        while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {
+            due = true;
+            let before = self.next;
+            self.next = match self.times {
+                // Not one by one: there may be many in one step.
+                Times::Every(secs) => {
+                    before.saturating_add(1).max((latest_secs / secs).floor() as usize)
+                }
+                Times::At(_) => before + 1,
+            };
+            // More than can be counted: one is due in each step.
+            if self.next == before {
+                break;
+            }
+        }
+        due
+    }
+
+    fn next_secs(&self) -> Option<f64> {
+        match &self.times {
+            Times::Every(secs) => Some(self.next as f64 * secs),
+            Times::At(times) => times.get(self.next).copied(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn due(times: Times, time_step_secs: f64, until: u64) -> Vec<u64> {
+        let mut schedule = FrameSchedule::new(times);
+        let step_at = |secs: f64| (secs / time_step_secs).round() as u64;
+        let latest_secs = |step: u64| (step as f64 + 0.5) * time_step_secs;
+        let is_due = |&step: &u64| schedule.is_due_at(step, latest_secs(step), step_at);
+        (0..=until).filter(is_due).collect()
+    }
+
+    #[test]
+    fn a_frame_is_made_at_the_step_nearest_to_its_time() {
+        assert_eq!(due(Times::Every(0.01), 1e-3, 35), [0, 10, 20, 30]);
+        assert_eq!(due(Times::Every(0.0025), 1e-3, 10), [0, 3, 5, 8, 10]);
+        assert_eq!(due(Times::At(vec![0.0, 0.0, 0.0121, 0.5]), 1e-3, 35), [0, 12]);
+        assert!(due(Times::At(vec![]), 1e-3, 35).is_empty());
+    }
+
+    #[test]
+    fn where_several_times_fall_on_a_step_one_frame_is_made() {
+        assert_eq!(due(Times::Every(1e-300), 1e-3, 5), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(due(Times::Every(1e-4), 1e-3, 5), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(due(Times::Every(7e-4), 1e-3, 7), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(due(Times::Every(1e300), 1e-3, 7), [0]);
     }
 }

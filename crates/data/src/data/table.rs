@@ -1,5 +1,7 @@
 //! Tables of named columns, whatever writes them.
 
+use crate::column_spec::{CellValue, ColumnSpec, STEP};
+
 /// A table: columns of one length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
@@ -42,21 +44,79 @@ pub enum Values {
     },
 }
 
+/// Does the same with the list of values, of whatever kind it is.
+macro_rules! each_kind {
+    ($values:expr, $list:ident => $work:expr) => {
+        match $values {
+            Values::Numbers($list) => $work,
+            Values::SomeNumbers($list) => $work,
+            Values::Counts($list) => $work,
+            Values::Flags($list) => $work,
+            Values::Words { codes: $list, .. } => $work,
+        }
+    };
+}
+
 impl Values {
     /// Number of rows.
     pub fn len(&self) -> usize {
-        match self {
-            Self::Numbers(values) => values.len(),
-            Self::SomeNumbers(values) => values.len(),
-            Self::Counts(values) => values.len(),
-            Self::Flags(values) => values.len(),
-            Self::Words { codes, .. } => codes.len(),
-        }
+        each_kind!(self, list => list.len())
     }
 
     /// Whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// The number of a row; not a number where it has none.
+    pub(super) fn number(&self, row: usize) -> f64 {
+        match self {
+            Self::Numbers(numbers) => numbers[row],
+            Self::SomeNumbers(numbers) => numbers[row].unwrap_or(f64::NAN),
+            Self::Counts(counts) => counts[row] as f64,
+            Self::Flags(_) | Self::Words { .. } => f64::NAN,
+        }
+    }
+
+    /// The word of a row, if this is a column of words.
+    pub(super) fn word(&self, row: usize) -> Option<&str> {
+        let Self::Words { words, codes } = self else { return None };
+        words.get(codes[row] as usize).map(String::as_str)
+    }
+
+    /// The same with further rows, up to so many, that have nothing; counts are numbers, so that there may be none.
+    pub(super) fn padded(self, rows: usize) -> Self {
+        match self {
+            Self::SomeNumbers(mut numbers) => {
+                numbers.resize(rows, None);
+                Self::SomeNumbers(numbers)
+            }
+            Self::Counts(counts) => {
+                let numbers = counts.into_iter().map(|count| Some(count as f64)).collect();
+                Self::SomeNumbers(numbers).padded(rows)
+            }
+            Self::Flags(mut flags) => {
+                flags.resize(rows, None);
+                Self::Flags(flags)
+            }
+            others => others,
+        }
+    }
+
+    #[cfg(feature = "data")]
+    fn append(&mut self, others: &Self) {
+        match (self, others) {
+            (Self::Numbers(values), Self::Numbers(others)) => values.extend(others),
+            (Self::SomeNumbers(values), Self::SomeNumbers(others)) => values.extend(others),
+            (Self::Counts(values), Self::Counts(others)) => values.extend(others),
+            (Self::Flags(values), Self::Flags(others)) => values.extend(others),
+            (Self::Words { words, codes }, Self::Words { words: other_words, codes: others }) => {
+                let places: Vec<u32> =
+                    other_words.iter().map(|word| place_of(words, word)).collect();
+                codes.extend(others.iter().map(|&code| places[code as usize]));
+            }
+            _ => unreachable!("a table's columns keep their kinds"),
+        }
     }
 }
 
@@ -69,10 +129,60 @@ pub(super) fn place_of(words: &mut Vec<String>, word: &str) -> u32 {
     }) as u32
 }
 
-/// Name of the column that every table has, and by which rows rise.
-pub(super) const STEP: &str = "step";
+impl Column {
+    /// Unit and meaning under the name that a file has for it, as `gap [m]: distance of the surfaces`, for formats
+    /// that have no place of their own for it.
+    pub(super) fn described(&self, name: &str) -> String {
+        let Self { unit, about, .. } = self;
+        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        format!("{name}{unit}: {about}")
+    }
+
+    /// The same where words are numbers, the first of them `first_code`.
+    pub(super) fn described_with_codes(&self, name: &str, first_code: u32) -> String {
+        let codes = match &self.values {
+            Values::Words { words, .. } => {
+                let codes = words.iter().zip(first_code..);
+                let codes: Vec<_> = codes.map(|(word, code)| format!("{code} {word}")).collect();
+                format!(" ({})", codes.join(", "))
+            }
+            Values::Flags(_) => " (1 yes, 0 no, -1 neither)".to_owned(),
+            _ => String::new(),
+        };
+        self.described(name) + &codes
+    }
+}
 
 impl Table {
+    /// The table of some rows, with the list of names that they refer to.
+    pub(super) fn new<Row>(
+        name: &'static str,
+        specs: &[ColumnSpec<Row>],
+        rows: &[Row],
+        names: &[String],
+    ) -> Self {
+        let values = |value: &CellValue<Row>| match value {
+            CellValue::Number(of) => Values::Numbers(rows.iter().map(of).collect()),
+            CellValue::SomeNumber(of) => Values::SomeNumbers(rows.iter().map(of).collect()),
+            CellValue::Count(of) => Values::Counts(rows.iter().map(of).collect()),
+            CellValue::Flag(of) => Values::Flags(rows.iter().map(of).collect()),
+            CellValue::Word(words, of) => Values::Words {
+                words: words.iter().map(|&word| word.to_owned()).collect(),
+                codes: rows.iter().map(of).collect(),
+            },
+            CellValue::Name(of) => {
+                Values::Words { words: names.to_owned(), codes: rows.iter().map(of).collect() }
+            }
+        };
+        let columns = specs.iter().map(|ColumnSpec { name, unit, about, value }| Column {
+            name,
+            unit,
+            about,
+            values: values(value),
+        });
+        Self { name, columns: columns.collect() }
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, |column| column.values.len())
@@ -89,93 +199,43 @@ impl Table {
     }
 }
 
-/// How a column is made of rows of a kind.
-pub(super) struct Declared<Row> {
-    pub name: &'static str,
-    pub unit: &'static str,
-    pub about: &'static str,
-    pub value: Value<Row>,
-}
-
-/// What a row has in a column.
-pub(super) enum Value<Row> {
-    Number(fn(&Row) -> f64),
-    SomeNumber(fn(&Row) -> Option<f64>),
-    Count(fn(&Row) -> u64),
-    Flag(fn(&Row) -> Option<bool>),
-    /// A word of a list that is known.
-    Word(&'static [&'static str], fn(&Row) -> u32),
-    /// A word of the list that goes with the rows.
-    Name(fn(&Row) -> u32),
-}
-
-impl<Row> Declared<Row> {
-    /// The column by which rows rise.
-    pub(super) const fn step(of: fn(&Row) -> u64) -> Self {
-        let about = "steps since the start";
-        Self { name: STEP, unit: "", about, value: Value::Count(of) }
-    }
-
-    /// A column of any values.
-    pub(super) const fn new(
-        name: &'static str,
-        unit: &'static str,
-        about: &'static str,
-        value: Value<Row>,
-    ) -> Self {
-        Self { name, unit, about, value }
-    }
-
-    /// A column of numbers.
-    pub(super) const fn number(
-        name: &'static str,
-        unit: &'static str,
-        about: &'static str,
-        of: fn(&Row) -> f64,
-    ) -> Self {
-        Self::new(name, unit, about, Value::Number(of))
-    }
-
-    /// A column of counts.
-    pub(super) const fn count(
-        name: &'static str,
-        about: &'static str,
-        of: fn(&Row) -> u64,
-    ) -> Self {
-        Self::new(name, "", about, Value::Count(of))
-    }
-
-    /// The time of the step.
-    pub(super) const fn time(of: fn(&Row) -> f64) -> Self {
-        Self { name: "time", unit: "s", about: "simulated time", value: Value::Number(of) }
-    }
-}
-
-/// The table of some rows, with the list of names that they refer to.
-pub(super) fn table<Row>(
-    name: &'static str,
-    declared: &[Declared<Row>],
-    rows: &[Row],
-    names: &[String],
-) -> Table {
-    let values = |value: &Value<Row>| match value {
-        Value::Number(of) => Values::Numbers(rows.iter().map(of).collect()),
-        Value::SomeNumber(of) => Values::SomeNumbers(rows.iter().map(of).collect()),
-        Value::Count(of) => Values::Counts(rows.iter().map(of).collect()),
-        Value::Flag(of) => Values::Flags(rows.iter().map(of).collect()),
-        Value::Word(words, of) => Values::Words {
-            words: words.iter().map(|&word| word.to_owned()).collect(),
-            codes: rows.iter().map(of).collect(),
-        },
-        Value::Name(of) => {
-            Values::Words { words: names.to_owned(), codes: rows.iter().map(of).collect() }
+/// Tables whose rows become more, and fewer again.
+#[cfg(feature = "data")]
+impl Table {
+    /// Adds the rows of a table of the same columns.
+    pub(super) fn append(&mut self, other: &Self) {
+        for (column, other) in self.columns.iter_mut().zip(&other.columns) {
+            column.values.append(&other.values);
         }
-    };
-    let column = |Declared { name, unit, about, value }: &Declared<Row>| Column {
-        name,
-        unit,
-        about,
-        values: values(value),
-    };
-    Table { name, columns: declared.iter().map(column).collect() }
+    }
+
+    /// The steps of the rows.
+    pub(super) fn steps(&self) -> &[u64] {
+        match self.column(STEP).map(|column| &column.values) {
+            Some(Values::Counts(steps)) => steps,
+            _ => &[],
+        }
+    }
+
+    /// Drops the rows after a step, or all.
+    pub(super) fn keep_until(&mut self, step: Option<u64>) {
+        let rows = self.steps().partition_point(|&there| Some(there) <= step);
+        self.truncate(rows);
+    }
+
+    /// Drops all rows but the first ones.
+    pub(super) fn truncate(&mut self, rows: usize) {
+        for column in &mut self.columns {
+            each_kind!(&mut column.values, list => list.truncate(rows));
+        }
+    }
+
+    /// Bytes that it takes where nothing is compressed, about.
+    pub(super) fn size(&self) -> usize {
+        let width = |column: &Column| match column.values {
+            Values::Numbers(_) | Values::SomeNumbers(_) | Values::Counts(_) => 8,
+            Values::Flags(_) | Values::Words { .. } => 1,
+        };
+        self.len() * self.columns.iter().map(width).sum::<usize>()
+    }
 }

@@ -2,8 +2,8 @@
 //!
 //! The bins are the same for all piles and moments, so that counts add up over frames and runs.
 
-use super::parts::Parts;
-use super::tensor::axis_degrees;
+use super::MomentParts;
+use super::stress::axis_degrees;
 use crate::sim::Moment;
 
 /// Bins of directions: as wide as this, degrees, and the first about 0, so that the directions of square and
@@ -45,11 +45,11 @@ pub struct Histogram {
 /// * `overlap`: overlaps of contacts in mean diameters, those with a gap below 0; then from 0 to 1e-7, and three bins a
 ///   decade (1, 2, 5) to 0.1 and beyond.
 pub fn histograms(moment: &Moment) -> Vec<Histogram> {
-    of_parts(&Parts::of(moment), moment)
+    of_parts(&MomentParts::of(moment), moment)
 }
 
-pub(super) fn of_parts(parts: &Parts, moment: &Moment) -> Vec<Histogram> {
-    let Parts { network, coordination, forces, .. } = parts;
+pub(super) fn of_parts(parts: &MomentParts, moment: &Moment) -> Vec<Histogram> {
+    let MomentParts { network, coordination, forces, .. } = parts;
     let links = &network.links;
     let lower_half = 0.5 * DEGREES;
     let angles = links.iter().map(|link| {

@@ -15,28 +15,22 @@
 //! step, while grains are where that step has brought them.
 
 mod cells;
-mod clusters;
-mod column;
-mod coordination;
-mod forces;
-mod grain;
 mod histograms;
+mod measures;
 mod network;
-mod parts;
-mod pile;
 mod stress;
-mod tensor;
 
-pub use column::{Column, Value};
-pub use grain::GrainMeasures;
+pub use crate::column_spec::{CellValue, ColumnSpec};
 pub use histograms::{Histogram, histograms};
-pub use pile::PileMeasures;
+pub use measures::{GrainMeasures, PileMeasures};
 
+use self::cells::PowerCells;
+use self::network::{Clusters, Coordination, ForceDistribution, Network};
 use crate::sim::Moment;
 
 /// All that is measured of a moment.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Measured {
+pub struct MomentMeasures {
     /// The whole pile.
     pub pile: PileMeasures,
     /// Each grain, in their order.
@@ -46,11 +40,33 @@ pub struct Measured {
 }
 
 /// Measures all at once, which takes less than one after the other.
-pub fn measure(moment: &Moment) -> Measured {
-    let parts = parts::Parts::of(moment);
-    Measured {
+pub fn measure(moment: &Moment) -> MomentMeasures {
+    let parts = MomentParts::of(moment);
+    MomentMeasures {
         pile: PileMeasures::of_parts(&parts),
         grains: GrainMeasures::of_parts(&parts),
         histograms: histograms::of_parts(&parts, moment),
+    }
+}
+
+/// What several measures are made of, found once.
+struct MomentParts<'a> {
+    network: Network<'a>,
+    cells: PowerCells,
+    coordination: Coordination,
+    forces: ForceDistribution,
+    clusters: Clusters,
+}
+
+impl<'a> MomentParts<'a> {
+    fn of(moment: &'a Moment) -> Self {
+        let network = Network::of(moment);
+        Self {
+            cells: PowerCells::of(&network, &moment.surroundings),
+            coordination: Coordination::of(&network),
+            forces: ForceDistribution::of(&network),
+            clusters: Clusters::of(&network),
+            network,
+        }
     }
 }

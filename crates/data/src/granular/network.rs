@@ -1,7 +1,9 @@
-//! What of a moment counts: the grains that are not lost, and their contacts.
+//! What of a moment counts: the grains that are not lost and their contacts, and what this network says by itself:
+//! contacts of a grain, clusters, and how normal forces are distributed.
 
 use glam::DVec2;
 
+use crate::contact::JoinedGrains;
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 
 /// A contact bears a force where that is more than so much of the mean force of all contacts. Smaller: what a solver
@@ -13,11 +15,11 @@ pub(super) struct Network<'a> {
     pub grains: &'a [GrainState],
     /// Whether a grain counts. No index of a link is one of those that do not.
     pub counts: Vec<bool>,
-    pub links: Vec<Link>,
+    pub links: Vec<NetworkContact>,
 }
 
 /// A contact that counts. Vectors in m and N.
-pub(super) struct Link {
+pub(super) struct NetworkContact {
     /// Grain i.
     pub grain: usize,
     /// Grain j, unless i touches a body that no grain moves.
@@ -36,7 +38,7 @@ pub(super) struct Link {
     pub bears: bool,
 }
 
-impl Link {
+impl NetworkContact {
     /// ℓ: to the centre of i from that of grain j, or from the touched point of another body.
     pub(super) fn branch(&self) -> DVec2 {
         self.own_branch + self.other_branch
@@ -61,7 +63,7 @@ impl<'a> Network<'a> {
             };
             counted(contact.grain) && other
         };
-        let mut links: Vec<Link> = moment
+        let mut links: Vec<NetworkContact> = moment
             .contacts
             .iter()
             .filter(both_count)
@@ -87,13 +89,13 @@ impl<'a> Network<'a> {
     }
 
     /// Part of the contacts of which something is true; NaN without contacts.
-    pub(super) fn share(&self, is_so: impl Fn(&Link) -> bool) -> f64 {
+    pub(super) fn share(&self, is_so: impl Fn(&NetworkContact) -> bool) -> f64 {
         let count = self.links.iter().filter(|&link| is_so(link)).count();
         count as f64 / self.links.len() as f64
     }
 }
 
-fn link(contact: &ContactState, radius: f64) -> Link {
+fn link(contact: &ContactState, radius: f64) -> NetworkContact {
     let of_two_grains = matches!(contact.other, OtherBody::Grain(_));
     let own_gap = if of_two_grains { 0.5 * contact.gap } else { contact.gap };
     let own_branch = (radius + own_gap) * contact.normal;
@@ -101,7 +103,7 @@ fn link(contact: &ContactState, radius: f64) -> Link {
         OtherBody::Grain(index) => (Some(index as usize), contact.branch - own_branch),
         OtherBody::FixedDisc(_) | OtherBody::Boundary(_) => (None, DVec2::ZERO),
     };
-    Link {
+    NetworkContact {
         grain: contact.grain as usize,
         other,
         normal: contact.normal,
@@ -113,4 +115,142 @@ fn link(contact: &ContactState, radius: f64) -> Link {
         status: contact.status,
         bears: false,
     }
+}
+
+/// Contacts of a grain that hold it, at least.
+const HELD_BY: u32 = 2;
+
+/// Contacts of a grain, and the grains that carry nothing on.
+///
+/// A rattler has fewer than two contacts that bear a force. What leans on rattlers alone is not held either, so they
+/// are taken away with their contacts until none is left: what remains is the 2-core of the network of forces, in which
+/// a body that no grain moves holds like any other. Under gravity this takes dead ends too, such as a single column.
+pub(super) struct Coordination {
+    /// Contacts of each grain; of one that does not count, none.
+    pub of_grains: Vec<u32>,
+    /// Whether a grain is a rattler.
+    pub rattlers: Vec<bool>,
+    /// Contacts of a grain, the mean.
+    pub mean: f64,
+    /// The same without rattlers, of contacts that bear a force.
+    pub mean_without_rattlers: f64,
+}
+
+impl Coordination {
+    pub(super) fn of(network: &Network) -> Self {
+        let mut of_grains = vec![0; network.grains.len()];
+        for link in &network.links {
+            for end in link.ends() {
+                of_grains[end] += 1;
+            }
+        }
+        let (rattlers, held) = rattlers(network);
+        let mean_of = |contacts: &[u32], grains: usize| {
+            contacts.iter().map(|&count| f64::from(count)).sum::<f64>() / grains as f64
+        };
+        let left = network.len() - rattlers.iter().filter(|&&rattler| rattler).count();
+        Self {
+            mean: mean_of(&of_grains, network.len()),
+            mean_without_rattlers: mean_of(&held, left),
+            of_grains,
+            rattlers,
+        }
+    }
+}
+
+/// Which grains are rattlers, and the contacts that are left to each of the others.
+fn rattlers(network: &Network) -> (Vec<bool>, Vec<u32>) {
+    let mut left = vec![0; network.grains.len()];
+    let mut neighbours = vec![Vec::new(); network.grains.len()];
+    for link in network.links.iter().filter(|link| link.bears) {
+        for end in link.ends() {
+            left[end] += 1;
+        }
+        if let Some(other) = link.other {
+            neighbours[link.grain].push(other);
+            neighbours[other].push(link.grain);
+        }
+    }
+    let mut rattlers = vec![false; network.grains.len()];
+    let mut loose: Vec<usize> =
+        network.grains().map(|(index, _)| index).filter(|&index| left[index] < HELD_BY).collect();
+    while let Some(index) = loose.pop() {
+        if std::mem::replace(&mut rattlers[index], true) {
+            continue;
+        }
+        left[index] = 0;
+        for &neighbour in &neighbours[index] {
+            if !rattlers[neighbour] {
+                left[neighbour] -= 1;
+                if left[neighbour] < HELD_BY {
+                    loose.push(neighbour);
+                }
+            }
+        }
+    }
+    (rattlers, left)
+}
+
+/// Sets of grains that contacts join, and how large they are.
+pub(super) struct Clusters {
+    pub count: u32,
+    /// Grains of the largest.
+    pub largest: u32,
+}
+
+impl Clusters {
+    pub(super) fn of(network: &Network) -> Self {
+        let mut sets = JoinedGrains::apart(network.grains.len());
+        for link in &network.links {
+            if let Some(other) = link.other {
+                sets.join(link.grain as u32, other as u32);
+            }
+        }
+        let mut sizes = vec![0; network.grains.len()];
+        for (index, _) in network.grains() {
+            sizes[sets.of(index as u32) as usize] += 1;
+        }
+        Self {
+            count: sizes.iter().filter(|&&size| size > 0).count() as u32,
+            largest: sizes.iter().copied().max().unwrap_or(0),
+        }
+    }
+}
+
+/// How normal forces are distributed about their mean: P(f), f = N/⟨|N|⟩, over the contacts that bear a force.
+///
+/// The mean is of |N|, since with cohesion the pulls may be as large as the pushes. Without cohesion it is the usual one.
+pub(super) struct ForceDistribution {
+    /// ⟨|N|⟩, N.
+    pub mean: f64,
+    /// f of each contact that bears a force.
+    pub over_mean: Vec<f64>,
+}
+
+impl ForceDistribution {
+    pub(super) fn of(network: &Network) -> Self {
+        let bearing = network.links.iter().filter(|link| link.bears);
+        let forces: Vec<f64> = bearing.map(|link| link.normal_force).collect();
+        let mean = mean(&forces, f64::abs);
+        Self { mean, over_mean: forces.iter().map(|force| force / mean).collect() }
+    }
+
+    /// ⟨|f|^power⟩; NaN without forces.
+    pub(super) fn moment(&self, power: i32) -> f64 {
+        mean(&self.over_mean, |force| force.abs().powi(power))
+    }
+
+    /// Largest |f|; NaN without forces.
+    pub(super) fn largest(&self) -> f64 {
+        self.over_mean.iter().map(|force| force.abs()).fold(f64::NAN, f64::max)
+    }
+
+    /// Part of the forces with |f| > 1; NaN without forces.
+    pub(super) fn strong_share(&self) -> f64 {
+        mean(&self.over_mean, |force| f64::from(force.abs() > 1.0))
+    }
+}
+
+fn mean(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+    values.iter().map(|&value| of(value)).sum::<f64>() / values.len() as f64
 }

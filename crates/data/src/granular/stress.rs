@@ -1,4 +1,4 @@
-//! Stresses by Love and Weber, compression positive, and the fabric of contacts.
+//! Stresses by Love and Weber, compression positive, the fabric of contacts, and what tensors of the plane say.
 //!
 //! A body under the forces f_c at the points p_c has the mean stress (1/A) Σ f_c ⊗ p_c where the forces balance. Summed
 //! over grains about their centres, each contact gives f ⊗ ℓ: ℓ joins the two centres, or a centre and the point
@@ -9,10 +9,9 @@
 use glam::DVec2;
 
 use super::network::Network;
-use super::tensor::Tensor;
 
 /// Σ f ⊗ ℓ over all contacts, J.
-pub(super) fn of_contacts(network: &Network) -> Tensor {
+pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     let mut sum = Tensor::default();
     for link in &network.links {
         sum.add(link.force, link.branch());
@@ -21,7 +20,7 @@ pub(super) fn of_contacts(network: &Network) -> Tensor {
 }
 
 /// The part of each grain in the same sum, J.
-pub(super) fn of_grains(network: &Network) -> Vec<Tensor> {
+pub(super) fn stress_of_grains(network: &Network) -> Vec<Tensor> {
     let mut sums = vec![Tensor::default(); network.grains.len()];
     for link in &network.links {
         sums[link.grain].add(link.force, link.own_branch);
@@ -33,7 +32,7 @@ pub(super) fn of_grains(network: &Network) -> Vec<Tensor> {
 }
 
 /// ½ Σ m |v − v̄|², v̄ the velocity of the centre of mass, J.
-pub(super) fn of_motion(network: &Network) -> f64 {
+pub(super) fn energy_about_mean(network: &Network) -> f64 {
     let mass: f64 = network.grains().map(|(_, grain)| grain.mass).sum();
     let momentum: DVec2 = network.grains().map(|(_, grain)| grain.mass * grain.velocity).sum();
     let mean = momentum / mass;
@@ -50,4 +49,62 @@ pub(super) fn fabric(network: &Network) -> Tensor {
         sum.add(link.normal, link.normal);
     }
     sum.over(network.links.len() as f64)
+}
+
+/// A tensor of the second rank.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Tensor {
+    pub xx: f64,
+    pub xy: f64,
+    pub yx: f64,
+    pub yy: f64,
+}
+
+impl Tensor {
+    /// Adds a ⊗ b.
+    pub(super) fn add(&mut self, a: DVec2, b: DVec2) {
+        self.xx += a.x * b.x;
+        self.xy += a.x * b.y;
+        self.yx += a.y * b.x;
+        self.yy += a.y * b.y;
+    }
+
+    /// In so many parts.
+    pub(super) fn over(self, divisor: f64) -> Self {
+        let Self { xx, xy, yx, yy } = self;
+        Self { xx: xx / divisor, xy: xy / divisor, yx: yx / divisor, yy: yy / divisor }
+    }
+
+    /// Mean of the two principal values.
+    pub(super) fn mean(self) -> f64 {
+        0.5 * (self.xx + self.yy)
+    }
+
+    /// Half the difference of the principal values of the symmetric part.
+    pub(super) fn deviator(self) -> f64 {
+        self.half_differences().length()
+    }
+
+    /// Direction of the larger principal value of the symmetric part, degrees from the x axis, in [0, 180); NaN where
+    /// there is none.
+    pub(super) fn direction(self) -> f64 {
+        let differences = self.half_differences();
+        if differences.length() > 0.0 {
+            axis_degrees(0.5 * differences.to_angle())
+        } else {
+            f64::NAN
+        }
+    }
+
+    /// (a, b) of the symmetric part less its mean, (a b; b −a).
+    fn half_differences(self) -> DVec2 {
+        0.5 * DVec2::new(self.xx - self.yy, self.xy + self.yx)
+    }
+}
+
+/// The direction of an axis without ends in [0, 180) degrees, of an angle in rad.
+pub(super) fn axis_degrees(angle: f64) -> f64 {
+    let degrees = angle.to_degrees().rem_euclid(180.0);
+    // A tiny negative angle is 180 after rounding.
+    if degrees < 180.0 { degrees } else { 0.0 }
 }

@@ -2,17 +2,51 @@
 
 use std::collections::BTreeMap;
 
-use super::problem_file::pairs;
-use super::{BodyForm, ProblemFile};
+use serde::{Deserialize, Serialize};
+
+use super::{ProblemFile, pairs};
+use crate::contact::ContactLaw;
 use crate::error::{Error, Result};
 use crate::solver::{
-    Assembled, Kinematics, Model, ModelParts, ModelVisitor, Row, StepProblem, visit_model,
+    Assembled, FixedRow, Kinematics, Model, ModelParts, ModelVisitor, PairRow, Row, StepProblem,
+    visit_model,
 };
 use crate::world::FrictionCone;
 
 /// Two forms of one problem may differ by this part: rounding, with room for a file whose numbers
 /// were cut to ten digits.
 pub(super) const DISAGREEMENT: f64 = 1e-9;
+
+/// Discs and their contacts: what W, q and c₀ were made of. Lists have an entry a body or an entry a
+/// contact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyForm {
+    /// 1 (all on the x axis) or 2.
+    pub axes: u8,
+    /// Whether bodies turn.
+    pub rotation: bool,
+    /// Bond·g·Δt, m/s: c₀ = m_n times this.
+    pub capture_speed: f64,
+    /// Of each body, kg.
+    pub mass: Vec<f64>,
+    /// Of each body, kg·m²: that of a solid disc, ½mr².
+    pub inertia: Vec<f64>,
+    /// Of each body, m: the lever arm of all its contacts.
+    pub radius: Vec<f64>,
+    /// (v_x, v_y, ω) of each body without contact impulses, m/s and rad/s.
+    pub free_velocity: Vec<[f64; 3]>,
+    /// Bodies i and j of each contact; j is null for a fixed body.
+    pub pair: Vec<(u32, Option<u32>)>,
+    /// n of each contact, from j to i.
+    pub normal: Vec<[f64; 2]>,
+    /// Restitution's term in q of each contact, m/s.
+    pub restitution_velocity: Vec<f64>,
+    /// How fast the surface of the fixed body of each contact goes along t, n turned by +90°, m/s; 0 between two
+    /// bodies, and left out where none moves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub surface_speed: Vec<f64>,
+}
 
 impl BodyForm {
     /// Checks the bodies, and that the file's W, q and c₀ are theirs.
@@ -68,7 +102,7 @@ impl BodyForm {
                 return Err(Error::value(format!("bodies.pair[{contact}]"), found, allowed));
             }
         }
-        visit_model(self.parts(file)?, Check { bodies: self, file })
+        visit_model(self.parts(file)?, BodiesCheck { bodies: self, file })
     }
 
     /// The model that solves this problem on its bodies.
@@ -82,7 +116,6 @@ impl BodyForm {
             sheared: false,
             friction: self.axes == 2 && friction > 0.0,
             rotation: self.rotation,
-            compressive_cone: file.cone == FrictionCone::Compressive && self.capture_speed > 0.0,
         })
     }
 
@@ -102,12 +135,12 @@ impl BodyForm {
         };
         let free: Vec<_> = (0..self.mass.len()).map(coordinates).collect();
         let mut problem = StepProblem::<M::Kinematics>::default();
-        problem.before.clone_from(&free);
-        problem.free = free;
-        problem.friction = file.friction()[0];
-        problem.capture_speed = self.capture_speed;
-        problem.masses.clone_from(&self.mass);
-        problem.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
+        problem.bodies.before.clone_from(&free);
+        problem.bodies.free = free;
+        let cone = if self.capture_speed > 0.0 { file.cone } else { FrictionCone::Shifted };
+        problem.law = ContactLaw::new(file.friction()[0], self.capture_speed, cone);
+        problem.bodies.masses.clone_from(&self.mass);
+        problem.bodies.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
         let starts: Vec<[f64; 2]> = match &file.start {
             Some(start) => pairs(start).collect(),
             None => vec![[0.0; 2]; file.nc],
@@ -126,15 +159,16 @@ impl BodyForm {
                     i,
                     j: j.unwrap_or(0),
                     normal: M::Kinematics::normal(self.normal[contact]),
-                    of_other: share.unwrap_or(surface_speed),
                     restitution_velocity: self.restitution_velocity[contact],
                     shifted_impulse: normal / effective_mass + self.capture_speed,
                     tangential_impulse: tangential / effective_mass,
                     effective_mass,
                 };
-                problem.contact_of_row.push(contact as u32);
-                let rows = if pass { &mut problem.pair_rows } else { &mut problem.fixed_rows };
-                rows.push(row);
+                problem.rows.contacts.push(contact as u32);
+                match share {
+                    Some(share) => problem.rows.pairs.push(PairRow { row, share }),
+                    None => problem.rows.fixed.push(FixedRow { row, surface_speed }),
+                }
             }
         }
         problem.form_velocities();
@@ -147,12 +181,12 @@ fn agree(found: f64, expected: f64, scale: f64) -> bool {
     (found - expected).abs() <= DISAGREEMENT * scale
 }
 
-struct Check<'a> {
+struct BodiesCheck<'a> {
     bodies: &'a BodyForm,
     file: &'a ProblemFile,
 }
 
-impl ModelVisitor for Check<'_> {
+impl ModelVisitor for BodiesCheck<'_> {
     type Output = Result<()>;
 
     /// Without friction tangential rows play no part, and need not agree.
@@ -160,7 +194,7 @@ impl ModelVisitor for Check<'_> {
         let Self { bodies, file } = self;
         let problem = bodies.step_problem::<M>(file);
         let assembled = Assembled::of(&problem)?;
-        let place = |index: u32| 2 * problem.contact_of_row[index as usize / 2] + index % 2;
+        let place = |index: u32| 2 * problem.rows.contacts[index as usize / 2] + index % 2;
         let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
         let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         let mut diagonal = vec![0.0; 2 * file.nc];
@@ -190,8 +224,8 @@ impl ModelVisitor for Check<'_> {
             }
         }
         let cohesion = file.cohesion_impulses();
-        let rows = problem.fixed_rows.iter().chain(&problem.pair_rows);
-        for (row, &contact) in rows.zip(&problem.contact_of_row) {
+        let rows = problem.rows.iter();
+        for (row, &contact) in rows.zip(&problem.rows.contacts) {
             let expected = row.effective_mass * bodies.capture_speed;
             let found = cohesion[contact as usize];
             if !agree(found, expected, expected) {

@@ -7,18 +7,156 @@
 //! A solution is u = W r + q with r = (P_n, P_t) in N·s; `start` may give impulses to start from.
 //! Problems of our own have their `bodies` beside W ([`BodyForm`]). Siconos' text files of plane
 //! problems are read as well (`siconos`).
-//!
-//! This stands beside `study`, above the scenes: a problem is taken from a simulation.
 
 mod bodies;
-mod body_form;
-mod dump;
-mod problem_file;
-mod reading;
+mod of_simulation;
 mod siconos;
 mod solution;
 
-pub use body_form::BodyForm;
-pub use dump::{problem_file_at, problem_file_of};
-pub use problem_file::{Friction, ProblemFile};
+pub use bodies::BodyForm;
+pub use of_simulation::{problem_file_at, problem_file_of};
 pub use solution::{Solution, solve_file};
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::solver::{DelassusProblem, Triplets};
+use crate::world::FrictionCone;
+
+/// What a problem file must be, for messages.
+const FORM: &str = "the JSON of a contact problem, or Siconos' text of a plane one";
+
+/// μ of all contacts, or of each.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "mu must be a number or a list of numbers")]
+pub enum Friction {
+    /// The same for all.
+    Same(f64),
+    /// One a contact.
+    Each(Vec<f64>),
+}
+
+/// What stands in a problem file; see the module for units. Plain data, checked where it is solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProblemFile {
+    /// Where the problem comes from, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub comment: Option<String>,
+    /// Number of contacts.
+    pub nc: usize,
+    /// μ.
+    pub mu: Friction,
+    /// Which part of the normal impulse bounds friction.
+    #[serde(default)]
+    pub cone: FrictionCone,
+    /// q, m/s.
+    pub q: Vec<f64>,
+    /// C₀Δt of each contact, N·s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub c0: Option<Vec<f64>>,
+    /// (P_n, P_t) of each contact to start from, N·s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Vec<f64>>,
+    /// The bodies behind W and q.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bodies: Option<BodyForm>,
+    /// W, 1/kg.
+    #[serde(rename = "W")]
+    pub matrix: Triplets,
+}
+
+impl ProblemFile {
+    /// Reads a problem file, or a text file of Siconos', and checks it.
+    ///
+    /// # Errors
+    /// In one sentence that names the file and what is wrong in it.
+    pub fn read(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).map_err(|error| Error::unread(path, error, FORM))?;
+        let text = String::from_utf8(bytes).map_err(|error| Error::unread(path, error, FORM))?;
+        Self::parse(&text).map_err(|error| Error::file(path, error))
+    }
+
+    /// Reads the text of a problem file, or of one of Siconos', and checks it.
+    ///
+    /// # Errors
+    /// In one sentence that names what is wrong.
+    pub fn parse(text: &str) -> Result<Self> {
+        let file: Self = if text.trim_start().starts_with('{') {
+            serde_json::from_str(text).map_err(|error| {
+                Error::value(
+                    "the problem",
+                    format!("not readable ({error})"),
+                    "the JSON of a contact problem",
+                )
+            })?
+        } else {
+            siconos::parse(text)?
+        };
+        file.delassus()?;
+        if let Some(bodies) = &file.bodies {
+            bodies.check(&file)?;
+        }
+        Ok(file)
+    }
+
+    /// The file's text. Numbers are as short as they can be and still read back bit for bit.
+    pub fn text(&self) -> String {
+        // Strings, numbers and lists of them have no way to fail.
+        serde_json::to_string(self).expect("a problem is always written") + "\n"
+    }
+
+    /// μ of each contact.
+    pub(crate) fn friction(&self) -> Vec<f64> {
+        match &self.mu {
+            Friction::Same(mu) => vec![*mu; self.nc],
+            Friction::Each(list) => list.clone(),
+        }
+    }
+
+    /// C₀Δt of each contact, N·s.
+    pub(crate) fn cohesion_impulses(&self) -> Vec<f64> {
+        self.c0.clone().unwrap_or_else(|| vec![0.0; self.nc])
+    }
+
+    /// The problem in W, with the impulses to start from.
+    ///
+    /// # Errors
+    /// Names what does not fit.
+    pub fn delassus(&self) -> Result<DelassusProblem> {
+        if self.nc == 0 {
+            return Err(Error::value("nc", 0, "at least 1"));
+        }
+        // Before anything is made that is as long as the file says, rather than as the file is.
+        if Some(self.q.len()) != self.nc.checked_mul(2) {
+            let allowed = format!("{} (2 nc)", 2 * self.nc as u128);
+            return Err(Error::value("the length of q", self.q.len(), allowed));
+        }
+        let friction = self.friction();
+        if friction.len() != self.nc {
+            let allowed = format!("{} (nc)", self.nc);
+            return Err(Error::value("the length of mu", friction.len(), allowed));
+        }
+        let cohesion = self.cohesion_impulses();
+        let mut problem =
+            DelassusProblem::new(&self.matrix, &self.q, &friction, &cohesion, self.cone)?;
+        if let Some(start) = &self.start {
+            if start.len() != 2 * self.nc {
+                let allowed = format!("{} (2 nc)", 2 * self.nc);
+                return Err(Error::value("the length of start", start.len(), allowed));
+            }
+            if let Some(at) = start.iter().position(|value| !value.is_finite()) {
+                return Err(Error::value(format!("start[{at}]"), start[at], "a finite number"));
+            }
+            problem.set_impulses(pairs(start));
+        }
+        Ok(problem)
+    }
+}
+
+/// (normal, tangential) of each contact in a list of both.
+fn pairs(list: &[f64]) -> impl ExactSizeIterator<Item = [f64; 2]> {
+    list.chunks_exact(2).map(|pair| [pair[0], pair[1]])
+}

@@ -64,7 +64,7 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
     let settings = SolverSettings { warm_start: file.start.is_some(), ..*settings };
     let solved = match &file.bodies {
         Some(bodies) => {
-            let solver = OnBodies { bodies, file, settings: &settings, repeats };
+            let solver = BodiesSolver { bodies, file, settings: &settings, repeats };
             visit_model(bodies.parts(file)?, solver)?
         }
         None => {
@@ -72,10 +72,10 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
             let ((seconds, report), problem) =
                 least_time(repeats, &start, |problem| solve_delassus(problem, &settings));
             let impulses = problem.impulses().collect();
-            Solved { seconds, report: report?, impulses, velocities: None }
+            TimedSolution { seconds, report: report?, impulses, velocities: None }
         }
     };
-    let Solved { seconds, report, impulses, velocities } = solved;
+    let TimedSolution { seconds, report, impulses, velocities } = solved;
     delassus.set_impulses(impulses.iter().copied());
     let residual = delassus.residual();
     // Bodies carry on what the impulses before have left of their digits: a start of 1e80 N·s leaves none.
@@ -96,7 +96,7 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
     })
 }
 
-struct Solved {
+struct TimedSolution {
     seconds: f64,
     report: SolveReport,
     /// (P_n, P_t) in the order of the file, N·s.
@@ -126,17 +126,17 @@ fn least_time<P: Clone, T>(
     best
 }
 
-struct OnBodies<'a> {
+struct BodiesSolver<'a> {
     bodies: &'a BodyForm,
     file: &'a ProblemFile,
     settings: &'a SolverSettings,
     repeats: u32,
 }
 
-impl ModelVisitor for OnBodies<'_> {
-    type Output = Result<Solved>;
+impl ModelVisitor for BodiesSolver<'_> {
+    type Output = Result<TimedSolution>;
 
-    fn visit<M: Model>(self) -> Result<Solved> {
+    fn visit<M: Model>(self) -> Result<TimedSolution> {
         let Self { bodies, file, settings, repeats } = self;
         let mut start = bodies.step_problem::<M>(file);
         if settings.method.info().order == MethodOrder::Always(Ordering::Coloured) {
@@ -146,7 +146,7 @@ impl ModelVisitor for OnBodies<'_> {
             solve::<M>(problem, &mut Memory::default(), settings)
         });
         let mut impulses = vec![[0.0; 2]; file.nc];
-        for ((number, row), &contact) in problem.rows().zip(&problem.contact_of_row) {
+        for ((number, row), &contact) in problem.rows().zip(&problem.rows.contacts) {
             impulses[contact as usize] =
                 problem.reduced_impulse(number, row).map(|impulse| row.effective_mass * impulse);
         }
@@ -154,7 +154,7 @@ impl ModelVisitor for OnBodies<'_> {
             let [x, y, spin] = M::Kinematics::coordinates(body);
             [x, y, spin / radius]
         };
-        let velocities = problem.bodies.iter().zip(&bodies.radius).map(velocity).collect();
-        Ok(Solved { seconds, report, impulses, velocities: Some(velocities) })
+        let velocities = problem.bodies.now.iter().zip(&bodies.radius).map(velocity).collect();
+        Ok(TimedSolution { seconds, report, impulses, velocities: Some(velocities) })
     }
 }

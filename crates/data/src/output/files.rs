@@ -1,12 +1,141 @@
-//! Files that are whole or not there, and where they go.
+//! Files that are whole or not there, where they go, what they say of themselves, and folders in which one run
+//! writes at a time.
 
-use std::fs::File;
-use std::io::ErrorKind::NotFound;
-use std::path::Path;
+use std::ffi::OsString;
+use std::fs::{File, Metadata, OpenOptions, Permissions, TryLockError};
+use std::io::{ErrorKind::NotFound, Write};
+use std::path::{Path, PathBuf};
 
-use super::draft::Draft;
-use super::target::{Target, folder_of};
+use tempfile::TempPath;
+
+use super::terminal::note_line;
 use crate::error::{Error, Result};
+
+/// Ending of the name that a file has until it is whole.
+const ENDING_OF_DRAFT: &str = ".part";
+/// Links that lead on to links; more than the system itself follows are a circle.
+const MOST_LINKS: usize = 40;
+
+/// The name that a file was to have, where `name` is what a kill left of it, `.NAME.LETTERS.part`: hidden, so that
+/// readers of whole folders pass it by. Any other name is its own.
+pub fn final_name(name: &str) -> &str {
+    let inner = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(ENDING_OF_DRAFT));
+    match inner.and_then(|rest| rest.rsplit_once('.')) {
+        Some((whole, letters))
+            if letters.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-') =>
+        {
+            whole
+        }
+        _ => name,
+    }
+}
+
+/// A file that has its name only once it is whole, so that a run that is stopped leaves no half file under that
+/// name and destroys none. Devices and pipes are written to as they are.
+pub struct PendingFile {
+    /// As the user wrote it.
+    path: PathBuf,
+    destination: Destination,
+    file: File,
+    /// Its name until it is whole; none where it is written straight to its destination.
+    draft: Option<TempPath>,
+}
+
+impl PendingFile {
+    /// Starts a file.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub fn start(path: &Path) -> Result<Self> {
+        let refuse = |error| Error::file(path, format!("cannot be written ({error})"));
+        let destination = Destination::of(path)?;
+        let (file, draft) = if destination.is_special {
+            (File::options().write(true).open(&destination.path).map_err(refuse)?, None)
+        } else {
+            let mut prefix = OsString::from(".");
+            prefix.extend([destination.path.file_name().unwrap_or_default(), ".".as_ref()]);
+            // With the permissions that the umask leaves to any new file.
+            let draft = tempfile::Builder::new()
+                .prefix(&prefix)
+                .suffix(ENDING_OF_DRAFT)
+                .make_in(folder_of(&destination.path), |draft| File::create_new(draft));
+            let (file, draft) = draft.map_err(refuse)?.into_parts();
+            (file, Some(draft))
+        };
+        Ok(Self { path: path.to_owned(), destination, file, draft })
+    }
+
+    /// What to write to.
+    pub fn file(&mut self) -> &mut File {
+        &mut self.file
+    }
+
+    /// Writes.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub fn write(&mut self, bytes: &[u8]) -> Result<()> {
+        self.file.write_all(bytes).map_err(|error| Error::file(&self.path, error))
+    }
+
+    /// Gives the file its name. With `safe` it is on the disk before the name is, so that even a
+    /// machine that falls over leaves the old file or the new one.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub fn finish(self, safe: bool) -> Result<()> {
+        let Self { path, destination, file, draft } = self;
+        let Some(draft) = draft else { return Ok(()) };
+        let mut finished = match destination.permissions {
+            Some(permissions) => file.set_permissions(permissions),
+            None => Ok(()),
+        };
+        if safe {
+            finished = finished.and_then(|()| file.sync_all());
+        }
+        finished
+            .and_then(|()| Ok(draft.persist(&destination.path)?))
+            .map_err(|error| Error::file(path, error))
+    }
+}
+
+/// The folder that a file is in.
+pub fn folder_of(path: &Path) -> &Path {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or(Path::new("."))
+}
+
+/// What a path leads to, behind all symbolic links.
+struct Destination {
+    path: PathBuf,
+    /// Those of the file that is there.
+    permissions: Option<Permissions>,
+    /// Whether what is there is no plain file but a device, a pipe or a socket, which no file must replace.
+    is_special: bool,
+}
+
+impl Destination {
+    /// # Errors
+    /// Where links go in a circle.
+    fn of(path: &Path) -> Result<Self> {
+        let mut path_there = path.to_owned();
+        for _ in 0..MOST_LINKS {
+            let Ok(link) = std::fs::read_link(&path_there) else {
+                let there = std::fs::metadata(&path_there).ok();
+                let is_special =
+                    there.as_ref().is_some_and(|there| !there.is_file() && !there.is_dir());
+                let permissions = there.filter(Metadata::is_file).map(|there| there.permissions());
+                return Ok(Self { path: path_there, permissions, is_special });
+            };
+            // The links of open files name no place: they are followed by the system alone.
+            if path_there.starts_with("/proc") || path_there.starts_with("/dev") {
+                return Ok(Self { path: path_there, permissions: None, is_special: true });
+            }
+            path_there = folder_of(&path_there).join(link);
+        }
+        Err(Error::file(path, "is a symbolic link that leads back to itself"))
+    }
+}
 
 /// Makes `folder` if it is not there and checks that files can be written in it. `field` is what asks for
 /// it, for messages.
@@ -27,17 +156,17 @@ pub fn check_writable(field: &str, folder: &Path) -> Result<()> {
 /// Names the field and the file, and says what is in the way.
 pub fn check_file(field: &str, path: &Path) -> Result<()> {
     let refuse = |allowed: &str| Err(Error::value(field, path.display(), allowed));
-    let target = Target::of(path)?;
-    if target.is_written_straight() {
+    let destination = Destination::of(path)?;
+    if destination.is_special {
         return Ok(());
     }
-    if target.path.is_dir() {
+    if destination.path.is_dir() {
         return refuse("a file, and this is a folder");
     }
-    if target.permissions.is_some_and(|permissions| permissions.readonly()) {
+    if destination.permissions.is_some_and(|permissions| permissions.readonly()) {
         return refuse("a file that can be written to, and this one is read-only");
     }
-    try_to_write(folder_of(&target.path))
+    try_to_write(folder_of(&destination.path))
         .or_else(|error| refuse(&format!("a file in a folder that can be written to ({error})")))
 }
 
@@ -51,14 +180,9 @@ fn try_to_write(folder: &Path) -> std::io::Result<()> {
 /// # Errors
 /// Names the file and what the system says.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut draft = Draft::start(path)?;
-    draft.write(bytes)?;
-    draft.finish(true)
-}
-
-/// An empty file that is there from the start, for what is to be kept as it comes.
-pub(crate) fn start_stream(path: &Path) -> Result<File> {
-    File::create(path).map_err(|error| Error::file(path, format!("cannot be written ({error})")))
+    let mut file = PendingFile::start(path)?;
+    file.write(bytes)?;
+    file.finish(true)
 }
 
 /// Removes a file, where it is there.
@@ -81,5 +205,117 @@ fn unless_absent(path: &Path, removed: std::io::Result<()>) -> Result<()> {
     match removed {
         Err(error) if error.kind() != NotFound => Err(Error::file(path, error)),
         _ => Ok(()),
+    }
+}
+
+/// What is written in a folder by one run at a time: the name of the file that the run holds locked. The
+/// lock ends with the process, however that ends; a file that was left behind locks nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Locked {
+    /// Pictures, and what is beside them.
+    Pictures,
+    /// A recording. Pictures may be in the same folder.
+    Recording,
+}
+
+impl Locked {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Pictures => ".slump.lock",
+            Self::Recording => ".slump-data.lock",
+        }
+    }
+}
+
+/// A folder in which this process alone writes what is locked until this is dropped.
+pub struct FolderLock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl FolderLock {
+    /// Locks a folder that is there.
+    ///
+    /// # Errors
+    /// Where another process has it, or no file can be written in it.
+    pub fn of(folder: &Path, what: Locked) -> Result<Self> {
+        let path = folder.join(what.name());
+        loop {
+            let file = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
+            let file = file.map_err(|error| Error::file(&path, error))?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => {
+                    let reason = "is being written by another run, which must end first";
+                    return Err(Error::file(folder, reason));
+                }
+                // Some file systems have no locks; to write there at all is worth more.
+                Err(TryLockError::Error(error)) => {
+                    let folder = folder.display();
+                    note_line(format_args!(
+                        "{folder}: cannot be locked ({error}), so nothing keeps a second run out"
+                    ));
+                }
+            }
+            // Another run may have removed its file between opening and locking it here.
+            if is_at(&file, &path) {
+                return Ok(Self { path, _file: file });
+            }
+        }
+    }
+}
+
+impl Drop for FolderLock {
+    fn drop(&mut self) {
+        // While it is still locked. A file that stays does no harm.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |metadata: Metadata| (metadata.dev(), metadata.ino());
+    let there = std::fs::metadata(path).ok().map(place);
+    there.is_some() && file.metadata().ok().map(place) == there
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+/// Keywords and texts, in their order. Keywords are ASCII, at most 79 characters: PNG has no others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texts(Vec<(String, String)>);
+
+impl Default for Texts {
+    /// The program and its version alone.
+    fn default() -> Self {
+        let program = concat!("slump ", env!("CARGO_PKG_VERSION"));
+        Self(vec![("Software".into(), program.into())])
+    }
+}
+
+impl Texts {
+    /// Says one thing more.
+    pub fn add(&mut self, keyword: impl Into<String>, text: impl Into<String>) {
+        self.0.push((keyword.into(), text.into()));
+    }
+
+    /// The text of a keyword.
+    #[cfg(test)]
+    pub(crate) fn get(&self, keyword: &str) -> Option<&str> {
+        self.0.iter().find(|(name, _)| name == keyword).map(|(_, text)| text.as_str())
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.0.iter().map(|(keyword, text)| (keyword.as_str(), text.as_str()))
+    }
+
+    /// A line each: keyword, colon, text.
+    pub fn lines(&self) -> String {
+        self.iter().map(|(keyword, text)| format!("{keyword}: {text}\n")).collect()
     }
 }

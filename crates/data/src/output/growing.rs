@@ -4,7 +4,6 @@ use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::files::start_stream;
 use crate::error::{Error, Result};
 
 /// Bytes of a page of memory on most machines, and a part of one on all others.
@@ -25,7 +24,8 @@ impl GrowingFile {
     /// # Errors
     /// Names the file and what the system says.
     pub fn start(path: PathBuf) -> Result<Self> {
-        let file = start_stream(&path)?;
+        let file = File::create(&path)
+            .map_err(|error| Error::file(&path, format!("cannot be written ({error})")))?;
         Ok(Self { path, file, whole: 0 })
     }
 

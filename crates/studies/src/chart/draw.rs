@@ -1,16 +1,17 @@
 //! Sheets drawn by plotters, with the font that comes with the program.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use image::RgbImage;
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::register_font;
 
-use super::layout::edges;
-use super::places::Places;
-use super::sheet::{CAPTION_LINE, LEGEND};
-use super::{Cell, Chart, Corner, Layer, Look, Rgb, Sheet};
+use super::{
+    Axis, CAPTION_LINE, Chart, INK, LEGEND, Layer, LegendCorner, Look, MapCell, Rgb, Sheet,
+};
 use crate::error::{Error, Result};
 use crate::output::Texts;
 use crate::png::png_of_rgb;
@@ -26,7 +27,7 @@ const CHARACTER: u32 = 12;
 const FONT: &str = "sans-serif";
 
 /// A pair of axes with what is drawn on them.
-type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<Places, Places>>;
+type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<AxisCoordinates, AxisCoordinates>>;
 
 /// The sheet as PNG, which says of itself which command draws it.
 ///
@@ -90,36 +91,25 @@ fn draw<DB: DrawingBackend>(sheet: &Sheet, area: DrawingArea<DB, Shift>) -> Resu
 
 /// The names of a chart's curves, one below the other.
 fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
-    let style = (FONT, CAPTION + 2).into_font().color(&rgb(super::INK));
+    let style = (FONT, CAPTION + 2).into_font().color(&rgb(INK));
     let [above, line_height, between] = LEGEND.map(|room| room as i32);
     let mut y = above;
     for layer in &chart.layers {
         let Layer::Curve { name, colour, look, .. } = layer else { continue };
         let colour = rgb(*colour);
-        let line = vec![(10, y), (46, y)];
-        match look {
-            Look::Line(width) => {
-                area.draw(&PathElement::new(line, colour.stroke_width(*width))).map_err(failed)?;
-            }
-            Look::Dashes(width) => {
-                for from in [10, 24, 38] {
-                    let dash = vec![(from, y), (from + 8, y)];
-                    let dash = PathElement::new(dash, colour.stroke_width(*width));
-                    area.draw(&dash).map_err(failed)?;
-                }
-            }
-            Look::LineAndDots => {
-                area.draw(&PathElement::new(line, colour.stroke_width(3))).map_err(failed)?;
-                area.draw(&Circle::new((28, y), 5, colour.filled())).map_err(failed)?;
-            }
-            Look::Dots(radius) => {
-                let dot = Circle::new((28, y), (*radius).max(6), colour.filled());
-                area.draw(&dot).map_err(failed)?;
-            }
-            Look::Rings(radius) => {
-                let ring = Circle::new((28, y), *radius, colour.stroke_width(2));
-                area.draw(&ring).map_err(failed)?;
-            }
+        let (stroke, dot) = strokes(*look, colour);
+        let dashes = if matches!(look, Look::Dashes(_)) {
+            vec![10..18, 24..32, 38..46]
+        } else {
+            vec![10..46]
+        };
+        for Range { start, end } in dashes.into_iter().filter(|_| stroke > 0) {
+            let dash = PathElement::new(vec![(start, y), (end, y)], colour.stroke_width(stroke));
+            area.draw(&dash).map_err(failed)?;
+        }
+        if let Some((radius, style)) = dot {
+            let radius = if matches!(look, Look::Dots(_)) { radius.max(6) } else { radius };
+            area.draw(&Circle::new((28, y), radius, style)).map_err(failed)?;
         }
         for part in name.split('\n') {
             area.draw_text(part, &style, (58, y - 11)).map_err(failed)?;
@@ -131,14 +121,14 @@ fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>)
 }
 
 fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
-    let (x_places, y_places) = (Places::of(&chart.x), Places::of(&chart.y));
-    let words = (FONT, WORDS).into_font().color(&rgb(super::INK));
+    let (x_places, y_places) = (AxisCoordinates::of(&chart.x), AxisCoordinates::of(&chart.y));
+    let words = (FONT, WORDS).into_font().color(&rgb(INK));
     let mut builder = ChartBuilder::on(area);
     let longest = chart.y.ticks.iter().map(|(_, words)| words.chars().count()).max();
     let beside = BESIDE.max(CHARACTER * longest.unwrap_or(0) as u32 + WORDS);
     builder.margin(14).margin_right(26).x_label_area_size(62).y_label_area_size(beside);
     if !chart.title.is_empty() {
-        builder.caption(&chart.title, (FONT, TITLE).into_font().color(&rgb(super::INK)));
+        builder.caption(&chart.title, (FONT, TITLE).into_font().color(&rgb(INK)));
     }
     let mut context = builder.build_cartesian_2d(x_places, y_places).map_err(failed)?;
     context
@@ -161,10 +151,10 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
         return Ok(());
     }
     let position = match chart.legend {
-        Corner::UpperLeft => SeriesLabelPosition::UpperLeft,
-        Corner::UpperRight => SeriesLabelPosition::UpperRight,
-        Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
-        Corner::LowerRight => SeriesLabelPosition::LowerRight,
+        LegendCorner::UpperLeft => SeriesLabelPosition::UpperLeft,
+        LegendCorner::UpperRight => SeriesLabelPosition::UpperRight,
+        LegendCorner::LowerLeft => SeriesLabelPosition::LowerLeft,
+        LegendCorner::LowerRight => SeriesLabelPosition::LowerRight,
     };
     context
         .configure_series_labels()
@@ -173,7 +163,7 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
         .legend_area_size(36)
         .background_style(WHITE.mix(0.85))
         .border_style(RGBColor(200, 200, 200))
-        .label_font((FONT, CAPTION + 2).into_font().color(&rgb(super::INK)))
+        .label_font((FONT, CAPTION + 2).into_font().color(&rgb(INK)))
         .draw()
         .map_err(failed)
 }
@@ -191,7 +181,7 @@ fn draw_layer<'a, DB: DrawingBackend + 'a>(
             context.draw_series([words]).map_err(failed)?;
         }
         Layer::Cells { cells, colour, .. } => {
-            let rectangles = cells.iter().map(|Cell { x: (_, x), y: (_, y), value }| {
+            let rectangles = cells.iter().map(|MapCell { x: (_, x), y: (_, y), value }| {
                 let corners = [place(x[0], y[0]), place(x[1], y[1])];
                 Rectangle::new(corners, rgb(colour(*value)).filled())
             });
@@ -225,11 +215,7 @@ fn draw_curve<'a, DB: DrawingBackend + 'a>(
     name: Option<&String>,
     context: &mut Context<'a, DB>,
 ) -> Result<()> {
-    let stroke = match look {
-        Look::Line(width) | Look::Dashes(width) => width,
-        Look::LineAndDots => 3,
-        Look::Dots(_) | Look::Rings(_) => 0,
-    };
+    let (stroke, dot) = strokes(look, colour);
     let style = colour.stroke_width(stroke);
     if matches!(look, Look::Line(_) | Look::LineAndDots) {
         context.draw_series(LineSeries::new(line.clone(), style)).map_err(failed)?;
@@ -238,12 +224,6 @@ fn draw_curve<'a, DB: DrawingBackend + 'a>(
         let dashes = DashedLineSeries::new(line.clone(), 8, 6, style);
         context.draw_series(dashes).map_err(failed)?;
     }
-    let dot = match look {
-        Look::LineAndDots => Some((5, colour.filled())),
-        Look::Dots(radius) => Some((radius, colour.filled())),
-        Look::Rings(radius) => Some((radius, colour.stroke_width(2))),
-        Look::Line(_) | Look::Dashes(_) => None,
-    };
     if let Some((radius, style)) = dot {
         let dots = line.iter().map(|place| Circle::new(*place, radius, style));
         context.draw_series(dots).map_err(failed)?;
@@ -266,6 +246,141 @@ fn draw_curve<'a, DB: DrawingBackend + 'a>(
     Ok(())
 }
 
+/// Width of a look's line, 0 where it has none, and radius and style of its dots.
+fn strokes(look: Look, colour: RGBColor) -> (u32, Option<(u32, ShapeStyle)>) {
+    match look {
+        Look::Line(width) | Look::Dashes(width) => (width, None),
+        Look::LineAndDots => (3, Some((5, colour.filled()))),
+        Look::Dots(radius) => (0, Some((radius, colour.filled()))),
+        Look::Rings(radius) => (0, Some((radius, colour.stroke_width(2)))),
+    }
+}
+
 fn rgb((red, green, blue): Rgb) -> RGBColor {
     RGBColor(red, green, blue)
+}
+
+/// Left, top, right and bottom edge of each chart, pixels from the corner of a sheet that has that height for
+/// charts. Charts share the width of their row by their own; a legend that ends a sheet of several rows stands
+/// beside all of them.
+fn edges(sheet: &Sheet, height: u32) -> Vec<[i32; 4]> {
+    let (width, height) = (f64::from(sheet.size.0), f64::from(height));
+    let breaks = || sheet.charts.iter().skip(1).filter(|chart| chart.begins_row);
+    let rows = 1 + breaks().count();
+    let (charts, beside) = match sheet.charts.split_last() {
+        Some((legend, charts)) if rows > 1 && legend.only_legend => (charts, Some(legend)),
+        _ => (&sheet.charts[..], None),
+    };
+    let rows_of_charts: Vec<&[Chart]> = charts.chunk_by(|_, next| !next.begins_row).collect();
+    let sum = |row: &[Chart]| row.iter().map(|chart| chart.width).sum::<f64>();
+    let widest = rows_of_charts.iter().map(|row| sum(row)).fold(0.0, f64::max);
+    let total = widest + beside.map_or(0.0, |legend| legend.width);
+    let mut edges = Vec::new();
+    for (number, row) in rows_of_charts.iter().enumerate() {
+        let [top, bottom] = [number, number + 1].map(|at| at as f64 / rows as f64 * height);
+        let mut left = 0.0;
+        for chart in *row {
+            let right = left + chart.width / total * width;
+            edges.push([left, top, right, bottom].map(|edge| edge as i32));
+            left = right;
+        }
+        // Rounding leaves no strip at the right.
+        if let Some([.., last_right, _]) = edges.last_mut()
+            && (left - width).abs() < 0.5
+        {
+            *last_right = width as i32;
+        }
+    }
+    edges.extend(
+        beside.map(|_| [widest / total * width, 0.0, width, height].map(|edge| edge as i32)),
+    );
+    edges
+}
+
+/// A mark this near, in units of the axis, is the one that is meant.
+const NEAR: f64 = 1e-6;
+
+/// Coordinates along an axis (`Scale::place`) and the marks at it.
+struct AxisCoordinates {
+    range: Range<f64>,
+    marks: Vec<(f64, String)>,
+}
+
+impl AxisCoordinates {
+    fn of(axis: &Axis) -> Self {
+        let place = |number| axis.scale.place(number);
+        let marks = if axis.ticks.is_empty() {
+            axis.scale.marks(axis.from, axis.to)
+        } else {
+            axis.ticks.clone()
+        };
+        Self {
+            range: place(axis.from)..place(axis.to),
+            marks: marks.into_iter().map(|(number, words)| (place(number), words)).collect(),
+        }
+    }
+}
+
+impl Ranged for AxisCoordinates {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        let share = (value - self.range.start) / (self.range.end - self.range.start);
+        // What lies off the axis is drawn at its end.
+        from + (f64::from(to - from) * share.clamp(0.0, 1.0)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() {
+            return Vec::new();
+        }
+        self.marks.iter().map(|(place, _)| *place).collect()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.range.clone()
+    }
+}
+
+impl ValueFormatter<f64> for AxisCoordinates {
+    fn format_ext(&self, place: &f64) -> String {
+        let span = self.range.end - self.range.start;
+        let mark = self.marks.iter().find(|(mark, _)| (mark - place).abs() < NEAR * span);
+        mark.map_or(String::new(), |(_, words)| words.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn charts_fill_their_rows_and_a_legend_stands_beside_all() {
+        let nowhere = Axis::linear("", 0.0, 1.0);
+        let chart = |begins_row: bool| Chart {
+            begins_row,
+            ..Chart::new("", nowhere.clone(), nowhere.clone())
+        };
+        let mut charts = vec![chart(false), chart(false), chart(true)];
+        let sheet = |charts: &[Chart]| Sheet {
+            size: (500, 0),
+            charts: charts.to_vec(),
+            caption: Vec::new(),
+        };
+        assert_eq!(
+            edges(&sheet(&charts), 300),
+            [[0, 0, 250, 150], [250, 0, 500, 150], [0, 150, 250, 300]]
+        );
+        charts.push(Chart::legend_of(&mut charts.clone(), 0.5));
+        assert_eq!(
+            edges(&sheet(&charts), 300),
+            [[0, 0, 200, 150], [200, 0, 400, 150], [0, 150, 200, 300], [400, 0, 500, 300]]
+        );
+        assert_eq!(
+            edges(&sheet(&charts[..2]), 300),
+            [[0, 0, 250, 300], [250, 0, 500, 300]],
+            "one row has all of the height"
+        );
+    }
 }

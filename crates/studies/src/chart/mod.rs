@@ -1,14 +1,450 @@
 //! Charts as plain data: what is on them, independent of how they are drawn. The same data makes the
 //! PNG, the SVG and the CSV, so that the CSV holds every point.
 
-mod csv;
 mod draw;
-mod layout;
-mod places;
-mod scale;
-mod sheet;
 
 pub use draw::{png, svg};
-pub use scale::Scale;
-pub use sheet::{Axis, Cell, Chart, Corner, Layer, Look, PALETTE, Point, Rgb, Sheet};
-pub(crate) use sheet::{INK, points};
+
+use crate::error::{Error, Result};
+
+/// A colour, 0 … 255 each.
+pub type Rgb = (u8, u8, u8);
+
+/// Ink of axes and words.
+pub(crate) const INK: Rgb = (40, 40, 40);
+/// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
+pub const PALETTE: [Rgb; 7] = [
+    (0, 0, 0),
+    (0, 114, 178),
+    (230, 159, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (86, 180, 233),
+    (213, 94, 0),
+];
+
+/// Distance of curves that stand side by side, in widths of the chart.
+const ASIDE: f64 = 0.006;
+
+/// One axis of a chart.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// What it stands for, with its unit.
+    pub(crate) label: String,
+    /// Linear or logarithmic.
+    pub(crate) scale: Scale,
+    /// Where it begins.
+    pub(crate) from: f64,
+    /// Where it ends.
+    pub(crate) to: f64,
+    /// Places with words of their own; where there are none, round numbers.
+    pub(crate) ticks: Vec<(f64, String)>,
+}
+
+impl Axis {
+    /// A linear axis.
+    pub fn linear(label: impl Into<String>, from: f64, to: f64) -> Self {
+        Self { label: label.into(), scale: Scale::Linear, from, to, ticks: Vec::new() }
+    }
+
+    /// A logarithmic axis.
+    pub fn log(label: impl Into<String>, from: f64, to: f64) -> Self {
+        Self { label: label.into(), scale: Scale::Log, from, to, ticks: Vec::new() }
+    }
+}
+
+/// A point, with the ends of its interval where it has one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// On the x axis.
+    pub x: f64,
+    /// On the y axis.
+    pub y: f64,
+    /// Lower and upper end of the interval in y.
+    pub interval: Option<(f64, f64)>,
+}
+
+/// Points without intervals.
+pub(crate) fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point> {
+    places.into_iter().map(|(x, y)| Point { x, y, interval: None }).collect()
+}
+
+/// A filled rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapCell {
+    /// What it stands for on the x axis, and the edges to its left and right.
+    pub x: (f64, [f64; 2]),
+    /// What it stands for on the y axis, and its lower and upper edge.
+    pub y: (f64, [f64; 2]),
+    /// What its colour stands for.
+    pub value: f64,
+}
+
+/// How a layer is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// A line of that many pixels.
+    Line(u32),
+    /// A dashed line of that many pixels.
+    Dashes(u32),
+    /// Filled discs of that radius in pixels.
+    Dots(u32),
+    /// Empty circles of that radius in pixels.
+    Rings(u32),
+    /// A line through filled discs.
+    LineAndDots,
+}
+
+/// Something on a chart.
+#[derive(Clone, Debug)]
+pub enum Layer {
+    /// Points, joined or not.
+    Curve {
+        /// Name in the CSV, and in the legend where `in_legend`.
+        name: String,
+        /// Whether the legend tells of it.
+        in_legend: bool,
+        /// Its points, in order.
+        points: Vec<Point>,
+        /// Its colour.
+        colour: Rgb,
+        /// How it is drawn.
+        look: Look,
+        /// How far aside it is drawn, in widths of the chart, so that bars do not hide each other.
+        aside: f64,
+    },
+    /// Filled rectangles, each with the value that its colour stands for.
+    Cells {
+        /// Name in the CSV.
+        name: String,
+        /// The rectangles.
+        cells: Vec<MapCell>,
+        /// Value → colour.
+        colour: fn(f64) -> Rgb,
+    },
+    /// Words at a place.
+    Words {
+        /// Where they begin, in the axes' units.
+        at: (f64, f64),
+        /// The words.
+        text: String,
+        /// Their colour.
+        colour: Rgb,
+    },
+}
+
+impl Layer {
+    /// A curve that the legend tells of.
+    pub fn curve(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
+        Self::Curve { name: name.into(), in_legend: true, points, colour, look, aside: 0.0 }
+    }
+
+    /// The same curve, number `index` of `count` side by side.
+    pub fn beside(self, index: usize, count: usize) -> Self {
+        self.aside(ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0)))
+    }
+
+    /// The same curve, so far aside, in widths of the chart.
+    pub(crate) fn aside(mut self, widths: f64) -> Self {
+        if let Self::Curve { aside, .. } = &mut self {
+            *aside = widths;
+        }
+        self
+    }
+
+    /// A curve that the legend leaves out.
+    pub(crate) fn quiet(
+        name: impl Into<String>,
+        points: Vec<Point>,
+        colour: Rgb,
+        look: Look,
+    ) -> Self {
+        Self::Curve { name: name.into(), in_legend: false, points, colour, look, aside: 0.0 }
+    }
+}
+
+/// Where a legend stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LegendCorner {
+    /// Upper left.
+    UpperLeft,
+    /// Upper right.
+    #[default]
+    UpperRight,
+    /// Lower left.
+    LowerLeft,
+    /// Lower right.
+    LowerRight,
+}
+
+/// One pair of axes.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// Above it.
+    pub(crate) title: String,
+    /// Horizontal.
+    pub(crate) x: Axis,
+    /// Vertical.
+    pub(crate) y: Axis,
+    /// From back to front.
+    pub layers: Vec<Layer>,
+    /// Where the legend stands.
+    pub(crate) legend: LegendCorner,
+    /// Its share of the width of the sheet.
+    pub(crate) width: f64,
+    /// Whether it is nothing but a legend, without axes: for long ones, beside other charts.
+    pub(crate) only_legend: bool,
+    /// Whether it stands below the charts before it, at the left.
+    pub(crate) begins_row: bool,
+}
+
+impl Chart {
+    /// An empty chart.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
+        Self {
+            title: title.into(),
+            x,
+            y,
+            layers: Vec::new(),
+            legend: LegendCorner::default(),
+            width: 1.0,
+            only_legend: false,
+            begins_row: false,
+        }
+    }
+
+    /// Moves what the legends of some charts say into a column of its own, each name once.
+    pub(crate) fn legend_of(charts: &mut [Self], width: f64) -> Self {
+        let nowhere = Axis::linear("", 0.0, 1.0);
+        let mut column = Self::new("", nowhere.clone(), nowhere);
+        column.width = width;
+        column.only_legend = true;
+        let mut names = std::collections::HashSet::new();
+        for layer in charts.iter_mut().flat_map(|chart| &mut chart.layers) {
+            if let Layer::Curve { name, in_legend, .. } = layer
+                && std::mem::take(in_legend)
+                && names.insert(name.clone())
+            {
+                let mut entry = layer.clone();
+                if let Layer::Curve { in_legend, points, .. } = &mut entry {
+                    *in_legend = true;
+                    points.clear();
+                }
+                column.layers.push(entry);
+            }
+        }
+        column
+    }
+}
+
+/// Rooms of legends that stand beside charts, pixels: above the first entry, for a line of words, and between two
+/// entries.
+const LEGEND: [u32; 3] = [70, CAPTION_LINE, 8];
+/// Room below the charts for one line of the caption, pixels.
+const CAPTION_LINE: u32 = 28;
+
+/// Charts side by side, with words below.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// Pixels.
+    pub size: (u32, u32),
+    /// From left to right, and from the top to the bottom.
+    pub charts: Vec<Chart>,
+    /// Lines of words below.
+    pub caption: Vec<String>,
+}
+
+impl Sheet {
+    /// One chart of the usual size.
+    pub(crate) fn of(chart: Chart) -> Self {
+        Self { size: (1200, 820), charts: vec![chart], caption: Vec::new() }
+    }
+
+    /// The same, as high as its longest legend beside charts needs.
+    pub(crate) fn high_enough(mut self) -> Self {
+        let [above, line, between] = LEGEND;
+        let entry = |layer: &Layer| match layer {
+            Layer::Curve { name, .. } => line * name.split('\n').count() as u32 + between,
+            Layer::Cells { .. } | Layer::Words { .. } => 0,
+        };
+        let legends = self.charts.iter().filter(|chart| chart.only_legend);
+        let height = |chart: &Chart| above + chart.layers.iter().map(entry).sum::<u32>();
+        let caption = CAPTION_LINE * (self.caption.len() as u32 + 1);
+        let needed = legends.map(height).max().unwrap_or(0) + caption;
+        self.size.1 = self.size.1.max(needed);
+        self
+    }
+
+    /// Every point of every layer as CSV: panel, layer, x, y, low, high, value.
+    ///
+    /// # Errors
+    /// Where a row cannot be said in CSV.
+    pub fn to_csv(&self) -> Result<Vec<u8>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let refuse = |error: csv::Error| Error::file("figure", error);
+        let names = ["panel", "layer", "x", "y", "low", "high", "value"].map(str::to_owned);
+        writer.write_record(names).map_err(refuse)?;
+        for (chart, panel) in self.charts.iter().zip(1..) {
+            for layer in &chart.layers {
+                let (name, rows): (_, Vec<[String; 5]>) = match layer {
+                    Layer::Curve { name, points, .. } => {
+                        (name, points.iter().map(point_row).collect())
+                    }
+                    Layer::Cells { name, cells, .. } => {
+                        (name, cells.iter().map(cell_row).collect())
+                    }
+                    Layer::Words { .. } => continue,
+                };
+                for row in rows {
+                    let cells = [panel.to_string(), name.replace('\n', " ")].into_iter().chain(row);
+                    writer.write_record(cells).map_err(refuse)?;
+                }
+            }
+        }
+        writer.into_inner().map_err(|error| Error::file("figure", error.error()))
+    }
+}
+
+/// x, y, low, high and value of a point.
+fn point_row(point: &Point) -> [String; 5] {
+    let [low, high] = point
+        .interval
+        .map_or_else(Default::default, |(low, high)| [low, high].map(|end| end.to_string()));
+    [point.x.to_string(), point.y.to_string(), low, high, String::new()]
+}
+
+/// The same of a cell.
+fn cell_row(cell: &MapCell) -> [String; 5] {
+    let [x, y, value] = [cell.x.0, cell.y.0, cell.value].map(|number| number.to_string());
+    [x, y, String::new(), String::new(), value]
+}
+
+/// How an axis is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// In ratio.
+    Log,
+}
+
+/// Marks on a linear axis, about.
+const MARKS: f64 = 6.0;
+
+/// On a logarithmic axis that ends below this many times its beginning, 2 and 5 have words too.
+const SHORT: f64 = 80.0;
+
+impl Scale {
+    /// Where a number stands, in a unit that grows evenly along the axis.
+    fn place(self, number: f64) -> f64 {
+        match self {
+            Self::Linear => number,
+            Self::Log => number.max(f64::MIN_POSITIVE).log10(),
+        }
+    }
+
+    /// Round numbers between two others, with the words for them; those without words are minor.
+    fn marks(self, from: f64, to: f64) -> Vec<(f64, String)> {
+        match self {
+            Self::Linear => linear_marks(from, to),
+            Self::Log => log_marks(from, to),
+        }
+    }
+}
+
+fn linear_marks(from: f64, to: f64) -> Vec<(f64, String)> {
+    let rough = (to - from) / MARKS;
+    let power = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter();
+    let step = step.min_by(|a, b| (a - rough).abs().total_cmp(&(b - rough).abs())).unwrap_or(power);
+    let decimals = (-step.log10().floor()).max(0.0) as usize;
+    let first = (from / step - 1e-9).ceil() as i64;
+    let last = (to / step + 1e-9).floor() as i64;
+    (first..=last)
+        .map(|index| index as f64 * step)
+        .map(|number| (number, format!("{number:.decimals$}").replace('-', "−")))
+        .collect()
+}
+
+fn log_marks(from: f64, to: f64) -> Vec<(f64, String)> {
+    let (first, last) = (from.log10().floor() as i32, to.log10().ceil() as i32);
+    let mut marks = Vec::new();
+    for exponent in first..=last {
+        for digit in 1..10 {
+            let number = f64::from(digit) * 10f64.powi(exponent);
+            if number >= from * (1.0 - 1e-9) && number <= to * (1.0 + 1e-9) {
+                let words = match digit {
+                    1 => power_of_ten(exponent),
+                    2 | 5 if to < SHORT * from && PLAIN.contains(&exponent) => format!("{number}"),
+                    2 | 5 if to < SHORT * from => format!("{digit}·{}", power_of_ten(exponent)),
+                    _ => String::new(),
+                };
+                marks.push((number, words));
+            }
+        }
+    }
+    marks
+}
+
+/// Exponents of numbers that are written out.
+const PLAIN: std::ops::RangeInclusive<i32> = -2..=2;
+
+/// 10⁻⁴, and plain numbers from 0.01 to 100.
+fn power_of_ten(exponent: i32) -> String {
+    if PLAIN.contains(&exponent) {
+        return format!("{}", 10f64.powi(exponent));
+    }
+    let digits = exponent.to_string();
+    let raised = digits.chars().map(|sign| match sign {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => char::from_u32('⁰' as u32 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
+    });
+    format!("10{}", raised.collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sheet_is_as_high_as_its_legend() {
+        let nowhere = Axis::linear("", 0.0, 1.0);
+        let mut chart = Chart::new("", nowhere.clone(), nowhere);
+        let sheet = |mut chart: Chart| {
+            let legend = Chart::legend_of(std::slice::from_mut(&mut chart), 0.3);
+            Sheet { charts: vec![chart.clone(), legend], ..Sheet::of(chart) }.high_enough().size.1
+        };
+        assert_eq!(sheet(chart.clone()), 820);
+        for number in 0..40 {
+            let name = format!("method {number}\nof two lines");
+            chart.layers.push(Layer::curve(name, Vec::new(), INK, Look::Line(1)));
+        }
+        assert_eq!(sheet(chart), 70 + 40 * (2 * 28 + 8) + 28);
+    }
+
+    #[test]
+    fn marks_are_round_numbers() {
+        let words = |scale: Scale, from, to| -> Vec<String> {
+            let marks = scale.marks(from, to).into_iter().map(|(_, words)| words);
+            marks.filter(|words| !words.is_empty()).collect()
+        };
+        assert_eq!(
+            words(Scale::Linear, 0.0, 0.6),
+            ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6"]
+        );
+        assert_eq!(
+            words(Scale::Linear, -10.0, 5.0),
+            ["−10", "−8", "−6", "−4", "−2", "0", "2", "4"]
+        );
+        assert_eq!(
+            words(Scale::Log, 8e-5, 6e-3),
+            ["10⁻⁴", "2·10⁻⁴", "5·10⁻⁴", "10⁻³", "2·10⁻³", "5·10⁻³"]
+        );
+        assert_eq!(words(Scale::Log, 1e-12, 1e-11), ["10⁻¹²", "2·10⁻¹²", "5·10⁻¹²", "10⁻¹¹"]);
+        assert_eq!(words(Scale::Log, 2.0, 100.0), ["2", "5", "10", "20", "50", "100"]);
+        assert_eq!(words(Scale::Log, 1e-4, 1e-2), ["10⁻⁴", "10⁻³", "0.01"]);
+    }
+}

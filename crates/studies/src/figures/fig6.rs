@@ -2,10 +2,8 @@
 
 use rand::{RngExt, SeedableRng};
 
-use super::chance::{self, Alike};
-use super::verdict::{SIGNIFICANT, Verdict};
-use super::workshop::Rows;
-use super::{Claim, Figure, Workshop};
+use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
+use super::{Figure, StudyRunner};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
@@ -29,9 +27,9 @@ pub(super) fn unit_secs() -> Result<f64> {
     Ok((pile.mean_diameter / pile.gravity.magnitude()).sqrt())
 }
 
-pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
+pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let unit_secs = unit_secs()?;
-    let cohesive = workshop.rows("pile")?.such_that(|config| config.parameters.bond > Some(0.0));
+    let cohesive = studies.rows("pile")?.such_that(|config| config.parameters.bond > Some(0.0));
     let rows = cohesive.ensemble();
     let mut chart = Chart::new(
         "Fig. 6: slump against cohesive time",
@@ -40,28 +38,19 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
     );
     let one = points([(1.0, 0.0), (1.0, 0.6)]);
     chart.layers.push(Layer::curve("the paper's guess", one, INK, Look::Dashes(2)));
-    for (index, bond) in rows.values(|config| config.parameters.bond).into_iter().enumerate() {
-        let of_bond = rows.such_that(|config| config.parameters.bond == Some(bond));
-        let steps = of_bond.values(|config| config.parameters.time_step_secs);
-        let means = steps.into_iter().map(|step| {
-            let of_step = of_bond.such_that(|c| c.parameters.time_step_secs == Some(step));
-            let mean = mean(&of_step.outcomes(|outcome| outcome.slump));
-            Point {
-                x: bond * step / unit_secs,
-                y: mean.mean,
-                interval: Some((mean.low.max(0.0), mean.high)),
-            }
+    for (index, bond) in rows.bonds().into_iter().enumerate() {
+        let of_bond = rows.of_bond(bond);
+        let means = of_bond.steps().into_iter().map(|step| {
+            let mean = mean(&of_bond.of_step(step).slumps());
+            let interval = Some((mean.low.max(0.0), mean.high));
+            Point { x: bond * step / unit_secs, y: mean.mean, interval }
         });
-        let colour = PALETTE[index + 1];
-        chart.layers.push(Layer::curve(
-            format!("Bond {bond}"),
-            means.collect(),
-            colour,
-            Look::LineAndDots,
-        ));
+        let name = format!("Bond {bond}");
+        let curve = Layer::curve(name, means.collect(), PALETTE[index + 1], Look::LineAndDots);
+        chart.layers.push(curve);
     }
-
-    let groups = groups(&rows, unit_secs);
+    let log_time = |config: &Config| cohesive_time(config, unit_secs).log10();
+    let groups = rows.groups(log_time, |result| result.slump);
     let count = rows.seeds().len();
     let turn = turning(&joined(&groups, count), RESAMPLINGS);
     let Turn { place, low, high } = turn;
@@ -70,26 +59,8 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         "Means over {count} initial states with 95 % intervals (Bond 0 has no cohesive time). A broken line \
          bends at {place:.2} ({low:.2} … {high:.2})."
     )];
-    sheet.caption.extend(workshop.note());
     let claims = vec![regimes(&groups, count), guess(&groups, count, turn)];
     Ok(Figure { name: "fig6", sheet, claims, table: None })
-}
-
-/// Slumps by log₁₀ of the cohesive time, a group a state and Bond, the states one after the other.
-fn groups(rows: &Rows<'_>, unit_secs: f64) -> Vec<Alike> {
-    let mut all = Vec::new();
-    for seed in rows.seeds() {
-        for bond in rows.values(|config| config.parameters.bond) {
-            let here = rows.such_that(|config| {
-                config.origin.seed == Some(seed) && config.parameters.bond == Some(bond)
-            });
-            let place = |(config, outcome): &(&Config, &crate::Outcome)| {
-                (cohesive_time(config, unit_secs).log10(), outcome.slump)
-            };
-            all.push(here.0.iter().map(place).collect());
-        }
-    }
-    all
 }
 
 /// The groups of each of `count` states in one.
@@ -112,7 +83,7 @@ fn guess(groups: &[Alike], count: usize, turn: Turn) -> Claim {
         ),
         verdict(turn),
     )
-    .by_chance(chance::told(chance::share(groups, |_| 0.0, holds)))
+    .shuffled(groups, |_| 0.0, holds)
     .hanging_on("the shifted cone; three Bonds drawn as one curve; a broken line as the shape of the curve")
 }
 
@@ -129,17 +100,18 @@ fn regimes(groups: &[Alike], count: usize) -> Claim {
     let p_of =
         |groups: &[Alike]| side(groups, true).p_below(0.0).max(side(groups, false).p_above(0.0));
     let (below, above) = (side(groups, true), side(groups, false));
-    let told = |name: &str, mean: &crate::statistics::Mean| {
-        format!("slope per decade {name} {:+.3} ({:+.3} … {:+.3})", mean.mean, mean.low, mean.high)
-    };
-    let p = p_of(groups);
+    let measured = format!(
+        "slope per decade below {}, slope per decade above {}; both: {}",
+        below.signed(3),
+        above.signed(3),
+        p_value(p_of(groups))
+    );
     Claim::new(
         "Fig. 6: below a cohesive time of 1 the slump falls with it, above it rises",
-        format!("{}, {}; both: {}", told("below", &below), told("above", &above), p_value(p))
-            .replace('-', "−"),
-        Verdict::of(p, below.p_above(0.0).min(above.p_below(0.0))),
+        measured.replace('-', "−"),
+        Verdict::of(p_of(groups), below.p_above(0.0).min(above.p_below(0.0))),
     )
-    .by_chance(chance::told(chance::share(groups, |_| 0.0, |groups| p_of(groups) < SIGNIFICANT)))
+    .shuffled(groups, |_| 0.0, |groups| p_of(groups) < SIGNIFICANT)
     .hanging_on(
         "the shifted cone; 1 as the border; and on Bonds together: below 1 there is more of Bond 20, above of Bond 100",
     )

@@ -1,13 +1,16 @@
-//! Whether the bond of i and j is lost in the shock: at which Δt, with which choices, and in which share of runs over
-//! many start distances.
+//! Whether the bond of i and j is lost in the cradle's shock: at which Δt, in which share of runs over many start
+//! distances, and over Δt and stopping tolerance.
 
-use super::verdict::Verdict;
-use super::workshop::Rows;
-use super::{Claim, Figure, Workshop};
-use crate::Outcome;
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Point, Sheet, points};
+use super::claims::{Claim, Verdict};
+use super::studies::Rows;
+use super::{Figure, StudyRunner};
+use crate::RunResult;
+use crate::chart::{
+    Axis, Chart, INK, Layer, LegendCorner, Look, MapCell, PALETTE, Point, Rgb, Sheet, points,
+};
 use crate::config::Config;
 use crate::error::Result;
+use crate::scene::cradle;
 use crate::statistics;
 
 /// The bond is open where i and j are further apart at the end, in diameters: well above rounding,
@@ -34,50 +37,37 @@ pub(super) const PAPER: [(f64, bool); 14] = [
 pub(super) const PHASE_SECS: f64 = 3.5e-3;
 
 /// Whether i and j have parted.
-pub(super) fn is_open(outcome: &Outcome) -> bool {
-    outcome.first_gap > OPEN_GAP
+pub(super) fn is_open(result: &RunResult) -> bool {
+    result.first_gap > OPEN_GAP
 }
 
 /// The larger, looser of a study's tolerances, and the smaller one.
-fn tolerances(rows: &Rows<'_>) -> (f64, f64) {
-    let values = rows.values(|config| config.solver.tolerance);
+fn loose_and_tight(rows: &Rows<'_>) -> (f64, f64) {
+    let values = rows.tolerances();
     (values[values.len() - 1], values[0])
 }
 
-pub(super) fn strip(workshop: &Workshop) -> Result<Figure> {
-    let rows = workshop.rows("cradle")?;
-    let (loose, tight) = tolerances(&rows);
+pub(super) fn strip(studies: &StudyRunner) -> Result<Figure> {
+    let rows = studies.rows("cradle")?;
+    let (loose, tight) = loose_and_tight(&rows);
     let mut y = Axis::linear("", -0.6, 1.6);
     y.ticks = vec![(0.0, "closed".into()), (1.0, "open".into())];
     let mut chart =
         Chart::new("The bond of i and j after the shock", Axis::log("Δt (s)", 8e-5, 1.3e-2), y);
     let of = |tolerance: f64| {
-        let rows = rows.such_that(|config| config.solver.tolerance == Some(tolerance));
-        rows.0
-            .iter()
-            .map(|(config, outcome)| {
-                (
-                    config.parameters.time_step_secs.unwrap_or(0.0),
-                    f64::from(u8::from(is_open(outcome))),
-                )
-            })
-            .collect::<Vec<_>>()
+        let end = |(config, result): &(&Config, &RunResult)| {
+            let step_secs = config.parameters.time_step_secs.unwrap_or(0.0);
+            (step_secs, f64::from(u8::from(is_open(result))))
+        };
+        rows.of_tolerance(tolerance).0.iter().map(end).collect::<Vec<_>>()
     };
-    let name =
-        |what: &str, tolerance: f64| format!("{what}: stop at {tolerance:e} m/s").replace('-', "−");
-    chart.layers.push(Layer::curve(
-        name("loose", loose),
-        points(of(loose)),
-        PALETTE[6],
-        Look::Dots(8),
-    ));
-    chart.layers.push(Layer::curve(
-        name("tight", tight),
-        points(of(tight)),
-        PALETTE[1],
-        Look::Rings(13),
-    ));
-    chart.legend = Corner::UpperRight;
+    for (what, tolerance, colour, look) in
+        [("loose", loose, PALETTE[6], Look::Dots(8)), ("tight", tight, PALETTE[1], Look::Rings(13))]
+    {
+        let name = format!("{what}: stop at {tolerance:e} m/s").replace('-', "−");
+        chart.layers.push(Layer::curve(name, points(of(tolerance)), colour, look));
+    }
+    chart.legend = LegendCorner::UpperRight;
     let mut sheet = Sheet::of(chart);
     sheet.size = (1200, 480);
     sheet.caption = vec![
@@ -85,7 +75,7 @@ pub(super) fn strip(workshop: &Workshop) -> Result<Figure> {
              six of its twenty time steps; the others are ours."
             .into(),
     ];
-    let of_loose = rows.such_that(|config| config.solver.tolerance == Some(loose));
+    let of_loose = rows.of_tolerance(loose);
     let claims = claims_of_strip(&of_loose, &of(tight), tight);
     Ok(Figure { name: "fig8-strip", sheet, claims, table: None })
 }
@@ -93,8 +83,8 @@ pub(super) fn strip(workshop: &Workshop) -> Result<Figure> {
 /// How many of the paper's outcomes are those of runs, one a Δt.
 pub(super) fn agreed(rows: &Rows<'_>) -> usize {
     let agrees = |&&(step, open): &&(f64, bool)| {
-        let is_it = |(config, outcome): &(&Config, &Outcome)| {
-            config.parameters.time_step_secs == Some(step) && is_open(outcome) == open
+        let is_it = |(config, result): &(&Config, &RunResult)| {
+            config.parameters.time_step_secs == Some(step) && is_open(result) == open
         };
         rows.0.iter().any(is_it)
     };
@@ -103,11 +93,11 @@ pub(super) fn agreed(rows: &Rows<'_>) -> usize {
 
 /// That a start distance at random has the paper's pattern, at the loosest stop of the study.
 fn pattern_is_usual(rows: &Rows<'_>) -> Claim {
-    let (loose, _) = tolerances(rows);
-    let rows = rows.such_that(|config| config.solver.tolerance == Some(loose));
-    let starts = rows.values(|config| config.origin.start);
+    let (loose, _) = loose_and_tight(rows);
+    let rows = rows.of_tolerance(loose);
+    let starts = rows.values(|config| config.source.start);
     let whole = |start: &&f64| {
-        agreed(&rows.such_that(|config| config.origin.start == Some(**start))) == PAPER.len()
+        agreed(&rows.such_that(|config| config.source.start == Some(**start))) == PAPER.len()
     };
     let whole = starts.iter().filter(whole).count();
     let (share, low, high) = statistics::share(whole, starts.len());
@@ -152,34 +142,30 @@ fn claims_of_strip(loose: &Rows<'_>, tight: &[(f64, f64)], tolerance: f64) -> Ve
     vec![pattern, solved]
 }
 
-pub(super) fn share(workshop: &Workshop) -> Result<Figure> {
-    let rows = workshop.rows("cradle-share")?;
+pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
+    let rows = studies.rows("cradle-share")?;
     let mut chart = Chart::new(
         "Share of runs that lose the bond",
         Axis::log("Δt (s)", 8e-5, 1.3e-2),
         Axis::linear("share of start distances", -0.02, 1.35),
     );
     chart.y.ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].map(|share| (share, share.to_string())).to_vec();
-    chart.legend = Corner::UpperRight;
-    let starts = rows.values(|config| config.origin.start);
-    let mut told = Vec::new();
-    let tolerances = rows.values(|config| config.solver.tolerance);
+    chart.legend = LegendCorner::UpperRight;
+    let starts = rows.values(|config| config.source.start);
+    let mut at_large_steps = Vec::new();
+    let tolerances = rows.tolerances();
     for (&tolerance, colour) in tolerances.iter().rev().zip([PALETTE[6], PALETTE[2], PALETTE[1]]) {
-        let rows = rows.such_that(|config| config.solver.tolerance == Some(tolerance));
-        let shares: Vec<Point> = rows
-            .values(|config| config.parameters.time_step_secs)
-            .into_iter()
-            .map(|step| {
-                let of_step =
-                    rows.such_that(|config| config.parameters.time_step_secs == Some(step));
-                let hits = of_step.0.iter().filter(|(_, outcome)| is_open(outcome)).count();
-                let (share, low, high) = statistics::share(hits, of_step.0.len());
-                Point { x: step, y: share, interval: Some((low, high)) }
-            })
-            .collect();
+        let rows = rows.of_tolerance(tolerance);
+        let share = |step: f64| {
+            let of_step = rows.of_step(step);
+            let hits = of_step.0.iter().filter(|(_, result)| is_open(result)).count();
+            let (share, low, high) = statistics::share(hits, of_step.0.len());
+            Point { x: step, y: share, interval: Some((low, high)) }
+        };
+        let shares: Vec<Point> = rows.steps().into_iter().map(share).collect();
         let large: Vec<Point> =
             shares.iter().copied().filter(|point| point.x > PHASE_SECS).collect();
-        told.push((tolerance, large));
+        at_large_steps.push((tolerance, large));
         let name = format!("stop at {tolerance:e} m/s").replace('-', "−");
         chart.layers.push(Layer::curve(name, shares, colour, Look::LineAndDots));
     }
@@ -190,8 +176,7 @@ pub(super) fn share(workshop: &Workshop) -> Result<Figure> {
         starts[0],
         starts[starts.len() - 1]
     )];
-    sheet.caption.extend(workshop.note());
-    let claims = told.into_iter().map(|(tolerance, large)| {
+    let claims = at_large_steps.into_iter().map(|(tolerance, large)| {
         let listed: Vec<String> =
             large.iter().map(|point| format!("{:.0} % at {}", 100.0 * point.y, point.x)).collect();
         // Shown where the intervals of the two ends are apart.
@@ -208,4 +193,76 @@ pub(super) fn share(workshop: &Workshop) -> Result<Figure> {
     });
     let claims = claims.chain([pattern_is_usual(&rows)]).collect();
     Ok(Figure { name: "fig8-share", sheet, claims, table: None })
+}
+
+/// Open or closed → colour: open is orange, closed is blue.
+fn colour(value: f64) -> Rgb {
+    if value > 0.5 { (240, 176, 80) } else { (70, 120, 175) }
+}
+
+/// The edges of cells around values that are evenly spaced in ratio. Neighbours share theirs to the
+/// last bit, so that no gap is drawn between them.
+pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
+    let half = match values {
+        [first, second, ..] => (second / first).sqrt(),
+        _ => 1.1,
+    };
+    let mut edges = vec![values.first().map_or(1.0, |first| first / half)];
+    edges.extend(values.windows(2).map(|pair| (pair[0] * pair[1]).sqrt()));
+    edges.extend(values.last().map(|last| last * half));
+    edges.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+}
+
+/// The cradle's end over time step and stopping tolerance.
+pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
+    let rows = studies.rows("cradle-map")?;
+    let (steps, tolerances) = (rows.steps(), rows.tolerances());
+    let (step_edges, tolerance_edges) = (log_edges(&steps), log_edges(&tolerances));
+    let mut cells = Vec::new();
+    for (&step, &step_edges) in steps.iter().zip(&step_edges) {
+        for (&tolerance, &edges) in tolerances.iter().zip(&tolerance_edges) {
+            let here = rows.of_step(step).of_tolerance(tolerance);
+            let of_run = |(_, result): &(&Config, &RunResult)| MapCell {
+                x: (step, step_edges),
+                y: (tolerance, edges),
+                value: f64::from(u8::from(is_open(result))),
+            };
+            cells.extend(here.0.iter().map(of_run));
+        }
+    }
+    let ends = |edges: &[[f64; 2]]| (edges[0][0], edges[edges.len() - 1][1]);
+    let (x, y) = (ends(&step_edges), ends(&tolerance_edges));
+    let mut chart = Chart::new(
+        "The cradle's bond: open (orange) or closed (blue)",
+        Axis::log("Δt (s)", x.0, x.1),
+        Axis::log("stopping tolerance Σ|ΔP|/m (m/s)", y.0, y.1),
+    );
+    let small = rows.such_that(|config| config.parameters.time_step_secs < Some(3e-3));
+    let of_small = |low: f64, high: f64| {
+        let picked =
+            small.such_that(|c| c.solver.tolerance.is_some_and(|x| (low..high).contains(&x)));
+        let open = picked.0.iter().filter(|(_, result)| is_open(result)).count();
+        open as f64 / picked.0.len().max(1) as f64
+    };
+    let (tight, loose) = (of_small(0.0, 1e-4), of_small(1e-3, 1.0));
+    chart.layers.push(Layer::Cells { name: "open".into(), cells, colour });
+    // The capture speed Bond·g·Δt, where one step of cohesion cancels what the stop leaves over.
+    let scene = cradle();
+    let capture = scene.parameters.bond * scene.gravity.magnitude();
+    let line = [x.0, x.1].map(|step| (step, (capture * step).clamp(y.0, y.1)));
+    chart.layers.push(Layer::curve("Bond·g·Δt", points(line), INK, Look::Dashes(3)));
+    let mut sheet = Sheet::of(chart);
+    sheet.size = (1200, 960);
+    sheet.caption =
+        vec![format!("{} × {} runs; k starts 7.865 d left of i.", steps.len(), tolerances.len())];
+    let claim = Claim::new(
+        "Beyond the paper: at small Δt the outcome hangs on how well the step is solved",
+        format!(
+            "at Δt < 3·10⁻³ s {:.0} % of bonds open at tolerances below 10⁻⁴ m/s, {:.0} % above 10⁻³",
+            100.0 * tight,
+            100.0 * loose
+        ),
+        (loose > tight + 0.1).into(),
+    );
+    Ok(Figure { name: "cradle-map", sheet, claims: vec![claim], table: None })
 }

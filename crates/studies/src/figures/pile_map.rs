@@ -2,14 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use super::chance::{self, Alike};
-use super::cradle_map::log_edges;
+use super::claims::{Alike, Claim, Verdict};
 use super::fig6::{cohesive_time, unit_secs};
-use super::verdict::Verdict;
-use super::workshop::Rows;
-use super::{Claim, Figure, Workshop};
-use crate::Outcome;
-use crate::chart::{Axis, Cell, Chart, Layer, Look, Rgb, Sheet, points};
+use super::fig8::log_edges;
+use super::{Figure, StudyRunner};
+use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
 use crate::statistics::{Mean, mean, p_value};
@@ -33,11 +30,10 @@ fn colour(slump: f64) -> Rgb {
     (red, green, blue)
 }
 
-pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
+pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let unit_secs = unit_secs()?;
-    let rows = workshop.rows("pile-map")?;
-    let (bonds, steps) =
-        (rows.values(|c| c.parameters.bond), rows.values(|c| c.parameters.time_step_secs));
+    let rows = studies.rows("pile-map")?;
+    let (bonds, steps) = (rows.bonds(), rows.steps());
     let half = 0.5 * (bonds[1] - bonds[0]);
     let edges = log_edges(&steps);
     let mut cells = Vec::new();
@@ -47,11 +43,9 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         let edge = |number: usize| bonds[0] + half * (2.0 * number as f64 - 1.0);
         let mut best = (f64::INFINITY, 0.0);
         for (step, edges) in steps.iter().zip(&edges) {
-            let cell = rows.such_that(|c| {
-                c.parameters.bond == Some(bond) && c.parameters.time_step_secs == Some(*step)
-            });
-            let slump = mean(&cell.outcomes(|outcome| outcome.slump)).mean;
-            cells.push(Cell {
+            let cell = rows.of_bond(bond).of_step(*step);
+            let slump = mean(&cell.slumps()).mean;
+            cells.push(MapCell {
                 x: (bond, [edge(index), edge(index + 1)]),
                 y: (*step, *edges),
                 value: slump,
@@ -81,14 +75,17 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
         Look::Dots(6),
     ));
 
-    let claim = claim(&groups(&rows, unit_secs), rows.seeds().len());
+    let cohesive = rows.such_that(|config| config.parameters.bond > Some(0.0));
+    let log_time = |config: &Config| cohesive_time(config, unit_secs).log10();
+    let groups = cohesive.groups(log_time, |result| result.slump);
+    let claim = claim(&groups, rows.seeds().len());
     let sheet = Sheet {
         size: (1320, 900),
         charts: vec![chart, scale()],
-        caption: [vec![format!(
+        caption: vec![format!(
             "Means over {} initial states; red: the Δt of the lowest slump at each Bond number.",
             rows.seeds().len()
-        )], workshop.note()].concat(),
+        )],
     };
     Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
 }
@@ -118,30 +115,11 @@ fn scale() -> Chart {
     scale.x.ticks = vec![(-1.0, String::new())];
     let shade = |k: u32| {
         let at = |k: u32| MOST * f64::from(k) / f64::from(SHADES);
-        Cell { x: (0.5, [0.0, 1.0]), y: (at(k), [at(k), at(k + 1)]), value: at(k) }
+        MapCell { x: (0.5, [0.0, 1.0]), y: (at(k), [at(k), at(k + 1)]), value: at(k) }
     };
     let cells = (0..SHADES).map(shade).collect();
     scale.layers.push(Layer::Cells { name: "scale".into(), cells, colour });
     scale
-}
-
-/// Slumps by log₁₀ of the cohesive time, a group a state and cohesive Bond.
-fn groups(rows: &Rows<'_>, unit_secs: f64) -> Vec<Alike> {
-    let mut all = Vec::new();
-    for seed in rows.seeds() {
-        for bond in
-            rows.values(|config| config.parameters.bond).into_iter().filter(|bond| *bond > 0.0)
-        {
-            let here = rows.such_that(|config| {
-                config.origin.seed == Some(seed) && config.parameters.bond == Some(bond)
-            });
-            let run = |(config, outcome): &(&Config, &Outcome)| {
-                (cohesive_time(config, unit_secs).log10(), outcome.slump)
-            };
-            all.push(here.0.iter().map(run).collect());
-        }
-    }
-    all
 }
 
 /// By how much the slump is larger away from a cohesive time of 1 than near it, at the same state and Bond: a value
@@ -167,25 +145,22 @@ fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
 /// That slump is lower where the cohesive time is near 1 than away from it. Where the lowest slump of each Bond
 /// lies is not asked: without any effect of Δt that, too, is somewhere.
 fn claim(groups: &[Alike], states: usize) -> Claim {
-    let told = mean(&depths(groups, states));
-    let verdict = |told: Mean| Verdict::of(told.p_above(0.0), told.p_below(0.0));
-    let holds = |groups: &[Alike]| verdict(mean(&depths(groups, states))) == Verdict::Holds;
+    let depth = |groups: &[Alike]| mean(&depths(groups, states));
+    let verdict = |depth: Mean| Verdict::of(depth.p_above(0.0), depth.p_below(0.0));
     let measured = format!(
-        "slump at cohesive times beyond {:.2} … {NEAR} less that within, at the same state and Bond: {:+.3} ({:+.3} … \
-         {:+.3}), {} states; above 0: {}",
+        "slump at cohesive times beyond {:.2} … {NEAR} less that within, at the same state and Bond: {}, {} states; above \
+         0: {}",
         1.0 / NEAR,
-        told.mean,
-        told.low,
-        told.high,
-        told.count,
-        p_value(told.p_above(0.0))
+        depth(groups).signed(3),
+        depth(groups).count,
+        p_value(depth(groups).p_above(0.0))
     );
     Claim::new(
         "Beyond the paper: over the plane of Bond and Δt the slump is lower near a cohesive time of 1 than away from it",
         measured.replace('-', "−"),
-        verdict(told),
+        verdict(depth(groups)),
     )
-    .by_chance(chance::told(chance::share(groups, |_| 0.0, holds)))
+    .shuffled(groups, |_| 0.0, |groups| verdict(depth(groups)) == Verdict::Holds)
     .hanging_on("the shifted cone; a factor of 3 as near; the ranges of Bond and Δt, which say what away is")
 }
 

@@ -4,11 +4,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
-use super::registry::{FIGURES, FigureInfo};
-use super::{Figure, Workshop};
-use crate::chart;
+use super::{FIGURES, Figure, FigureInfo, StudyRunner};
 use crate::error::{Error, Result};
 use crate::output::{check_writable, note_line, print_line, print_text, write_file};
+use crate::report::write_sheet;
 use crate::solver::worst;
 
 /// The figures that are pictures of grains, drawn together.
@@ -46,18 +45,22 @@ pub fn reproduce(
         names.iter().any(asked_for)
     };
     check_writable("out", folder)?;
-    let mut workshop = Workshop::new(folder.join("studies"), quick);
+    let mut studies = StudyRunner::new(folder.join("studies"), quick);
     let mut report = Report::new(quick);
     for info in FIGURES.iter().filter(|figure| wanted(figure.name)) {
         let begun = Instant::now();
         for study in info.studies {
-            workshop.run(study)?;
+            studies.run(study)?;
         }
-        let mut figure = (info.make)(&workshop)?;
-        workshop.qualify(info.studies, &mut figure.claims);
+        let mut figure = (info.make)(&studies)?;
+        studies.qualify(info.studies, &mut figure.claims);
+        figure.sheet.caption.extend(studies.note(info.studies));
         let quick = if quick { " --quick" } else { "" };
         let command = format!("slump reproduce {} --out figures{quick}", info.name);
-        write(&figure, folder, &command)?;
+        write_sheet(folder, figure.name, &figure.sheet, &command)?;
+        if let Some(table) = &figure.table {
+            write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
+        }
         note_line(format_args!("{}: {:.0} s", info.name, begun.elapsed().as_secs_f64()));
         report.add(info, &figure);
     }
@@ -66,19 +69,9 @@ pub fn reproduce(
         report.snapshots();
     }
     let path = folder.join("report.md");
-    write_file(&path, report.finish(&workshop, started.elapsed().as_secs_f64()).as_bytes())?;
+    write_file(&path, report.finish(&studies, started.elapsed().as_secs_f64()).as_bytes())?;
     print_line(path.display());
     Ok(())
-}
-
-fn write(figure: &Figure, folder: &Path, command: &str) -> Result<()> {
-    let path = |ending: &str| folder.join(format!("{}.{ending}", figure.name));
-    write_file(&path("csv"), &figure.sheet.to_csv()?)?;
-    write_file(&path("png"), &chart::png(&figure.sheet, command)?)?;
-    if let Some(table) = &figure.table {
-        write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
-    }
-    write_file(&path("svg"), chart::svg(&figure.sheet)?.as_bytes())
 }
 
 /// `report.md`.
@@ -109,9 +102,9 @@ impl Report {
         let _ = write!(self.text, "\n## {0}\n\n![{0}]({0}.png)\n\n", figure.name);
         for claim in &figure.claims {
             let _ = writeln!(self.text, "* {}.\n  Measured: {}.", claim.said, claim.measured);
-            for (what, told) in [("By chance", &claim.by_chance), ("Hangs on", &claim.hangs_on)] {
-                if !told.is_empty() {
-                    let _ = writeln!(self.text, "  {what}: {told}.");
+            for (what, words) in [("By chance", &claim.by_chance), ("Hangs on", &claim.hangs_on)] {
+                if !words.is_empty() {
+                    let _ = writeln!(self.text, "  {what}: {words}.");
                 }
             }
             let _ = writeln!(self.text, "  **{}**", claim.verdict.words());
@@ -134,16 +127,16 @@ impl Report {
         }
     }
 
-    fn finish(mut self, workshop: &Workshop, secs: f64) -> String {
+    fn finish(mut self, studies: &StudyRunner, secs: f64) -> String {
         self.text.push_str(
             "\n## Studies\n\n| study | runs | core seconds | steps not solved as asked | largest residual \
              | not finite |\n|---|---|---|---|---|---|\n",
         );
-        for (name, (_, table)) in &workshop.finished {
-            let outcomes = || table.rows.iter().map(|(.., outcome)| outcome);
-            let steps: u64 = outcomes().map(|outcome| outcome.steps).sum();
-            let unsolved: u64 = outcomes().map(|outcome| outcome.unconverged_steps).sum();
-            let residual = outcomes().map(|outcome| outcome.largest_residual).fold(0.0, worst);
+        for (name, (_, table)) in &studies.finished {
+            let results = || table.rows.iter().map(|(.., result)| result);
+            let steps: u64 = results().map(|result| result.tally.steps).sum();
+            let unsolved: u64 = results().map(|result| result.tally.unconverged_steps).sum();
+            let residual = results().map(|result| result.tally.largest_residual).fold(0.0, worst);
             let _ = writeln!(
                 self.text,
                 "| {name} | {} | {:.0} | {:.2} % | {residual:.1e} | {} |",
@@ -161,5 +154,16 @@ impl Report {
             rayon::current_num_threads()
         );
         self.text
+    }
+}
+
+#[cfg(test)]
+mod tmp {
+    #[test]
+    fn tmp_reproduce() {
+        let (Ok(name), Ok(out)) = (std::env::var("TMP_FIG"), std::env::var("TMP_OUT")) else {
+            return;
+        };
+        super::reproduce(&[name], out.as_ref(), true, |_| Ok(())).unwrap();
     }
 }

@@ -1,19 +1,19 @@
 //! How well a step must be solved: the slump of piles whose steps get so many sweeps, reach such a residual of
 //! Coulomb's law, or are certified under bounds of friction taken anew so often, by the number of grains.
 
-use super::paired::{Paired, columns, widest};
-use super::table::Table;
-use super::workshop::Rows;
-use super::{Figure, Workshop};
-use crate::chart::{Axis, Chart, Corner, Layer, Look, PALETTE, Sheet};
+use super::comparison::{PairedSlumps, claim_of_size, columns, widest};
+use super::studies::Rows;
+use super::{Figure, StudyRunner};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
+use crate::report::ReportTable;
 use crate::solver::{Fallback, FrictionModel, SolverChanges, StopTest};
 use crate::statistics::mean;
 
 /// How steps are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Effort {
+enum StepAccuracy {
     /// So many sweeps under Coulomb's law.
     Sweeps(u32),
     /// To a residual of Coulomb's law, as far as that is to be had.
@@ -25,9 +25,9 @@ enum Effort {
 }
 
 /// What others are compared with: solved in every step, at every size.
-const REFERENCE: Effort = Effort::Certified(1);
+const REFERENCE: StepAccuracy = StepAccuracy::Certified(1);
 
-impl Effort {
+impl StepAccuracy {
     fn of(config: &Config) -> Self {
         let SolverChanges {
             friction_model,
@@ -76,53 +76,52 @@ impl Effort {
     }
 }
 
-/// One number of grains, solved in every way.
-struct Size<'a> {
+/// Piles of one number of grains, solved within every accuracy.
+struct Piles<'a> {
     grains: usize,
     rows: Rows<'a>,
 }
 
-impl<'a> Size<'a> {
+impl<'a> Piles<'a> {
     fn all(rows: &Rows<'a>) -> Vec<Self> {
-        let counts = rows.values(|config| config.origin.grains.map(|grains| grains as f64));
+        let counts = rows.values(|config| config.source.grains.map(|grains| grains as f64));
         let of_count = |count: f64| {
             let grains = count as usize;
-            Self { grains, rows: rows.such_that(|config| config.origin.grains == Some(grains)) }
+            Self { grains, rows: rows.such_that(|config| config.source.grains == Some(grains)) }
         };
         counts.into_iter().map(of_count).collect()
     }
 
     /// In the order of the study.
-    fn efforts(&self) -> Vec<Effort> {
-        let mut efforts = Vec::new();
+    fn accuracies(&self) -> Vec<StepAccuracy> {
+        let mut accuracies = Vec::new();
         for (config, _) in &self.rows.0 {
-            let effort = Effort::of(config);
-            if !efforts.contains(&effort) {
-                efforts.push(effort);
+            let accuracy = StepAccuracy::of(config);
+            if !accuracies.contains(&accuracy) {
+                accuracies.push(accuracy);
             }
         }
-        efforts
+        accuracies
     }
 
-    fn by(&self, effort: Effort) -> Rows<'a> {
-        self.rows.such_that(|config| Effort::of(config) == effort)
+    fn by(&self, accuracy: StepAccuracy) -> Rows<'a> {
+        self.rows.such_that(|config| StepAccuracy::of(config) == accuracy)
     }
 
-    fn against_reference(&self, effort: Effort) -> Paired<'a> {
-        let Self { grains, .. } = *self;
-        Paired { grains, reference: self.by(REFERENCE), other: self.by(effort) }
+    fn against_reference(&self, accuracy: StepAccuracy) -> Vec<PairedSlumps> {
+        PairedSlumps::all(&self.by(REFERENCE), &self.by(accuracy))
     }
 
     /// Those that are no reference.
-    fn others(&self) -> impl Iterator<Item = (usize, Effort)> {
-        self.efforts().into_iter().enumerate().filter(|(_, effort)| *effort != REFERENCE)
+    fn others(&self) -> impl Iterator<Item = (usize, StepAccuracy)> {
+        self.accuracies().into_iter().enumerate().filter(|(_, accuracy)| *accuracy != REFERENCE)
     }
 }
 
-pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
-    let rows = workshop.rows("tolerance")?;
-    let sizes = Size::all(&rows);
-    let mut charts: Vec<Chart> = sizes.iter().map(chart).collect();
+pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
+    let rows = studies.rows("tolerance")?;
+    let piles = Piles::all(&rows);
+    let mut charts: Vec<Chart> = piles.iter().map(chart).collect();
     let widest = charts.iter().map(|chart| chart.y.to).fold(0.0, f64::max);
     for chart in &mut charts {
         (chart.y.from, chart.y.to) = (-widest, widest);
@@ -135,34 +134,31 @@ pub(super) fn make(workshop: &Workshop) -> Result<Figure> {
          so often."
             .into(),
     ];
-    let mut sheet = Sheet { size: (760 * charts.len().max(2) as u32, 640), charts, caption };
-    sheet.caption.extend(workshop.note());
-    let of_size = |size: &Size<'_>| {
-        let claim = |(_, effort): (usize, Effort)| {
-            let how = format!("by {} as by certified ones", effort.long());
-            size.against_reference(effort).claim(&how)
+    let sheet = Sheet { size: (760 * charts.len().max(2) as u32, 640), charts, caption };
+    let claims_of = |of_size: &Piles<'_>| {
+        let claim = |(_, accuracy): (usize, StepAccuracy)| {
+            let how = format!("by {} as by certified ones", accuracy.long());
+            claim_of_size(of_size.grains, &how, &of_size.against_reference(accuracy))
         };
-        size.others().map(claim).collect::<Vec<_>>()
+        of_size.others().map(claim).collect::<Vec<_>>()
     };
-    let claims = sizes.iter().flat_map(of_size).collect();
-    Ok(Figure { name: "tolerance", sheet, claims, table: Some(table(&sizes)) })
+    let claims = piles.iter().flat_map(claims_of).collect();
+    Ok(Figure { name: "tolerance", sheet, claims, table: Some(table(&piles)) })
 }
 
-fn chart(size: &Size<'_>) -> Chart {
-    let efforts = size.efforts();
-    let bonds = size.rows.values(|config| config.parameters.bond);
-    let ends = (-0.6, efforts.len() as f64 - 0.4);
+fn chart(of_size: &Piles<'_>) -> Chart {
+    let accuracies = of_size.accuracies();
+    let bonds = of_size.rows.bonds();
+    let ends = (-0.6, accuracies.len() as f64 - 0.4);
     let mut x = Axis::linear("sweeps; residual; certified ×", ends.0, ends.1);
-    let marks = efforts.iter().enumerate();
-    x.ticks = marks.map(|(at, effort)| (at as f64, effort.short())).collect();
-    let all: Vec<_> = size
-        .others()
-        .map(|(at, effort)| (at, size.against_reference(effort).comparisons()))
-        .collect();
+    let marks = accuracies.iter().enumerate();
+    x.ticks = marks.map(|(at, accuracy)| (at as f64, accuracy.short())).collect();
+    let all: Vec<_> =
+        of_size.others().map(|(at, accuracy)| (at, of_size.against_reference(accuracy))).collect();
     let reach = all.iter().map(|(_, comparisons)| widest(comparisons)).fold(0.0, f64::max);
     let y = Axis::linear("difference of slump", -1.05 * reach, 1.05 * reach);
-    let mut chart = Chart::new(format!("{} grains", size.grains), x, y);
-    chart.legend = Corner::LowerLeft;
+    let mut chart = Chart::new(format!("{} grains", of_size.grains), x, y);
+    chart.legend = LegendCorner::LowerLeft;
     for (index, &bond) in bonds.iter().enumerate() {
         let here = all.iter().flat_map(|(at, comparisons)| {
             let of_bond = comparisons.iter().filter(|one| one.bond == bond);
@@ -173,45 +169,43 @@ fn chart(size: &Size<'_>) -> Chart {
         chart.layers.push(curve.beside(2 * index, 2 * bonds.len() - 1));
     }
     let zero = [ends.0, ends.1].map(|x| (x, 0.0));
-    let zero = crate::chart::points(zero);
+    let zero = points(zero);
     chart.layers.push(Layer::quiet("none", zero, PALETTE[0], Look::Dashes(1)));
     chart
 }
 
 /// The numbers behind the claims.
-fn table(sizes: &[Size<'_>]) -> Table {
+fn table(piles: &[Piles<'_>]) -> ReportTable {
     let columns = columns(&["grains", "effort", "bond", "dt", "unsolved"], "slump_reference");
     let mut rows = Vec::new();
-    for size in sizes {
-        for (_, effort) in size.others() {
-            let runs = size.against_reference(effort);
-            for one in runs.comparisons() {
-                let of_bond =
-                    runs.other.such_that(|config| config.parameters.bond == Some(one.bond));
-                let share = of_bond.outcomes(|outcome| {
-                    let unsolved = outcome.unconverged_steps - outcome.fallback_steps;
-                    unsolved as f64 / outcome.steps as f64
+    for of_size in piles {
+        for (_, accuracy) in of_size.others() {
+            for one in of_size.against_reference(accuracy) {
+                let share = of_size.by(accuracy).of_bond(one.bond).results(|result| {
+                    let unsolved = result.tally.unconverged_steps - result.tally.fallback_steps;
+                    unsolved as f64 / result.tally.steps as f64
                 });
-                let mut row = vec![size.grains.to_string(), effort.long(), one.bond.to_string()];
+                let mut row =
+                    vec![of_size.grains.to_string(), accuracy.long(), one.bond.to_string()];
                 row.extend([format!("{:e}", one.step), format!("{:.4}", mean(&share).mean)]);
                 row.extend(one.cells());
                 rows.push(row);
             }
         }
     }
-    Table { name: "tolerance-differences", columns, rows }
+    ReportTable { name: "tolerance-differences", columns, rows }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::verdict::Verdict;
+    use super::super::claims::Verdict;
     use super::*;
-    use crate::Outcome;
+    use crate::RunResult;
     use crate::solver::Method;
 
-    fn run(grains: usize, seed: u64, effort: Effort, slump: f64) -> (Config, Outcome) {
+    fn run(grains: usize, seed: u64, accuracy: StepAccuracy, slump: f64) -> (Config, RunResult) {
         let mut config = Config::default();
-        (config.origin.seed, config.origin.grains) = (Some(seed), Some(grains));
+        (config.source.seed, config.source.grains) = (Some(seed), Some(grains));
         config.parameters.bond = Some(20.0);
         config.parameters.time_step_secs = Some(1e-3);
         let SolverChanges {
@@ -225,48 +219,49 @@ mod tests {
             ..
         } = &mut config.solver;
         *method = Some(Method::Auto);
-        match effort {
-            Effort::Sweeps(sweeps) => *max_sweeps = Some(sweeps),
-            Effort::Residual(residual) | Effort::FallingBack(residual) => {
+        match accuracy {
+            StepAccuracy::Sweeps(sweeps) => *max_sweeps = Some(sweeps),
+            StepAccuracy::Residual(residual) | StepAccuracy::FallingBack(residual) => {
                 (*stop, *tolerance) = (Some(StopTest::Residual), Some(residual));
-                let falls_back = effort == Effort::FallingBack(residual);
+                let falls_back = accuracy == StepAccuracy::FallingBack(residual);
                 *fallback = Some(if falls_back { Fallback::Tresca } else { Fallback::None });
             }
-            Effort::Certified(solves) => {
+            StepAccuracy::Certified(solves) => {
                 (*friction_model, *model_solves) = (Some(FrictionModel::Tresca), Some(solves));
             }
         }
-        (config, Outcome::of_slump(slump))
+        (config, RunResult::of_slump(slump))
     }
 
     #[test]
-    fn efforts_are_told_apart_and_compared_with_certified_steps_state_by_state() {
+    fn accuracies_are_told_apart_and_compared_with_certified_steps_state_by_state() {
         let others = [
-            (Effort::Sweeps(10), 0.1),
-            (Effort::Residual(1e-3), 1e-4),
-            (Effort::FallingBack(1e-3), 1e-4),
-            (Effort::Certified(4), 1e-4),
+            (StepAccuracy::Sweeps(10), 0.1),
+            (StepAccuracy::Residual(1e-3), 1e-4),
+            (StepAccuracy::FallingBack(1e-3), 1e-4),
+            (StepAccuracy::Certified(4), 1e-4),
         ];
         let mut runs = Vec::new();
         for seed in 1..=8 {
             let slump = 0.1 * seed as f64;
-            for (effort, shift) in others.into_iter().chain([(REFERENCE, 0.0)]) {
+            for (accuracy, shift) in others.into_iter().chain([(REFERENCE, 0.0)]) {
                 // Not quite the same shift in each state: else there is no scatter to judge by.
                 let shift = shift * (1.0 + 0.1 * (seed % 3) as f64);
-                runs.push(run(500, seed, effort, slump + shift));
+                runs.push(run(500, seed, accuracy, slump + shift));
             }
         }
-        let rows = Rows(runs.iter().map(|(config, outcome)| (config, outcome)).collect());
-        let sizes = Size::all(&rows);
-        assert_eq!(sizes.len(), 1);
-        let found: Vec<_> = sizes[0].others().collect();
-        let expected: Vec<_> = others.iter().map(|(effort, _)| *effort).enumerate().collect();
+        let rows = Rows(runs.iter().map(|(config, result)| (config, result)).collect());
+        let piles = Piles::all(&rows);
+        assert_eq!(piles.len(), 1);
+        let found: Vec<_> = piles[0].others().collect();
+        let expected: Vec<_> = others.iter().map(|(accuracy, _)| *accuracy).enumerate().collect();
         assert_eq!(found, expected);
-        let verdict = |effort| sizes[0].against_reference(effort).claim("alike").verdict;
-        assert_eq!(verdict(Effort::Sweeps(10)), Verdict::Fails);
-        let table = table(&sizes);
+        let verdict =
+            |accuracy| claim_of_size(500, "alike", &piles[0].against_reference(accuracy)).verdict;
+        assert_eq!(verdict(StepAccuracy::Sweeps(10)), Verdict::Fails);
+        let table = table(&piles);
         assert_eq!(table.rows.len(), 4);
         assert!(table.rows[0].contains(&"0.1112".to_owned()), "{:?}", table.rows[0]);
-        assert_eq!(chart(&sizes[0]).x.ticks[1], (1.0, "1e−3".to_owned()));
+        assert_eq!(chart(&piles[0]).x.ticks[1], (1.0, "1e−3".to_owned()));
     }
 }

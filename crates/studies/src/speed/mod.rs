@@ -5,26 +5,26 @@
 //! `measured/`: journals of what was measured, by program and processor, so that the same command
 //! goes on where it was stopped and never mixes times of different programs.
 
-mod bench;
-mod entrants;
-mod look;
+mod collection;
 mod models;
-mod peers;
-mod race;
-mod rest;
-mod runs;
+mod performance;
 mod simulations;
 mod sizes;
+mod solves;
 mod steps;
+mod variants;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
-use self::bench::{Bench, Part};
-use super::chart::{png, svg};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::chart::{Sheet, png, svg};
 use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, note_line, print_line, print_text, write_file};
+use crate::runner::Runner;
 
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -35,8 +35,6 @@ pub enum ChartPart {
     Simulation,
     /// What a scene's model costs
     Model,
-    /// A step of 2,000 grains at rest against other engines
-    Rest,
     /// A step of 500 to 10,000 grains, to residuals and to a certificate
     Size,
 }
@@ -52,8 +50,6 @@ pub struct ChartOptions {
     pub large: bool,
     /// The parts; all where there is none.
     pub only: Vec<ChartPart>,
-    /// Folder of tables of other engines' runs (`benches/peers`); none are drawn where it is missing.
-    pub peers: PathBuf,
 }
 
 impl ChartOptions {
@@ -67,52 +63,83 @@ impl ChartOptions {
     }
 }
 
+/// A finished chart with what is said of it.
+struct ChartSection {
+    /// Name of its files.
+    name: String,
+    sheet: Sheet,
+    /// Markdown; may be empty.
+    report: String,
+    /// (name, CSV) of tables beside the sheet's own.
+    tables: Vec<(String, String)>,
+}
+
+/// Where charts are made.
+struct Bench<'a> {
+    options: &'a ChartOptions,
+    machine: Machine,
+}
+
+impl Bench<'_> {
+    fn states_folder(&self) -> PathBuf {
+        self.options.out.join("states")
+    }
+
+    /// A runner of the measurements of this program on this machine.
+    fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
+        &self,
+        name: &str,
+    ) -> Result<Runner<T>> {
+        self.machine.runner(&self.options.out, self.options.quick, name)
+    }
+
+    /// Lines below a chart: what it shows, then where it was measured.
+    fn caption(&self, lines: &[&str]) -> Vec<String> {
+        let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
+        let quick = if self.options.quick { "Quick pass. " } else { "" };
+        caption.push(format!("{quick}{}", self.machine.words()));
+        caption
+    }
+
+    /// Writes the files of a section, and gives its part of the report.
+    fn write(&self, section: &ChartSection) -> Result<String> {
+        let ChartSection { name, sheet, report, tables } = section;
+        let path = |file: &str, ending: &str| self.options.out.join(format!("{file}.{ending}"));
+        write_file(&path(name, "csv"), &sheet.to_csv()?)?;
+        write_file(&path(name, "png"), &png(sheet, &self.options.command())?)?;
+        write_file(&path(name, "svg"), svg(sheet)?.as_bytes())?;
+        for (table, text) in tables {
+            write_file(&path(table, "csv"), text.as_bytes())?;
+        }
+        Ok(format!("\n![{name}]({name}.png)\n\n{report}\n"))
+    }
+}
+
 /// Measures and draws into a folder.
 ///
 /// # Errors
 /// Where the folder cannot be written, or a simulation fails.
 pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     check_writable("out", &options.out)?;
-    let bench = Bench {
-        folder: options.out.clone(),
-        quick: options.quick,
-        large: options.large,
-        peers: options.peers.clone(),
-        machine: Machine::this()?,
-    };
-    let unasked = |part| match part {
-        // Settling 2,000 grains takes longer than the whole quick pass.
-        ChartPart::Rest => !options.quick,
+    let bench = Bench { options, machine: Machine::this()? };
+    let is_wanted = |part| match part {
+        _ if !options.only.is_empty() => options.only.contains(&part),
         ChartPart::Size => options.large,
         ChartPart::Step | ChartPart::Simulation | ChartPart::Model => true,
     };
-    let wanted = |part| {
-        if options.only.is_empty() { unasked(part) } else { options.only.contains(&part) }
-    };
     let mut report = format!("# Speed against accuracy\n\n{}\n", bench.machine.words());
-    type Make = fn(&Bench) -> Result<Vec<Part>>;
-    let makers: [(ChartPart, &str, Make); 5] = [
+    type Make = fn(&Bench) -> Result<Vec<ChartSection>>;
+    let makers: [(ChartPart, &str, Make); 4] = [
         (ChartPart::Step, "Single steps", steps::make),
         (ChartPart::Simulation, "Whole simulations", simulations::make),
         (ChartPart::Model, "What a scene's model costs", models::make),
-        (ChartPart::Rest, "A step at rest, against other engines", rest::make),
         (ChartPart::Size, "Steps by size", sizes::make),
     ];
-    for (part, title, make) in makers {
-        if !wanted(part) {
-            continue;
-        }
+    for (_, title, make) in makers.into_iter().filter(|(part, ..)| is_wanted(*part)) {
         let begun = Instant::now();
         report.push_str(&format!("\n## {title}\n"));
-        for Part { name, sheet, report: told, tables } in make(&bench)? {
-            let path = |ending: &str| options.out.join(format!("{name}.{ending}"));
-            write_file(&path("csv"), &sheet.to_csv()?)?;
-            write_file(&path("png"), &png(&sheet, &options.command())?)?;
-            write_file(&path("svg"), svg(&sheet)?.as_bytes())?;
-            for (table, text) in tables {
-                write_file(&options.out.join(format!("{table}.csv")), text.as_bytes())?;
-            }
-            report.push_str(&format!("\n![{name}]({name}.png)\n\n{told}\n"));
+        for section in make(&bench)? {
+            report.push_str(&bench.write(&section)?);
         }
         note_line(format_args!("{title}: {:.0} s", begun.elapsed().as_secs_f64()));
     }
@@ -123,7 +150,12 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     Ok(())
 }
 
-/// Where the tables of other engines lie in the source tree.
-pub fn default_peers_folder() -> &'static Path {
-    Path::new("benches/peers/results")
+/// A number of a CSV table; nothing where there is none.
+fn csv_cell(value: Option<f64>) -> String {
+    value.map_or(String::new(), |value| format!("{value:e}"))
+}
+
+/// Values in words, with commas between them.
+fn listed<T>(values: impl IntoIterator<Item = T>, word: impl Fn(T) -> String) -> String {
+    values.into_iter().map(word).collect::<Vec<_>>().join(", ")
 }

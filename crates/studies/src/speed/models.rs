@@ -3,8 +3,8 @@
 
 use std::time::Instant;
 
-use super::{Bench, Part};
-use crate::chart::{Axis, Cell, Chart, INK, Layer, Rgb, Sheet};
+use super::{Bench, ChartSection};
+use crate::chart::{Axis, Chart, INK, Layer, MapCell, Sheet};
 use crate::error::Result;
 use crate::scene::{Scene, cradle, paper_pile};
 use crate::sim::Simulation;
@@ -15,7 +15,7 @@ const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false, coh
 const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: false, cohesion: true };
 
 /// One scene with one model.
-struct Entry {
+struct TimedModel {
     scene: &'static str,
     model: &'static str,
     /// Where the steps that are timed begin.
@@ -25,26 +25,26 @@ struct Entry {
     secs: f64,
 }
 
-pub(super) fn make(bench: &Bench) -> Result<Vec<Part>> {
-    let mut entries = Vec::new();
-    for (model, physics) in
-        [("friction, rotation", Physics::FULL), ("neither", SMOOTH), ("line", cradle().physics)]
-    {
-        entries.push(Entry::new("cradle", model, before_the_shock(physics)?, 2000));
-    }
-    for (model, physics) in
-        [("friction, rotation", Physics::FULL), ("friction alone", UNTURNING), ("neither", SMOOTH)]
-    {
-        entries.push(Entry::new("pile of 138", model, pile(physics)?, 20));
-    }
-    let rounds = if bench.quick { 15 } else { 60 };
+pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
+    let all = [
+        ("cradle", "friction, rotation", before_the_shock(Physics::FULL)?, 2000),
+        ("cradle", "neither", before_the_shock(SMOOTH)?, 2000),
+        ("cradle", "line", before_the_shock(cradle().physics)?, 2000),
+        ("pile of 138", "friction, rotation", pile(Physics::FULL)?, 20),
+        ("pile of 138", "friction alone", pile(UNTURNING)?, 20),
+        ("pile of 138", "neither", pile(SMOOTH)?, 20),
+    ];
+    let secs = f64::INFINITY;
+    let mut models =
+        all.map(|(scene, model, start, steps)| TimedModel { scene, model, start, steps, secs });
+    let rounds = if bench.options.quick { 15 } else { 60 };
     // Round by round, so that a slow moment of the machine meets all models alike.
     for _ in 0..rounds {
-        for entry in &mut entries {
-            entry.time()?;
+        for model in &mut models {
+            model.time()?;
         }
     }
-    Ok(vec![draw(bench, &entries)])
+    Ok(vec![draw(bench, &models)])
 }
 
 /// The cradle from just before the shock on. Head-on, friction and spin stay 0, so every model does
@@ -73,11 +73,7 @@ fn pile(physics: Physics) -> Result<Simulation> {
     Scene { physics, solver, ..paper_pile()? }.simulation()
 }
 
-impl Entry {
-    fn new(scene: &'static str, model: &'static str, start: Simulation, steps: u32) -> Self {
-        Self { scene, model, start, steps, secs: f64::INFINITY }
-    }
-
+impl TimedModel {
     fn time(&mut self) -> Result<()> {
         let mut simulation = self.start.clone();
         let started = Instant::now();
@@ -89,30 +85,31 @@ impl Entry {
     }
 }
 
-fn draw(bench: &Bench, entries: &[Entry]) -> Part {
+fn draw(bench: &Bench, models: &[TimedModel]) -> ChartSection {
     let mut report =
         "| scene | model | µs a step | times as fast as the full model |\n|---|---|---|---|"
             .to_owned();
     let mut table = String::from("scene,model,secs_per_step,times_as_fast\n");
     let mut charts = Vec::new();
-    for of_scene in entries.chunk_by(|one, other| one.scene == other.scene) {
+    for of_scene in models.chunk_by(|one, other| one.scene == other.scene) {
         let (scene, full) = (of_scene[0].scene, of_scene[0].secs);
         let mut x = Axis::linear("", -0.6, of_scene.len() as f64 - 0.4);
         let y = Axis::linear("time of a step, full model = 1", 0.0, 1.2);
         let mut cells = Vec::new();
         let mut words = Vec::new();
-        for (index, Entry { model, secs, .. }) in of_scene.iter().enumerate() {
+        for (index, TimedModel { model, secs, .. }) in of_scene.iter().enumerate() {
             let (at, share, micros) = (index as f64, secs / full, 1e6 * secs);
             report.push_str(&format!("\n| {scene} | {model} | {micros:.3} | {:.2} |", 1.0 / share));
             table.push_str(&format!("{scene},\"{model}\",{secs:e},{}\n", 1.0 / share));
             let edges = [at - 0.35, at + 0.35];
-            cells.push(Cell { x: (at, edges), y: (share, [0.0, share]), value: share });
+            cells.push(MapCell { x: (at, edges), y: (share, [0.0, share]), value: share });
             let text = format!("{share:.2}  ({micros:.3} µs)");
             words.push(Layer::Words { at: (at - 0.3, share + 0.06), text, colour: INK });
             x.ticks.push((at, (*model).to_owned()));
         }
         let mut chart = Chart::new(scene, x, y);
-        chart.layers.push(Layer::Cells { name: "time over full model".into(), cells, colour: bar });
+        let colour = |_share: f64| (86, 150, 200);
+        chart.layers.push(Layer::Cells { name: "time over full model".into(), cells, colour });
         chart.layers.extend(words);
         charts.push(chart);
     }
@@ -121,9 +118,5 @@ fn draw(bench: &Bench, entries: &[Entry]) -> Part {
     ]);
     let sheet = Sheet { size: (1800, 760), charts, caption };
     let tables = vec![("chart-model-times".into(), table)];
-    Part { name: "chart-model".into(), sheet, report, tables }
-}
-
-fn bar(_share: f64) -> Rgb {
-    (86, 150, 200)
+    ChartSection { name: "chart-model".into(), sheet, report, tables }
 }

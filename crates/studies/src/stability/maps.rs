@@ -1,22 +1,42 @@
 //! Stability maps: where, over two parameters, each method holds, where it sinks or overlaps by more
 //! than 1 % of d, and where it is lost: torn, thrown, or no longer finite.
+//!
+//! Theory gives their borders. A step of Gauss–Seidel from nothing leaves the share
+//! ρ^s of what gravity adds to the slowest mode, g Δt, and of what the step before left. So a column
+//! sinks with
+//!
+//! > v = A g Δt ρ^s / (1 − ρ^s),
+//!
+//! where A = 4/π is the slowest mode's part at the top of a column of many (1 for two discs) and ρ is
+//! what `scene::stability` derives for each scene. In T it sinks by v T = 0.01 d where
+//! s = ln(q/(1 + q)) / ln ρ, q = 0.01 d/(A g Δt T). The border of springs is their critical time step.
+//!
+//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever, and Δt does
+//! not enter. One might fear another where bonds are strong and steps long, with C₀Δt²/m_ij = Bond·g·Δt²
+//! a hundredth of d: an impulse of cohesion, left alone for a step, would pull two grains into each other
+//! by that much. There is none. In the map's corner of Bond 500 and Δt = 0.01 s that is 49 d, and where
+//! steps are solved nothing overlaps: a bond pulls no more than is asked of it.
+
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
 
-use super::borders::{
-    COUNTS, DURATION_SECS, TOP_OF_COLUMN, contraction_of_column, substeps_at_border,
-    sweeps_at_border,
-};
-use super::contenders::{CONTENDERS, Contender};
-use super::measures::{sagging, sunk};
-use super::picture::colour;
-use super::trial::jitter;
-use crate::chart::{Axis, Cell, Chart, Corner, INK, Layer, Look, Sheet, points};
+use super::rest::{sagging, sunk};
+use super::table::colour;
+use super::{TriedVariant, VARIANTS, jitter};
+use crate::chart::{Axis, Chart, INK, Layer, LegendCorner, Look, MapCell, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::scene::stability::{
     breaking_bond_of_cantilever, cantilever, column_on_line, mass_ratio,
 };
+
+/// Simulated time of every run, s.
+const DURATION_SECS: f64 = 0.1;
+/// Sinking or overlap that counts, in d.
+const COUNTS: f64 = 0.01;
+/// Part of the slowest mode in the motion of a column's top.
+const TOP_OF_COLUMN: f64 = 4.0 / PI;
 
 /// A grain that has gone this far is lost, in d.
 const LOST: f64 = 1.0;
@@ -148,11 +168,11 @@ fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
     scene
 }
 
-/// 0 where the contender holds, 1 where it sinks or overlaps, 2 where it is lost. `may_swing`: what
+/// 0 where the variant holds, 1 where it sinks or overlaps, 2 where it is lost. `may_swing`: what
 /// stands on springs has not come to rest by the end, and is not lost for that.
-fn class(contender: &Contender, scene: &Scene, may_swing: bool) -> Result<f64> {
+fn class(variant: &TriedVariant, scene: &Scene, may_swing: bool) -> Result<f64> {
     let mut scene = scene.clone();
-    contender.apply(&mut scene);
+    variant.apply(&mut scene);
     let mut simulation = scene.simulation()?;
     let mut overlap = 0f64;
     while simulation.time_secs() < DURATION_SECS {
@@ -181,20 +201,20 @@ fn class(contender: &Contender, scene: &Scene, may_swing: bool) -> Result<f64> {
 }
 
 /// Who has a map.
-fn of_registry() -> impl Iterator<Item = &'static Contender> {
-    CONTENDERS.iter().filter(|one| one.is_of_registry())
+fn of_registry() -> impl Iterator<Item = &'static TriedVariant> {
+    VARIANTS.iter().filter(|one| one.is_of_registry())
 }
 
 /// All maps, each with its file's name: the methods of the registry side by side.
 ///
 /// # Errors
 /// Where a scene is not sound.
-pub fn maps(quick: bool, told: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
+pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
     let mut sheets = Vec::new();
     for map in &MAPS {
         let mut charts = Vec::new();
-        for contender in of_registry() {
-            charts.push(map.chart(contender, quick, &told)?);
+        for variant in of_registry() {
+            charts.push(map.chart(variant, quick, &progress)?);
         }
         for (number, charts) in charts.chunks(ABREAST).enumerate() {
             let mut caption = vec![
@@ -220,10 +240,7 @@ pub fn count_of_maps() -> usize {
 }
 
 impl Map {
-    fn chart(&self, contender: &Contender, quick: bool, told: &impl Fn()) -> Result<Chart>
-    where
-        Self: Sync,
-    {
+    fn chart(&self, variant: &TriedVariant, quick: bool, progress: &impl Fn()) -> Result<Chart> {
         let rows = self.y.values(quick);
         let cells = self
             .x
@@ -231,43 +248,59 @@ impl Map {
             .into_par_iter()
             .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
             .map(|(x, y)| {
-                let value = class(contender, &(self.scene)(x.0, y.0), self.may_swing)?;
-                Ok(Cell { x, y, value })
+                let value = class(variant, &(self.scene)(x.0, y.0), self.may_swing)?;
+                Ok(MapCell { x, y, value })
             })
             .collect::<Result<Vec<_>>>()?;
         let mut chart = Chart::new(
-            format!("{}: {}", self.title, contender.name),
+            format!("{}: {}", self.title, variant.name),
             Axis::log(self.x.label, self.x.from, self.x.to),
             Axis::log(self.y.label, self.y.from, self.y.to),
         );
-        chart.legend = Corner::UpperLeft;
-        chart.layers.push(Layer::Cells { name: contender.name.into(), cells, colour });
-        let places: Vec<f64> = {
-            let ratio = (self.x.to / self.x.from).powf(1.0 / 60.0);
-            (0..=60).map(|k| self.x.from * ratio.powi(k)).collect()
+        chart.legend = LegendCorner::UpperLeft;
+        chart.layers.push(Layer::Cells { name: variant.name.into(), cells, colour });
+        let ratio = (self.x.to / self.x.from).powf(1.0 / 60.0);
+        let places: Vec<f64> = (0..=60).map(|k| self.x.from * ratio.powi(k)).collect();
+        let mut push = |name: &str, look, border: &dyn Fn(f64) -> Result<f64>| -> Result<()> {
+            let mut curve = Vec::new();
+            for &x in &places {
+                curve.push((x, border(x)?));
+            }
+            curve.retain(|(_, y)| (self.y.from..=self.y.to).contains(y));
+            chart.layers.push(Layer::quiet(name, points(curve), INK, look));
+            Ok(())
         };
-        let on_chart = |curve: Vec<(f64, f64)>| {
-            let within = |&(_, y): &(f64, f64)| (self.y.from..=self.y.to).contains(&y);
-            points(curve.into_iter().filter(within))
-        };
-        if let (Some(border), "nsgs") = (self.border, contender.name) {
-            let curve = on_chart(places.iter().map(|&x| (x, border(x))).collect());
-            chart.layers.push(Layer::quiet("theory", curve, INK, Look::Dashes(3)));
+        if let (Some(border), "nsgs") = (self.border, variant.name) {
+            push("theory", Look::Dashes(3), &|x| Ok(border(x)))?;
         }
         if let Some(border) = self.border_of_statics {
-            let curve = on_chart(places.iter().map(|&x| (x, border(x))).collect());
-            chart.layers.push(Layer::quiet("statics", curve, INK, Look::Dashes(3)));
+            push("statics", Look::Dashes(3), &|x| Ok(border(x)))?;
         }
-        if let (Some(border), "dem") = (self.border_of_springs, contender.name) {
-            let curve: Result<Vec<_>> = places.iter().map(|&x| Ok((x, border(x)?))).collect();
-            chart.layers.push(Layer::quiet(
-                "critical time step",
-                on_chart(curve?),
-                INK,
-                Look::Line(3),
-            ));
+        if let (Some(border), "dem") = (self.border_of_springs, variant.name) {
+            push("critical time step", Look::Line(3), &border)?;
         }
-        told();
+        progress();
         Ok(chart)
     }
+}
+
+/// What a sweep of Gauss–Seidel leaves of the slowest mode of a column.
+pub fn contraction_of_column(count: f64) -> f64 {
+    (FRAC_PI_2 / count).cos().powi(2)
+}
+
+fn sweeps_at_border(part: f64, time_step_secs: f64, contraction: f64) -> f64 {
+    let scene = column_on_line(1);
+    let fall = part * scene.gravity.magnitude() * time_step_secs * DURATION_SECS;
+    let q = COUNTS * scene.mean_diameter / fall;
+    (q / (1.0 + q)).ln() / contraction.ln()
+}
+
+fn substeps_at_border(count: usize, time_step_secs: f64) -> Result<f64> {
+    let mut scene = column_on_line(count);
+    if let Some(dem) = VARIANTS.iter().find(|variant| variant.name == "dem") {
+        dem.apply(&mut scene);
+    }
+    let critical_secs = scene.simulation()?.critical_time_step_secs().unwrap_or(f64::INFINITY);
+    Ok(time_step_secs / critical_secs)
 }

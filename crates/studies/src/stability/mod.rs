@@ -1,23 +1,302 @@
 //! Where methods fail: scenes made to break them, each with a right answer, what was measured on it,
-//! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in
-//! the file of the same subject here, and [`CHALLENGES`] lists all.
+//! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in `rest` or `motion`
+//! here, and [`CHALLENGES`] lists all.
 
-mod borders;
-mod challenge;
-mod challenges;
-mod contenders;
 pub mod maps;
-mod measures;
-mod picture;
+mod motion;
+mod rest;
 mod table;
-mod trial;
 
-pub use borders::contraction_of_column;
-pub use challenge::{Challenge, Limits};
-pub use challenges::CHALLENGES;
-pub(crate) use contenders::CONTENDERS;
-pub use contenders::Contender;
-pub use maps::{count_of_maps, maps};
-pub use picture::picture;
-pub use table::{Cell, StabilityTable, Verdict};
-pub use trial::Trial;
+use std::sync::LazyLock;
+
+pub use maps::{contraction_of_column, count_of_maps, maps};
+pub use table::{StabilityCell, StabilityTable, StabilityVerdict, picture};
+
+use crate::contact::Numbering;
+use crate::error::{Error, Result};
+use crate::scene::{Preset, Scene};
+use crate::sim::{Simulation, Stepper};
+use crate::solver::{FrictionModel, METHODS, Method, Ordering};
+
+/// From which error on a method no longer holds, and from which on it fails.
+#[derive(Clone, Copy, Debug)]
+pub struct ErrorLimits {
+    /// Up to this error it holds.
+    holds: f64,
+    /// Above this error it fails; between the two it degrades.
+    fails: f64,
+}
+
+/// A scene made to break methods, and what is measured on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Challenge {
+    /// Its name on the command line and in the table.
+    pub name: &'static str,
+    /// What drives it into failure, with its unit.
+    driver: &'static str,
+    /// The values of the driver that a quick pass tries, from harmless to harmful.
+    pub quick: &'static [f64],
+    /// Further values of a full pass, more harmful still.
+    further: &'static [f64],
+    /// What counts as holding and as failing.
+    limits: ErrorLimits,
+    /// How the error is measured.
+    error: fn(&Trial) -> Result<f64>,
+}
+
+impl Challenge {
+    /// The challenge of that name.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn named(name: &str) -> Result<&'static Self> {
+        let names = || CHALLENGES.map(|challenge| challenge.name).join(", ");
+        CHALLENGES
+            .iter()
+            .find(|challenge| challenge.name == name)
+            .ok_or_else(|| Error::value("scene", name, format!("one of {}", names())))
+    }
+
+    const fn limits(self, holds: f64, fails: f64) -> Self {
+        Self { limits: ErrorLimits { holds, fails }, ..self }
+    }
+
+    const fn further(self, further: &'static [f64]) -> Self {
+        Self { further, ..self }
+    }
+
+    /// The error of a trial; infinite where the state is no longer finite.
+    fn error(&self, trial: &Trial) -> Result<f64> {
+        match (self.error)(trial) {
+            Ok(error) if error.is_nan() => Ok(f64::INFINITY),
+            Err(Error::NonFinite { .. }) => Ok(f64::INFINITY),
+            error => error,
+        }
+    }
+}
+
+const fn challenge(
+    name: &'static str,
+    driver: &'static str,
+    quick: &'static [f64],
+    error: fn(&Trial) -> Result<f64>,
+) -> Challenge {
+    let limits = ErrorLimits { holds: 0.0, fails: 0.0 };
+    Challenge { name, driver, quick, further: &[], limits, error }
+}
+
+/// All challenges.
+pub static CHALLENGES: [Challenge; 28] = [
+    challenge("column", "discs", &[5.0, 20.0, 80.0, 200.0], rest::column)
+        .limits(0.01, 0.2)
+        .further(&[500.0]),
+    challenge("sag", "sweeps a step", &[2000.0, 200.0, 20.0, 4.0], rest::sag).limits(0.01, 0.2),
+    challenge("mass-ratio", "ratio of masses", &[10.0, 100.0, 1e3, 1e4], rest::mass_ratio)
+        .limits(0.01, 0.2),
+    challenge("size-ratio", "ratio of radii", &[2.0, 5.0, 20.0, 100.0], rest::size_ratio)
+        .limits(0.01, 0.2),
+    challenge("chain", "time step (s)", &[2e-4, 1e-3, 5e-3, 2e-2], rest::chain).limits(0.02, 0.2),
+    challenge("cantilever", "time step (s)", &[2e-4, 1e-3, 5e-3, 2e-2], rest::cantilever)
+        .limits(0.1, 1.0),
+    challenge("bridge", "time step (s)", &[2e-4, 1e-3, 5e-3, 2e-2], rest::bridge).limits(0.1, 1.0),
+    challenge("shock", "tolerance (m/s)", &[1e-12, 1e-6, 2.2e-3], rest::shock).limits(0.01, 0.1),
+    challenge("overlap", "overlap (d)", &[0.01, 0.1, 0.5], rest::overlap).limits(0.05, 1.1),
+    challenge("squeeze", "strain", &[1e-4, 1e-2, 5e-2], rest::squeeze).limits(1e-3, 0.1),
+    challenge("moving-walls", "time step (s)", &[5e-4, 3e-3, 2e-2], rest::moving_walls)
+        .limits(0.05, 0.5),
+    challenge("friction-limit", "time step (s)", &[1e-3, 5e-3, 2e-2], rest::friction_limit)
+        .limits(0.05, 0.3),
+    challenge("arch", "time step (s)", &[1e-3, 5e-3, 2e-2], rest::arch).limits(0.05, 0.3),
+    challenge("repose", "time step (s)", &[1e-3, 5e-3, 2e-2], rest::repose).limits(0.01, 0.2),
+    challenge("repose-angle", "rows", &[2.0, 6.0, 12.0], rest::repose_angle)
+        .limits(0.02, 0.2)
+        .further(&[24.0]),
+    challenge("rest", "steps", &[300.0, 10000.0], rest::rest).limits(0.01, 0.2).further(&[1e5]),
+    challenge("bounce", "restitution", &[0.0, 0.5, 0.9, 1.0], motion::bounce).limits(0.01, 0.1),
+    challenge("newtons-cradle", "balls", &[2.0, 3.0, 20.0], motion::newtons_cradle)
+        .limits(0.05, 0.5),
+    challenge("thin-wall", "travel a step (d)", &[0.4, 1.0, 4.0], motion::thin_wall)
+        .limits(0.0, 0.3),
+    challenge("far", "distance from the origin (d)", &[1e3, 1e6, 1e9, 1e13], motion::far)
+        .limits(0.01, 0.2),
+    challenge("shuffle", "tolerance", &[1e-9, 1e-6, 1e-3, 1e-1], motion::shuffle).limits(1e-4, 0.1),
+    challenge("lift-off", "ratio of masses", &[10.0, 100.0, 1e3, 1e4], motion::lift_off)
+        .limits(1e-3, 0.1),
+    challenge(
+        "time-step-switch",
+        "factor on 2e-4 s",
+        &[2.0, 10.0, 50.0, 200.0],
+        motion::time_step_switch,
+    )
+    .limits(0.01, 0.2),
+    challenge("sliders", "seconds of sliders at random", &[0.5, 2.0, 8.0], motion::sliders)
+        .limits(0.0, 0.0)
+        .further(&[60.0]),
+    challenge("dilatancy", "time step (s)", &[1e-4, 1e-3, 5e-3], motion::dilatancy)
+        .limits(0.01, 0.1)
+        .further(&[2e-2]),
+    challenge("blow", "time step (s)", &[1e-4, 1e-3, 5e-3], motion::blow).limits(0.01, 0.1),
+    challenge("hyperstatic", "displacement (d)", &[1e-4], rest::hyperstatic)
+        .limits(0.01, 0.2)
+        .further(&[1e-6]),
+    challenge("size", "grains", &[138.0, 500.0], rest::size)
+        .limits(1e-3, 0.1)
+        .further(&[2000.0, 10000.0]),
+];
+
+/// A solver variant that is tried: a method or a stepper, or settings that go together.
+#[derive(Clone, Copy, Debug)]
+pub struct TriedVariant {
+    /// Its name in the table.
+    name: &'static str,
+    change: VariantChange,
+}
+
+/// What a variant changes of a scene.
+#[derive(Clone, Copy, Debug)]
+enum VariantChange {
+    /// The paper's stepper with this method.
+    Method(Method),
+    /// Gauss–Seidel in an order of its own.
+    Order(Ordering),
+    /// A model of friction, solved so many times a step by the method that solves it for certain.
+    Model(FrictionModel, u32),
+    /// A stepper that solves no problem by a method.
+    Stepper(Stepper),
+    /// Settings that go together.
+    Preset(Preset),
+}
+
+impl TriedVariant {
+    /// Has a scene stepped so; whatever else it says stays.
+    fn apply(&self, scene: &mut Scene) {
+        let solver = &mut scene.solver;
+        match self.change {
+            VariantChange::Method(method) => solver.method = method,
+            VariantChange::Order(ordering) => {
+                (solver.method, solver.ordering) = (Method::Nsgs, ordering);
+            }
+            VariantChange::Model(friction_model, model_solves) => {
+                solver.method = Method::InteriorPoint;
+                if scene.physics.friction {
+                    solver.friction_model = friction_model;
+                    solver.model_solves = model_solves;
+                }
+            }
+            VariantChange::Stepper(stepper) => scene.stepper = stepper,
+            VariantChange::Preset(preset) => preset.apply(scene),
+        }
+    }
+
+    /// Whether it is a method or a stepper, and not settings of one.
+    fn is_of_registry(&self) -> bool {
+        matches!(self.change, VariantChange::Method(_) | VariantChange::Stepper(_))
+    }
+}
+
+/// All variants: every method, every stepper without one, every model of friction beside Coulomb's law, and
+/// settings that mend a known failure.
+static VARIANTS: LazyLock<Vec<TriedVariant>> = LazyLock::new(|| {
+    use VariantChange::{Method, Model, Order, Preset as Together, Stepper as Step};
+    let methods = METHODS.iter().map(|info| (info.name, Method(info.method)));
+    let steppers = Stepper::ALL.iter().filter(|stepper| !stepper.uses_method());
+    let steppers = steppers.map(|&stepper| (stepper.name(), Step(stepper)));
+    let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
+    let models = models.map(|&model| (model.name(), Model(model, 1)));
+    let others = [
+        ("tresca twice", Model(FrictionModel::Tresca, 2)),
+        ("nsgs bottom-up", Order(Ordering::BottomUp)),
+        ("robust", Together(Preset::Robust)),
+    ];
+    let all = methods.chain(steppers).chain(models).chain(others);
+    all.map(|(name, change)| TriedVariant { name, change }).collect()
+});
+
+/// One variant at one level of a challenge.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial {
+    /// Who is tried.
+    variant: &'static TriedVariant,
+    /// The value of the parameter that drives the scene into failure.
+    level: f64,
+}
+
+impl Trial {
+    /// The scene at t = 0, stepped by the variant.
+    fn start(&self, mut scene: Scene) -> Result<Simulation> {
+        self.variant.apply(&mut scene);
+        scene.simulation()
+    }
+
+    /// The same with so many sweeps a step, whatever the variant says of them.
+    fn start_within(&self, sweeps: u32, mut scene: Scene) -> Result<Simulation> {
+        self.variant.apply(&mut scene);
+        scene.solver.max_sweeps = sweeps;
+        scene.simulation()
+    }
+
+    /// The level as a count.
+    fn count(&self) -> usize {
+        self.level as usize
+    }
+}
+
+/// Steps for a simulated time, s.
+fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
+    simulation.take_steps(simulation.parameters().steps_in(secs))
+}
+
+/// The longest way that any grain has gone since `scene`, in d.
+fn longest_way(simulation: &Simulation, scene: &Scene) -> f64 {
+    let now = &simulation.world().grains.positions;
+    let ways = scene.grains.iter().zip(now).map(|(grain, now)| grain.position.distance(*now));
+    ways.fold(0.0, f64::max) / scene.mean_diameter
+}
+
+/// √(2 E_kin/M), in √(g d).
+fn jitter(simulation: &Simulation) -> f64 {
+    let world = simulation.world();
+    let mass: f64 = world.grains.masses.iter().sum();
+    let scale = world.gravity.magnitude() * world.mean_diameter;
+    (2.0 * simulation.observables().kinetic_energy / (mass * scale)).sqrt()
+}
+
+/// m g d of the first disc, J.
+fn energy_scale(simulation: &Simulation) -> f64 {
+    let world = simulation.world();
+    world.grains.masses[0] * world.gravity.magnitude() * world.mean_diameter
+}
+
+/// The longest way of any grain since `scene`, in d, or the speed that is left, in √(g d), whichever is
+/// larger: 0 for what stays at rest.
+fn unrest(simulation: &Simulation, scene: &Scene) -> f64 {
+    longest_way(simulation, scene).max(jitter(simulation))
+}
+
+/// What the fixed bodies carry along the y axis, N: the sum of N n_y over their contacts.
+fn force_on_ground(simulation: &Simulation) -> f64 {
+    let numbering = Numbering::of(simulation.world());
+    let list = simulation.contacts();
+    let pairs = list.contacts().iter().zip(list.impulses());
+    let of_ground = pairs.filter(|(contact, _)| numbering.other(contact.other).grain().is_none());
+    let impulse: f64 = of_ground.map(|(contact, impulse)| impulse.normal * contact.normal.y).sum();
+    impulse / simulation.parameters().time_step_secs
+}
+
+/// Where a property that holds above a threshold begins, searched between `low` and `high` in
+/// ratio, with so many halvings.
+fn threshold(
+    [mut low, mut high]: [f64; 2],
+    halvings: u32,
+    mut holds: impl FnMut(f64) -> Result<bool>,
+) -> Result<f64> {
+    for _ in 0..halvings {
+        let middle = (low * high).sqrt();
+        if holds(middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok((low * high).sqrt())
+}

@@ -1,17 +1,18 @@
-//! Verdicts of every contender on every challenge at every level, as data, as CSV and in words.
+//! Verdicts of every solver variant on every challenge at every level, as data, as CSV, in words and as a picture.
 
 use std::fmt;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{CHALLENGES, CONTENDERS, Challenge, Contender, Limits, Trial};
+use super::{CHALLENGES, Challenge, ErrorLimits, Trial, TriedVariant, VARIANTS};
+use crate::chart::{self, Axis, Chart, INK, Layer, Rgb, Sheet};
 use crate::error::{Error, Result};
 
 /// How a method did. Later is worse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum StabilityVerdict {
     /// The answer is right.
     Holds,
     /// The answer is off, but the scene lives.
@@ -20,9 +21,9 @@ pub enum Verdict {
     Fails,
 }
 
-impl Verdict {
+impl StabilityVerdict {
     /// The verdict on an error.
-    pub(crate) fn of(error: f64, limits: Limits) -> Self {
+    fn of(error: f64, limits: ErrorLimits) -> Self {
         // Written so that NaN fails.
         if error <= limits.holds {
             Self::Holds
@@ -43,17 +44,17 @@ impl Verdict {
     }
 }
 
-/// One contender on one challenge at one level. A row of the table.
+/// One variant on one challenge at one level. A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
+pub struct StabilityCell {
     /// Name of the challenge.
     pub scene: String,
-    /// Name of the contender.
+    /// Name of the variant.
     pub method: String,
     /// Value of the challenge's driver.
     pub level: f64,
     /// What came of it.
-    pub verdict: Verdict,
+    pub verdict: StabilityVerdict,
     /// The error, to two digits: the next ones differ from build to build.
     pub error: String,
 }
@@ -61,25 +62,25 @@ pub struct Cell {
 /// All that was tried.
 #[derive(Clone, Debug, Default)]
 pub struct StabilityTable {
-    /// By challenge, contender and level.
-    pub cells: Vec<Cell>,
+    /// By challenge, variant and level.
+    pub cells: Vec<StabilityCell>,
 }
 
 impl StabilityTable {
-    /// Tries every contender on the challenges, on all cores.
+    /// Tries every variant on the challenges, on all cores.
     ///
     /// # Errors
     /// Where a scene is not sound.
     pub fn run(
         challenges: &[&'static Challenge],
         quick: bool,
-        told: impl Fn() + Sync,
+        progress: impl Fn() + Sync,
     ) -> Result<Self> {
         let cells: Vec<_> = Self::plan(challenges, quick)
             .into_par_iter()
             .map(|(challenge, trial)| {
                 let cell = cell(challenge, &trial);
-                told();
+                progress();
                 cell
             })
             .collect::<Result<_>>()?;
@@ -95,9 +96,9 @@ impl StabilityTable {
         let mut plan = Vec::new();
         for challenge in challenges {
             let further: &[f64] = if quick { &[] } else { challenge.further };
-            for contender in CONTENDERS.iter() {
+            for variant in VARIANTS.iter() {
                 for &level in challenge.quick.iter().chain(further) {
-                    plan.push((*challenge, Trial { contender, level }));
+                    plan.push((*challenge, Trial { variant, level }));
                 }
             }
         }
@@ -127,14 +128,15 @@ impl StabilityTable {
         Ok(Self { cells: cells.map_err(|error| Error::file("table.csv", error))? })
     }
 
-    /// What came of a contender on a challenge, level by level.
-    pub(crate) fn levels(&self, challenge: &Challenge, contender: &Contender) -> Vec<&Cell> {
-        let of_both = |cell: &&Cell| cell.scene == challenge.name && cell.method == contender.name;
+    /// What came of a variant on a challenge, level by level.
+    fn levels(&self, challenge: &Challenge, variant: &TriedVariant) -> Vec<&StabilityCell> {
+        let of_both =
+            |cell: &&StabilityCell| cell.scene == challenge.name && cell.method == variant.name;
         self.cells.iter().filter(of_both).collect()
     }
 
     /// The challenges that were tried.
-    pub(crate) fn challenges(&self) -> Vec<&'static Challenge> {
+    fn challenges(&self) -> Vec<&'static Challenge> {
         let tried =
             |challenge: &&Challenge| self.cells.iter().any(|cell| cell.scene == challenge.name);
         CHALLENGES.iter().filter(tried).collect()
@@ -142,19 +144,20 @@ impl StabilityTable {
 }
 
 /// What came of all levels together: the first level that did not hold, and how it failed at worst.
-pub(super) fn summary(levels: &[&Cell]) -> (Verdict, Option<f64>) {
-    let worst = levels.iter().map(|cell| cell.verdict).max().unwrap_or(Verdict::Holds);
-    let first = levels.iter().find(|cell| cell.verdict == worst && worst != Verdict::Holds);
+fn summary(levels: &[&StabilityCell]) -> (StabilityVerdict, Option<f64>) {
+    let worst = levels.iter().map(|cell| cell.verdict).max().unwrap_or(StabilityVerdict::Holds);
+    let first =
+        levels.iter().find(|cell| cell.verdict == worst && worst != StabilityVerdict::Holds);
     (worst, first.map(|cell| cell.level))
 }
 
-fn cell(challenge: &Challenge, trial: &Trial) -> Result<Cell> {
+fn cell(challenge: &Challenge, trial: &Trial) -> Result<StabilityCell> {
     let error = challenge.error(trial)?;
-    Ok(Cell {
+    Ok(StabilityCell {
         scene: challenge.name.to_owned(),
-        method: trial.contender.name.to_owned(),
+        method: trial.variant.name.to_owned(),
         level: trial.level,
-        verdict: Verdict::of(error, challenge.limits),
+        verdict: StabilityVerdict::of(error, challenge.limits),
         error: format!("{error:.1e}"),
     })
 }
@@ -164,17 +167,17 @@ const SCENE_WIDTH: usize = 17;
 const CELL_WIDTH: usize = 16;
 
 impl fmt::Display for StabilityTable {
-    /// A line a challenge, a column a contender: the worst verdict, and the first level that got it.
+    /// A line a challenge, a column a variant: the worst verdict, and the first level that got it.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{:SCENE_WIDTH$}", "")?;
-        for contender in CONTENDERS.iter() {
-            write!(out, "{:CELL_WIDTH$}", contender.name)?;
+        for variant in VARIANTS.iter() {
+            write!(out, "{:CELL_WIDTH$}", variant.name)?;
         }
         writeln!(out)?;
         for challenge in self.challenges() {
             write!(out, "{:SCENE_WIDTH$}", challenge.name)?;
-            for contender in CONTENDERS.iter() {
-                let (verdict, from) = summary(&self.levels(challenge, contender));
+            for variant in VARIANTS.iter() {
+                let (verdict, from) = summary(&self.levels(challenge, variant));
                 let from = from.map_or(String::new(), |level| format!(" {}", number(level)));
                 write!(out, "{:CELL_WIDTH$}", format!("{}{from}", verdict.name()))?;
             }
@@ -185,10 +188,73 @@ impl fmt::Display for StabilityTable {
 }
 
 /// A number as short as it can be said.
-pub(super) fn number(value: f64) -> String {
+fn number(value: f64) -> String {
     if value != 0.0 && !(1e-2..1e4).contains(&value.abs()) {
         format!("{value:e}").replace('-', "−")
     } else {
         format!("{value}")
+    }
+}
+
+/// Width of a column and height of a row, pixels.
+const COLUMN: u32 = 144;
+const ROW: u32 = 44;
+/// Room for words beside and below, pixels.
+const BESIDE: u32 = 260;
+const BELOW: u32 = 220;
+
+/// Parameters that a line of the caption names.
+const DRIVERS_A_LINE: usize = 7;
+
+/// Colours of holding, degrading and failing, told apart also by their lightness.
+const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
+
+/// The colour of a verdict, given as 0, 1 or 2.
+pub(super) fn colour(verdict: f64) -> Rgb {
+    COLOURS[(verdict as usize).min(2)]
+}
+
+/// The table as a picture.
+pub fn picture(table: &StabilityTable) -> Sheet {
+    let challenges = table.challenges();
+    let (columns, rows) = (VARIANTS.len(), challenges.len());
+    let mut x = Axis::linear("", 0.0, columns as f64);
+    x.ticks = (0..columns).map(|k| (k as f64 + 0.5, VARIANTS[k].name.to_owned())).collect();
+    let mut y = Axis::linear("", 0.0, rows as f64);
+    let height = |row: usize| (rows - row) as f64 - 0.5;
+    y.ticks = (0..rows).map(|row| (height(row), challenges[row].name.to_owned())).collect();
+    let mut chart = Chart::new("Where methods fail", x, y);
+    let mut cells = Vec::new();
+    let mut words = Vec::new();
+    for (row, challenge) in challenges.iter().enumerate() {
+        for (column, variant) in VARIANTS.iter().enumerate() {
+            let levels = table.levels(challenge, variant);
+            let (verdict, from) = summary(&levels);
+            let middle = (column as f64 + 0.5, height(row));
+            cells.push(chart::MapCell {
+                x: (middle.0, [middle.0 - 0.49, middle.0 + 0.49]),
+                y: (middle.1, [middle.1 - 0.47, middle.1 + 0.47]),
+                value: f64::from(verdict as u8),
+            });
+            let text = match (verdict, from) {
+                (StabilityVerdict::Holds, _) | (_, None) => "holds".to_owned(),
+                (_, Some(level)) => format!("from {}", number(level)),
+            };
+            words.push(Layer::Words { at: (middle.0 - 0.4, middle.1 + 0.22), text, colour: INK });
+        }
+    }
+    chart.layers.push(Layer::Cells { name: "verdict".into(), cells, colour });
+    chart.layers.extend(words);
+    let mut caption = vec![
+        "Green holds; yellow degrades and red fails, from that value of the parameter on:".into(),
+    ];
+    let drivers =
+        challenges.iter().map(|challenge| format!("{}: {}", challenge.name, challenge.driver));
+    let drivers: Vec<String> = drivers.collect();
+    caption.extend(drivers.chunks(DRIVERS_A_LINE).map(|line| line.join("; ")));
+    Sheet {
+        size: (BESIDE + COLUMN * columns as u32, BELOW + ROW * rows as u32),
+        charts: vec![chart],
+        caption,
     }
 }

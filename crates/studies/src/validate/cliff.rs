@@ -9,10 +9,14 @@
 //!
 //! It bounds H from above: a slip along a plane is one way to fall, and there may be easier ones.
 
-use super::experiment::{Case, Cases, Experiment, Found, values, with};
-use super::quantity::{Provenance, Quantity};
-use super::spread::Column;
-use super::way::Way;
+use super::collapse::CollapsingColumn;
+use super::experiment::{
+    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, SourceKind,
+    seeded,
+};
+use super::fit::rank_correlation;
+use super::variants::StepVariant;
+use crate::scene::experiments::half_width;
 use crate::statistics::mean;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
@@ -22,7 +26,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             A. Gans et al., J. Fluid Mech. 2023): run-out falls with Bond, and from some Bond on the cliff stands: its \
             centre of mass sinks by less than a fifth. The height that it then has is held against the bound of Mohr and Coulomb, \
             with tan φ_f = 0.36 and Z = 3.6.",
-    cases: Cases::Chosen(cases),
+    cases: ExperimentCases::Chosen(cases),
     judge,
 };
 
@@ -35,24 +39,19 @@ const TAN_OF_FRICTION: f64 = 0.36;
 /// Z of the columns, about.
 const COORDINATION: f64 = 3.6;
 
-fn cases(quick: bool, way: Way) -> Vec<Case> {
-    let (grains, seeds) = if quick { (260, 3u32) } else { (1_000, 8) };
+fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
+    let (grains, seeds) = if quick { (260, 3) } else { (1_000, 8) };
     let bonds: &[f64] = if quick {
         &[0.0, 10.0, 20.0, 40.0, 80.0, 160.0]
     } else {
         &[0.0, 8.0, 16.0, 23.0, 32.0, 45.0, 64.0, 90.0, 128.0, 180.0]
     };
-    let mut cases = Vec::new();
-    for &bond in bonds {
-        for seed in 1..=seeds {
-            let at = vec![("bond", bond), ("grains", f64::from(grains)), ("seed", f64::from(seed))];
-            let column =
-                Column { grains: grains as usize, aspect: ASPECT, seed: u64::from(seed), bond };
-            let cost = f64::from(grains) * 6.0 / way.time_step_secs;
-            cases.push(Case { at, cost, run: Box::new(move || column.run(way)) });
-        }
-    }
-    cases
+    seeded(bonds, seeds, |bond, seed| {
+        let at = [("bond", bond), ("grains", f64::from(grains)), ("seed", seed as f64)];
+        let column = CollapsingColumn { grains: grains as usize, aspect: ASPECT, seed, bond };
+        let cost = f64::from(grains) * 6.0 / variant.time_step_secs;
+        ExperimentCase::new(&at, cost, move || column.run(variant))
+    })
 }
 
 /// The highest cliff by Mohr and Coulomb, in d.
@@ -65,8 +64,9 @@ fn bound(bond: f64) -> f64 {
 /// The Bond from which on the columns of a seed stand, between the last that falls and the first that does not, in
 /// ratio; NaN where none falls before or none stands. Still more cohesive ones may fall again where Δt is large: that
 /// is the paper's finding, and none of Mohr's.
-fn standing_from(runs: &[&Found]) -> f64 {
-    let Some(first) = runs.iter().position(|one| one.reading("slump") < STANDS) else {
+fn standing_from(of_seed: &Measurements) -> f64 {
+    let runs = &of_seed.0;
+    let Some(first) = runs.iter().position(|case| case.reading("slump") < STANDS) else {
         return f64::NAN;
     };
     let before = first.checked_sub(1).map(|last| runs[last].at("bond"));
@@ -74,45 +74,30 @@ fn standing_from(runs: &[&Found]) -> f64 {
     (falls * runs[first].at("bond")).sqrt()
 }
 
-/// Correlation of the ranks of two columns (C. Spearman 1904), without ties.
-pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> f64 {
-    let rank = |of: fn(&(f64, f64)) -> f64, value: f64| {
-        pairs.iter().filter(|pair| of(pair) < value).count() as f64
-    };
-    let count = pairs.len() as f64;
-    let squares: f64 = pairs
-        .iter()
-        .map(|pair| (rank(|pair| pair.0, pair.0) - rank(|pair| pair.1, pair.1)).powi(2))
-        .sum();
-    1.0 - 6.0 * squares / (count * (count * count - 1.0))
-}
-
-fn judge(found: &[Found]) -> Vec<Quantity> {
-    let grains = found.first().map_or(0.0, |one| one.at("grains"));
-    let (bonds, seeds) = (values(found, "bond"), values(found, "seed"));
-    let list: Vec<String> = bonds.iter().map(f64::to_string).collect();
-    let system = format!("{grains} grains, Bond {}, {} seeds", list.join(", "), seeds.len());
-    let (mut trends, mut ratios) = (Vec::new(), Vec::new());
-    for seed in seeds {
-        let mut runs: Vec<&Found> = with(found, "seed", seed).collect();
-        runs.sort_by(|one, other| one.at("bond").total_cmp(&other.at("bond")));
-        let pairs: Vec<(f64, f64)> =
-            runs.iter().map(|one| (one.at("bond"), one.reading("run_out"))).collect();
-        trends.push(rank_correlation(&pairs));
-        // H₀ = a R₀, R₀ in d from the number of grains.
-        let height = mean(&runs.iter().map(|one| one.reading("aspect")).collect::<Vec<_>>()).mean
-            * crate::scene::experiments::half_width(grains as usize, ASPECT);
-        ratios.push(height / bound(standing_from(&runs)));
-    }
+fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+    let grains = all.first("grains");
+    let system = format!("{grains} grains, Bond {}, {}", all.list("bond"), all.seeds());
+    let (trends, ratios): (Vec<f64>, Vec<f64>) = all
+        .by_seed(|mut of_seed| {
+            of_seed.0.sort_by(|one, other| one.at("bond").total_cmp(&other.at("bond")));
+            let pairs = of_seed.points(|case| (case.at("bond"), case.reading("run_out")));
+            // H₀ = a R₀, R₀ in d from the number of grains.
+            let height =
+                mean(&of_seed.readings("aspect")).mean * half_width(grains as usize, ASPECT);
+            (rank_correlation(&pairs), height / bound(standing_from(&of_seed)))
+        })
+        .into_iter()
+        .unzip();
     let quantity = |name: &str, values: &[f64], band, source| {
-        Quantity::new(name, &system, mean(values), band, (Provenance::Memory, source))
+        PublishedQuantity::new(name, &system, values, band, (SourceKind::Memory, source))
     };
+    let fallen = "Abramian et al. 2020, Gans et al. 2023: it falls";
     vec![
         quantity(
             "rank correlation of run-out and Bond",
             &trends,
             [f64::NEG_INFINITY, -1.0, -0.7],
-            "Abramian et al. 2020, Gans et al. 2023: it falls",
+            fallen,
         ),
         quantity(
             "height of the least cohesive cliff that stands, over the bound",
@@ -121,16 +106,4 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
             "Mohr, Coulomb: at most 1",
         ),
     ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranks_correlate_as_tables_say() {
-        assert_eq!(rank_correlation(&[(1.0, 9.0), (2.0, 7.0), (5.0, 1.0)]), -1.0);
-        assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 7.0), (5.0, 9.0)]), 1.0);
-        assert_eq!(rank_correlation(&[(1.0, 2.0), (2.0, 1.0), (3.0, 3.0)]), 0.5);
-    }
 }

@@ -3,11 +3,11 @@
 //! Grains that pull with C₀ under the pressure P have a second number besides I, η = C₀/(P d). With C₀ = Bond·m g/2 of two
 //! grains of mass m, and P in units of m g/d, η = Bond/(2P).
 
-use super::experiment::{Case, Cases, Experiment, Found, values, with};
-use super::plane_shear::{Layer, PRESSURE, balance, size, takes_drives};
-use super::quantity::{Provenance, Quantity};
-use super::way::Way;
-use crate::statistics::mean;
+use super::experiment::{
+    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, SourceKind,
+};
+use super::shear::{PRESSURE, balance, layers};
+use super::variants::StepVariant;
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
     name: "cohesive-shear",
@@ -16,7 +16,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
             some strength on friction rises, and the solid fraction falls further (P. Rognon et al., Europhys. Lett. \
             74, 644, 2006). That it is so was read, where weak ends and what number each has was not, so that signs and \
             rough sizes alone are tested. Methods that take no driven walls are left out.",
-    cases: Cases::Chosen(cases),
+    cases: ExperimentCases::Chosen(cases),
     judge,
 };
 
@@ -26,42 +26,26 @@ const INERTIAL: f64 = 0.08;
 const WEAK: f64 = 1.0;
 const STRONG: f64 = 30.0;
 
-fn cases(quick: bool, way: Way) -> Vec<Case> {
-    if !takes_drives(way) {
-        return Vec::new();
-    }
-    let (cell, seeds) = size(quick);
+fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
     let strengths: &[f64] =
         if quick { &[0.0, WEAK, STRONG] } else { &[0.0, 0.3, WEAK, 3.0, 10.0, STRONG, 60.0] };
-    let mut cases = Vec::new();
-    for &strength in strengths {
-        for seed in 1..=seeds {
-            let bond = 2.0 * PRESSURE * strength;
-            let layer = Layer { cell, inertial: INERTIAL, bond, seed: u64::from(seed) };
-            cases.push(layer.case(("strength", strength), way));
-        }
-    }
-    cases
+    let layer = |&strength: &f64| (("strength", strength), INERTIAL, 2.0 * PRESSURE * strength);
+    layers(quick, variant, &strengths.iter().map(layer).collect::<Vec<_>>())
 }
 
-fn judge(found: &[Found]) -> Vec<Quantity> {
-    let grains = found.first().map_or(0.0, |one| one.at("grains"));
-    let seeds = values(found, "seed");
-    let list: Vec<String> = values(found, "strength").iter().map(f64::to_string).collect();
-    let system = format!("{grains} grains, η = {}, {} seeds", list.join(", "), seeds.len());
+fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+    let (grains, strengths) = (all.first("grains"), all.list("strength"));
+    let system = format!("{grains} grains, η = {strengths}, {}", all.seeds());
     // Each layer against that of the same seed without cohesion.
     let against = |strength: f64, reading: &str, of: fn(f64, f64) -> f64| {
-        let at = |seed: f64, strength: f64| {
-            let mut runs = with(found, "seed", seed);
-            runs.find(|one| one.at("strength") == strength)
-                .map_or(f64::NAN, |one| one.reading(reading))
-        };
-        let pairs = seeds.iter().map(|&seed| of(at(seed, strength), at(seed, 0.0)));
-        mean(&pairs.collect::<Vec<_>>())
+        all.by_seed(|of_seed| {
+            let at = |strength| of_seed.with("strength", strength).reading(reading);
+            of(at(strength), at(0.0))
+        })
     };
     let (ratio, difference) = (|with, without| with / without, |with, without| with - without);
-    let quantity = |name: &str, measured, band, source| {
-        Quantity::new(name, &system, measured, band, (Provenance::Memory, source))
+    let quantity = |name: &str, values: Vec<f64>, band, source| {
+        PublishedQuantity::new(name, &system, &values, band, (SourceKind::Memory, source))
     };
     vec![
         quantity(
@@ -88,6 +72,6 @@ fn judge(found: &[Found]) -> Vec<Quantity> {
             [f64::NEG_INFINITY, -0.1, -0.02],
             "Rognon et al. 2006: strong cohesion dilates further",
         ),
-        balance(found, ("strength", &system)),
+        balance(all, "strength", &system),
     ]
 }

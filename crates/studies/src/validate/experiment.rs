@@ -1,11 +1,11 @@
-//! What an experiment is: cases that are computed, and quantities that are made of what they come to.
+//! What an experiment is: cases that are computed, and published quantities that are held against what they come to.
 
 use serde::{Deserialize, Serialize};
 
-use super::quantity::Quantity;
-use super::way::Way;
+use super::variants::StepVariant;
 use crate::error::Result;
 use crate::number;
+use crate::statistics::{Mean, mean};
 
 /// A published experiment.
 pub(super) struct Experiment {
@@ -16,29 +16,47 @@ pub(super) struct Experiment {
     /// What is done, and after whom.
     pub about: &'static str,
     /// What is computed.
-    pub cases: Cases,
-    /// What the cases of one way come to.
-    pub judge: fn(&[Found]) -> Vec<Quantity>,
+    pub cases: ExperimentCases,
+    /// What the cases of one solver variant come to.
+    pub judge: fn(&Measurements) -> Vec<PublishedQuantity>,
 }
 
 /// The cases of an experiment, those of a quick pass where that is asked for.
-pub(super) enum Cases {
+pub(super) enum ExperimentCases {
     /// It is about methods of its own, whichever are chosen.
-    Own(fn(bool) -> Vec<Case>),
-    /// It is computed in each way that is chosen, but for those by which it has no cases.
-    Chosen(fn(bool, Way) -> Vec<Case>),
+    Own(fn(bool) -> Vec<ExperimentCase>),
+    /// It is computed by each variant that is chosen, but for those by which it has no cases.
+    Chosen(fn(bool, StepVariant) -> Vec<ExperimentCase>),
 }
 
-/// What computes a case.
-pub(super) type Run = Box<dyn Fn() -> Result<Measured> + Send + Sync>;
-
 /// One run.
-pub(super) struct Case {
-    /// Numbers that tell it from the others of its experiment and way.
+pub(super) struct ExperimentCase {
+    /// Numbers that tell it from the others of its experiment and variant.
     pub at: Vec<(&'static str, f64)>,
     /// How long it may take, in the unit of all cases: grains times steps.
     pub cost: f64,
-    pub run: Run,
+    /// What computes it.
+    pub run: Box<dyn Fn() -> Result<RunReadings> + Send + Sync>,
+}
+
+impl ExperimentCase {
+    pub(super) fn new(
+        at: &[(&'static str, f64)],
+        cost: f64,
+        run: impl Fn() -> Result<RunReadings> + Send + Sync + 'static,
+    ) -> Self {
+        Self { at: at.to_vec(), cost, run: Box::new(run) }
+    }
+}
+
+/// A case for each value and each seed from 1 on.
+pub(super) fn seeded<T: Copy>(
+    values: &[T],
+    seeds: u32,
+    case: impl Fn(T, u64) -> ExperimentCase,
+) -> Vec<ExperimentCase> {
+    let of = |&value: &T| (1..=u64::from(seeds)).map(move |seed| (value, seed));
+    values.iter().flat_map(of).map(|(value, seed)| case(value, seed)).collect()
 }
 
 /// A number that was measured.
@@ -51,7 +69,7 @@ pub(super) struct Reading {
 
 /// What one run comes to.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Measured {
+pub(super) struct RunReadings {
     pub readings: Vec<Reading>,
     pub simulated_secs: f64,
     pub steps: u64,
@@ -62,41 +80,226 @@ pub(super) struct Measured {
     pub blew_up: bool,
 }
 
-/// What became of a case.
+impl RunReadings {
+    /// A number that was measured; NaN where there is none of that name.
+    pub(super) fn reading(&self, name: &str) -> f64 {
+        let mut readings = self.readings.iter();
+        readings.find(|reading| reading.name == name).map_or(f64::NAN, |reading| reading.value)
+    }
+}
+
+/// Readings by their names.
+pub(super) fn named<const COUNT: usize>(readings: [(&str, f64); COUNT]) -> Vec<Reading> {
+    let reading = |(name, value): (&str, f64)| Reading { name: name.to_owned(), value };
+    readings.into_iter().map(reading).collect()
+}
+
+/// A case that was computed.
 #[derive(Clone, Debug)]
-pub(super) struct Found {
+pub(super) struct MeasuredCase {
     pub at: Vec<(&'static str, f64)>,
-    pub measured: Measured,
+    pub run: RunReadings,
     /// Wall-clock time, s.
     pub wall_secs: f64,
 }
 
-impl Found {
-    /// A number that its case has; NaN where there is none of that name.
+impl MeasuredCase {
+    /// A number that tells the case from others; NaN where there is none of that name.
     pub(super) fn at(&self, name: &str) -> f64 {
         self.at.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
     }
 
     /// A number that was measured; NaN where there is none of that name.
     pub(super) fn reading(&self, name: &str) -> f64 {
-        let mut readings = self.measured.readings.iter();
-        readings.find(|reading| reading.name == name).map_or(f64::NAN, |reading| reading.value)
+        self.run.reading(name)
     }
 }
 
-/// The different values of a number of some cases, rising.
-pub(super) fn values(found: &[Found], name: &str) -> Vec<f64> {
-    let mut values: Vec<f64> = found.iter().map(|one| one.at(name)).collect();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    values
+/// Cases that were computed, in their order.
+#[derive(Clone, Debug)]
+pub(super) struct Measurements<'a>(pub Vec<&'a MeasuredCase>);
+
+impl<'a> Measurements<'a> {
+    /// The different values of a number of the cases, rising.
+    pub(super) fn values(&self, name: &str) -> Vec<f64> {
+        let mut values: Vec<f64> = self.0.iter().map(|case| case.at(name)).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values
+    }
+
+    /// The same in words.
+    pub(super) fn list(&self, name: &str) -> String {
+        self.values(name).iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+    }
+
+    /// A number of the first case; 0 where there is no case.
+    pub(super) fn first(&self, name: &str) -> f64 {
+        self.0.first().map_or(0.0, |case| case.at(name))
+    }
+
+    /// The cases that a condition picks.
+    pub(super) fn such_that(&self, holds: impl Fn(&MeasuredCase) -> bool) -> Self {
+        Self(self.0.iter().copied().filter(|case| holds(case)).collect())
+    }
+
+    /// The cases with that value of a number.
+    pub(super) fn with(&self, name: &str, value: f64) -> Self {
+        self.such_that(|case| case.at(name) == value)
+    }
+
+    /// What the cases of each seed come to.
+    pub(super) fn by_seed<T>(&self, of: impl Fn(Self) -> T) -> Vec<T> {
+        self.values("seed").into_iter().map(|seed| of(self.with("seed", seed))).collect()
+    }
+
+    /// A reading of each case.
+    pub(super) fn readings(&self, name: &str) -> Vec<f64> {
+        self.0.iter().map(|case| case.reading(name)).collect()
+    }
+
+    /// A reading of the first case; NaN where there is no case.
+    pub(super) fn reading(&self, name: &str) -> f64 {
+        self.0.first().map_or(f64::NAN, |case| case.reading(name))
+    }
+
+    /// A point of each case.
+    pub(super) fn points(&self, point: impl Fn(&MeasuredCase) -> (f64, f64)) -> Vec<(f64, f64)> {
+        self.0.iter().map(|case| point(case)).collect()
+    }
+
+    /// How many seeds there are, in words.
+    pub(super) fn seeds(&self) -> String {
+        format!("{} seeds", self.values("seed").len())
+    }
 }
 
-/// The cases with that value of a number.
-pub(super) fn with<'a>(
-    found: &'a [Found],
-    name: &'a str,
-    value: f64,
-) -> impl Iterator<Item = &'a Found> {
-    found.iter().filter(move |one| one.at(name) == value)
+/// Where a number comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum SourceKind {
+    /// Taken from the source, or from a review that quotes it.
+    Read,
+    /// Recalled: the source was not at hand, so the band is generous and stands for a trend alone.
+    Memory,
+    /// Follows from what the scene is, by approximations that the experiment names.
+    Derived,
+    /// Follows from what the scene is, without any.
+    Exact,
+}
+
+impl SourceKind {
+    /// In words.
+    pub(super) const fn words(self) -> &'static str {
+        match self {
+            Self::Read => "read",
+            Self::Memory => "memory",
+            Self::Derived => "derived",
+            Self::Exact => "exact",
+        }
+    }
+}
+
+/// What a quantity should be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Expected {
+    /// The published value, or the middle of what was published.
+    pub value: f64,
+    /// What is within counts as the same: the spread of what was published, or what the experiment's size and its
+    /// idealisations leave open.
+    pub low: f64,
+    /// See `low`.
+    pub high: f64,
+    pub provenance: SourceKind,
+    /// Who says so, or how it follows.
+    pub source: &'static str,
+}
+
+/// Whether the measured agrees with the published.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Agreement {
+    /// The whole interval lies within the band.
+    Agrees,
+    /// The whole interval lies outside.
+    Differs,
+    /// Part of it does, or there is none.
+    NotDecided,
+}
+
+impl Agreement {
+    /// In words.
+    pub(super) const fn words(self) -> &'static str {
+        match self {
+            Self::Agrees => "agrees",
+            Self::Differs => "differs",
+            Self::NotDecided => "not decided",
+        }
+    }
+}
+
+/// A published quantity, and what was measured of it by one solver variant.
+#[derive(Clone, Debug)]
+pub(super) struct PublishedQuantity {
+    /// What it is, with its unit.
+    pub name: String,
+    /// How large the systems were, in words.
+    pub system: String,
+    pub expected: Expected,
+    pub measured: Mean,
+}
+
+impl PublishedQuantity {
+    /// Independent values that were measured, against the low end of a band, the published value, and the high end.
+    pub(super) fn new(
+        name: impl Into<String>,
+        system: &str,
+        values: &[f64],
+        [low, value, high]: [f64; 3],
+        (provenance, source): (SourceKind, &'static str),
+    ) -> Self {
+        let expected = Expected { value, low, high, provenance, source };
+        Self { name: name.into(), system: system.to_owned(), expected, measured: mean(values) }
+    }
+
+    /// Relative deviation of the mean from the published value.
+    pub(super) fn error(&self) -> f64 {
+        (self.measured.mean / self.expected.value - 1.0).abs()
+    }
+
+    /// Whether the two agree, where all runs are sound.
+    pub(super) fn verdict(&self) -> Agreement {
+        let (Mean { low, high, .. }, band) = (self.measured, self.expected);
+        if low >= band.low && high <= band.high {
+            Agreement::Agrees
+        } else if high < band.low || low > band.high {
+            Agreement::Differs
+        } else {
+            Agreement::NotDecided
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quantity(values: &[f64]) -> PublishedQuantity {
+        let of = (SourceKind::Exact, "arithmetic");
+        PublishedQuantity::new("two", "", values, [1.9, 2.0, 2.1], of)
+    }
+
+    #[test]
+    fn a_verdict_can_come_out_each_way() {
+        assert_eq!(quantity(&[2.0, 2.01, 1.99]).verdict(), Agreement::Agrees);
+        assert_eq!(quantity(&[2.3, 2.31, 2.29]).verdict(), Agreement::Differs);
+        assert_eq!(quantity(&[1.3, 1.31, 1.29]).verdict(), Agreement::Differs);
+        // It straddles an end of the band, or holds all of it.
+        assert_eq!(quantity(&[2.1, 2.11, 2.09]).verdict(), Agreement::NotDecided);
+        assert_eq!(quantity(&[1.0, 2.0, 3.0]).verdict(), Agreement::NotDecided);
+        // One value alone tells nothing of its spread, and what is no number tells nothing.
+        assert_eq!(quantity(&[2.0]).verdict(), Agreement::NotDecided);
+        assert_eq!(quantity(&[f64::NAN, 2.0]).verdict(), Agreement::NotDecided);
+        assert!((quantity(&[2.2, 2.2]).error() - 0.1).abs() < 1e-12);
+    }
 }

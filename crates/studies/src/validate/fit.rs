@@ -1,5 +1,7 @@
 //! Laws fitted to what was measured.
 
+use crate::statistics::{mean, slope};
+
 /// What a damped wave x_n = c rⁿ cos(nθ + φ) does in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampedWave {
@@ -63,12 +65,37 @@ pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
 
 /// Slope of the line of least squares, and the squares that it leaves.
 fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
-    let slope = crate::statistics::slope(points);
-    let count = points.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
-    let (x_mean, y_mean) = (mean(|point| point.0), mean(|point| point.1));
+    let slope = slope(points);
+    let (x_mean, y_mean) = middle(points);
     let left = |(x, y): &(f64, f64)| (y - y_mean - slope * (x - x_mean)).powi(2);
     (slope, points.iter().map(left).sum())
+}
+
+/// The means of both coordinates, through which the line of least squares goes.
+pub(super) fn middle(points: &[(f64, f64)]) -> (f64, f64) {
+    let mean = |of: fn(&(f64, f64)) -> f64| mean(&points.iter().map(of).collect::<Vec<_>>()).mean;
+    (mean(|point| point.0), mean(|point| point.1))
+}
+
+/// The power law nearest to points in their logarithms: its exponent, and what it has at 1.
+pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
+    let logarithms: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let exponent = slope(&logarithms);
+    let (x, y) = middle(&logarithms);
+    (exponent, (y - exponent * x).exp())
+}
+
+/// Correlation of the ranks of two columns (C. Spearman 1904), without ties.
+pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> f64 {
+    let rank = |of: fn(&(f64, f64)) -> f64, value: f64| {
+        pairs.iter().filter(|pair| of(pair) < value).count() as f64
+    };
+    let count = pairs.len() as f64;
+    let squares: f64 = pairs
+        .iter()
+        .map(|pair| (rank(|pair| pair.0, pair.0) - rank(|pair| pair.1, pair.1)).powi(2))
+        .sum();
+    1.0 - 6.0 * squares / (count * (count * count - 1.0))
 }
 
 #[cfg(test)]
@@ -95,5 +122,12 @@ mod tests {
             assert!((p / power - 1.0).abs() < 2e-3, "{p} is not {power}");
             assert!((found / tau - 1.0).abs() < 5e-3, "{found} is not {tau}");
         }
+    }
+
+    #[test]
+    fn ranks_correlate_as_tables_say() {
+        assert_eq!(rank_correlation(&[(1.0, 9.0), (2.0, 7.0), (5.0, 1.0)]), -1.0);
+        assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 7.0), (5.0, 9.0)]), 1.0);
+        assert_eq!(rank_correlation(&[(1.0, 2.0), (2.0, 1.0), (3.0, 3.0)]), 0.5);
     }
 }

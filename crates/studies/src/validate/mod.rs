@@ -1,7 +1,7 @@
 //! Published experiments: what was measured or derived of each, what Slump measures with an interval, whether the
-//! two agree, and what that cost, for a choice of methods, time steps and efforts.
+//! two agree, and what that cost, for a choice of methods, time steps and budgets.
 //!
-//! One file an experiment, and a row in `registry`. A verdict is of the whole interval against a band: what lies
+//! One file an experiment, and a row in [`EXPERIMENTS`]. A verdict is of the whole interval against a band: what lies
 //! within agrees, what lies outside differs, and what does neither is not decided. Numbers that were recalled, not
 //! read, have generous bands and say so.
 //!
@@ -9,41 +9,50 @@
 //! `measured/`: journals of finished runs, by program and processor, so that the same command goes on where it was
 //! stopped.
 
-mod chain;
 mod cliff;
 mod cohesive_shear;
+mod collapse;
+mod cooling;
+mod elasticity;
 mod experiment;
-mod figure;
 mod fit;
-mod flow;
-mod gas;
+mod janssen;
 mod packing;
-mod plane_shear;
-mod quantity;
-mod registry;
 mod report;
 mod repose;
 mod runs;
-mod spread;
-mod start;
-mod trial;
-mod wall_load;
-mod way;
+mod shear;
+mod silo;
+mod variants;
+mod watched;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
-pub use self::quantity::Verdict;
+pub use self::experiment::Agreement;
 
 use self::experiment::Experiment;
-use self::registry::EXPERIMENTS;
-use self::runs::{Entry, run_all};
-use self::way::Choice;
+use self::runs::run_all;
+use self::variants::VariantChoice;
 use super::chart::{png, svg};
 use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, print_line, print_text, write_file};
 use crate::solver::Method;
+
+/// All experiments, in the order of the report.
+static EXPERIMENTS: [Experiment; 10] = [
+    elasticity::EXPERIMENT,
+    cooling::EXPERIMENT,
+    packing::EXPERIMENT,
+    collapse::EXPERIMENT,
+    cliff::EXPERIMENT,
+    silo::EXPERIMENT,
+    repose::EXPERIMENT,
+    shear::EXPERIMENT,
+    cohesive_shear::EXPERIMENT,
+    janssen::EXPERIMENT,
+];
 
 /// What to hold against what was published, and how.
 #[derive(Clone, Debug)]
@@ -99,26 +108,26 @@ pub fn validate(options: &ValidateOptions) -> Result<()> {
     let started = Instant::now();
     let ValidateOptions { experiments, out, quick, methods, time_steps_secs, sweeps, tolerances } =
         options;
-    let choice = Choice::of(*quick, methods, time_steps_secs, (sweeps, tolerances))?;
+    let choice = VariantChoice::of(*quick, methods, time_steps_secs, sweeps, tolerances)?;
     check_writable("out", out)?;
     let wanted: Vec<&'static Experiment> = EXPERIMENTS
         .iter()
         .filter(|one| experiments.is_empty() || experiments.iter().any(|name| name == one.name))
         .collect();
     let machine = Machine::this()?;
-    let (journal, done) = machine.journal::<Entry>(out, *quick, "validation")?;
-    let ran = run_all(&wanted, &choice, *quick, (&journal, done))?;
-    let sheet = figure::draw(&ran, &machine.words());
+    let runner = machine.runner(out, *quick, "validation")?;
+    let ran = run_all(&wanted, &choice.variants(), *quick, &runner)?;
+    let sheet = report::sheet(&ran, &machine.words());
     write_file(&out.join("errors.csv"), &sheet.to_csv()?)?;
     write_file(&out.join("errors.png"), &png(&sheet, &options.command())?)?;
     write_file(&out.join("errors.svg"), svg(&sheet)?.as_bytes())?;
     let table = report::table(&ran);
     write_file(&out.join("quantities.csv"), &table.to_csv()?)?;
     write_file(&out.join("quantities.json"), report::json(&ran)?.as_bytes())?;
-    let told = report::told(&ran, *quick, &machine.words(), started.elapsed().as_secs_f64());
+    let text = report::markdown(&ran, *quick, &machine.words(), started.elapsed().as_secs_f64());
     let path = out.join("report.md");
-    write_file(&path, told.as_bytes())?;
-    print_text(&told);
+    write_file(&path, text.as_bytes())?;
+    print_text(&text);
     print_line(path.display());
     Ok(())
 }

@@ -1,13 +1,27 @@
-//! What was found in words, as a table, and as JSON.
+//! What was measured in words, as a table, as JSON, and as a figure.
 
 use std::fmt::Write as _;
 
 use serde_json::json;
 
-use super::quantity::{Expected, Quantity, Verdict};
-use super::runs::Ran;
+use super::experiment::{Agreement, Expected, PublishedQuantity};
+use super::runs::ExperimentRuns;
+use super::variants::{SolveBudget, StepVariant};
+use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
 use crate::error::{Error, Result};
-use crate::figures::Table;
+use crate::report::ReportTable;
+use crate::solver::Method;
+use crate::statistics::mean;
+
+/// Errors below this are drawn here.
+const LEAST_ERROR: f64 = 1e-3;
+/// Errors above this are drawn here.
+const MOST_ERROR: f64 = 2.0;
+/// Width and height of a chart, pixels.
+const WIDTH: u32 = 440;
+const HEIGHT: u32 = 400;
+/// Charts side by side; fewer leave room for the caption.
+const ABREAST: u32 = 4;
 
 /// A number as it is written.
 fn short(number: f64) -> String {
@@ -28,20 +42,20 @@ fn ends(low: f64, high: f64) -> String {
     }
 }
 
-/// Every quantity of every experiment in every way.
-pub(super) fn table(all: &[Ran]) -> Table {
+/// Every quantity of every experiment by every variant.
+pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     let mut rows = Vec::new();
-    for ran in all {
-        for (quantity, verdict) in ran.judged() {
-            let Quantity { name, system, expected, measured } = &quantity;
+    for runs in all {
+        for (quantity, verdict) in runs.judged() {
+            let PublishedQuantity { name, system, expected, measured } = &quantity;
             let Expected { value, low, high, provenance, source } = expected;
             let numbers = [*value, *low, *high, measured.mean, measured.low, measured.high];
-            let mut row = vec![ran.experiment.name.to_owned(), ran.words(), name.clone()];
+            let mut row = vec![runs.experiment.name.to_owned(), runs.words(), name.clone()];
             row.extend([system.clone(), (*source).to_owned(), provenance.words().to_owned()]);
             row.extend(numbers.map(|number| number.to_string()));
             row.extend([measured.count.to_string(), verdict.words().to_owned()]);
             row.extend(
-                [quantity.error(), ran.speed(), ran.wall_secs(), ran.unsolved()]
+                [quantity.error(), runs.speed(), runs.wall_secs(), runs.unsolved()]
                     .map(|x| x.to_string()),
             );
             rows.push(row);
@@ -67,21 +81,21 @@ pub(super) fn table(all: &[Ran]) -> Table {
         "wall_secs",
         "share_of_unsolved_steps",
     ];
-    Table { name: "quantities", columns, rows }
+    ReportTable { name: "quantities", columns, rows }
 }
 
 /// The same as JSON: numbers as numbers, and those that do not exist as null.
 ///
 /// # Errors
 /// Where it cannot be said in JSON.
-pub(super) fn json(all: &[Ran]) -> Result<String> {
+pub(super) fn json(all: &[ExperimentRuns]) -> Result<String> {
     let mut rows = Vec::new();
-    for ran in all {
-        for (quantity, verdict) in ran.judged() {
-            let Quantity { name, system, expected, measured } = &quantity;
+    for runs in all {
+        for (quantity, verdict) in runs.judged() {
+            let PublishedQuantity { name, system, expected, measured } = &quantity;
             rows.push(json!({
-                "experiment": ran.experiment.name,
-                "way": ran.words(),
+                "experiment": runs.experiment.name,
+                "way": runs.words(),
                 "quantity": name,
                 "system": system,
                 "published": expected,
@@ -89,9 +103,9 @@ pub(super) fn json(all: &[Ran]) -> Result<String> {
                 "samples": measured.count,
                 "verdict": verdict,
                 "error": quantity.error(),
-                "simulated_secs_per_sec": ran.speed(),
-                "wall_secs": ran.wall_secs(),
-                "share_of_unsolved_steps": ran.unsolved(),
+                "simulated_secs_per_sec": runs.speed(),
+                "wall_secs": runs.wall_secs(),
+                "share_of_unsolved_steps": runs.unsolved(),
             }));
         }
     }
@@ -100,7 +114,7 @@ pub(super) fn json(all: &[Ran]) -> Result<String> {
 }
 
 /// `report.md`.
-pub(super) fn told(all: &[Ran], quick: bool, machine: &str, secs: f64) -> String {
+pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs: f64) -> String {
     let mut text = "# Published experiments\n\n".to_owned();
     if quick {
         text.push_str("Quick pass: smaller systems, and fewer of them, than in the full one.\n\n");
@@ -116,53 +130,56 @@ pub(super) fn told(all: &[Ran], quick: bool, machine: &str, secs: f64) -> String
     );
     text.push_str(&summary(all));
     let mut last = "";
-    for ran in all {
-        let experiment = ran.experiment;
+    for runs in all {
+        let experiment = runs.experiment;
         if experiment.name != last {
             let _ = write!(text, "\n## {}\n\n{}\n", experiment.title, experiment.about);
             last = experiment.name;
         }
-        text.push_str(&of_way(ran));
+        text.push_str(&of_variant(runs));
     }
     text
 }
 
-/// How many quantities came out each way.
-fn summary(all: &[Ran]) -> String {
-    let verdicts: Vec<Verdict> =
-        all.iter().flat_map(Ran::judged).map(|(_, verdict)| verdict).collect();
+/// How many quantities came out how.
+fn summary(all: &[ExperimentRuns]) -> String {
+    let verdicts: Vec<Agreement> =
+        all.iter().flat_map(ExperimentRuns::judged).map(|(_, verdict)| verdict).collect();
     let count = |verdict| verdicts.iter().filter(|&&one| one == verdict).count();
     format!(
         "\nOf {} quantities {} agree, {} differ and {} are not decided.\n",
         verdicts.len(),
-        count(Verdict::Agrees),
-        count(Verdict::Differs),
-        count(Verdict::NotDecided)
+        count(Agreement::Agrees),
+        count(Agreement::Differs),
+        count(Agreement::NotDecided)
     )
 }
 
-/// The quantities of an experiment in one way.
-fn of_way(ran: &Ran) -> String {
+/// The quantities of an experiment by one variant.
+fn of_variant(runs: &ExperimentRuns) -> String {
     let mut text = format!(
         "\n**{}**: {} runs in {:.1} s of one core, {:.2} simulated seconds per second.",
-        ran.words(),
-        ran.found.len(),
-        ran.wall_secs(),
-        ran.speed()
+        runs.words(),
+        runs.cases.len(),
+        runs.wall_secs(),
+        runs.speed()
     );
-    if ran.unsolved() > 0.0 && !ran.has_sweeps_alone() {
-        let _ =
-            write!(text, " {:.1} % of the steps were not solved as asked.", 100.0 * ran.unsolved());
+    if runs.unsolved() > 0.0 && !runs.has_sweeps_alone() {
+        let _ = write!(
+            text,
+            " {:.1} % of the steps were not solved as asked.",
+            100.0 * runs.unsolved()
+        );
     }
-    if let Some(why) = ran.spoilt() {
+    if let Some(why) = runs.spoilt() {
         let _ = write!(text, " Nothing is decided: {why}.");
     }
     text.push_str(
         "\n\n| quantity | system | published | band | from | measured | 95 % interval | verdict |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
-    for (quantity, verdict) in ran.judged() {
-        let Quantity { name, system, expected, measured } = &quantity;
+    for (quantity, verdict) in runs.judged() {
+        let PublishedQuantity { name, system, expected, measured } = &quantity;
         let _ = writeln!(
             text,
             "| {name} | {system} | {} | {} | {}: {} | {} | {} | **{}** |",
@@ -176,4 +193,92 @@ fn of_way(ran: &Ran) -> String {
         );
     }
     text
+}
+
+/// Draws a point for each experiment and variant.
+pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
+    let mut variants: Vec<StepVariant> = Vec::new();
+    for variant in all.iter().filter_map(|runs| runs.variant) {
+        if !variants.contains(&variant) {
+            variants.push(variant);
+        }
+    }
+    let mut charts = Vec::new();
+    for of_experiment in all.chunk_by(|one, other| one.experiment.name == other.experiment.name) {
+        let chart = chart(of_experiment, &variants);
+        // Where no variant has a value there is nothing to see.
+        if !chart.layers.is_empty() {
+            charts.push(chart);
+        }
+    }
+    let count = charts.len() as u32;
+    let below = charts.iter_mut().skip(ABREAST as usize).step_by(ABREAST as usize);
+    below.for_each(|chart| chart.begins_row = true);
+    // Where there are fewer, it has the room of those that are not there.
+    let missing = f64::from(ABREAST.saturating_sub(count));
+    let legend = Chart::legend_of(&mut charts, 0.9 + missing);
+    charts.push(legend);
+    let size = (ABREAST * WIDTH + WIDTH * 9 / 10, HEIGHT * count.div_ceil(ABREAST).max(1) + 120);
+    let caption = vec![
+        "Mean relative deviation of an experiment's quantities from the published values; those below 1e-3 are drawn \
+         there."
+            .to_owned(),
+        "Runs were timed while the other cores ran others.".to_owned(),
+        machine.to_owned(),
+    ];
+    Sheet { size, charts, caption }.high_enough()
+}
+
+/// Mean relative error of the quantities of an experiment by one variant; NaN where one has no value, since the others
+/// alone would look better than they are.
+fn error(runs: &ExperimentRuns) -> f64 {
+    mean(&runs.judged().iter().map(|(quantity, _)| quantity.error()).collect::<Vec<_>>()).mean
+}
+
+fn chart(of_experiment: &[ExperimentRuns], variants: &[StepVariant]) -> Chart {
+    let places: Vec<(Option<StepVariant>, (f64, f64))> = of_experiment
+        .iter()
+        .map(|runs| (runs.variant, (runs.speed(), error(runs).clamp(LEAST_ERROR, MOST_ERROR))))
+        .filter(|(_, (speed, error))| speed.is_finite() && error.is_finite())
+        .collect();
+    let speeds = places.iter().map(|(_, (speed, _))| *speed);
+    let slowest = speeds.clone().fold(f64::INFINITY, f64::min).min(1e3);
+    let fastest = speeds.fold(0.0, f64::max).max(2.0 * slowest);
+    let x = Axis::log("simulated seconds per second", 0.5 * slowest, 2.0 * fastest);
+    let title = of_experiment.first().map_or("", |runs| runs.experiment.title);
+    let mut chart = Chart::new(title, x, Axis::log("relative error", LEAST_ERROR, MOST_ERROR));
+    for (variant, place) in places {
+        let (name, colour, look) = match variant {
+            None => ("methods of its own".to_owned(), INK, Look::Rings(8)),
+            Some(variant) => look_of(&variant, variants),
+        };
+        chart.layers.push(Layer::curve(name, points([place]), colour, look));
+    }
+    chart
+}
+
+/// A colour a method and time step; discs for sweeps and rings for residuals, the larger the more work.
+fn look_of(variant: &StepVariant, variants: &[StepVariant]) -> (String, Rgb, Look) {
+    let mut kinds: Vec<(Method, f64)> = Vec::new();
+    for one in variants {
+        if !kinds.contains(&(one.method, one.time_step_secs)) {
+            kinds.push((one.method, one.time_step_secs));
+        }
+    }
+    let kind = (variant.method, variant.time_step_secs);
+    let index = kinds.iter().position(|one| *one == kind).unwrap_or_default();
+    let budgets = variants.iter().filter(|one| (one.method, one.time_step_secs) == kind);
+    let number = budgets.take_while(|one| *one != variant).count();
+    let radius = 6 + 2 * number as u32;
+    let look = match variant.budget {
+        SolveBudget::Sweeps(_) => Look::Dots(radius),
+        SolveBudget::Residual(_) => Look::Rings(radius),
+    };
+    let name = format!(
+        "{}, Δt {:e} s\n{}",
+        variant.method,
+        variant.time_step_secs,
+        variant.budget.words()
+    );
+    (name, PALETTE[1 + index % (PALETTE.len() - 1)], look)
 }

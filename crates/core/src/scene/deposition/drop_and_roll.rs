@@ -11,20 +11,18 @@ use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::new_pile::NewPile;
-use super::resting::{
-    REST_SECS, Settled, Settling, in_a_box, interrupted, kinetic_energy, not_at_rest, speeds,
-};
-use super::rolling::dropped;
-use super::sizes::{LARGEST_RADIUS, random_radius};
-use super::surface::Surface;
 use crate::error::Result;
-use crate::scene::pile::{DIAMETER, GRAVITY, rough_base};
+use crate::scene::deposition::rolling::{Deposit, dropped};
+use crate::scene::deposition::{
+    LARGEST_RADIUS, NewPile, REST_SECS, Settled, Settling, in_a_box, interrupted, kinetic_energy,
+    not_at_rest, random_radius, speeds,
+};
+use crate::scene::paper::{DIAMETER, GRAVITY, rough_base};
 use crate::sim::Simulation;
 use crate::solver::SolverSettings;
 use crate::world::{Disc, Grain, Parameters};
 
-/// Of so many places that a disc may roll to it takes the lowest. With one the surface has slopes that
+/// Of so many places that a disc may roll to it takes the lowest. With one the deposit has slopes that
 /// avalanche for many steps when the pile is let go; more than a few change little.
 const TRIES: usize = 4;
 /// Part of its height by which a pile is pressed together before it settles, so that all contacts touch. Less, and the
@@ -71,20 +69,20 @@ pub fn drop_and_roll(
 ) -> Vec<Disc> {
     let fixed = base.iter().map(|disc| disc.radius);
     let largest = radii.iter().copied().chain(fixed).fold(0.0, f64::max);
-    let mut surface = Surface::new(-largest, half_width, largest);
+    let mut deposit = Deposit::new(-largest, half_width, largest);
     let is_within_reach = |disc: &&Disc| disc.position.x.abs() <= half_width + 2.0 * largest;
-    base.iter().filter(is_within_reach).for_each(|&disc| surface.add(disc));
-    let fixed = surface.discs().len();
+    base.iter().filter(is_within_reach).for_each(|&disc| deposit.add(disc));
+    let fixed = deposit.discs().len();
     for &radius in radii {
         let room = half_width - radius;
         let mut lowest = DVec2::INFINITY;
         for _ in 0..TRIES {
-            let centre = dropped(&surface, random.random_range(-room..=room), radius).centre;
+            let centre = dropped(&deposit, random.random_range(-room..=room), radius).centre;
             lowest = if centre.y < lowest.y { centre } else { lowest };
         }
-        surface.add(Disc { position: lowest, radius });
+        deposit.add(Disc { position: lowest, radius });
     }
-    surface.discs()[fixed..].to_vec()
+    deposit.discs()[fixed..].to_vec()
 }
 
 /// The grains before they settle.
@@ -98,9 +96,6 @@ pub(super) fn start_of(pile: &NewPile) -> Vec<Grain> {
 }
 
 /// Drops a pile and lets it settle.
-///
-/// # Errors
-/// Where the grains do not come to rest, or `progress` returns false.
 pub(super) fn settled(
     pile: &NewPile,
     mut progress: impl FnMut(Settling) -> bool,
@@ -125,28 +120,30 @@ pub(super) fn settled(
             simulation.step()?;
             simulation.scale_velocities(1.0 - medium.damping());
         }
-        let motion = Motion::of(&simulation);
+        let speeds_now = GrainSpeeds::of(&simulation);
         let time_secs = simulation.time_secs();
         let settling = Settling {
             simulation: &simulation,
             rains: false,
             time_secs,
             limit_secs,
-            speed_over_rest: motion.over_rest(),
+            speed_over_rest: speeds_now.over_rest(),
         };
         if !progress(settling) {
             return Err(interrupted());
         }
         let goes = match medium {
-            Medium::Thick { .. } if motion.median_speed <= STILL_SPEED => Medium::Thin,
-            Medium::Thin if motion.is_at_rest(REST_ENERGY) => {
+            Medium::Thick { .. } if speeds_now.median_speed <= STILL_SPEED => Medium::Thin,
+            Medium::Thin if speeds_now.is_at_rest(REST_ENERGY) => {
                 simulation.set_parameters(law)?;
                 Medium::None
             }
             stays => stays,
         };
         rest_steps = match medium {
-            Medium::None if motion.is_at_rest(10.0 * REST_ENERGY) => rest_steps + STEPS_PER_LOOK,
+            Medium::None if speeds_now.is_at_rest(10.0 * REST_ENERGY) => {
+                rest_steps + STEPS_PER_LOOK
+            }
             _ => 0,
         };
         medium = goes;
@@ -154,7 +151,7 @@ pub(super) fn settled(
             return Ok(Settled::of(simulation));
         }
         if time_secs > limit_secs {
-            return Err(not_at_rest(motion.over_rest(), limit_secs));
+            return Err(not_at_rest(speeds_now.over_rest(), limit_secs));
         }
     }
 }
@@ -183,14 +180,14 @@ impl Medium {
 }
 
 /// How much the grains move: speeds of their centres or rims in √(g·d), energy in m g d.
-struct Motion {
+struct GrainSpeeds {
     energy: f64,
     /// Of all but those few that may move.
     fastest: f64,
     median_speed: f64,
 }
 
-impl Motion {
+impl GrainSpeeds {
     fn of(simulation: &Simulation) -> Self {
         let unit = (GRAVITY * DIAMETER).sqrt();
         let mut speeds: Vec<f64> = speeds(simulation).collect();

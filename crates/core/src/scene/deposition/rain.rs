@@ -9,11 +9,12 @@ use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::new_pile::{NewPile, SPACING};
-use super::resting::{REST_SECS, Settled, Settling, fastest, in_a_box, interrupted, not_at_rest};
-use super::sizes::random_radius;
 use crate::error::Result;
-use crate::scene::pile::{DIAMETER, GRAVITY};
+use crate::scene::deposition::{
+    NewPile, REST_SECS, SPACING, Settled, Settling, fastest, in_a_box, interrupted, not_at_rest,
+    random_radius,
+};
+use crate::scene::paper::{DIAMETER, GRAVITY};
 use crate::solver::SolverSettings;
 use crate::world::Grain;
 
@@ -26,9 +27,6 @@ const REST_SPEED: f64 = 2e-4;
 const STEPS_PER_LOOK: u32 = 100;
 
 /// Rains a pile.
-///
-/// # Errors
-/// Where the grains do not come to rest, or `progress` returns false.
 pub(super) fn settled(
     rain: &NewPile,
     mut progress: impl FnMut(Settling) -> bool,

@@ -1,30 +1,22 @@
 //! Experiments of granular physics: grains among bodies that move.
 
-pub mod biaxial;
-pub mod collapse;
-pub mod drum;
-pub mod incline;
-pub mod shear;
-pub mod shear_periodic;
-pub mod silo;
-mod vibrated;
+mod flows;
+mod shear;
 
-pub use biaxial::biaxial;
-pub use collapse::{collapse, collapse_of, half_width};
-pub use drum::drum;
-pub use incline::{LEVEL_SECS, RATE, incline};
-pub use shear::{ShearCell, shear, shear_of};
-pub use shear_periodic::shear_periodic;
-pub use silo::{WIDTH as SILO_WIDTH, silo, silo_of};
-pub(crate) use vibrated::vibrated;
+pub(crate) use flows::vibrated;
+pub use flows::{
+    LEVEL_SECS, SILO_WIDTH, TILT_RATE, collapse, collapse_of, drum, half_width, incline, silo,
+    silo_of,
+};
+pub use shear::{ShearCell, biaxial, shear, shear_of, shear_periodic};
 
 use glam::DVec2;
 
-use super::pile::tone_in_layers;
-use super::stability::{DIAMETER, dry};
-use super::{Scene, View};
+use super::Scene;
+use super::paper::tone_in_layers;
+use super::stability::{DIAMETER, dry, view};
 use crate::solver::Method;
-use crate::world::Grain;
+use crate::world::{Boundary, Grain, Motion, MotionCourse};
 
 /// The golden mean less 1: its multiples are spread evenly over an interval, however many there are.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -59,7 +51,19 @@ fn lattice(grains: usize, width: f64, lowest: f64) -> impl Iterator<Item = DVec2
     })
 }
 
-/// What pictures show, given in diameters.
-fn view(min: DVec2, max: DVec2) -> Option<View> {
-    Some(View { min: DIAMETER * min, max: DIAMETER * max })
+/// A place in diameters, in m.
+fn place(x: f64, y: f64) -> DVec2 {
+    DIAMETER * DVec2::new(x, y)
+}
+
+/// A box without a lid on y = 0, in diameters.
+fn open_box(half_width: f64, height: f64) -> Boundary {
+    let corners =
+        [(-half_width, height), (-half_width, 0.0), (half_width, 0.0), (half_width, height)];
+    Boundary::Polyline { points: corners.map(|(x, y)| place(x, y)).into() }
+}
+
+/// A boundary that goes.
+fn moved(boundary: usize, course: MotionCourse) -> Motion {
+    Motion { boundaries: vec![boundary], course: Some(course), ..Motion::default() }
 }

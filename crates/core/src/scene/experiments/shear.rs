@@ -1,16 +1,10 @@
-//! Plane shear at constant pressure: grains between two rough plates in a periodic cell, of which the upper one is drawn
-//! along at a given speed and pressed down by a given pressure (F. da Cruz and others, *Rheophysics of dense granular
-//! materials*, Phys. Rev. E 72, 2005).
-//!
-//! What the plates do to the grains hangs on I = γ̇ √(m/P) alone, with γ̇ the shear rate, m the mass of a grain of
-//! diameter d and P the pressure, a force a length in a plane: the friction T/N of the plate grows with I, the solid
-//! fraction shrinks. Grains do not feel gravity, which says how strong a Bond number is.
+//! Grains under stress: sheared between plates and without walls, and compressed.
 
 use glam::DVec2;
 
-use super::{of_loose_grains, view};
+use super::{GOLDEN, SPACING, lattice, moved, of_loose_grains, view};
 use crate::scene::Scene;
-use crate::scene::stability::{DIAMETER, GRAVITY};
+use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
 use crate::world::{Disc, Drive, Motion, MotionCourse, Periodic};
 
 /// How many grains and how large the plates are.
@@ -29,15 +23,23 @@ const CELL: ShearCell = ShearCell { wide: 24, columns: 19, rows: 12 };
 /// Distance of rows at the start, in diameters.
 const ROW_SPACING: f64 = 1.22;
 /// From a plate to the nearest row, in diameters.
-const ROOM: f64 = 1.2;
+const PLATE_ROOM: f64 = 1.2;
 /// P, in m g/d: √(m/P) is 0.01 s.
-const PRESSURE: f64 = 10.0;
+const SHEAR_PRESSURE: f64 = 10.0;
 /// Speed of the upper plate, m/s. Pressed together the grains are some 9 d high, and I is 0.07.
-const SPEED: f64 = 0.6;
+const PLATE_SPEED: f64 = 0.6;
 
 /// 228 grains between two plates.
+///
+/// Plane shear at constant pressure: grains between two rough plates in a periodic cell, of which the upper one is drawn
+/// along at a given speed and pressed down by a given pressure (F. da Cruz and others, *Rheophysics of dense granular
+/// materials*, Phys. Rev. E 72, 2005).
+///
+/// What the plates do to the grains hangs on I = γ̇ √(m/P) alone, with γ̇ the shear rate, m the mass of a grain of
+/// diameter d and P the pressure, a force a length in a plane: the friction T/N of the plate grows with I, the solid
+/// fraction shrinks. Grains do not feel gravity, which says how strong a Bond number is.
 pub fn shear() -> Scene {
-    let mut scene = shear_of(CELL, PRESSURE, SPEED);
+    let mut scene = shear_of(CELL, SHEAR_PRESSURE, PLATE_SPEED);
     scene.parameters.time_step_secs = 2e-4;
     scene.duration_secs = 2.0;
     scene
@@ -48,12 +50,12 @@ pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     let ShearCell { wide, columns, rows } = cell;
     let spacing = [f64::from(wide) / f64::from(columns), ROW_SPACING];
     let row = |row: u8| {
-        let y = ROOM + spacing[1] * f64::from(row);
+        let y = PLATE_ROOM + spacing[1] * f64::from(row);
         (0..columns).map(move |column| DVec2::new(spacing[0] * (f64::from(column) + 0.5), y))
     };
     let mut scene = of_loose_grains("shear", (0..rows).flat_map(row));
     scene.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
-    let top = 2.0 * ROOM + spacing[1] * f64::from(rows - 1);
+    let top = 2.0 * PLATE_ROOM + spacing[1] * f64::from(rows - 1);
     let plate = |y: f64| {
         (0..wide).map(move |k| Disc {
             position: DIAMETER * DVec2::new(f64::from(k) + 0.5, y),
@@ -80,5 +82,123 @@ pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
         ..Motion::default()
     }];
     scene.view = view(DVec2::new(-0.5, -1.0), DVec2::new(f64::from(wide) + 0.5, top + 1.0));
+    scene
+}
+
+/// Columns and rows of grains at the start; rows in even number, since every other is half a place on.
+const COLUMNS: u32 = 16;
+const ROWS: u32 = 14;
+/// Distance of neighbours at the start, in diameters: that of the largest two and a bit. Grains cover 0.74 of the cell.
+const PERIODIC_SPACING: f64 = 1.11;
+/// How far diameters go from the mean, as a part of it.
+const SPREAD: f64 = 0.1;
+/// γ̇, 1/s.
+const SHEAR_RATE: f64 = 10.0;
+
+/// 224 grains that go with the shear at the start.
+///
+/// Shear without walls: a cell whose borders are one and the same line each, and whose upper border slides along the
+/// lower one (`world::periodic`).
+///
+/// Nothing but the shear rate γ̇ has a time in it, as long as grains are rigid and do not cohere. So the same grains at
+/// another rate take the same way in other times, and stresses grow with γ̇² (R. A. Bagnold, *Experiments on a
+/// gravity-free dispersion of large solid spheres in a Newtonian fluid under shear*, Proc. R. Soc. A 225, 1954).
+/// Grains do not feel gravity, which says how strong a Bond number is.
+pub fn shear_periodic() -> Scene {
+    let row_height = PERIODIC_SPACING * 0.75f64.sqrt();
+    let place = |k: u32| {
+        let (row, column) = (k / COLUMNS, k % COLUMNS);
+        let shift = if row.is_multiple_of(2) { 0.25 } else { 0.75 };
+        DVec2::new(
+            PERIODIC_SPACING * (f64::from(column) + shift),
+            row_height * (f64::from(row) + 0.5),
+        )
+    };
+    let mut scene = of_loose_grains("shear-periodic", (0..COLUMNS * ROWS).map(place));
+    for (index, grain) in (0..).zip(&mut scene.grains) {
+        let part = (GOLDEN * f64::from(index)).fract();
+        grain.radius = 0.5 * DIAMETER * (1.0 + SPREAD * (2.0 * part - 1.0));
+        grain.velocity.x = SHEAR_RATE * grain.position.y;
+        grain.feels_gravity = false;
+    }
+    let size = DVec2::new(PERIODIC_SPACING * f64::from(COLUMNS), row_height * f64::from(ROWS));
+    let borders = |period: f64| [0.0, DIAMETER * period];
+    scene.periodic = Some(Periodic {
+        shear_rate: SHEAR_RATE,
+        ..Periodic::along_both(borders(size.x), borders(size.y))
+    });
+    scene.parameters.restitution_threshold = 0.0;
+    scene.parameters.time_step_secs = 1e-4;
+    scene.duration_secs = 1.0;
+    scene.view = view(DVec2::splat(-1.0), size + 1.0);
+    scene
+}
+
+/// Number of grains.
+const GRAINS: usize = 300;
+/// Width of the box that they lie in at the start, in diameters.
+const WIDTH: f64 = 19.0;
+/// From the lattice to the walls, in diameters.
+const ROOM: f64 = 0.75;
+/// Confining pressure, in m g/d, where the walls are as high as they are in the middle of the test.
+const CONFINING_PRESSURE: f64 = 10.0;
+/// Height of the grains in the middle of the test, in diameters.
+const HEIGHT: f64 = 18.0;
+/// How far the lid comes down while the sides press the grains together, in diameters, and in which time, s.
+const CLOSING: f64 = 5.5;
+const CLOSING_SECS: f64 = 0.35;
+/// How far it goes down then, in diameters, and in which time, s: γ̇ √(m/P) is 1.4e-3.
+const COMPRESSION: f64 = 5.0;
+const COMPRESSION_SECS: f64 = 2.0;
+
+/// 300 grains between two walls that press and under a lid that comes down.
+///
+/// A biaxial test: a box of grains whose side walls are pressed inward by a constant force each and whose lid goes
+/// down at a given speed. Grains do not feel gravity.
+///
+/// First the lid comes down fast onto grains that lie loosely, while the sides press them together; then it goes on
+/// slowly. What they bear is told by their stress ratio σ_yy/σ_xx, which the table `measures` of a recording has: grains
+/// that flow bear (1 + sin φ_f)/(1 − sin φ_f), φ_f their friction angle (Mohr, Coulomb). The height changes, so that it is
+/// the force of a wall that is constant, and its pressure but for some ten per cent.
+pub fn biaxial() -> Scene {
+    let mut scene = of_loose_grains("biaxial", lattice(GRAINS, WIDTH, ROOM));
+    scene.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
+    // As many side by side as the lattice has.
+    let columns = (WIDTH / SPACING).floor();
+    let rows = (GRAINS as f64 / columns).ceil();
+    let half = 0.5 * SPACING * (columns - 1.0) + ROOM;
+    let top = 2.0 * ROOM + SPACING * (rows - 1.0);
+    scene.boundaries = vec![
+        floor(),
+        half_space(DVec2::new(-half, 0.0), DVec2::X),
+        half_space(DVec2::new(half, 0.0), DVec2::NEG_X),
+        half_space(DVec2::new(0.0, top), DVec2::NEG_Y),
+    ];
+    let of_grain = 0.25 * std::f64::consts::PI * DIAMETER * DIAMETER * scene.areal_density;
+    let pressed = |(boundary, direction): (usize, DVec2)| Motion {
+        boundaries: vec![boundary],
+        drive: Some(Drive {
+            direction,
+            force: None,
+            pressure: Some(CONFINING_PRESSURE * of_grain * GRAVITY / DIAMETER),
+            width: Some(HEIGHT * DIAMETER),
+            mass: rows * of_grain,
+            damping: 0.0,
+            speed: 0.0,
+        }),
+        ..Motion::default()
+    };
+    let down = |by: f64| DVec2::new(0.0, -DIAMETER * by);
+    let lid = moved(
+        3,
+        MotionCourse::Table {
+            times_secs: vec![0.0, CLOSING_SECS, CLOSING_SECS + COMPRESSION_SECS],
+            offsets: vec![DVec2::ZERO, down(CLOSING), down(CLOSING + COMPRESSION)],
+        },
+    );
+    let sides = [(1, DVec2::X), (2, DVec2::NEG_X)].map(pressed);
+    scene.motions = sides.into_iter().chain([lid]).collect();
+    scene.duration_secs = CLOSING_SECS + COMPRESSION_SECS;
+    scene.view = view(DVec2::new(-half - 2.0, -2.0), DVec2::new(half + 2.0, top + 2.0));
     scene
 }

@@ -1,52 +1,24 @@
 //! Scenes made to break methods: each drives one known weakness and has a right answer. What is
 //! measured on them is in `study::stability`.
 
-mod arch;
-mod balls;
-mod blow;
-mod bounce;
-mod column;
-mod dilatancy;
+mod boxes;
+mod columns;
 mod hanging;
-mod heap;
-mod lattice;
-mod lift_off;
-mod logs;
-mod mass_ratio;
-mod overlapped;
-pub mod press;
-mod slope;
-mod squeeze;
-mod thin_wall;
-mod truss;
+mod heaps;
+mod impacts;
 
 use glam::DVec2;
 
-pub use arch::{FRICTION_OF_ARCH, arch};
-pub use balls::balls;
-pub use blow::blow;
-pub use bounce::bounce;
-pub use column::{column, column_on_line};
-pub use dilatancy::dilatancy;
-pub use hanging::{breaking_bond, hanging_chain};
-pub use heap::heap_far_away;
-pub use heap::{heap, heap_of};
-pub use lattice::lattice;
-pub use lift_off::lift_off;
-pub use logs::logs;
-pub use mass_ratio::mass_ratio;
-pub use overlapped::overlapped;
-pub use press::{press, pressed_places, pressing_secs};
-pub use slope::{STEEPEST_DEGREES, heap_on_slope};
-pub use squeeze::squeeze;
-pub use thin_wall::{WALL_DISTANCE, thin_wall};
-pub use truss::bridge;
-pub use truss::{breaking_bond_of_cantilever, cantilever};
+pub use boxes::{press, pressed_places, pressing_secs, squeeze};
+pub use columns::{column, column_on_line, lift_off, logs, mass_ratio, overlapped};
+pub use hanging::{breaking_bond, breaking_bond_of_cantilever, bridge, cantilever, hanging_chain};
+pub use heaps::{
+    FRICTION_OF_ARCH, STEEPEST_DEGREES, arch, heap, heap_far_away, heap_of, heap_on_slope, lattice,
+};
+pub use impacts::{WALL_DISTANCE, balls, blow, bounce, dilatancy, thin_wall};
 
-use super::Scene;
-use crate::sim::{Remedies, Stepper};
-use crate::solver::SolverSettings;
-use crate::world::{Boundary, Grain, Gravity, Parameters, Physics};
+use super::{Scene, View};
+use crate::world::{Boundary, Grain, Gravity, Parameters};
 
 /// d of all these scenes, m.
 pub const DIAMETER: f64 = 0.01;
@@ -55,44 +27,28 @@ pub const GRAVITY: f64 = 9.8;
 /// Overlap of discs that touch at the start, in diameters: more than a well solved step opens them
 /// by, and far less than any measure.
 const TOUCH: f64 = 1e-6;
-/// The time step unless the scene is about it, s.
-const TIME_STEP_SECS: f64 = 1e-3;
-
 /// Grains under gravity, without cohesion and restitution.
 pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
-    Scene {
-        name: name.into(),
-        mean_diameter: DIAMETER,
-        areal_density: 1.0,
-        gap_tolerance: 0.0,
-        duration_secs: 0.5,
-        physics: Physics::FULL,
-        gravity: Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) },
-        stepper: Stepper::Moreau,
-        parameters: Parameters {
-            bond: 0.0,
-            time_step_secs: TIME_STEP_SECS,
-            restitution: 0.0,
-            friction: 0.5,
-            ..Parameters::default()
-        },
-        solver: SolverSettings::default(),
-        remedies: Remedies::default(),
-        view: None,
-        source: None,
-        data: None,
-        boundaries: Vec::new(),
-        motions: Vec::new(),
-        gravity_turn: None,
-        periodic: None,
-        fixed_discs: Vec::new(),
-        grains,
-    }
+    let gravity = Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) };
+    let parameters = Parameters { friction: 0.5, ..Parameters::default() };
+    let mut scene = Scene::of(name, DIAMETER, gravity, parameters, grains);
+    scene.duration_secs = 0.5;
+    scene
+}
+
+/// A view of so much, in diameters.
+pub(super) fn view(min: DVec2, max: DVec2) -> Option<View> {
+    Some(View { min: DIAMETER * min, max: DIAMETER * max })
+}
+
+/// A half-space through a point in diameters.
+pub(super) fn half_space(point: DVec2, normal: DVec2) -> Boundary {
+    Boundary::HalfSpace { point: DIAMETER * point, normal }
 }
 
 /// The ground: all below y = 0.
-fn floor() -> Boundary {
-    Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }
+pub(super) fn floor() -> Boundary {
+    half_space(DVec2::ZERO, DVec2::Y)
 }
 
 /// A disc of diameter d at rest, at a place in diameters.

@@ -40,22 +40,12 @@
 //! **Not with cohesion.** In the paper's law what touches is bonded, and a bond takes part in a shock.
 //! Then all contacts belong to the first pass, which is the law as it was.
 
-use super::Remedy;
 use crate::contact::ContactList;
-use crate::setting::Value;
 use crate::sim::settings::Settings;
-use crate::sim::steppers::stepper::Stepper;
 use crate::sim::stepping::Stage;
 use crate::solver::{
-    Kinematics, Memory, Method, Model, Row, SolveReport, SolverSettings, StepProblem, for_each_row,
-    relative_velocities, solve as solve_problem,
-};
-
-/// The row of the registry.
-pub(super) const REMEDY: Remedy = Remedy {
-    name: "sequential-impacts",
-    taken_by: &[Stepper::Moreau],
-    robust: Some(Value::Switch(true)),
+    Bodies, FrictionModel, Kinematics, Memory, Method, Model, SolveReport, SolverSettings,
+    StepProblem, for_each_row, relative_velocities, solve as solve_problem,
 };
 
 /// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
@@ -103,12 +93,12 @@ pub(in crate::sim) fn follow<M: Model>(
 ) -> Option<SolveReport> {
     let Stage { state, problem, memory, .. } = stage;
     let parameters = &settings.parameters;
-    if problem.capture_speed > 0.0 || parameters.restitution == 0.0 {
+    if problem.law.capture_speed() > 0.0 || parameters.restitution == 0.0 {
         return None;
     }
     let mut report = SolveReport::default();
-    let mut shocks = Shocks::new(problem, &state.contacts);
-    let fastest = shocks.fastest_closing();
+    let mut impacts = ImpactSequence::new(problem, &state.contacts);
+    let fastest = impacts.fastest_closing();
     let step_of_gravity = state.world.gravity.magnitude() * parameters.time_step_secs;
     let threshold = parameters.restitution_threshold.max(LEAST_IN_STEPS_OF_GRAVITY);
     let least = (threshold * step_of_gravity).max(LEAST_IN_FASTEST * fastest);
@@ -117,16 +107,16 @@ pub(in crate::sim) fn follow<M: Model>(
     }
     let mut pass = StepProblem::default();
     for _ in 0..MOST_PASSES {
-        if !shocks.select(problem, &mut pass, parameters.restitution, least) {
+        if !impacts.select(problem, &mut pass, parameters.restitution, least) {
             break;
         }
         report.add(solve_problem::<M>(&mut pass, memory, &PASS));
-        shocks.take(problem, &mut pass);
+        impacts.take(problem, &mut pass);
     }
-    if shocks.fastest_closing() > LEAST_IN_FASTEST * fastest {
-        report.add(shocks.stop_the_rest::<M>(problem, memory, &settings.solver));
+    if impacts.fastest_closing() > LEAST_IN_FASTEST * fastest {
+        report.add(impacts.stop_the_rest::<M>(problem, memory, &settings.solver));
     }
-    shocks.set_rebounds(problem);
+    impacts.set_rebounds(problem);
     Some(report)
 }
 
@@ -156,7 +146,7 @@ fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
 }
 
 /// How far the shocks have gone.
-struct Shocks<K: Kinematics> {
+struct ImpactSequence<K: Kinematics> {
     /// Velocities by now.
     bodies: Vec<K::Body<f64>>,
     /// u of each row, m/s.
@@ -167,15 +157,15 @@ struct Shocks<K: Kinematics> {
     touching: Vec<bool>,
 }
 
-impl<K: Kinematics> Shocks<K> {
+impl<K: Kinematics> ImpactSequence<K> {
     /// Nothing has happened yet.
     fn new(problem: &StepProblem<K>, contacts: &ContactList) -> Self {
-        let bodies = problem.before.clone();
+        let bodies = problem.bodies.before.clone();
         let mut speeds = Vec::new();
         relative_velocities(problem, &bodies, &mut speeds);
         let impulses = vec![0.0; speeds.len()];
         let touches = |&index: &u32| contacts.is_in_touch(index as usize);
-        let touching = problem.contact_of_row.iter().map(touches).collect();
+        let touching = problem.rows.contacts.iter().map(touches).collect();
         Self { bodies, speeds, impulses, touching }
     }
 
@@ -193,75 +183,63 @@ impl<K: Kinematics> Shocks<K> {
         restitution: f64,
         least: f64,
     ) -> bool {
-        let StepProblem { fixed_rows, pair_rows, contact_of_row, before, free, bodies, .. } = pass;
-        fixed_rows.clear();
-        pair_rows.clear();
-        contact_of_row.clear();
-        for (number, row) in problem.rows() {
+        pass.rows.clear();
+        for number in 0..problem.rows.len() {
             let speed = self.speeds[number];
             if speed >= -least || !self.touching[number] {
                 continue;
             }
-            let rows =
-                if number < problem.fixed_rows.len() { &mut *fixed_rows } else { &mut *pair_rows };
-            rows.push(Row {
-                restitution_velocity: restitution * speed - problem.wall_speed(number),
-                shifted_impulse: 0.0,
-                tangential_impulse: 0.0,
-                ..*row
+            pass.rows.push_copy(&problem.rows, number, |row| {
+                row.restitution_velocity = restitution * speed - problem.wall_speed(number);
+                (row.shifted_impulse, row.tangential_impulse) = (0.0, 0.0);
             });
-            contact_of_row.push(number as u32);
         }
+        let Bodies { now: bodies, before, free, .. } = &mut pass.bodies;
         for copy in [before, free, bodies] {
             copy.clone_from(&self.bodies);
         }
-        !contact_of_row.is_empty()
+        !pass.rows.is_empty()
     }
 
     /// Takes over what a pass has led to.
     fn take(&mut self, problem: &StepProblem<K>, pass: &mut StepProblem<K>) {
-        for ((_, row), &number) in pass.rows().zip(&pass.contact_of_row) {
+        for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
         }
-        std::mem::swap(&mut self.bodies, &mut pass.bodies);
+        std::mem::swap(&mut self.bodies, &mut pass.bodies.now);
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
-    /// Stops all contacts that still close, by the step's own method: there may be many of them.
+    /// Stops all contacts that still close, without friction, by the step's own method: there may be many of them.
     fn stop_the_rest<M: Model<Kinematics = K>>(
         &mut self,
-        problem: &mut StepProblem<K>,
+        problem: &StepProblem<K>,
         memory: &mut Memory<K>,
         settings: &SolverSettings,
     ) -> SolveReport {
-        let free = std::mem::replace(&mut problem.free, self.bodies.clone());
-        let friction = std::mem::take(&mut problem.friction);
-        let model = std::mem::take(&mut problem.friction_model);
-        let (fixed, pairs) = (problem.fixed_rows.clone(), problem.pair_rows.clone());
-        for ((row, wall_speed), &touches) in problem.rows_with_walls().zip(&self.touching) {
+        let mut rest = problem.clone();
+        rest.bodies.free.clone_from(&self.bodies);
+        rest.law.friction = 0.0;
+        rest.friction.model = FrictionModel::Coulomb;
+        for ((row, wall_speed), &touches) in rest.rows_with_walls().zip(&self.touching) {
             if touches {
                 row.restitution_velocity = -wall_speed;
             }
             row.shifted_impulse = 0.0;
             row.tangential_impulse = 0.0;
         }
-        problem.form_velocities();
-        let report = solve_problem::<M>(problem, memory, settings);
-        for (number, row) in problem.rows() {
+        rest.form_velocities();
+        let report = solve_problem::<M>(&mut rest, memory, settings);
+        for (number, row) in rest.rows() {
             self.impulses[number] += row.shifted_impulse;
         }
-        self.bodies.clone_from(&problem.bodies);
+        self.bodies = rest.bodies.now;
         relative_velocities(problem, &self.bodies, &mut self.speeds);
-        problem.free = free;
-        problem.friction = friction;
-        problem.friction_model = model;
-        problem.fixed_rows = fixed;
-        problem.pair_rows = pairs;
         report
     }
 
     /// Asks each contact that was struck for the speed that it has come to. One that was not may not
-    /// bounce. The step starts from the impulses of the shocks.
+    /// bounce. The step starts from the impulses of the impacts.
     fn set_rebounds(&self, problem: &mut StepProblem<K>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];

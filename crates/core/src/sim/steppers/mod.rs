@@ -4,26 +4,85 @@
 #![deny(dead_code, reason = "a way to step that no row names would not be missed")]
 
 mod avbd;
-mod course;
 mod dem;
-mod info;
-mod mean_pair;
 pub(super) mod moreau;
 mod range;
-pub(super) mod stepper;
+mod spring_dashpot;
+mod substeps;
 mod tgs_soft;
-mod touching;
+
+pub use spring_dashpot::SpringDashpot;
 
 use serde::{Deserialize, Serialize};
 
-pub use dem::SpringDashpot;
-pub use info::StepperInfo;
-pub use mean_pair::FractureWork;
-pub use stepper::Stepper;
-
-use super::settings::Settings;
-use super::stepping::{Advance, Outcome, Stage};
+use crate::contact::law::cohesion_force;
+use crate::error::Result;
+use crate::setting::words;
+use crate::sim::settings::Settings;
+use crate::sim::stepping::{Advance, Stage, StepResult};
 use crate::solver::Model;
+use crate::world::{Parameters, Physics, World};
+
+words! {
+    /// A way to take a step of Δt, with its contact law.
+    #[derive(Default)]
+    pub enum Stepper {
+        /// The paper's.
+        #[default]
+        Moreau = "moreau", "the paper's law: a contact and its bond live while the gap is negative";
+        /// Bonds that live until they are stretched by the debonding distance.
+        Range = "range", "a bond lives until it has been opened by δc, whatever Δt";
+        /// Substeps with soft contacts.
+        TgsSoft = "tgs-soft",
+            "substeps with soft contacts and a relaxing sweep, as game engines step";
+        /// Penalties that stiffen, minimised body by body.
+        Avbd = "avbd", "augmented vertex block descent: stiffening penalties, body by body, as game engines try";
+        /// Discrete elements with springs and dashpots.
+        Dem = "dem", "smooth discrete elements: springs, dashpots and a constant attraction";
+    }
+}
+
+/// What there is to know of a way to step, beside its name and its line.
+#[derive(Clone, Copy, Debug)]
+pub struct StepperInfo {
+    /// What a step of it solves, one line.
+    pub solves: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// The settings that it reads, by name. With `solver` among them it solves the step's problem by a
+    /// method.
+    pub settings: &'static [&'static str],
+    /// Observables that it has beside those that all have.
+    pub observables: &'static [&'static str],
+    /// Whether it moves walls that a force drives.
+    pub takes_drives: bool,
+    /// Refuses numbers that do not go with it.
+    pub check: fn(&Parameters) -> Result<()>,
+    /// Substeps of a step; 1 where its problem is solved as a whole.
+    pub substeps: fn(&World, Physics, &Parameters) -> u32,
+    /// The longest substep, s, that is stable whatever the grains do; none where that is no question.
+    pub critical_time_step_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
+    /// How long two grains of the mean mass that meet push each other, s; none where that is no time.
+    pub contact_time_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
+    /// What it takes to break a bond slowly; none where the law does not say, or the physics has no cohesion.
+    pub fracture_work: fn(&World, Physics, &Parameters) -> Option<FractureWork>,
+}
+
+impl StepperInfo {
+    /// One that solves the problem of the step as a whole.
+    pub(super) const WHOLE: Self = Self {
+        solves: "",
+        source: "",
+        settings: &[],
+        observables: &[],
+        takes_drives: false,
+        check: |_| Ok(()),
+        substeps: |_, _, _| 1,
+        critical_time_step_secs: |_, _, _| None,
+        contact_time_secs: |_, _, _| None,
+        fracture_work: |_, _, _| None,
+    };
+}
 
 impl Stepper {
     /// What there is to know of it.
@@ -56,12 +115,12 @@ impl Stepper {
 /// What ways to step remember from one step to the next.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Memory {
-    range: range::Memory,
+pub(super) struct StepperMemory {
+    range: range::RangeMemory,
 }
 
-impl Advance for Memory {
-    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> Outcome {
+impl Advance for StepperMemory {
+    fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
         match settings.stepper {
             Stepper::Moreau => moreau::advance(stage, settings),
             Stepper::Range => range::advance(stage, settings, &mut self.range),
@@ -72,7 +131,7 @@ impl Advance for Memory {
     }
 }
 
-impl Memory {
+impl StepperMemory {
     /// Where a step since the last call was too long for the bonds that were about to break in it: the longest
     /// that is not, s.
     pub(super) fn take_longest_step_secs(&mut self) -> Option<f64> {
@@ -98,6 +157,59 @@ impl Memory {
             Stepper::Range => range::set_up(stage, settings, &mut self.range),
             Stepper::TgsSoft | Stepper::Avbd | Stepper::Dem => moreau::set_up(stage, settings),
         }
+    }
+}
+
+/// The work that slowly parts two bonded grains of the mean mass m.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FractureWork {
+    /// J.
+    pub joules: f64,
+    /// In m·g·d, which lifts one of the grains by a diameter; 0 without gravity, where no bond pulls.
+    pub over_mgd: f64,
+}
+
+/// Two grains of the mean mass.
+pub(super) struct MeanPair {
+    /// m, kg.
+    mass: f64,
+    /// g, m/s².
+    gravity_magnitude: f64,
+    /// d, m.
+    diameter: f64,
+}
+
+impl MeanPair {
+    /// Of a world's grains.
+    pub(super) fn of(world: &World) -> Self {
+        let masses = &world.grains.masses;
+        Self {
+            mass: masses.iter().sum::<f64>() / masses.len() as f64,
+            gravity_magnitude: world.gravity.magnitude(),
+            diameter: world.mean_diameter,
+        }
+    }
+
+    /// m_ij, kg.
+    pub(super) fn effective_mass(&self) -> f64 {
+        0.5 * self.mass
+    }
+
+    /// The work of a law under which a bond of some C₀ (N) takes `work` (J).
+    pub(super) fn fracture_work(
+        &self,
+        physics: Physics,
+        parameters: &Parameters,
+        work: impl FnOnce(f64) -> f64,
+    ) -> Option<FractureWork> {
+        if !physics.cohesion {
+            return None;
+        }
+        let Self { mass, gravity_magnitude, diameter } = *self;
+        let joules =
+            work(cohesion_force(parameters.bond, self.effective_mass(), gravity_magnitude));
+        let lift = mass * gravity_magnitude * diameter;
+        Some(FractureWork { joules, over_mgd: if lift > 0.0 { joules / lift } else { 0.0 } })
     }
 }
 

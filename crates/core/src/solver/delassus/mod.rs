@@ -1,13 +1,411 @@
-//! Contact problems in the Delassus operator alone.
+//! A contact problem in the Delassus operator alone: u = W r + q, with nothing known of bodies.
+//!
+//! W (1/kg) says how the impulse of one contact changes the velocity of another; q (m/s) is the
+//! relative velocity without contact impulses, restitution's term included. Rows and columns come
+//! as N0, T0, N1, T1, … and r = (P_n, P_t), in N·s. The law is that of `contact::law`, with a
+//! cohesion impulse c₀ = C₀Δt and a friction μ of each contact's own:
+//!
+//! > 0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp (shifted cone) or ≤ μ max(p − c₀, 0) (compressive), p = P_n + c₀.
+//!
+//! W is kept as 2×2 blocks in compressed sparse rows, each contact's own block apart. The state is
+//! (p, P_t), so that cohesion is a part of the free velocity and costs nothing: u = W (p, P_t) + q',
+//! q' = q − W (c₀, 0).
 
-mod assembly;
-mod blocks;
+//!
+//! Gauss–Seidel on W (M. Jean, 1999) solves one contact after the other, each exactly with the impulses that the ones
+//! before it left.
+//!
+//! Methods see W that treat all impulses as one vector: s = P/√m_n with m_n = 1/W_nn, so that
+//! A is W between √m_n and √m_n. Where W_nt ≠ 0 a contact's own block of A has entries off its
+//! diagonal; no method on this trait asks for them to be zero.
+
 mod local;
-mod problem;
-mod sweeps;
-mod system;
+mod matrix;
 
-pub use self::assembly::Assembled;
-pub use self::blocks::Triplets;
-pub use self::problem::DelassusProblem;
-pub use self::sweeps::solve_delassus;
+use self::local::LocalBlock;
+pub use self::matrix::{Assembled, Triplets};
+use self::matrix::{blocks, check_each, check_length, check_symmetry, own_blocks};
+use super::method::Method;
+use super::methods::{
+    ContactSystem, ScaledVector, SolveReport, WorkVectors, solve_system, sweep_until_settled,
+};
+use super::settings::{SolverSettings, StopTest};
+use crate::error::{Error, Result};
+use crate::world::FrictionCone;
+
+/// The residual, which costs as much as a sweep, is looked at where ‖ΔP‖₂ of a sweep is at most this
+/// many times the error allowed: what a sweep changes is about the error before it. A smaller number
+/// risks a sweep in vain, a larger one a look in vain.
+const NEAR: f64 = 2.0;
+/// It is looked at after every so many sweeps in any case.
+const TEST_INTERVAL: u32 = 16;
+
+/// What one contact does to another.
+#[derive(Clone, Copy, Debug)]
+struct DelassusBlock {
+    pub block: [[f64; 2]; 2],
+    pub contact: u32,
+}
+
+/// A contact as its update reads it.
+#[derive(Clone, Copy, Debug)]
+struct DelassusRow {
+    pub local: LocalBlock,
+    /// q', m/s.
+    free: [f64; 2],
+    /// Its neighbours are those from here to the next contact's.
+    start: u32,
+}
+
+/// A contact problem in W alone, and the impulses of its contacts.
+#[derive(Clone, Debug)]
+pub struct DelassusProblem {
+    rows: Vec<DelassusRow>,
+    neighbours: Vec<DelassusBlock>,
+    /// (p, P_t), N·s.
+    impulses: Vec<[f64; 2]>,
+    compressive_cone: bool,
+    /// ‖(m_n q_n, m_t q_t)‖₂, N·s.
+    scale: f64,
+}
+
+impl DelassusProblem {
+    /// A problem of `friction.len()` contacts without impulses. `free_velocities` is q (two entries a
+    /// contact, m/s), `friction` and `cohesion_impulses` (N·s) have an entry a contact.
+    ///
+    /// # Errors
+    /// Names what is not finite, out of range, of the wrong length, or not symmetric. Each
+    /// contact's own 2×2 block has to be positive definite.
+    pub fn new(
+        matrix: &Triplets,
+        free_velocities: &[f64],
+        friction: &[f64],
+        cohesion_impulses: &[f64],
+        cone: FrictionCone,
+    ) -> Result<Self> {
+        let contacts = friction.len();
+        if contacts == 0 {
+            return Err(Error::value("nc", 0, "at least 1"));
+        }
+        check_length("q", free_velocities.len(), 2 * contacts, "2 nc")?;
+        check_length("c0", cohesion_impulses.len(), contacts, "nc")?;
+        check_each("q", free_velocities, "a finite number", |q| q.is_finite())?;
+        let at_least_zero = |value: f64| value >= 0.0 && value.is_finite();
+        check_each("mu", friction, "a finite number ≥ 0", at_least_zero)?;
+        check_each("c0", cohesion_impulses, "a finite number ≥ 0", at_least_zero)?;
+        let blocks = blocks(matrix, contacts)?;
+        let own = own_blocks(&blocks, contacts)?;
+        check_symmetry(&blocks, &own)?;
+
+        let mut rows = Vec::with_capacity(contacts);
+        let mut neighbours = Vec::with_capacity(blocks.len());
+        let mut at = 0;
+        for contact in 0..contacts {
+            let q = [free_velocities[2 * contact], free_velocities[2 * contact + 1]];
+            let (friction, cohesion) = (friction[contact], cohesion_impulses[contact]);
+            let local = LocalBlock::new(own[contact], friction, cohesion);
+            let mut row = DelassusRow { local, free: q, start: neighbours.len() as u32 };
+            while let Some(&([_, other], block)) =
+                blocks.get(at).filter(|([here, _], _)| *here as usize == contact)
+            {
+                at += 1;
+                row.free[0] -= block[0][0] * cohesion_impulses[other as usize];
+                row.free[1] -= block[1][0] * cohesion_impulses[other as usize];
+                if other as usize != contact {
+                    neighbours.push(DelassusBlock { block, contact: other });
+                }
+            }
+            rows.push(row);
+        }
+        let scale = rows.iter().zip(free_velocities.chunks_exact(2));
+        let scale: f64 = scale.map(|(row, q)| row.squared_scale([q[0], q[1]])).sum();
+        Ok(Self {
+            impulses: vec![[0.0; 2]; contacts],
+            compressive_cone: cone == FrictionCone::Compressive,
+            scale: scale.sqrt(),
+            rows,
+            neighbours,
+        })
+    }
+
+    /// Number of contacts.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is no contact; never so.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// (P_n, P_t) of each contact, N·s.
+    pub fn impulses(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
+        self.impulses
+            .iter()
+            .zip(&self.rows)
+            .map(|(impulse, row)| [impulse[0] - row.local.cohesion_impulse, impulse[1]])
+    }
+
+    /// Sets (P_n, P_t) of each contact, N·s, as they are.
+    pub fn set_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
+        let places = self.impulses.iter_mut().zip(&self.rows);
+        for ((place, row), [normal, tangential]) in places.zip(impulses) {
+            *place = [normal + row.local.cohesion_impulse, tangential];
+        }
+    }
+
+    /// u of each contact at the present impulses, m/s.
+    pub fn velocities(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
+        (0..self.len()).map(|contact| self.velocity(contact))
+    }
+
+    /// The natural map's residual, as `solver::residual` has it of bodies, with m_n = 1/W_nn and
+    /// m_t = 1/W_tt, and all of u and v^free from W and q. A W_nt that is not zero changes nothing of
+    /// it: the map is zero just where the law holds, whatever the positive numbers m_n and m_t. Where
+    /// μ = 0, a contact's tangential part has no place in the scale.
+    pub fn residual(&self) -> f64 {
+        let errors = self.rows.iter().enumerate().map(|(contact, row)| {
+            row.squared_error(self.impulses[contact], self.velocity(contact), self.compressive_cone)
+        });
+        let error = errors.sum::<f64>().sqrt();
+        if error > 0.0 { error / self.scale } else { error }
+    }
+
+    #[inline(always)]
+    fn velocity(&self, contact: usize) -> [f64; 2] {
+        let row = &self.rows[contact];
+        let mut velocity = self.velocity_of_others(contact);
+        let [normal, tangential] = self.impulses[contact];
+        velocity[0] += row.local.normal * normal + row.local.mixed * tangential;
+        velocity[1] += row.local.mixed * normal + row.local.tangential * tangential;
+        velocity
+    }
+
+    #[inline(always)]
+    fn neighbours_of(&self, contact: usize) -> &[DelassusBlock] {
+        let start = self.rows[contact].start as usize;
+        let end =
+            self.rows.get(contact + 1).map_or(self.neighbours.len(), |row| row.start as usize);
+        &self.neighbours[start..end]
+    }
+
+    /// The velocity that a contact would have without its own impulse, m/s.
+    #[inline(always)]
+    fn velocity_of_others(&self, contact: usize) -> [f64; 2] {
+        let mut velocity = self.rows[contact].free;
+        for DelassusBlock { block, contact: other } in self.neighbours_of(contact) {
+            let [normal, tangential] = self.impulses[*other as usize];
+            velocity[0] += block[0][0] * normal + block[0][1] * tangential;
+            velocity[1] += block[1][0] * normal + block[1][1] * tangential;
+        }
+        velocity
+    }
+}
+
+impl DelassusRow {
+    /// e_n² + e_t², (N·s)².
+    fn squared_error(&self, [p, rubbing]: [f64; 2], u: [f64; 2], compressive: bool) -> f64 {
+        let LocalBlock { normal, tangential, friction, cohesion_impulse, .. } = self.local;
+        let rubs = if compressive { (p - cohesion_impulse).max(0.0) } else { p.max(0.0) };
+        let bound = friction * rubs;
+        // Impulses that have outgrown all numbers have none where there is no friction.
+        if bound.is_nan() {
+            return f64::NAN;
+        }
+        let normal_error = p - (p - u[0] / normal).max(0.0);
+        let tangential_error = rubbing - (rubbing - u[1] / tangential).clamp(-bound, bound);
+        normal_error * normal_error + tangential_error * tangential_error
+    }
+
+    /// (m_n q_n)² + (m_t q_t)², (N·s)².
+    fn squared_scale(&self, q: [f64; 2]) -> f64 {
+        let normal = q[0] / self.local.normal;
+        let tangential = if self.local.friction > 0.0 { q[1] / self.local.tangential } else { 0.0 };
+        normal * normal + tangential * tangential
+    }
+
+    /// √W_nn: s = √W_nn P, w = u/√W_nn.
+    #[inline(always)]
+    fn root(&self) -> f64 {
+        self.local.normal.sqrt()
+    }
+}
+
+/// Solves a problem from its present impulses with the method of the settings, to a residual of
+/// their tolerance.
+///
+/// # Errors
+/// Where the method needs bodies, or the settings another stopping test.
+pub fn solve_delassus(
+    problem: &mut DelassusProblem,
+    settings: &SolverSettings,
+) -> Result<SolveReport> {
+    settings.validate()?;
+    if settings.stop != StopTest::Residual {
+        let allowed = "residual where there are no bodies";
+        return Err(Error::value("stop", format!("{:?}", settings.stop), allowed));
+    }
+    if settings.method == Method::Nsgs {
+        return Ok(sweeps(problem, settings));
+    }
+    solve_system(problem, settings, &mut WorkVectors::default()).ok_or_else(|| {
+        let allowed = "one that works on W alone, for the problem says nothing of its bodies";
+        Error::value("method", settings.method.name(), allowed)
+    })
+}
+
+fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveReport {
+    let near = NEAR * settings.tolerance * problem.scale;
+    let sweep = |problem: &mut DelassusProblem, sweeps: u32| {
+        let squared_change = problem.sweep();
+        let is_tested = squared_change <= near * near
+            || sweeps.is_multiple_of(TEST_INTERVAL)
+            || sweeps == settings.max_sweeps;
+        is_tested && problem.is_solved(settings)
+    };
+    sweep_until_settled(problem, settings, sweep, |problem| problem.residual())
+}
+
+impl DelassusProblem {
+    /// One pass over all contacts; gives Σ‖ΔP‖², (N·s)².
+    fn sweep(&mut self) -> f64 {
+        let mut squared_change = 0.0;
+        for contact in 0..self.len() {
+            let free = self.velocity_of_others(contact);
+            let now = self.rows[contact].local.solve(free, self.compressive_cone);
+            let before = std::mem::replace(&mut self.impulses[contact], now);
+            let change = [now[0] - before[0], now[1] - before[1]];
+            squared_change += change[0] * change[0] + change[1] * change[1];
+        }
+        squared_change
+    }
+
+    /// The stopping test, which without bodies is always the residual's.
+    fn is_solved(&self, settings: &SolverSettings) -> bool {
+        debug_assert_eq!(settings.stop, StopTest::Residual);
+        DelassusProblem::residual(self) <= settings.tolerance
+    }
+}
+
+impl ContactSystem for DelassusProblem {
+    const FRICTION: bool = true;
+
+    fn len(&self) -> usize {
+        DelassusProblem::len(self)
+    }
+
+    fn read(&self, impulses: &mut ScaledVector) {
+        impulses.clear();
+        impulses.extend(self.rows.iter().zip(&self.impulses).map(|(row, impulse)| {
+            let root = row.root();
+            impulse.map(|impulse| root * impulse)
+        }));
+    }
+
+    fn write(&mut self, impulses: &[[f64; 2]]) {
+        for ((row, place), impulse) in self.rows.iter().zip(&mut self.impulses).zip(impulses) {
+            let root = row.root();
+            *place = impulse.map(|impulse| impulse / root);
+        }
+    }
+
+    fn velocities(&self, velocities: &mut ScaledVector) {
+        velocities.clear();
+        velocities.extend((0..self.rows.len()).map(|contact| {
+            let root = self.rows[contact].root();
+            self.velocity(contact).map(|velocity| velocity / root)
+        }));
+    }
+
+    #[inline(always)]
+    fn tangential_diagonal(&self, contact: usize) -> f64 {
+        let local = &self.rows[contact].local;
+        local.tangential / local.normal
+    }
+
+    #[inline(always)]
+    fn friction(&self, contact: usize) -> f64 {
+        self.rows[contact].local.friction
+    }
+
+    #[inline(always)]
+    fn friction_bound(&self, contact: usize, normal: f64) -> f64 {
+        let row = &self.rows[contact];
+        let shift =
+            if self.compressive_cone { row.root() * row.local.cohesion_impulse } else { 0.0 };
+        row.local.friction * (normal - shift).max(0.0)
+    }
+
+    /// With E the diagonal of A, a row of E^−½ A E^−½ has absolute entries whose sum dominates its
+    /// diagonal (Gershgorin), so A ⪯ E/d where 1/d is the larger of a contact's two sums.
+    fn splitting(&self, weights: &mut Vec<f64>) {
+        weights.clear();
+        let diagonal = |contact: usize| {
+            let local = &self.rows[contact].local;
+            [local.normal, local.tangential]
+        };
+        for contact in 0..self.rows.len() {
+            let own = diagonal(contact);
+            let off = self.rows[contact].local.mixed.abs() / (own[0] * own[1]).sqrt();
+            let mut sums = [1.0 + off; 2];
+            for DelassusBlock { block, contact: other } in self.neighbours_of(contact) {
+                let others = diagonal(*other as usize);
+                for (sum, (entries, own)) in sums.iter_mut().zip(block.iter().zip(own)) {
+                    for (entry, other) in entries.iter().zip(others) {
+                        *sum += entry.abs() / (own * other).sqrt();
+                    }
+                }
+            }
+            weights.push(1.0 / sums[0].max(sums[1]));
+        }
+    }
+
+    fn sweep(&mut self) {
+        DelassusProblem::sweep(self);
+    }
+
+    fn tested_sweep(&mut self, settings: &SolverSettings) -> bool {
+        DelassusProblem::sweep(self);
+        self.is_solved(settings)
+    }
+
+    fn residual(&self) -> f64 {
+        DelassusProblem::residual(self)
+    }
+
+    fn is_settled(&self, _before: &[[f64; 2]], settings: &SolverSettings) -> bool {
+        self.is_solved(settings)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two contacts on opposite sides of one body, which close at 1 m/s
+    /// each: u₀ + u₁ = −2 m/s whatever the impulses, so that not both can be ≥ 0.
+    #[test]
+    fn a_problem_without_solution_is_told_from_one_that_was_stopped_too_early() {
+        let matrix = Triplets {
+            row: vec![0, 0, 1, 2, 2, 3],
+            col: vec![0, 2, 1, 0, 2, 3],
+            val: vec![1.0, -1.0, 1.0, -1.0, 1.0, 1.0],
+        };
+        let free_velocities = [-1.0, 0.0, -1.0, 0.0];
+        let settings = SolverSettings {
+            stop: StopTest::Residual,
+            max_sweeps: 100_000,
+            ..SolverSettings::default()
+        };
+        let problem = |free: &[f64]| {
+            DelassusProblem::new(&matrix, free, &[0.0; 2], &[0.0; 2], FrictionCone::Shifted)
+        };
+        let mut infeasible = problem(&free_velocities).expect("a valid problem");
+        let report = solve_delassus(&mut infeasible, &settings).expect("a method that works on W");
+        assert!(report.stalled && !report.converged && report.sweeps < 10_000, "{report:?}");
+
+        let mut feasible = problem(&[-1.0, 0.0, 2.0, 0.0]).expect("a valid problem");
+        let report = solve_delassus(&mut feasible, &settings).expect("a method that works on W");
+        assert!(report.converged && !report.stalled, "{report:?}");
+    }
+}

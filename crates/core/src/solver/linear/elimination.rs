@@ -3,14 +3,20 @@
 //! Minimum degree on the graph of contacts between grains: the body with the fewest neighbours goes
 //! first, and its neighbours become neighbours of each other. Contact graphs are nearly planar, so
 //! the neighbourhoods stay small.
+//!
+//! **Postorder** keeps together what works on the same numbers. The parent of a place is the first of its later neighbours: the one that its elimination changes next. These are
+//! trees, and any order that has every place before its parent makes the same factors with the same fill. In one that
+//! finishes a subtree before it begins the next, what a place changes was made not long ago, and places whose
+//! neighbours are alike follow each other (J. W. H. Liu, 1990).
 
 use smallvec::SmallVec;
 
-use super::postorder::Postorder;
+use crate::solver::kinematics::Kinematics;
+use crate::solver::problem::StepProblem;
 
-/// Neighbours of a body. A disc has seldom more than six at first, and elimination seldom doubles
+/// BodyNeighbours of a body. A disc has seldom more than six at first, and elimination seldom doubles
 /// them; more go to the heap.
-type Neighbours = SmallVec<[u32; 12]>;
+type BodyNeighbours = SmallVec<[u32; 12]>;
 
 /// An order of elimination and the structure of the factors. Bodies are called by their place in the
 /// order from here on.
@@ -32,17 +38,15 @@ pub(crate) struct Elimination {
     /// the next one, and that one itself.
     pub supernodes: Vec<u32>,
     postorder: Postorder,
-    neighbours: Vec<Neighbours>,
-    merged: Neighbours,
+    neighbours: Vec<BodyNeighbours>,
+    merged: BodyNeighbours,
     by_degree: Vec<Vec<u32>>,
 }
-
-const NOT_YET: u32 = u32::MAX;
 
 impl Elimination {
     /// Orders `bodies` bodies with the given pairs of neighbours (in any order, repeats allowed).
     pub(crate) fn analyse(&mut self, bodies: usize, pairs: impl Iterator<Item = (u32, u32)>) {
-        self.neighbours.resize_with(bodies.max(self.neighbours.len()), Neighbours::new);
+        self.neighbours.resize_with(bodies.max(self.neighbours.len()), BodyNeighbours::new);
         for list in &mut self.neighbours {
             list.clear();
         }
@@ -75,7 +79,7 @@ impl Elimination {
     fn order(&mut self, bodies: usize) {
         self.body_at.clear();
         self.place_of.clear();
-        self.place_of.resize(bodies, NOT_YET);
+        self.place_of.resize(bodies, NONE);
         for list in &mut self.by_degree {
             list.clear();
         }
@@ -91,7 +95,7 @@ impl Elimination {
                 continue;
             };
             let at = body as usize;
-            if self.place_of[at] != NOT_YET || self.neighbours[at].len() != degree {
+            if self.place_of[at] != NONE || self.neighbours[at].len() != degree {
                 continue;
             }
             self.place_of[at] = self.body_at.len() as u32;
@@ -188,6 +192,99 @@ impl Elimination {
                 }
             }
         }
+    }
+}
+
+/// No place, or none yet.
+const NONE: u32 = u32::MAX;
+
+/// What it takes; memory is kept between orders.
+#[derive(Clone, Debug, Default)]
+struct Postorder {
+    /// By place: a child, and the next one of the same parent.
+    first_child: Vec<u32>,
+    next_child: Vec<u32>,
+    /// By place: the child with the most later neighbours, which comes right before its parent.
+    heir: Vec<u32>,
+    /// By place: how many later neighbours its heir has.
+    most: Vec<usize>,
+    stack: Vec<u32>,
+    /// The places in their new order, last first.
+    reversed: Vec<u32>,
+}
+
+impl Postorder {
+    /// Orders places whose parents (none: no later neighbour) and numbers of later neighbours are given.
+    fn arrange(&mut self, parents: impl ExactSizeIterator<Item = (Option<u32>, usize)>) {
+        let Self { first_child, next_child, heir, most, stack, reversed } = self;
+        for links in [&mut *first_child, next_child, heir] {
+            links.clear();
+            links.resize(parents.len(), NONE);
+        }
+        most.clear();
+        most.resize(parents.len(), 0);
+        stack.clear();
+        reversed.clear();
+        for (place, (parent, neighbours)) in parents.enumerate() {
+            let child = place as u32;
+            let Some(parent) = parent else {
+                stack.push(child);
+                continue;
+            };
+            let parent = parent as usize;
+            next_child[place] = std::mem::replace(&mut first_child[parent], child);
+            if heir[parent] == NONE || neighbours >= most[parent] {
+                (heir[parent], most[parent]) = (child, neighbours);
+            }
+        }
+        // Every place before its children, the heir first of them; and then all of it backwards.
+        while let Some(place) = stack.pop() {
+            reversed.push(place);
+            let heir = heir[place as usize];
+            let mut child = first_child[place as usize];
+            while child != NONE {
+                if child != heir {
+                    stack.push(child);
+                }
+                child = next_child[child as usize];
+            }
+            if heir != NONE {
+                stack.push(heir);
+            }
+        }
+    }
+}
+
+/// An order of elimination for the contacts between grains, kept while these stay the same.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ContactGraph {
+    /// In which order bodies are eliminated.
+    pub elimination: Elimination,
+    /// The block of each row between grains, by the number that it has in [`Elimination::later`].
+    pub pair_blocks: Vec<u32>,
+    /// What `elimination` was made for.
+    bodies: usize,
+    pairs: Vec<(u32, u32)>,
+}
+
+impl ContactGraph {
+    /// Orders the elimination, unless the contacts between grains are those of the last time.
+    pub(crate) fn analyse<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+        let pairs = || problem.rows.pairs.iter().map(|row| (row.i, row.j));
+        let bodies = problem.bodies.now.len();
+        if self.bodies == bodies && pairs().eq(self.pairs.iter().copied()) {
+            return;
+        }
+        self.bodies = bodies;
+        self.pairs.clear();
+        self.pairs.extend(pairs());
+        self.elimination.analyse(bodies, self.pairs.iter().copied());
+        let Self { elimination, pair_blocks, pairs, .. } = self;
+        let places = pairs
+            .iter()
+            .map(|&(i, j)| (elimination.place_of[i as usize], elimination.place_of[j as usize]));
+        pair_blocks.clear();
+        pair_blocks.extend(places.map(|(i, j)| elimination.block(i.min(j), i.max(j)) as u32));
     }
 }
 

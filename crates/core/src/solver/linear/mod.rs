@@ -3,9 +3,7 @@
 mod block_cholesky;
 mod block_lu;
 mod elimination;
-mod padded;
-mod postorder;
 
 pub(super) use self::block_cholesky::SymmetricBlockMatrix;
 pub(super) use self::block_lu::{Block, BlockMatrix};
-pub(super) use self::elimination::Elimination;
+pub(super) use self::elimination::{ContactGraph, Elimination};

@@ -21,27 +21,13 @@
 //!   place of the projected step takes two to three times as many iterations.
 //! * w is affine, so w(y) is formed from the w(x) at hand: one product with A an iteration.
 
-use super::info::{BOUND_BY_BOUND, MethodInfo, MethodOrder};
-use super::method::Method;
-use super::report::SolveReport;
-use super::shared::body_system::SystemMemory;
-use super::shared::contact_system::{ContactSystem, Pairs, Vectors};
-use super::shared::iterate::{Best, is_tested, projected};
-use crate::solver::problem::{Model, StepProblem};
-use crate::solver::settings::SolverSettings;
-
-/// What there is to know of it.
-pub(super) const INFO: MethodInfo = MethodInfo {
-    method: Method::Apgd,
-    name: "apgd",
-    summary: "accelerated projected gradients with restart: all contacts at once, no order",
-    solves: BOUND_BY_BOUND,
-    source: "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
-    order: MethodOrder::AllAtOnce,
-    takes_models: false,
-    takes_drives: true,
-    takes_shear: true,
+use super::contact_system::{
+    BestIterate, ContactSystem, ScaledVector, SystemMemory, WorkVectors, projected,
 };
+use super::stopping::{SolveReport, is_tested};
+use crate::solver::model::Model;
+use crate::solver::problem::StepProblem;
+use crate::solver::settings::SolverSettings;
 
 /// L after a step that was too long, over the curvature that it met: a little more than needed, or
 /// the next step meets as much again.
@@ -61,23 +47,23 @@ pub(super) fn solve<M: Model>(
 pub(super) fn solve_system<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
-    vectors: &mut Vectors,
+    vectors: &mut WorkVectors,
 ) -> SolveReport {
-    let Vectors { pairs: [x, w_x, y, w_y, next, w_next, best, ..], weights } = vectors;
+    let WorkVectors { pairs: [x, w_x, y, w_y, next, w_next, best, ..], weights } = vectors;
     system.splitting(weights);
     let largest_curvature = 1.0 / weights.iter().copied().fold(1.0, f64::min);
     system.read(x);
     system.velocities(w_x);
     y.clone_from(x);
     w_y.clone_from(w_x);
-    let mut best = Best::new(system, best);
+    let mut best = BestIterate::new(system, best);
     let mut lipschitz = 1.0;
     let mut theta = 1.0;
     for sweeps in 1..=settings.max_sweeps {
-        step(system, (y, w_y), lipschitz, next);
+        step(system, y, w_y, lipschitz, next);
         system.write(next);
         system.velocities(w_next);
-        let curvature = curvature(system, (y, w_y), (next, w_next));
+        let curvature = curvature(system, [y, w_y], [next, w_next]);
         let is_last = sweeps == settings.max_sweeps;
         if curvature > lipschitz && lipschitz < largest_curvature && !is_last {
             lipschitz = (MARGIN * curvature).min(largest_curvature);
@@ -108,7 +94,13 @@ pub(super) fn solve_system<S: ContactSystem>(
 }
 
 /// The projected step from y.
-fn step<S: ContactSystem>(system: &S, (y, w): (&Pairs, &Pairs), lipschitz: f64, next: &mut Pairs) {
+fn step<S: ContactSystem>(
+    system: &S,
+    y: &ScaledVector,
+    w: &ScaledVector,
+    lipschitz: f64,
+    next: &mut ScaledVector,
+) {
     next.clear();
     next.extend(y.iter().zip(w).enumerate().map(|(contact, (y, w))| {
         let tangential = w[1] / system.tangential_diagonal(contact);
@@ -119,8 +111,8 @@ fn step<S: ContactSystem>(system: &S, (y, w): (&Pairs, &Pairs), lipschitz: f64, 
 /// Δ·AΔ / Δ·D⁻¹Δ between two points with their w; 0 where they are the same.
 fn curvature<S: ContactSystem>(
     system: &S,
-    (y, w_y): (&Pairs, &Pairs),
-    (x, w_x): (&Pairs, &Pairs),
+    [y, w_y]: [&ScaledVector; 2],
+    [x, w_x]: [&ScaledVector; 2],
 ) -> f64 {
     let (mut energy, mut squared) = (0.0, 0.0);
     for (contact, (((y, w_y), x), w_x)) in y.iter().zip(w_y).zip(x).zip(w_x).enumerate() {
@@ -133,7 +125,12 @@ fn curvature<S: ContactSystem>(
 }
 
 /// (y − next)·D⁻¹(next − now) > 0.
-fn leads_away<S: ContactSystem>(system: &S, y: &Pairs, next: &Pairs, now: &Pairs) -> bool {
+fn leads_away<S: ContactSystem>(
+    system: &S,
+    y: &ScaledVector,
+    next: &ScaledVector,
+    now: &ScaledVector,
+) -> bool {
     let mut product = 0.0;
     for (contact, ((y, next), now)) in y.iter().zip(next).zip(now).enumerate() {
         product += (y[0] - next[0]) * (next[0] - now[0])
@@ -143,7 +140,7 @@ fn leads_away<S: ContactSystem>(system: &S, y: &Pairs, next: &Pairs, now: &Pairs
 }
 
 /// next + momentum · (next − now).
-fn extrapolate(next: &Pairs, now: &Pairs, momentum: f64, result: &mut Pairs) {
+fn extrapolate(next: &ScaledVector, now: &ScaledVector, momentum: f64, result: &mut ScaledVector) {
     result.clear();
     let ahead = |next: f64, now: f64| next + momentum * (next - now);
     let ends = next.iter().zip(now);

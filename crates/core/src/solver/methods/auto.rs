@@ -5,27 +5,14 @@
 //! take the lead. A stop by the impulses of one sweep belongs to Gauss–Seidel, whose error is what
 //! such a study is about.
 
-use super::info::{COULOMB, MethodInfo, MethodOrder};
-use super::method::Method;
+use super::contact_system::SystemMemory;
 use super::newton::{self, NewtonMemory};
-use super::report::SolveReport;
-use super::shared::body_system::SystemMemory;
+use super::stopping::SolveReport;
 use super::{nncg, nsgs};
-use crate::solver::problem::{Model, StepProblem};
+use crate::solver::method::Method;
+use crate::solver::model::Model;
+use crate::solver::problem::StepProblem;
 use crate::solver::settings::{SolverSettings, StopTest};
-
-/// What there is to know of it.
-pub(super) const INFO: MethodInfo = MethodInfo {
-    method: Method::Auto,
-    name: "auto",
-    summary: "newton up to 1,000 contacts, nncg above, nsgs where sweeps are what is studied",
-    solves: COULOMB,
-    source: "the charts of speed against accuracy",
-    order: MethodOrder::OfSettings,
-    takes_models: false,
-    takes_drives: true,
-    takes_shear: true,
-};
 
 /// Up to so many contacts Newton's method is taken. At 270 contacts it wins by far, at 1,000 by a
 /// little, at 4,000 it solves few steps (`slump chart --large`).
@@ -44,10 +31,10 @@ pub(super) fn solve<M: Model>(
     memory: &mut AutoMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    match pick(settings.stop, problem.contact_of_row.len(), problem.is_driven()) {
-        Pick::Nsgs => nsgs::solve::<M>(problem, &mut (), settings),
-        Pick::Newton => newton::solve::<M>(problem, &mut memory.newton, settings),
-        Pick::Nncg => nncg::solve::<M>(problem, &mut memory.nncg, settings),
+    match pick(settings.stop, problem.rows.len(), problem.is_driven()) {
+        Method::Newton => newton::solve::<M>(problem, &mut memory.newton, settings),
+        Method::Nncg => nncg::solve::<M>(problem, &mut memory.nncg, settings),
+        _ => nsgs::solve::<M>(problem, settings),
     }
 }
 
@@ -61,26 +48,15 @@ pub(crate) fn picked(
     if settings.method != Method::Auto {
         return settings.method;
     }
-    match pick(settings.stop, contacts(), is_driven) {
-        Pick::Nsgs => Method::Nsgs,
-        Pick::Newton => Method::Newton,
-        Pick::Nncg => Method::Nncg,
-    }
+    pick(settings.stop, contacts(), is_driven)
 }
 
-/// What there is to pick from.
-enum Pick {
-    Nsgs,
-    Newton,
-    Nncg,
-}
-
-fn pick(stop: StopTest, contacts: usize, is_driven: bool) -> Pick {
+fn pick(stop: StopTest, contacts: usize, is_driven: bool) -> Method {
     match stop {
-        StopTest::ImpulsePerMass => Pick::Nsgs,
+        StopTest::ImpulsePerMass => Method::Nsgs,
         // Newton's method knows of no walls that a force drives.
-        _ if contacts <= CONTACTS_FOR_NEWTON && !is_driven => Pick::Newton,
-        _ => Pick::Nncg,
+        _ if contacts <= CONTACTS_FOR_NEWTON && !is_driven => Method::Newton,
+        _ => Method::Nncg,
     }
 }
 

@@ -13,27 +13,11 @@
 //! a projected gradient step whose D is small enough for any pile. Impulses spread by one contact an
 //! iteration and are weakened by k, so it takes many; but no order of contacts enters.
 
-use super::info::{COULOMB, MethodInfo, MethodOrder};
-use super::method::Method;
-use super::report::SolveReport;
-use super::shared::body_system::SystemMemory;
-use super::shared::contact_system::{ContactSystem, Vectors};
-use super::shared::iterate::{Best, is_tested, projected};
-use crate::solver::problem::{Model, StepProblem};
+use super::contact_system::{BestIterate, ContactSystem, SystemMemory, WorkVectors, projected};
+use super::stopping::{SolveReport, is_tested};
+use crate::solver::model::Model;
+use crate::solver::problem::StepProblem;
 use crate::solver::settings::SolverSettings;
-
-/// What there is to know of it.
-pub(super) const INFO: MethodInfo = MethodInfo {
-    method: Method::Jacobi,
-    name: "jacobi",
-    summary: "Jacobi with mass splitting: all contacts at once, each with its part of the mass",
-    solves: COULOMB,
-    source: "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
-    order: MethodOrder::AllAtOnce,
-    takes_models: false,
-    takes_drives: true,
-    takes_shear: true,
-};
 
 /// Solves a prepared problem.
 pub(super) fn solve<M: Model>(
@@ -49,12 +33,12 @@ pub(super) fn solve<M: Model>(
 pub(super) fn solve_system<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
-    vectors: &mut Vectors,
+    vectors: &mut WorkVectors,
 ) -> SolveReport {
-    let Vectors { pairs: [impulses, before, velocities, best, ..], weights } = vectors;
+    let WorkVectors { pairs: [impulses, before, velocities, best, ..], weights } = vectors;
     system.splitting(weights);
     system.read(impulses);
-    let mut best = Best::new(system, best);
+    let mut best = BestIterate::new(system, best);
     for sweeps in 1..=settings.max_sweeps {
         system.velocities(velocities);
         before.clone_from(impulses);

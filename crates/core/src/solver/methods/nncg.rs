@@ -11,27 +11,11 @@
 //! sweep solves Coulomb's law as it stands, so the method does too; what leaves the cone by
 //! extrapolation is brought back by the next sweep, and the result is always a sweep's.
 
-use super::info::{COULOMB, MethodInfo, MethodOrder};
-use super::method::Method;
-use super::report::SolveReport;
-use super::shared::body_system::SystemMemory;
-use super::shared::contact_system::{ContactSystem, Vectors};
-use super::shared::iterate::{Best, dot, is_tested};
-use crate::solver::problem::{Model, StepProblem};
+use super::contact_system::{BestIterate, ContactSystem, SystemMemory, WorkVectors, dot};
+use super::stopping::{SolveReport, is_tested};
+use crate::solver::model::Model;
+use crate::solver::problem::StepProblem;
 use crate::solver::settings::SolverSettings;
-
-/// What there is to know of it.
-pub(super) const INFO: MethodInfo = MethodInfo {
-    method: Method::Nncg,
-    name: "nncg",
-    summary: "conjugate gradients over Gauss-Seidel sweeps: fewer sweeps to tight tolerances",
-    solves: COULOMB,
-    source: "M. Silcowitz, S. Niebe, K. Erleben, non-smooth non-linear conjugate gradients (2010)",
-    order: MethodOrder::OfSettings,
-    takes_models: false,
-    takes_drives: true,
-    takes_shear: true,
-};
 
 /// Solves a prepared problem.
 pub(super) fn solve<M: Model>(
@@ -47,11 +31,11 @@ pub(super) fn solve<M: Model>(
 pub(super) fn solve_system<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
-    vectors: &mut Vectors,
+    vectors: &mut WorkVectors,
 ) -> SolveReport {
-    let Vectors { pairs: [impulses, swept, step, direction, best, ..], .. } = vectors;
+    let WorkVectors { pairs: [impulses, swept, step, direction, best, ..], .. } = vectors;
     system.read(impulses);
-    let mut best = Best::new(system, best);
+    let mut best = BestIterate::new(system, best);
     direction.clear();
     direction.resize(impulses.len(), [0.0; 2]);
     let mut squared_before = f64::INFINITY;

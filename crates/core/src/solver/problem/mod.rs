@@ -1,41 +1,335 @@
 //! The problem of one step: its data, how it is set up, and what judges its solution.
+//!
+//! A problem is prepared in one go ([`StepProblem::prepare`]): bodies, then rows in the order of the sweep, then
+//! surfaces that move, then the velocities that the rows' impulses make, and last what the model of friction
+//! takes from all of these.
 
-mod driven;
-mod driven_walls;
-mod duality;
-mod groups;
-mod held;
-mod islands;
-pub(super) mod kinematics;
-mod measure;
-mod model;
-mod motion;
+mod friction;
 mod order;
-pub(super) mod prepare;
-mod step_problem;
-mod surface;
-mod surfaces;
-mod tiles;
+mod residual;
+mod rows;
+mod walls;
 
-pub use self::driven::DrivenBy;
-pub use self::driven::DrivenRow;
-pub use self::driven::DrivenWall;
-pub(crate) use self::held::{Bound, Held, LawNumbers, Opening};
-pub(crate) use self::islands::{Island, Islands};
-pub use self::kinematics::Kinematics;
-pub use self::kinematics::line::{Line, LineBody};
-pub use self::kinematics::plane::{Plane, PlaneBody, SpinningPlane};
-pub use self::kinematics::sheared::{ShearedPlane, SlidingNormal};
-pub use self::measure::{Measures, residual};
-pub(crate) use self::measure::{
-    errors, held_residual, natural_map, residual_of, squared_residual_scale,
+use glam::DVec2;
+
+pub(crate) use self::friction::{
+    BoundedFriction, ConeFriction, CoulombFriction, FrictionProjection, LaggedFriction,
+    project_by_coulomb,
 };
-pub use self::measure::{measure, worst};
-pub use self::model::ModelParts;
-pub use self::model::ModelVisitor;
-pub use self::model::{Model, StepModel};
-pub use self::motion::Motion;
-pub use self::motion::for_each_row;
-pub use self::motion::relative_velocities;
-pub use self::step_problem::{Row, StepProblem};
-pub use self::surface::Surface;
+use self::order::RowOrder;
+pub use self::residual::{
+    Measures, RowVelocities, for_each_row, measure, relative_velocities, residual, worst,
+};
+pub(crate) use self::residual::{errors, natural_map, residual_of, squared_residual_scale};
+pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
+pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, Surface};
+pub(crate) use self::walls::{MovingSurfaces, MovingWalls};
+use super::kinematics::Kinematics;
+use super::model::Model;
+use super::settings::SolverSettings;
+use crate::contact::{Contact, ContactLaw, ContactList, Impulse, Numbering, Other, law};
+use crate::threads;
+use crate::world::{FrictionCone, World};
+
+/// All contacts of one step. Memory is kept between steps.
+///
+/// From outside a problem can be looked at; its impulses are changed by the methods, and by one of your own
+/// through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows in step.
+#[derive(Clone, Debug)]
+pub struct StepProblem<K: Kinematics> {
+    /// The bodies that the rows' impulses move.
+    pub bodies: Bodies<K>,
+    /// One row a contact.
+    pub rows: ContactRows<K>,
+    /// The numbers of the contact law.
+    pub law: ContactLaw,
+    /// Fixed bodies whose surfaces move.
+    pub(crate) walls: MovingWalls,
+    /// What is asked of friction.
+    pub(crate) friction: LaggedFriction,
+    pub(super) order: RowOrder,
+}
+
+impl<K: Kinematics> Default for StepProblem<K> {
+    fn default() -> Self {
+        Self {
+            bodies: Bodies::default(),
+            rows: ContactRows::default(),
+            law: ContactLaw::default(),
+            walls: MovingWalls::default(),
+            friction: LaggedFriction::default(),
+            order: RowOrder::default(),
+        }
+    }
+}
+
+/// The numbers that a problem is set up with.
+#[derive(Clone, Copy, Debug)]
+pub struct ProblemNumbers {
+    /// Δt, s.
+    pub time_step_secs: f64,
+    /// μ.
+    pub friction: f64,
+    /// C₀Δt/m_ij, m/s; 0 without cohesion.
+    pub capture_speed: f64,
+    /// Which part of the normal force rubs; the shifted cone where there is no cohesion.
+    pub cone: FrictionCone,
+}
+
+/// How a contact's bodies come to each other before the step.
+#[derive(Clone, Copy, Debug)]
+pub struct Approach {
+    /// v_n^{n−1}, relative to a wall that moves, m/s.
+    pub velocity: f64,
+    /// m; negative is overlap.
+    pub gap: f64,
+    /// True where the pair touches or is bonded, false where it just comes near.
+    pub in_touch: bool,
+}
+
+impl<K: Kinematics> StepProblem<K> {
+    /// Sets up a step in which no surface moves: free velocities, and rows in the order of the method and its
+    /// settings that carry the impulses of `contacts` (warm start) or none. `rebound` gives what the law
+    /// adds to v_n of a contact, m/s.
+    pub fn prepare<M: Model<Kinematics = K>>(
+        &mut self,
+        world: &World,
+        contacts: &ContactList,
+        numbers: ProblemNumbers,
+        settings: &SolverSettings,
+        rebound: impl Fn(Approach) -> f64 + Sync,
+    ) {
+        self.prepare_among::<M>(world, contacts, numbers, settings, rebound, None);
+    }
+
+    /// The same among surfaces that move.
+    pub(crate) fn prepare_among<M: Model<Kinematics = K>>(
+        &mut self,
+        world: &World,
+        contacts: &ContactList,
+        numbers: ProblemNumbers,
+        settings: &SolverSettings,
+        rebound: impl Fn(Approach) -> f64 + Sync,
+        surfaces: Option<MovingSurfaces<'_>>,
+    ) {
+        let ProblemNumbers { time_step_secs, friction, capture_speed, cone } = numbers;
+        self.law = ContactLaw::new(friction, capture_speed, cone);
+        self.walls.clear();
+        self.place_bodies(world, time_step_secs);
+        let ordering = settings.method.info().order.of_rows(settings.ordering);
+        let fixed = self.order.sort(ordering, world, contacts.contacts(), &mut self.rows.contacts);
+        self.rows.captures.clear();
+        if contacts.looks_ahead() && capture_speed > 0.0 {
+            let in_touch = |&index: &u32| contacts.is_in_touch(index as usize);
+            let capture = |index| if in_touch(index) { capture_speed } else { 0.0 };
+            self.rows.captures.extend(self.rows.contacts.iter().map(capture));
+        }
+        self.fill_rows::<M>(world, contacts, fixed, settings.warm_start, &rebound);
+        if let Some(surfaces) = surfaces {
+            self.add_surfaces::<M>(contacts, &rebound, surfaces);
+        }
+        self.form_velocities();
+        self.begin_friction::<M>(contacts, settings.friction_model);
+    }
+
+    /// Packs the bodies as they are, and as gravity alone would leave them.
+    fn place_bodies(&mut self, world: &World, time_step_secs: f64) {
+        let grains = &world.grains;
+        let Bodies { before, free, masses, mean_mass, .. } = &mut self.bodies;
+        *mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
+        masses.clone_from(&grains.masses);
+        threads::fill(before, grains.len(), |index| K::body(world, index));
+        threads::fill(free, grains.len(), |index| match grains.feels_gravity[index] {
+            true => K::accelerated(&before[index], world, index, time_step_secs),
+            false => before[index],
+        });
+    }
+
+    /// Makes the rows, of which the first `fixed` are with fixed bodies.
+    fn fill_rows<M: Model<Kinematics = K>>(
+        &mut self,
+        world: &World,
+        contacts: &ContactList,
+        fixed: usize,
+        warm_start: bool,
+        rebound: &(impl Fn(Approach) -> f64 + Sync),
+    ) {
+        let mut fixed_rows = std::mem::take(&mut self.rows.fixed);
+        let mut pair_rows = std::mem::take(&mut self.rows.pairs);
+        let (masses, before) = (&world.grains.masses, &self.bodies.before);
+        let row = |number: usize, velocity: f64, effective_mass: f64| {
+            let index = self.rows.contacts[number] as usize;
+            let contact = &contacts.contacts()[index];
+            let approach =
+                Approach { velocity, gap: contact.gap, in_touch: contacts.is_in_touch(index) };
+            let start = if warm_start { contacts.impulses()[index] } else { Impulse::default() };
+            let shifted_impulse =
+                law::signorini(start.normal / effective_mass + self.capture(number));
+            let tangential_impulse = if M::FRICTION {
+                let bound = self.law.friction_bound(shifted_impulse);
+                law::coulomb(start.tangential / effective_mass, bound)
+            } else {
+                0.0
+            };
+            Row {
+                i: contact.grain,
+                j: contact.other,
+                normal: K::normal_of(world, contact),
+                restitution_velocity: rebound(approach),
+                shifted_impulse,
+                tangential_impulse,
+                effective_mass,
+            }
+        };
+        let contact = |number: usize| &contacts.contacts()[self.rows.contacts[number] as usize];
+        threads::fill(&mut fixed_rows, fixed, |number| {
+            let contact = contact(number);
+            let i = contact.grain as usize;
+            let [velocity, _] = K::velocity(K::normal_of(world, contact), &before[i]);
+            FixedRow { row: row(number, velocity, masses[i]), surface_speed: 0.0 }
+        });
+        threads::fill(&mut pair_rows, self.rows.contacts.len() - fixed, |number| {
+            let number = fixed + number;
+            let contact = contact(number);
+            // Grains come first among the bodies.
+            let (i, j) = (contact.grain as usize, contact.other as usize);
+            let share = masses[j] / (masses[i] + masses[j]);
+            let normal = K::normal_of(world, contact);
+            let [velocity, _] = K::relative_velocity(normal, &before[i], &before[j]);
+            PairRow { row: row(number, velocity, masses[i] * share), share }
+        });
+        (self.rows.fixed, self.rows.pairs) = (fixed_rows, pair_rows);
+    }
+
+    /// Moves the bodies from their free velocities by the rows' impulses.
+    pub fn form_velocities(&mut self) {
+        let Bodies { now, free, .. } = &mut self.bodies;
+        now.clone_from(free);
+        let captures = Captures { all: self.law.capture_speed(), each: &self.rows.captures };
+        for (number, row) in self.rows.fixed.iter().enumerate() {
+            let impulse = captures.reduced_impulse(number, row);
+            K::push_single(&mut now[row.i as usize], row.normal, impulse);
+        }
+        for (number, row) in (self.rows.fixed.len()..).zip(&self.rows.pairs) {
+            let impulse = captures.reduced_impulse(number, row);
+            let (mut i, mut j) = (now[row.i as usize], now[row.j as usize]);
+            K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+            now[row.i as usize] = i;
+            now[row.j as usize] = j;
+        }
+        if self.is_driven() {
+            self.form_wall_velocities();
+        }
+    }
+
+    /// Puts rows that were not made by [`StepProblem::prepare`] in the order of colours, for the
+    /// method that needs it.
+    pub fn sort_by_colours(&mut self) {
+        let Self { rows, order, bodies, .. } = self;
+        let contact = |row: &Row<K>, other: u32| Contact {
+            grain: row.i,
+            other,
+            normal: DVec2::ZERO,
+            gap: 0.0,
+        };
+        let grains = bodies.masses.len();
+        let fixed_body = Numbering::of_grains(grains).number(Other::Feature(0));
+        let fixed = rows.fixed.iter().map(|row| contact(row, fixed_body));
+        let all = fixed.chain(rows.pairs.iter().map(|row| contact(row, row.j)));
+        let sorted = order.sort_by_colours(grains, &all.collect::<Vec<_>>(), rows.fixed.len());
+        let (of_fixed, of_pairs) = sorted.split_at(rows.fixed.len());
+        let first_pair = rows.fixed.len();
+        rows.fixed = of_fixed.iter().map(|&row| rows.fixed[row as usize]).collect();
+        rows.pairs = of_pairs.iter().map(|&row| rows.pairs[row as usize - first_pair]).collect();
+        rows.contacts = sorted.iter().map(|&row| rows.contacts[row as usize]).collect();
+    }
+
+    /// The capture speed of a row by its number, m/s.
+    #[inline(always)]
+    pub fn capture(&self, number: usize) -> f64 {
+        self.captures().of(number)
+    }
+
+    /// (λ_n, λ_t) of a row with its number, m/s.
+    #[inline(always)]
+    pub fn reduced_impulse(&self, number: usize, row: &Row<K>) -> [f64; 2] {
+        self.captures().reduced_impulse(number, row)
+    }
+
+    #[inline(always)]
+    fn captures(&self) -> Captures<'_> {
+        Captures { all: self.law.capture_speed(), each: &self.rows.captures }
+    }
+
+    /// The rows with their numbers.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &Row<K>)> {
+        self.rows.iter().enumerate()
+    }
+
+    /// Visits the rows by their numbers with (v_n, v_t) among these bodies, m/s; v_t relative to surfaces that
+    /// move.
+    #[inline(always)]
+    pub(crate) fn for_each_velocity(
+        &self,
+        bodies: &[K::Body<f64>],
+        mut visit: impl FnMut(&Row<K>, [f64; 2]),
+    ) {
+        for row in &self.rows.fixed {
+            visit(row, row.velocity(bodies));
+        }
+        for row in &self.rows.pairs {
+            visit(row, row.velocity(bodies));
+        }
+    }
+
+    /// Hands the rows' impulses back to the contacts, in N·s.
+    pub(crate) fn store_impulses(&self, contacts: &mut ContactList) {
+        let impulses = contacts.impulses_mut();
+        for ((number, row), &index) in self.rows().zip(&self.rows.contacts) {
+            let [normal, tangential] = self.reduced_impulse(number, row);
+            let mass = row.effective_mass;
+            impulses[index as usize] =
+                Impulse { normal: mass * normal, tangential: mass * tangential };
+        }
+    }
+
+    /// Gives the rows the impulses of a step that was taken in another way, one a contact, N·s.
+    pub(crate) fn set_impulses(&mut self, impulses: &[Impulse]) {
+        for number in 0..self.rows.len() {
+            let Impulse { normal, tangential } = impulses[self.rows.contacts[number] as usize];
+            let capture_speed = self.capture(number);
+            let row = self.rows.get_mut(number);
+            row.shifted_impulse = normal / row.effective_mass + capture_speed;
+            row.tangential_impulse = tangential / row.effective_mass;
+        }
+    }
+
+    /// Gives the rows impulses (σ, λ_t), m/s, and the bodies the velocities that they make.
+    pub(crate) fn write_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
+        for (row, impulse) in self.rows.iter_mut().zip(impulses) {
+            [row.shifted_impulse, row.tangential_impulse] = impulse;
+        }
+        self.form_velocities();
+    }
+}
+
+/// The capture speeds of rows, m/s.
+#[derive(Clone, Copy)]
+struct Captures<'a> {
+    /// That of all rows where they do not differ.
+    all: f64,
+    /// That of each row; empty where they do not differ.
+    each: &'a [f64],
+}
+
+impl Captures<'_> {
+    #[inline(always)]
+    fn of(self, number: usize) -> f64 {
+        if self.each.is_empty() { self.all } else { self.each[number] }
+    }
+
+    #[inline(always)]
+    fn reduced_impulse<K: Kinematics>(self, number: usize, row: &Row<K>) -> [f64; 2] {
+        [row.shifted_impulse - self.of(number), row.tangential_impulse]
+    }
+}

@@ -1,13 +1,42 @@
-//! In which order a sweep visits the contacts.
+//! In which order a sweep visits the contacts, and which of them can be solved at the same time.
 //!
 //! Whatever the order, contacts with fixed bodies come first, then those between grains, so that
 //! each kind has a loop of its own; an order is one within each kind.
 
-use super::groups::Groups;
-use super::tiles::Tiles;
+use std::ops::Range;
+
+use glam::DVec2;
+
 use crate::contact::{Contact, Numbering};
-use crate::solver::ordering::Ordering;
+use crate::solver::method::Ordering;
 use crate::world::World;
+
+/// What rows of one kind, sorted by tiles and colours, can be solved at the same time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RowGroups {
+    /// Ends of the colours among the rows: those of a colour share no grain.
+    pub colour_ends: Vec<usize>,
+    /// Ends of the tiles among the colours: those of two tiles share no grain. The colours behind the last are
+    /// of contacts between tiles.
+    pub tile_ends: Vec<usize>,
+}
+
+impl RowGroups {
+    /// The rows of each colour of a tile, or of those between tiles where it is behind the last.
+    pub(crate) fn colours_of(&self, tile: usize) -> impl Iterator<Item = Range<usize>> {
+        let start_of = |ends: &[usize], at: usize| at.checked_sub(1).map_or(0, |at| ends[at]);
+        let (ends, tiles) = (&self.colour_ends, &self.tile_ends);
+        let all = tiles.len();
+        let first = start_of(tiles, tile.min(all));
+        let last = if tile < all { tiles[tile] } else { ends.len() };
+        (first..last).map(move |colour| start_of(ends, colour)..ends[colour])
+    }
+
+    fn clear(&mut self) {
+        self.colour_ends.clear();
+        self.tile_ends.clear();
+    }
+}
 
 /// Stretches that the order of detection is cut into when it is interleaved. Neighbours in the order
 /// of detection share a grain, so each update would wait for the one before it to finish; interleaved,
@@ -22,12 +51,15 @@ const COLOURS: u32 = u128::BITS;
 
 /// Sorts contacts. Memory is kept between steps.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sorter {
+pub(crate) struct RowOrder {
+    /// Which rows against fixed bodies, and which between grains, can be solved at the same time; empty
+    /// where rows are not coloured.
+    pub groups: [RowGroups; 2],
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
     tiles: Tiles,
     /// Contacts with their tile and colour, as one number.
-    groups: Vec<(u32, u32)>,
+    coloured: Vec<(u32, u32)>,
     /// Contacts between tiles.
     between: Vec<u32>,
     /// Contacts that found no colour.
@@ -38,52 +70,78 @@ pub(super) struct Sorter {
     taken: Vec<u128>,
 }
 
-impl Sorter {
-    /// Appends the contacts `numbers` of one kind, given in the order of detection, to `rows`. Where
-    /// they are coloured, `groups` gets which of what was appended belong together; tiles are those of
-    /// [`Sorter::begin`].
-    pub(super) fn append(
+impl RowOrder {
+    /// Puts the numbers of contacts into `rows`, in an order. Tells how many of them, the first, are with fixed
+    /// bodies.
+    pub(super) fn sort(
         &mut self,
         ordering: Ordering,
-        (world, contacts): (&World, &[Contact]),
+        world: &World,
+        contacts: &[Contact],
+        rows: &mut Vec<u32>,
+    ) -> usize {
+        rows.clear();
+        if ordering == Ordering::Coloured {
+            self.tiles.lay(world);
+        }
+        let grains = world.grains.len();
+        let is_pair = |index: &u32| (contacts[*index as usize].other as usize) < grains;
+        let all = 0..contacts.len() as u32;
+        self.append(
+            ordering,
+            world,
+            contacts,
+            all.clone().filter(|index| !is_pair(index)),
+            rows,
+            0,
+        );
+        let fixed = rows.len();
+        self.append(ordering, world, contacts, all.filter(is_pair), rows, 1);
+        fixed
+    }
+
+    /// Contacts by colours, of which nothing is known but their bodies and that the first `fixed` are with fixed
+    /// ones.
+    pub(super) fn sort_by_colours(
+        &mut self,
+        grains: usize,
+        contacts: &[Contact],
+        fixed: usize,
+    ) -> Vec<u32> {
+        self.tiles.lay_by_number(grains);
+        let mut rows = Vec::with_capacity(contacts.len());
+        let (fixed, all) = (fixed as u32, contacts.len() as u32);
+        for (kind, numbers) in [0..fixed, fixed..all].into_iter().enumerate() {
+            self.take(numbers, kind);
+            self.colour(grains, contacts, &mut rows, kind);
+        }
+        rows
+    }
+
+    /// Appends the contacts `numbers` of one kind (0: with fixed bodies, 1: between grains), given in the order
+    /// of detection, to `rows`.
+    fn append(
+        &mut self,
+        ordering: Ordering,
+        world: &World,
+        contacts: &[Contact],
         numbers: impl Iterator<Item = u32>,
         rows: &mut Vec<u32>,
-        groups: &mut Groups,
+        kind: usize,
     ) {
-        self.take(numbers, groups);
+        self.take(numbers, kind);
         match ordering {
             Ordering::Detected => rows.extend(&self.detected),
             Ordering::Interleaved | Ordering::Symmetric => self.interleave(rows),
             Ordering::BottomUp => self.sort_by_height(world, contacts, rows),
-            Ordering::Coloured => self.colour(world.grains.len(), contacts, rows, groups),
+            Ordering::Coloured => self.colour(world.grains.len(), contacts, rows, kind),
         }
     }
 
-    /// Appends contacts of one kind by colours, as [`Sorter::append`] does, where nothing is known
-    /// of them but their grains.
-    pub(super) fn append_coloured(
-        &mut self,
-        (grains, contacts): (usize, &[Contact]),
-        numbers: impl Iterator<Item = u32>,
-        rows: &mut Vec<u32>,
-        groups: &mut Groups,
-    ) {
-        self.tiles.lay_by_number(grains);
-        self.take(numbers, groups);
-        self.colour(grains, contacts, rows, groups);
-    }
-
-    /// Lays the tiles of a step, where its order needs them.
-    pub(super) fn begin(&mut self, ordering: Ordering, world: &World) {
-        if ordering == Ordering::Coloured {
-            self.tiles.lay(world);
-        }
-    }
-
-    fn take(&mut self, numbers: impl Iterator<Item = u32>, groups: &mut Groups) {
+    fn take(&mut self, numbers: impl Iterator<Item = u32>, kind: usize) {
         self.detected.clear();
         self.detected.extend(numbers);
-        groups.clear();
+        self.groups[kind].clear();
     }
 
     fn interleave(&self, rows: &mut Vec<u32>) {
@@ -111,14 +169,8 @@ impl Sorter {
     /// Sorts contacts by tiles, those between tiles last, and within a tile by colours: every contact gets
     /// the first colour that neither of its grains has yet, which makes at most 2k − 1 colours where no
     /// grain has more than k contacts.
-    fn colour(
-        &mut self,
-        grains: usize,
-        contacts: &[Contact],
-        rows: &mut Vec<u32>,
-        groups: &mut Groups,
-    ) {
-        self.groups.clear();
+    fn colour(&mut self, grains: usize, contacts: &[Contact], rows: &mut Vec<u32>, kind: usize) {
+        self.coloured.clear();
         self.of_their_own.clear();
         self.between.clear();
         self.taken.clear();
@@ -141,7 +193,7 @@ impl Sorter {
             let number = self.between[at];
             self.take_colour(self.tiles.count(), number, grains_of(number));
         }
-        self.group(rows, groups);
+        self.group(rows, kind);
     }
 
     fn take_colour(&mut self, tile: usize, number: u32, grains: [Option<usize>; 2]) {
@@ -153,16 +205,16 @@ impl Sorter {
             return;
         }
         moving().for_each(|grain| self.taken[grain] |= 1 << colour);
-        self.groups.push((tile as u32 * COLOURS + colour, number));
+        self.coloured.push((tile as u32 * COLOURS + colour, number));
     }
 
     /// Counts how many contacts each colour of each tile has, and puts them there in the order of detection.
-    fn group(&mut self, rows: &mut Vec<u32>, groups: &mut Groups) {
+    fn group(&mut self, rows: &mut Vec<u32>, kind: usize) {
         let tiles = self.tiles.count();
-        let counts = &mut self.counts;
+        let (counts, groups) = (&mut self.counts, &mut self.groups[kind]);
         counts.clear();
         counts.resize((tiles + 1) * COLOURS as usize, 0);
-        for &(group, _) in &self.groups {
+        for &(group, _) in &self.coloured {
             counts[group as usize] += 1;
         }
         let before = rows.len();
@@ -176,7 +228,7 @@ impl Sorter {
             groups.tile_ends.push(groups.colour_ends.len());
         }
         rows.resize(before + end, 0);
-        for &(group, number) in &self.groups {
+        for &(group, number) in &self.coloured {
             let place = &mut counts[group as usize];
             rows[before + *place] = number;
             *place += 1;
@@ -190,18 +242,94 @@ impl Sorter {
     }
 }
 
+/// Grains of a dense pile in a tile: bodies of 16 KB, a third of the nearest cache of a processor of today. With
+/// fewer, more contacts lie between tiles; with more, bodies are pushed out of the cache by rows that pass
+/// through, and a small pile has too few tiles for several threads.
+const GRAINS_IN_TILE: usize = 512;
+/// Scenes of up to so many grains are one tile: their rows fit in the second cache, and waking a thread costs
+/// more than it gains.
+const GRAINS_IN_ONE: usize = 2048;
+/// Tiles of a scene that is not dense: no more than one for so many grains, that empty ones cost nothing.
+const LEAST_GRAINS_A_TILE: usize = 64;
+
+/// Which tile each grain lies in. Tiles are squares of the plane, so small that the bodies of one stay in the
+/// nearest cache while its contacts are solved. They share no grain, so several can be solved at the same time.
+#[derive(Clone, Debug, Default)]
+struct Tiles {
+    of_grain: Vec<u32>,
+    /// How many there are.
+    count: usize,
+}
+
+impl Tiles {
+    /// Lays squares over the grains of a world. They depend on where the grains lie to each other alone.
+    fn lay(&mut self, world: &World) {
+        let positions = &world.grains.positions;
+        if positions.len() <= GRAINS_IN_ONE {
+            return self.lay_one(positions.len());
+        }
+        let corner = |pick: fn(DVec2, DVec2) -> DVec2| positions.iter().copied().reduce(pick);
+        let (Some(low), Some(high)) = (corner(DVec2::min), corner(DVec2::max)) else {
+            return self.lay_one(0);
+        };
+        let extent = high - low;
+        let most = (positions.len() / LEAST_GRAINS_A_TILE) as f64;
+        let squares = |side: f64| (extent / side).floor() + DVec2::ONE;
+        let mut side = world.mean_diameter * (GRAINS_IN_TILE as f64).sqrt();
+        while squares(side).element_product() > most {
+            side *= 2.0;
+        }
+        // Grains that are infinitely far from each other leave a number that is none.
+        let [columns, rows] = squares(side).to_array().map(|count| count.max(1.0) as usize);
+        self.count = columns * rows;
+        self.of_grain.clear();
+        self.of_grain.extend(positions.iter().map(|&position| {
+            let [column, row] = ((position - low) / side).to_array().map(|place| place as usize);
+            (row.min(rows - 1) * columns + column.min(columns - 1)) as u32
+        }));
+    }
+
+    /// One tile after the other takes its share of the grains as they are numbered, where nothing is known of
+    /// their places.
+    fn lay_by_number(&mut self, grains: usize) {
+        if grains <= GRAINS_IN_ONE {
+            return self.lay_one(grains);
+        }
+        self.count = grains.div_ceil(GRAINS_IN_TILE);
+        self.of_grain.clear();
+        self.of_grain.extend((0..grains).map(|grain| (grain / GRAINS_IN_TILE) as u32));
+    }
+
+    fn lay_one(&mut self, grains: usize) {
+        self.count = 1;
+        self.of_grain.clear();
+        self.of_grain.resize(grains, 0);
+    }
+
+    /// How many there are.
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The tile that all of these grains lie in; none where they lie in several.
+    fn of(&self, grains: [Option<usize>; 2]) -> Option<usize> {
+        let mut tiles = grains.into_iter().flatten().map(|grain| self.of_grain[grain] as usize);
+        let first = tiles.next()?;
+        tiles.all(|tile| tile == first).then_some(first)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
-
     use super::*;
     use crate::world::{Grain, Grains, Gravity};
 
-    /// Discs whose height goes up and down with their number.
-    fn world() -> World {
-        let place = |k: u32| DVec2::new(f64::from(k), f64::from(k * 29 % 138));
-        let grains: Vec<Grain> = (0..138).map(|k| Grain::at_rest(place(k), 0.4)).collect();
+    const SIDE: usize = 60;
+
+    fn world(grains: impl Iterator<Item = Grain>) -> World {
+        let grains: Vec<Grain> = grains.collect();
         World {
+            mean_diameter: 2.0 * grains[0].radius,
             grains: Grains::new(&grains, 1.0),
             fixed_discs: Vec::new(),
             boundaries: Vec::new(),
@@ -209,18 +337,23 @@ mod tests {
             gravity_turn: None,
             periodic: None,
             gravity: Gravity::Uniform { acceleration: -9.8 * DVec2::Y },
-            mean_diameter: 0.8,
         }
     }
 
+    /// Discs whose height goes up and down with their number.
+    fn uneven() -> World {
+        world(
+            (0..138)
+                .map(|k| Grain::at_rest(DVec2::new(f64::from(k), f64::from(k * 29 % 138)), 0.4)),
+        )
+    }
+
     fn sorted(ordering: Ordering, contacts: &[Contact]) -> (Vec<u32>, Vec<usize>) {
-        let world = world();
-        let (mut rows, mut groups) = (Vec::new(), Groups::default());
-        let numbers = 0..contacts.len() as u32;
-        let mut sorter = Sorter::default();
-        sorter.begin(ordering, &world);
-        sorter.append(ordering, (&world, contacts), numbers, &mut rows, &mut groups);
-        (rows, groups.colour_ends)
+        let world = uneven();
+        let (mut rows, mut order) = (Vec::new(), RowOrder::default());
+        order.sort(ordering, &world, contacts, &mut rows);
+        let [_, pairs] = order.groups;
+        (rows, pairs.colour_ends)
     }
 
     /// A hub with more neighbours than a grain keeps account of, and a ring around it.
@@ -263,7 +396,7 @@ mod tests {
     #[test]
     fn bottom_up_rises() {
         let contacts = hub();
-        let world = world();
+        let world = uneven();
         let (rows, _) = sorted(Ordering::BottomUp, &contacts);
         let heights: Vec<f64> = rows
             .iter()
@@ -273,5 +406,55 @@ mod tests {
             })
             .collect();
         assert!(heights.is_sorted() && heights[0] < heights[rows.len() - 1]);
+    }
+
+    /// Discs on a square lattice, moved and stretched.
+    fn lattice(place: impl Fn(DVec2) -> DVec2) -> World {
+        let lattice = (0..SIDE * SIDE).map(|k| DVec2::new((k % SIDE) as f64, (k / SIDE) as f64));
+        world(lattice.map(|at| Grain::at_rest(place(at), 0.5)))
+    }
+
+    fn laid(place: impl Fn(DVec2) -> DVec2) -> Tiles {
+        let mut tiles = Tiles::default();
+        tiles.lay(&lattice(place));
+        assert_eq!(tiles.of_grain.len(), SIDE * SIDE);
+        assert!(tiles.of_grain.iter().all(|&tile| (tile as usize) < tiles.count()));
+        tiles
+    }
+
+    #[test]
+    fn tiles_of_a_dense_packing_are_squares_wherever_it_lies() {
+        let tiles = laid(|at| at);
+        // 59 diameters between the outermost, by 22.6.
+        assert_eq!(tiles.count(), 9);
+        for tile in 0..9 {
+            let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
+            let numbers = (0..SIDE * SIDE).filter(|&k| tiles.of_grain[k] == tile);
+            for k in numbers {
+                let at = DVec2::new((k % SIDE) as f64, (k / SIDE) as f64);
+                (low, high) = (low.min(at), high.max(at));
+            }
+            assert!((high - low).max_element() <= (GRAINS_IN_TILE as f64).sqrt(), "{low} {high}");
+        }
+        assert_eq!(tiles.of([Some(0), Some(1)]), Some(0));
+        assert_eq!(tiles.of([Some(0), None]), Some(0));
+        assert_eq!(tiles.of([Some(22), Some(23)]), None);
+        let moved = laid(|at| at + DVec2::new(1e6, -1e6));
+        assert_eq!(moved.of_grain, tiles.of_grain);
+    }
+
+    #[test]
+    fn few_grains_are_one_tile_and_far_ones_do_not_make_many() {
+        for far in [1e3, 1e12, 1e300] {
+            let tiles = laid(|at| at * far);
+            assert!(tiles.count() <= SIDE * SIDE / LEAST_GRAINS_A_TILE, "{}", tiles.count());
+        }
+        // So far apart that the distance is no number.
+        assert_eq!(laid(|at| (at - DVec2::splat(0.5)).signum() * f64::MAX).count(), 1);
+        let mut tiles = Tiles::default();
+        tiles.lay_by_number(GRAINS_IN_ONE);
+        assert_eq!(tiles.count(), 1);
+        tiles.lay_by_number(GRAINS_IN_ONE + 1);
+        assert_eq!(tiles.count(), 5);
     }
 }

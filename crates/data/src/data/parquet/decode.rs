@@ -20,7 +20,7 @@ const ROWS_AT_ONCE: usize = 1 << 16;
 
 /// A Parquet file that is there to be read.
 pub(in crate::data) struct ParquetFile {
-    path: PathBuf,
+    pub path: PathBuf,
     reader: SerializedFileReader<File>,
 }
 

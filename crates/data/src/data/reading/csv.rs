@@ -8,9 +8,10 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::found::{FoundRow, NUMBERS, RecordedGrains, checked, has_needed, no_such_step};
-use crate::data::columns::empty_grains;
-use crate::data::text_table::COMMENT;
+use super::{
+    COMMENT, DiscRow, NUMBERS, RecordedGrains, discs_of_rows, empty_grains, has_needed,
+    no_such_step,
+};
 use crate::error::{Error, Result};
 
 /// What a file of discs must be, for messages.
@@ -25,7 +26,7 @@ const MOST_SHOWN: usize = 80;
 /// # Errors
 /// Where a line is none; the message names it.
 pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
-    Table { path, wanted: None, open: || Ok(text.as_bytes()) }.read()
+    CsvFile { path, wanted: None, open: || Ok(text.as_bytes()) }.read()
 }
 
 /// Reads the moment of a step, or the last one.
@@ -34,11 +35,11 @@ pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
 /// Where the file cannot be read, or a line is none.
 pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     let open = || File::open(path).map_err(|error| Error::unread(path, error, FORM));
-    Table { path, wanted: step, open }.read()
+    CsvFile { path, wanted: step, open }.read()
 }
 
-/// A table that is being read.
-struct Table<'a, Open> {
+/// A file that is being read.
+struct CsvFile<'a, Open> {
     path: &'a Path,
     wanted: Option<u64>,
     /// Opens it: once to be read, and once more where a message is to name a line.
@@ -46,7 +47,7 @@ struct Table<'a, Open> {
 }
 
 /// Where in a row the columns are.
-struct Places {
+struct CsvColumns {
     all: usize,
     step: Option<usize>,
     id: Option<usize>,
@@ -54,7 +55,7 @@ struct Places {
     numbers: [Option<usize>; NUMBERS.len()],
 }
 
-impl<Source: Read, Open: Fn() -> Result<Source>> Table<'_, Open> {
+impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
     fn read(&self) -> Result<RecordedGrains> {
         let mut reader = ReaderBuilder::new()
             .comment(Some(COMMENT))
@@ -84,11 +85,11 @@ impl<Source: Read, Open: Fn() -> Result<Source>> Table<'_, Open> {
         let known: Vec<u64> = steps.into_iter().collect();
         match self.wanted {
             Some(step) if !known.contains(&step) => Err(no_such_step(self.path, step, &known)),
-            _ => checked(self.path, rows, |byte| (self.path.to_owned(), self.line_at(byte))),
+            _ => discs_of_rows(self.path, rows, |byte| (self.path.to_owned(), self.line_at(byte))),
         }
     }
 
-    fn places(&self, names: &StringRecord) -> Result<Places> {
+    fn places(&self, names: &StringRecord) -> Result<CsvColumns> {
         let refuse = |reason: String| Err(Error::file(self.path, reason));
         let all: Vec<String> = names.iter().map(str::to_owned).collect();
         if !has_needed(&all) {
@@ -111,10 +112,10 @@ impl<Source: Read, Open: Fn() -> Result<Source>> Table<'_, Open> {
         }
         let place = |name: &str| all.iter().position(|there| there == name);
         let (step, id, kind) = (place("step"), place("id"), place("kind"));
-        Ok(Places { all: all.len(), step, id, kind, numbers: NUMBERS.map(place) })
+        Ok(CsvColumns { all: all.len(), step, id, kind, numbers: NUMBERS.map(place) })
     }
 
-    fn row(&self, places: &Places, record: &StringRecord) -> Result<FoundRow> {
+    fn row(&self, places: &CsvColumns, record: &StringRecord) -> Result<DiscRow> {
         if record.len() != places.all {
             let reason = format!("has {} columns, but must have {}", record.len(), places.all);
             return Err(self.refuse(record, &reason));
@@ -129,7 +130,7 @@ impl<Source: Read, Open: Fn() -> Result<Source>> Table<'_, Open> {
         }
         let id = places.id.map(|place| self.whole(record, place, "id")).transpose()?;
         let kind = places.kind.and_then(|place| record.get(place)).map(str::to_owned);
-        Ok(FoundRow { place: byte_of(record), id, kind, numbers })
+        Ok(DiscRow { place: byte_of(record), id, kind, numbers })
     }
 
     fn whole(&self, record: &StringRecord, place: usize, name: &str) -> Result<u64> {

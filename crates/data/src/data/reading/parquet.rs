@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::found::{FoundRow, NUMBERS, RecordedGrains, check_names, checked, no_such_step};
+use super::{DiscRow, NUMBERS, RecordedGrains, check_names, discs_of_rows, no_such_step};
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
@@ -21,7 +21,8 @@ pub(super) fn read_parts(
     let (mut known, mut rows, mut wanted) = (Vec::new(), Vec::new(), step);
     // The last moment is in the last part, and one that is asked for most often near it.
     for (index, (_, part)) in parts.iter().enumerate().rev() {
-        let table = Part::open(part)?;
+        let table = ParquetFile::open(part)?;
+        check_names(part, &table.names())?;
         let steps = table.whole("step")?;
         wanted = wanted.or(steps.as_ref().and_then(|steps| steps.iter().copied().max()));
         let is_wanted = |row: &usize| match (&steps, wanted) {
@@ -30,12 +31,12 @@ pub(super) fn read_parts(
             (None, _) => step.is_none(),
             (Some(_), None) => false,
         };
-        let chosen: Vec<usize> = (0..table.file.rows()).filter(is_wanted).collect();
+        let chosen: Vec<usize> = (0..table.rows()).filter(is_wanted).collect();
         if chosen.is_empty() && !rows.is_empty() {
             break;
         }
         if !chosen.is_empty() {
-            rows.splice(0..0, table.read(index as u64 * MOST_ROWS, &chosen)?);
+            rows.splice(0..0, table.disc_rows(index as u64 * MOST_ROWS, &chosen)?);
         }
         known.extend(steps.into_iter().flatten());
         known.sort_unstable();
@@ -43,33 +44,21 @@ pub(super) fn read_parts(
     }
     match step {
         Some(step) if rows.is_empty() => Err(no_such_step(path, step, &known)),
-        _ => checked(path, rows, |place| {
+        _ => discs_of_rows(path, rows, |place| {
             let part = parts.get((place / MOST_ROWS) as usize).map_or(path, |(_, part)| part);
             (part.to_owned(), format!("row {}", place % MOST_ROWS + 1))
         }),
     }
 }
 
-/// One file.
-struct Part<'a> {
-    path: &'a Path,
-    file: ParquetFile,
-}
-
-impl<'a> Part<'a> {
-    fn open(path: &'a Path) -> Result<Self> {
-        let file = ParquetFile::open(path)?;
-        check_names(path, &file.names())?;
-        Ok(Self { path, file })
-    }
-
+impl ParquetFile {
     /// A column of whole numbers ≥ 0, where there is one.
     fn whole(&self, name: &str) -> Result<Option<Vec<u64>>> {
         let allowed = "a whole number ≥ 0";
         let of = |(row, value): (usize, Option<i64>)| {
             u64::try_from(value.unwrap_or(-1)).map_err(|_| self.refuse(row, name, value, allowed))
         };
-        match self.file.column(name)? {
+        match self.column(name)? {
             None => Ok(None),
             Some(Decoded::Whole(values)) => {
                 values.into_iter().enumerate().map(of).collect::<Result<_>>().map(Some)
@@ -78,23 +67,23 @@ impl<'a> Part<'a> {
         }
     }
 
-    fn read(&self, first_place: u64, chosen: &[usize]) -> Result<Vec<FoundRow>> {
+    fn disc_rows(&self, first_place: u64, chosen: &[usize]) -> Result<Vec<DiscRow>> {
         let ids = self.whole("id")?;
-        let kinds = match self.file.column("kind")? {
+        let kinds = match self.column("kind")? {
             None => None,
             Some(Decoded::Words(words)) => Some(words),
             Some(_) => return Err(self.wrong_kind("kind", "words")),
         };
-        let row = |&row: &usize| FoundRow {
+        let row = |&row: &usize| DiscRow {
             place: first_place + row as u64,
             id: ids.as_ref().map(|ids| ids[row]),
             kind: kinds.as_ref().and_then(|kinds| kinds[row].clone()),
             numbers: [0.0; NUMBERS.len()],
         };
-        let mut rows: Vec<FoundRow> = chosen.iter().map(row).collect();
+        let mut rows: Vec<DiscRow> = chosen.iter().map(row).collect();
         for (place, name) in NUMBERS.iter().enumerate() {
             let none = f64::NAN;
-            let values: Vec<f64> = match self.file.column(name)? {
+            let values: Vec<f64> = match self.column(name)? {
                 None => continue,
                 Some(Decoded::Numbers(values)) => {
                     values.into_iter().map(|value| value.unwrap_or(none)).collect()
@@ -104,8 +93,8 @@ impl<'a> Part<'a> {
                 }
                 Some(_) => return Err(self.wrong_kind(name, "numbers")),
             };
-            for (found, &row) in rows.iter_mut().zip(chosen) {
-                found.numbers[place] = values[row];
+            for (disc, &row) in rows.iter_mut().zip(chosen) {
+                disc.numbers[place] = values[row];
             }
         }
         Ok(rows)
@@ -113,12 +102,15 @@ impl<'a> Part<'a> {
 
     fn refuse(&self, row: usize, name: &str, value: Option<i64>, allowed: &str) -> Error {
         let value = value.map_or("missing".to_owned(), |value| value.to_string());
-        Error::file(self.path, format!("row {}: {name} is {value}, but must be {allowed}", row + 1))
+        Error::file(
+            &self.path,
+            format!("row {}: {name} is {value}, but must be {allowed}", row + 1),
+        )
     }
 
     fn wrong_kind(&self, name: &str, allowed: &str) -> Error {
         Error::file(
-            self.path,
+            &self.path,
             format!("column {name} holds something else, but must hold {allowed}"),
         )
     }

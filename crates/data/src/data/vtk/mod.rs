@@ -8,37 +8,52 @@
 //! words in the order of the numbers, `columns` what each column is and its unit, `about` the run. What is
 //! measured of the whole pile is there too, as `pile_NAME`.
 
-#[cfg(feature = "data")]
-mod decoding;
-mod encoding;
 mod poly_data;
 mod series;
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::files;
-use super::format::{About, Format, Frame};
-use crate::error::Result;
-use crate::output::Draft;
-#[cfg(feature = "data")]
-pub(super) use decoding::{DataArray, Document, Piece, Said, values, words};
-use series::Series;
+use glam::DVec2;
+
+use self::poly_data::{PolyData, VtkCells};
+use self::series::PvdSeries;
+use super::format::{Format, Frame, RunFacts};
+use super::recording_folder::{files_named, make_folder, remove};
+use super::table::{Column, Table, Values};
+use crate::column_spec::STEP;
+use crate::error::{Error, Result};
+use crate::output::PendingFile;
+use crate::sim::{ContactState, Moment, OtherBody};
 
 /// Where the files are.
 pub(super) const FOLDER: &str = "vtk";
-/// The series of the grains.
-pub(super) const GRAINS: &str = "grains.pvd";
 /// Of the files, the beginnings of their names.
 const KINDS: [&str; 2] = ["grains", "contacts"];
 const ENDING: &str = ".vtp";
-const SERIES: &str = ".pvd";
+const ENDING_OF_SERIES: &str = ".pvd";
+
+/// What the time is called, s: VTK's readers look for this name.
+const TIME: &str = "TimeValue";
+/// Bytes in which a file says both.
+const LONGEST_HEAD: u64 = 1024;
+/// Columns that are the same in all rows of a frame.
+const OF_FRAME: [&str; 2] = ["step", "time"];
+/// In front of the names of what is measured of the whole pile, since grains have arrays of the same names.
+const PILE: &str = "pile_";
+/// Vectors, and the columns that are their components.
+const VECTORS: [(&str, [&str; 2]); 3] =
+    [("velocity", ["vx", "vy"]), ("normal", ["nx", "ny"]), ("point", ["x", "y"])];
+/// What stands where a law knows no such thing as a flag.
+const NEITHER: i8 = -1;
 
 /// Writes series of files.
 pub(super) struct Vtk {
     folder: PathBuf,
-    about: About,
+    facts: RunFacts,
     /// Once there is a frame, or frames of before are gone on with; one of a kind.
-    series: Option<[Series; 2]>,
+    series: Option<[PvdSeries; 2]>,
 }
 
 impl Vtk {
@@ -46,34 +61,32 @@ impl Vtk {
     ///
     /// # Errors
     /// Where the folder cannot be made.
-    pub(super) fn start(folder: &Path, about: &About) -> Result<Self> {
+    pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
-        files::make_folder(&folder)?;
-        Ok(Self { folder, about: about.clone(), series: None })
+        make_folder(&folder)?;
+        Ok(Self { folder, facts: facts.clone(), series: None })
     }
 
     /// Begins the series with the files of the first frames, each with its time, s.
-    fn begin(&mut self, times: &[f64]) -> Result<&mut [Series; 2]> {
+    fn begin(&mut self, times: &[f64]) -> Result<&mut [PvdSeries; 2]> {
         let [grains, contacts] = KINDS.map(|kind| {
             let files =
                 times.iter().zip(0..).map(|(&time, number)| (time, file_name(kind, number)));
-            Series::of(self.folder.join(format!("{kind}{SERIES}")), &files.collect::<Vec<_>>())
+            PvdSeries::of(
+                self.folder.join(format!("{kind}{ENDING_OF_SERIES}")),
+                &files.collect::<Vec<_>>(),
+            )
         });
         Ok(self.series.insert([grains?, contacts?]))
     }
 }
 
-/// The files that are there.
-///
-/// # Errors
-/// Where the folder cannot be read.
-pub(super) fn files(folder: &Path) -> Result<Vec<PathBuf>> {
-    let is_ours = |name: &str| {
-        KINDS.iter().any(|kind| {
-            name.strip_prefix(kind).is_some_and(|rest| rest == SERIES || number_of(rest).is_some())
-        })
-    };
-    files::named(&folder.join(FOLDER), is_ours)
+/// Whether a file in the folder has a name of these files.
+pub(super) fn is_name_of_file(name: &str) -> bool {
+    KINDS
+        .iter()
+        .filter_map(|kind| name.strip_prefix(kind))
+        .any(|rest| rest == ENDING_OF_SERIES || number_of(rest).is_some())
 }
 
 impl Format for Vtk {
@@ -81,20 +94,16 @@ impl Format for Vtk {
         if self.series.is_none() {
             self.begin(&[])?;
         }
-        let texts = [encoding::grains(frame, &self.about), encoding::contacts(frame, &self.about)];
+        let texts = [grains_file(frame, &self.facts), contacts_file(frame, &self.facts)];
         let series = self.series.iter_mut().flatten();
         for ((kind, series), bytes) in KINDS.iter().zip(series).zip(texts) {
             let name = file_name(kind, frame.number);
-            let mut draft = Draft::start(&self.folder.join(&name))?;
-            draft.write(&bytes)?;
+            let mut file = PendingFile::start(&self.folder.join(&name))?;
+            file.write(&bytes)?;
             // A run does not wait for the disk.
-            draft.finish(false)?;
+            file.finish(false)?;
             series.add(frame.moment.observables.time_secs, &name)?;
         }
-        Ok(())
-    }
-
-    fn flush(&mut self) -> Result<()> {
         Ok(())
     }
 
@@ -107,7 +116,7 @@ impl Format for Vtk {
             if !path.exists() || !of_contacts.exists() {
                 break;
             }
-            let (step_of_file, time_secs) = encoding::moment_of(&path)?;
+            let (step_of_file, time_secs) = moment_of(&path)?;
             if Some(step_of_file) > last_frame {
                 break;
             }
@@ -120,12 +129,12 @@ impl Format for Vtk {
         let is_later = |name: &str| {
             let ours = KINDS.iter().find_map(|kind| name.strip_prefix(kind));
             let number = ours.and_then(number_of);
-            number.map_or(ours == Some(SERIES) && times.is_empty(), |number| {
+            number.map_or(ours == Some(ENDING_OF_SERIES) && times.is_empty(), |number| {
                 number >= times.len() as u64
             })
         };
-        let later = files::named(&self.folder, is_later)?;
-        later.iter().try_for_each(|path| files::remove(path))
+        let later = files_named(&self.folder, is_later)?;
+        later.iter().try_for_each(|path| remove(path))
     }
 }
 
@@ -138,4 +147,142 @@ fn number_of(rest: &str) -> Option<u64> {
     let digits = rest.strip_prefix('_')?.strip_suffix(ENDING)?;
     let are_digits = digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
     are_digits.then(|| digits.parse().ok())?
+}
+
+/// Grains as points, with the columns of their table.
+fn grains_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
+    let surroundings = &frame.moment.surroundings;
+    let fixed = surroundings.fixed_discs.iter().map(|disc| disc.position);
+    let grains = frame.moment.grains.iter().map(|grain| grain.position);
+    let centres: Vec<DVec2> = grains.chain(fixed).collect();
+    let points = centres.iter().map(DVec2::to_array);
+    let file = file(PolyData::new(VtkCells::Points, points), frame, &frame.grains, "point", facts);
+    with_measures(file, &frame.measures).finish("radius")
+}
+
+/// Contacts as lines, with the columns of their table.
+fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
+    let lines = frame.moment.contacts.iter().map(|contact| line(&frame.moment, contact));
+    let ends: Vec<DVec2> = lines.flatten().collect();
+    let points = ends.iter().map(DVec2::to_array);
+    file(PolyData::new(VtkCells::Lines, points), frame, &frame.contacts, "", facts)
+        .finish("normal_force")
+}
+
+/// Step and time, s, of the frame that a file has.
+///
+/// # Errors
+/// Where it cannot be read, or is none of these files.
+fn moment_of(path: &Path) -> Result<(u64, f64)> {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST_HEAD).read_to_end(&mut head));
+    read.map_err(|error| Error::file(path, error))?;
+    let head = String::from_utf8_lossy(&head);
+    let number = |name: &str| {
+        let (_, rest) = head.split_once(&format!("Name=\"{name}\""))?;
+        let (number, _) = rest.split_once('>')?.1.split_once('<')?;
+        Some(number.to_owned())
+    };
+    let step = number(STEP).and_then(|number| number.parse().ok());
+    let time_secs = number(TIME).and_then(|number| number.parse().ok());
+    step.zip(time_secs).ok_or_else(|| {
+        Error::file(path, format!("says no {STEP} and {TIME}, but must be a file that slump wrote"))
+    })
+}
+
+/// From centre to centre as they are now, or to the touched point of a boundary, which the branch
+/// leads to.
+fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
+    let from = moment.grains[contact.grain as usize].position;
+    let periodic = moment.surroundings.periodic;
+    let near = |place| periodic.map_or(place, |periodic| periodic.near(place, from));
+    let to = match contact.other {
+        OtherBody::Grain(number) => near(moment.grains[number as usize].position),
+        OtherBody::FixedDisc(number) => {
+            near(moment.surroundings.fixed_discs[number as usize].position)
+        }
+        OtherBody::Boundary(_) => from - contact.branch,
+    };
+    [from, to]
+}
+
+/// Adds all that the table has, except for the vector that says where its points are.
+fn file(
+    mut file: PolyData,
+    frame: &Frame,
+    table: &Table,
+    placed_by: &str,
+    facts: &RunFacts,
+) -> PolyData {
+    let observables = &frame.moment.observables;
+    file.add_number(STEP, observables.step as i64);
+    file.add_number(TIME, observables.time_secs);
+    let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
+    let described = columns.clone().map(|column| column.described_with_codes(column.name, 0));
+    file.add_words("columns", described.collect::<Vec<_>>().iter());
+    let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
+    file.add_words("about", facts);
+    for column in columns {
+        let is_part = |(_, parts): &&(&str, [&str; 2])| parts.contains(&column.name);
+        match VECTORS.iter().find(is_part) {
+            Some((name, _)) if *name == placed_by => {}
+            Some((name, parts)) => {
+                if let ([x, y], true) =
+                    (parts.map(|part| numbers(table, part)), parts[0] == column.name)
+                {
+                    file.add_vectors(name, *parts, x.iter().zip(y).map(|(&x, &y)| [x, y]));
+                }
+            }
+            None => add(&mut file, column),
+        }
+    }
+    file
+}
+
+/// Adds what is measured of the whole pile.
+fn with_measures(mut file: PolyData, measures: &Table) -> PolyData {
+    let columns = measures.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
+    for Column { name, values, .. } in columns {
+        let name = format!("{PILE}{name}");
+        match values {
+            Values::Numbers(numbers) => {
+                numbers.iter().for_each(|&number| file.add_number_or_none(&name, number));
+            }
+            Values::SomeNumbers(numbers) => {
+                let numbers = numbers.iter().map(|number| number.unwrap_or(f64::NAN));
+                numbers.for_each(|number| file.add_number_or_none(&name, number));
+            }
+            Values::Counts(counts) => {
+                counts.iter().for_each(|&count| file.add_number_or_none(&name, count as i64));
+            }
+            // None of a pile is.
+            Values::Flags(_) | Values::Words { .. } => {}
+        }
+    }
+    file
+}
+
+/// The numbers of a column that has a number in each row.
+fn numbers<'a>(table: &'a Table, name: &str) -> &'a [f64] {
+    match table.column(name).map(|column| &column.values) {
+        Some(Values::Numbers(numbers)) => numbers,
+        _ => &[],
+    }
+}
+
+fn add(file: &mut PolyData, Column { name, values, .. }: &Column) {
+    match values {
+        Values::Numbers(numbers) => file.add_column(name, numbers.iter().copied()),
+        Values::SomeNumbers(numbers) => {
+            file.add_column(name, numbers.iter().map(|number| number.unwrap_or(f64::NAN)));
+        }
+        Values::Counts(counts) => file.add_column(name, counts.iter().map(|&count| count as i64)),
+        Values::Flags(flags) => {
+            file.add_column(name, flags.iter().map(|flag| flag.map_or(NEITHER, i8::from)));
+        }
+        Values::Words { words, codes } => {
+            file.add_column(name, codes.iter().map(|&code| code as i32));
+            file.add_words(&format!("{name}_words"), words.iter());
+        }
+    }
 }

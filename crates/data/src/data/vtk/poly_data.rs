@@ -29,7 +29,7 @@ scalars! { f64, "Float64"; i64, "Int64"; i32, "Int32"; i8, "Int8"; }
 
 /// Which cells lie on the points, all of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cells {
+pub(super) enum VtkCells {
     /// Each point by itself.
     Points,
     /// A line from each point of even number to the next.
@@ -38,7 +38,7 @@ pub(super) enum Cells {
 
 /// A file in the making.
 pub(super) struct PolyData {
-    cells: Cells,
+    cells: VtkCells,
     points: usize,
     /// The XML of the arrays that go with the file as a whole, …
     of_file: String,
@@ -51,7 +51,7 @@ pub(super) struct PolyData {
 
 impl PolyData {
     /// A file with those points, m, in the plane z = 0.
-    pub(super) fn new(cells: Cells, points: impl ExactSizeIterator<Item = [f64; 2]>) -> Self {
+    pub(super) fn new(cells: VtkCells, points: impl ExactSizeIterator<Item = [f64; 2]>) -> Self {
         let mut file = Self {
             cells,
             points: points.len(),
@@ -126,8 +126,8 @@ impl PolyData {
     /// The whole file. ParaView colours by `scalars` at first.
     pub(super) fn finish(mut self, scalars: &str) -> Vec<u8> {
         let (cells, each) = match self.cells {
-            Cells::Points => ("Verts", 1),
-            Cells::Lines => ("Lines", 2),
+            VtkCells::Points => ("Verts", 1),
+            VtkCells::Lines => ("Lines", 2),
         };
         let count = self.points / each;
         let connectivity = self.append("connectivity", [], (0..self.points as i64).map(|n| [n]));
@@ -136,8 +136,8 @@ impl PolyData {
         let Self { points, of_file, of_rows, of_points, appended, .. } = &self;
         let of_rows = format!(" Scalars=\"{scalars}\">\n{of_rows}      ");
         let [of_each_point, of_each_cell] = match self.cells {
-            Cells::Points => [of_rows.as_str(), ">"],
-            Cells::Lines => [">", of_rows.as_str()],
+            VtkCells::Points => [of_rows.as_str(), ">"],
+            VtkCells::Lines => [">", of_rows.as_str()],
         };
         let counts = ["Verts", "Lines", "Strips", "Polys"]
             .map(|kind| format!(" NumberOf{kind}=\"{}\"", if kind == cells { count } else { 0 }));

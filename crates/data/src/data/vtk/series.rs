@@ -10,7 +10,7 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::PathBuf;
 
 use crate::error::{Error, Result};
-use crate::output::Draft;
+use crate::output::PendingFile;
 
 /// Bytes of a slot: a part of a page, so that none lies in two, and enough for any time and name.
 const SLOT: usize = 128;
@@ -24,7 +24,7 @@ const OPENING: &str = "<?xml version=\"1.0\"?>\n\
 const CLOSING: &str = "</Collection>\n</VTKFile>\n";
 
 /// A series of files on its way.
-pub(super) struct Series {
+pub(super) struct PvdSeries {
     path: PathBuf,
     file: File,
     /// Entries.
@@ -32,7 +32,7 @@ pub(super) struct Series {
     slots: usize,
 }
 
-impl Series {
+impl PvdSeries {
     /// A series of files of the folder that it lies in, each with its time, s.
     ///
     /// # Errors
@@ -62,13 +62,13 @@ impl Series {
     }
 
     fn write_anew(path: PathBuf, entries: &[u8], slots: usize) -> Result<Self> {
-        let mut draft = Draft::start(&path)?;
-        draft.write(&padded(OPENING, HEAD))?;
-        draft.write(entries)?;
+        let mut file = PendingFile::start(&path)?;
+        file.write(&padded(OPENING, HEAD))?;
+        file.write(entries)?;
         let count = entries.len() / SLOT;
-        draft.write(&padded("", SLOT).repeat(slots - count))?;
-        draft.write(CLOSING.as_bytes())?;
-        draft.finish(false)?;
+        file.write(&padded("", SLOT).repeat(slots - count))?;
+        file.write(CLOSING.as_bytes())?;
+        file.finish(false)?;
         let file = File::options().write(true).open(&path);
         let file = file.map_err(|error| Error::file(&path, error))?;
         Ok(Self { path, file, count, slots })

@@ -18,13 +18,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::numbers::StepNumbers;
-use super::shocks::{self, Closed, Passed, Shocks};
 use crate::contact::range::{Bond, Opening};
 use crate::sim::settings::Settings;
-use crate::sim::stepping::{BondEnergies, Stage};
+use crate::sim::steppers::range::StepNumbers;
+use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
+use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{
-    Kinematics, Model, Motion, Row, SolveReport, StepProblem, for_each_row, solve,
+    Kinematics, Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve,
 };
 
 /// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
@@ -44,7 +44,7 @@ const FALL: f64 = 1e-6;
 /// What the law remembers from one step to the next.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::sim) struct Memory {
+pub(in crate::sim) struct RangeMemory {
     #[serde(skip)]
     pub(super) shocks: Shocks,
     #[serde(skip)]
@@ -56,43 +56,30 @@ pub(in crate::sim) struct Memory {
     pub longest_step_secs: Option<f64>,
 }
 
-/// What solving a step came to.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Solved {
-    pub report: SolveReport,
-    /// What the shocks came to, where there were any.
-    pub of_shocks: Option<Passed>,
-    pub bonds: BondEnergies,
-    /// False where a bond breaks that may not.
-    pub done: bool,
-}
-
-/// Solves a prepared problem, and tells the bonds what became of them; or gives up where a bond breaks
-/// that may not.
+/// Solves a prepared problem, and tells the bonds what became of them. Gives what shocks, solves and bonds came to before
+/// the grains move, or the work alone where a bond breaks that may not.
 pub(super) fn solve_range<M: Model>(
     stage: &mut Stage<'_, M>,
-    remembered: &mut Memory,
+    remembered: &mut RangeMemory,
     settings: &Settings,
     may_break: bool,
-) -> Solved {
-    let mut report = SolveReport::nothing_yet();
-    let of_shocks = pass_shocks(stage, remembered, settings, &mut report);
+) -> Result<StepResult, SolveReport> {
+    let shocks_result = pass_shocks(stage, remembered, settings);
+    let mut result = shocks_result.unwrap_or_else(StepResult::nothing_yet);
     let numbers = StepNumbers::of(stage.world(), settings);
-    let Memory { shocks, lowered, restless, .. } = remembered;
+    let RangeMemory { shocks, lowered, restless, .. } = remembered;
     let Stage { state, problem, memory, .. } = stage;
     let fastest = state.fastest();
     let contacts = &mut state.contacts;
     let mut round = 0;
     loop {
         round += 1;
-        report.add(solve::<M>(problem, memory, &settings.solver));
-        let bonds = contacts.bonds();
-        let limits = Limits { bonds, shocks, numbers };
+        result.report.add(solve::<M>(problem, memory, &settings.solver));
+        let limits = BondLimits { bonds: contacts.bonds(), shocks, numbers };
         if round == 1 {
             *restless |= limits.is_restless::<M>(problem, fastest, lowered);
             if !may_break && *restless {
-                let bonds = BondEnergies::default();
-                return Solved { report, of_shocks, bonds, done: false };
+                return Err(result.report);
             }
         }
         limits.lowered::<M>(problem, 1.0, lowered);
@@ -102,12 +89,12 @@ pub(super) fn solve_range<M: Model>(
         shorten(problem, lowered);
     }
     shocks.finish(problem);
-    let bonds = update_bonds(problem, contacts.bonds_mut(), shocks, numbers);
-    Solved { report, of_shocks, bonds, done: true }
+    result.bonds = Some(update_bonds(problem, contacts.bonds_mut(), shocks, numbers));
+    Ok(result)
 }
 
 /// How a bond opens in a step, or in what a shock that closed it has left of the step.
-struct Run {
+struct BondOpening {
     /// The part of the step.
     part: f64,
     /// Whether a shock closed it.
@@ -120,16 +107,20 @@ struct Run {
     impulse: f64,
 }
 
-impl Run {
+impl BondOpening {
     /// That of a row which tells of a bond. Other forces are even over the whole step, so that a part of it
     /// has that part of them.
     fn of<K: Kinematics>(
         problem: &StepProblem<K>,
-        (number, row, motion): (usize, &Row<K>, &Motion),
-        (shocks, bond, numbers): (&Shocks, Bond, StepNumbers),
+        number: usize,
+        motion: &RowVelocities,
+        shocks: &Shocks,
+        bond: Bond,
+        numbers: StepNumbers,
     ) -> Self {
+        let row = problem.rows.get(number);
         let closed = shocks.closed(number, bond.alive, numbers.time_step_secs);
-        let Closed { part, gained } = closed.unwrap_or(Closed { part: 1.0, gained: 0.0 });
+        let ClosedBond { part, gained } = closed.unwrap_or(ClosedBond { part: 1.0, gained: 0.0 });
         let [impulse, _] = problem.reduced_impulse(number, row);
         let [now, before] = [motion.now, motion.before].map(|[normal, _]| normal);
         let [wall_before, wall_gained] = problem.wall_speed_and_gain(number);
@@ -158,19 +149,19 @@ fn update_bonds<K: Kinematics>(
     let StepNumbers { time_step_secs, debonding_distance, .. } = numbers;
     let mut energies = BondEnergies::default();
     for_each_row(problem, |number, row, motion| {
-        let bond = &mut bonds[problem.contact_of_row[number] as usize];
-        let cohesion_force = row.effective_mass * problem.capture_speed / time_step_secs;
-        let run = Run::of(problem, (number, row, &motion), (shocks, *bond, numbers));
-        let opening_speed = run.opening_speed();
+        let bond = &mut bonds[problem.rows.contacts[number] as usize];
+        let cohesion_force = row.effective_mass * problem.law.capture_speed() / time_step_secs;
+        let opens = BondOpening::of(problem, number, &motion, shocks, *bond, numbers);
+        let opening_speed = opens.opening_speed();
         let before = if bond.alive { cohesion_force * bond.stretch } else { 0.0 };
-        if run.is_closed || row.shifted_impulse > 0.0 {
+        if opens.is_closed || row.shifted_impulse > 0.0 {
             *bond = Bond { alive: true, stretch: 0.0 };
         }
         let was_alive = bond.alive;
         if bond.alive && row.shifted_impulse <= 0.0 {
-            let opened = bond.stretch + run.part * opening_speed * time_step_secs;
+            let opened = bond.stretch + opens.part * opening_speed * time_step_secs;
             bond.stretch = opened.max(0.0);
-            let broken = problem.capture(number) < run.part * problem.capture_speed;
+            let broken = problem.capture(number) < opens.part * problem.law.capture_speed();
             bond.alive = !broken && bond.stretch < debonding_distance;
         }
         if bond.alive {
@@ -179,7 +170,7 @@ fn update_bonds<K: Kinematics>(
             energies.work -= stored - before;
         } else if was_alive {
             let taken = row.effective_mass * problem.capture(number) * opening_speed;
-            let kept = if run.is_closed { 0.0 } else { before };
+            let kept = if opens.is_closed { 0.0 } else { before };
             energies.broken += kept + taken;
             energies.work -= taken + kept - before;
         }
@@ -190,25 +181,22 @@ fn update_bonds<K: Kinematics>(
 /// Takes a prepared problem through its shocks.
 pub(super) fn pass_shocks<M: Model>(
     stage: &mut Stage<'_, M>,
-    remembered: &mut Memory,
+    remembered: &mut RangeMemory,
     settings: &Settings,
-    report: &mut SolveReport,
-) -> Option<Passed> {
+) -> Option<StepResult> {
     let numbers = StepNumbers::of(stage.world(), settings);
-    let passed = shocks::pass::<M>(stage, &mut remembered.shocks, numbers, &settings.solver)?;
-    report.add(passed.report);
-    Some(passed)
+    shocks::pass::<M>(stage, &mut remembered.shocks, numbers, &settings.solver)
 }
 
 /// What the bounds of a step hang on.
-struct Limits<'a> {
+struct BondLimits<'a> {
     /// One a contact.
     bonds: &'a [Bond],
     shocks: &'a Shocks,
     numbers: StepNumbers,
 }
 
-impl Limits<'_> {
+impl BondLimits<'_> {
     /// Whether bonds are about to break in a step that has been solved, at whose beginning the fastest grain or
     /// wall had that speed (m/s).
     fn is_restless<M: Model>(
@@ -245,22 +233,22 @@ impl Limits<'_> {
         lowered: &mut Vec<(usize, f64)>,
     ) {
         lowered.clear();
-        if problem.captures.is_empty() {
+        if problem.rows.captures.is_empty() {
             return;
         }
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
-        for_each_row(problem, |number, row, motion| {
+        for_each_row(problem, |number, _, motion| {
             let before = strength * problem.capture(number);
             if before <= 0.0 {
                 return;
             }
-            let bond = self.bonds[problem.contact_of_row[number] as usize];
-            let run = Run::of(problem, (number, row, &motion), (self.shocks, bond, self.numbers));
-            let stretch = if run.is_closed { 0.0 } else { bond.stretch };
+            let bond = self.bonds[problem.rows.contacts[number] as usize];
+            let opens = BondOpening::of(problem, number, &motion, self.shocks, bond, self.numbers);
+            let stretch = if opens.is_closed { 0.0 } else { bond.stretch };
             let left = (debonding_distance - stretch).max(0.0);
-            let opening = Opening { left, speed: run.speed, load: run.load };
-            let capture_speed = strength * run.part * problem.capture_speed;
-            let bound = opening.bound(capture_speed, run.part * time_step_secs);
+            let opening = Opening { left, speed: opens.speed, load: opens.load };
+            let capture_speed = strength * opens.part * problem.law.capture_speed();
+            let bound = opening.bound(capture_speed, opens.part * time_step_secs);
             if bound < (1.0 - FALL) * before {
                 lowered.push((number, bound));
             }
@@ -271,8 +259,8 @@ impl Limits<'_> {
 /// Lowers the bounds of bonds that do not live to the end of the step.
 fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
-        let before = std::mem::replace(&mut problem.captures[number], bound);
-        let row = problem.row_at_mut(number);
+        let before = std::mem::replace(&mut problem.rows.captures[number], bound);
+        let row = problem.rows.get_mut(number);
         row.shifted_impulse = (row.shifted_impulse - before + bound).max(0.0);
     }
     problem.form_velocities();

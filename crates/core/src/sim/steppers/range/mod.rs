@@ -5,33 +5,30 @@
 //!
 //! * A step is long against the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile whose
 //!   bonds are not, or that stands, is stepped at full length. Where the step before was cut and bonds were restless to
-//!   its end, or bonded pairs circle fast (`range::turning`), the next one is cut without being tried. Where sixteen substeps are too long for a break, the
-//!   step says so, and which one would not be (`sim::alarm`).
+//!   its end, or bonded pairs circle fast ([`circling_looks_like_a_shock`]), the next one is cut without being tried.
+//!   Where sixteen substeps are too long for a break, the step says so, and which one would not be (`sim::alarm`).
 //! * Grains go far. A contact's normal is that of the beginning of the step, so the constraint
 //!   v_n + gap/Δt ≥ 0 bars a grain from passing another one that it would have missed: without cohesion,
 //!   where only this asks for substeps, a pile slumps too little at a large Δt.
 
 mod bonds;
-mod numbers;
-mod separation;
 mod shocks;
-mod turning;
 
-pub(in crate::sim) use bonds::Memory;
+pub(super) use bonds::RangeMemory;
 
-use self::bonds::{Solved, pass_shocks, solve_range};
-use self::shocks::Passed;
-use super::StepperInfo;
-use super::mean_pair::MeanPair;
-use crate::contact::LookAhead;
+use glam::DVec2;
+
 use crate::contact::law::cohesion_force;
 use crate::contact::range::{TOUCH_IN_DIAMETERS, bond_time_secs};
+use crate::contact::{LookAhead, Numbering, Other};
 use crate::error::Error;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::stepping::{BondEnergies, Outcome, Stage};
-use crate::solver::{Approach, Model, SolveReport, worst};
-use crate::world::{FrictionCone, World};
+use crate::sim::steppers::range::bonds::{pass_shocks, solve_range};
+use crate::sim::steppers::{MeanPair, StepperInfo};
+use crate::sim::stepping::{BondEnergies, Stage, StepResult};
+use crate::solver::{Approach, Kinematics, Model, SolveReport};
+use crate::world::{FrictionCone, Parameters, World};
 
 /// The row of the registry.
 pub(super) const INFO: StepperInfo = StepperInfo {
@@ -100,7 +97,7 @@ fn travel(world: &World, fastest: f64, time_step_secs: f64) -> f64 {
 }
 
 /// How a step is cut.
-struct Cut {
+struct StepCut {
     substeps: u32,
     /// Whether bonded pairs circle so fast that it cannot be taken as a whole.
     circling: bool,
@@ -110,7 +107,7 @@ struct Cut {
     longest_step_secs: Option<f64>,
 }
 
-impl Cut {
+impl StepCut {
     /// Of a step that has begun, where bonds were restless to the end of the last or not.
     fn of(state: &State, settings: &Settings, restless: bool) -> Self {
         let State { world, .. } = state;
@@ -122,7 +119,7 @@ impl Cut {
         let bond_time = bond_time_secs(parameters.bond, world.gravity.magnitude(), distance);
         let of_bonds = (whole / (SUBSTEP_IN_BOND_TIMES * bond_time)).ceil();
         let pull = cohesion_force(parameters.bond, 1.0, world.gravity.magnitude());
-        let circling = of_bonds > 1.0 && turning::looks_like_a_shock(state, whole, pull, distance);
+        let circling = of_bonds > 1.0 && circling_looks_like_a_shock(state, whole, pull, distance);
         let substeps = of_travel.max(of_bonds).clamp(1.0, MOST_SUBSTEPS) as u32;
         let longest_secs = MOST_SUBSTEPS * SUBSTEP_IN_BOND_TIMES * bond_time;
         Self {
@@ -138,40 +135,45 @@ impl Cut {
 pub(super) fn advance<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
-    memory: &mut Memory,
-) -> Outcome {
+    memory: &mut RangeMemory,
+) -> StepResult {
     prepare(stage, settings);
     let restless = std::mem::take(&mut memory.restless);
-    let Cut { substeps, circling, whole_first, longest_step_secs } =
-        Cut::of(stage.state, settings, restless);
-    let mut outcome = Outcome { bonds: Some(BondEnergies::default()), ..Outcome::nothing_yet() };
+    let StepCut { substeps, circling, whole_first, longest_step_secs } =
+        StepCut::of(stage.state, settings, restless);
+    let mut result =
+        StepResult { bonds: Some(BondEnergies::default()), ..StepResult::nothing_yet() };
     if whole_first {
         match try_step(stage, settings, memory, substeps == 1) {
-            Ok(outcome) => return outcome,
+            Ok(result) => return result,
             // Of what was given up the work alone counts.
-            Err(given_up) => outcome.report = outcome.report.after(given_up),
+            Err(given_up) => result.report = result.report.after(given_up),
         }
     }
-    let outcome = stage.in_pieces(substeps, settings, outcome, |stage, settings, outcome| {
+    let result = stage.in_pieces(substeps, settings, result, |stage, settings, result| {
         prepare(stage, settings);
         if let Ok(piece) = try_step(stage, settings, memory, true) {
-            outcome.add(piece);
+            result.add(piece);
         }
     });
     if circling || memory.restless {
         memory.longest_step_secs = longest_step_secs.or(memory.longest_step_secs);
     }
-    outcome
+    result
 }
 
 /// Sets up the first problem that is solved with the loads of the step, its shocks passed.
-pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings, memory: &mut Memory) {
+pub(super) fn set_up<M: Model>(
+    stage: &mut Stage<'_, M>,
+    settings: &Settings,
+    memory: &mut RangeMemory,
+) {
     prepare(stage, settings);
-    let Cut { substeps, whole_first, .. } = Cut::of(stage.state, settings, memory.restless);
+    let StepCut { substeps, whole_first, .. } = StepCut::of(stage.state, settings, memory.restless);
     let first = settings.over(settings.parameters.time_step_secs / f64::from(substeps));
     let first = if whole_first { *settings } else { first };
     prepare(stage, &first);
-    pass_shocks(stage, memory, &first, &mut SolveReport::default());
+    pass_shocks(stage, memory, &first);
 }
 
 /// Detects the contacts and sets up the problem of a step. A gap must not close by more than itself;
@@ -189,25 +191,112 @@ pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
 fn try_step<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
-    memory: &mut Memory,
+    memory: &mut RangeMemory,
     may_break: bool,
-) -> Result<Outcome, SolveReport> {
-    let Solved { report, of_shocks, bonds, done } = solve_range(stage, memory, settings, may_break);
-    if !done {
-        return Err(report);
-    }
-    let mut outcome = stage.move_by(report, settings);
+) -> Result<StepResult, SolveReport> {
+    let mut result = solve_range(stage, memory, settings, may_break)?;
+    let bonds = result.bonds.take();
+    result.add(StepResult { bonds, ..stage.move_by(SolveReport::nothing_yet(), settings) });
     memory.shocks.shift(&mut stage.state.world);
-    outcome.bonds = Some(bonds);
-    if let Some(Passed { measures: of_shocks, of_gravity, .. }) = of_shocks {
-        let measures = &mut outcome.measures;
-        measures.residual = worst(measures.residual, of_shocks.residual);
-        measures.normal_work += of_shocks.normal_work;
-        measures.tangential_work += of_shocks.tangential_work;
-        measures.wall_work += of_shocks.wall_work;
-        measures.border_work += of_shocks.border_work;
-        outcome.gravity_work -= of_gravity;
+    separate::<M>(stage.state);
+    Ok(result)
+}
+
+/// The numbers of a step that its shocks and bonds hang on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepNumbers {
+    pub parameters: Parameters,
+    pub time_step_secs: f64,
+    /// δ_c, m.
+    pub debonding_distance: f64,
+    /// Gaps below this are none, m.
+    pub touch: f64,
+    /// g, m/s².
+    gravity_magnitude: f64,
+}
+
+impl StepNumbers {
+    /// Those of a step with these settings.
+    pub(super) fn of(world: &World, settings: &Settings) -> Self {
+        let parameters = settings.parameters;
+        Self {
+            parameters,
+            time_step_secs: parameters.time_step_secs,
+            debonding_distance: parameters.debonding_distance * world.mean_diameter,
+            touch: TOUCH_IN_DIAMETERS * world.mean_diameter,
+            gravity_magnitude: world.gravity.magnitude(),
+        }
     }
-    separation::separate::<M>(stage.state);
-    Ok(outcome)
+
+    /// ρ u, m/s, of a contact that closes with u, or 0 below the threshold.
+    pub(super) fn rebound(&self, closing: f64) -> f64 {
+        self.parameters.restitution_velocity(closing, self.gravity_magnitude)
+    }
+}
+
+/// Passes over the contacts after a step. One carries an overlap on by a layer of grains at the least.
+const PASSES: u32 = 8;
+
+/// Moves grains that overlap apart, since bonds do not live on overlap, as far as a few passes go.
+pub(super) fn separate<M: Model>(state: &mut State) {
+    let State { world, contacts, candidates, .. } = state;
+    let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
+    for _ in 0..PASSES {
+        let found = if M::Kinematics::AXES == 1 {
+            contacts.separate::<1>(world, candidates, allowed)
+        } else {
+            contacts.separate::<2>(world, candidates, allowed)
+        };
+        if !found {
+            break;
+        }
+    }
+}
+
+/// The part of the escape speed that turning may come to in a step. Larger: pairs that circle part too early;
+/// smaller: steps are cut in vain.
+const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
+
+/// Whether a bonded pair circles so fast that a step of that length would take the turn of its normal for a shock.
+/// `pull` is C₀/m_ij, m/s², and `distance` δ_c, m.
+///
+/// Bonded pairs that circle each other.
+///
+/// **Why they ask for substeps.** A step takes a contact's normal from its beginning. Two grains that circle each
+/// other at a distance L with v_t turn it by v_tΔt/L in a step, and at the beginning of the next one they part with
+///
+/// > v = v_t²Δt/L
+///
+/// along the new normal. That is the load v_t²/L of the circle, evenly spread over the step, but it looks like
+/// a shock that has thrown them apart, and a bond stops a shock below its escape speed √(2C₀δ_c/m_ij) alone. So a pair
+/// that its bond would hold parts where the step is long. In substeps v falls with Δt, and the escape speed does not.
+pub(super) fn circling_looks_like_a_shock(
+    state: &State,
+    time_step_secs: f64,
+    pull: f64,
+    distance: f64,
+) -> bool {
+    let most = MOST_OF_ESCAPE_SPEED * (2.0 * pull * distance).sqrt() / time_step_secs;
+    let fixed_discs = &state.world.fixed_discs;
+    let grains = &state.world.grains;
+    let numbering = Numbering::of(&state.world);
+    let bonds = state.contacts.contacts().iter().zip(state.contacts.bonds());
+    bonds.filter(|(_, bond)| bond.alive).any(|(contact, _)| {
+        let grain = contact.grain as usize;
+        let (velocity, radius) = match numbering.other(contact.other) {
+            Other::Grain(other) => {
+                let slide = state.world.speed_of_image(grain, other) * DVec2::X;
+                (grains.velocities[other] + slide, grains.radii[other])
+            }
+            Other::FixedDisc(disc) => {
+                let surface = state.walls.surface(&state.world, contact);
+                let velocity = surface.map_or(DVec2::ZERO, |surface| surface.velocity);
+                (velocity, fixed_discs[disc].radius)
+            }
+            // A straight feature has the same normal everywhere.
+            Other::Feature(_) => return false,
+        };
+        let tangential = (grains.velocities[grain] - velocity).perp_dot(contact.normal);
+        tangential * tangential > most * (grains.radii[grain] + radius)
+    })
 }

@@ -1,10 +1,10 @@
 //! A primal–dual interior point with a sparse direct factorisation.
 //!
-//! A convex model of friction (`problem::held`) asks for the impulses p that make
+//! A convex model of friction (`problem::friction`) asks for the impulses p that make
 //!
 //! > ½‖V‖²_M + Σ m_ij s·σ,  V = V_free + M⁻¹ Hᵀ m (p − c),
 //!
-//! least among those that it allows; V is unique. With slacks and multipliers (`local`) the solution is where
+//! least among those that it allows; V is unique. With slacks and multipliers (`contact`) the solution is where
 //! all their products are 0, and the method follows the path on which they are equal and fall (S. Mehrotra,
 //! 1992, for predictor and corrector; J. Gondzio, 1996, for further corrections). V is always formed from the
 //! impulses, so that rounding does not add up, and impulses are eliminated from each Newton step, which leaves
@@ -22,48 +22,33 @@
 //! A start is the point of the path that is nearest to where the natural map leads from the impulses of the
 //! step before, as far along as these are good.
 //!
-//! Coulomb's law is no convex problem, and its path may turn back (`folds`).
+//! Coulomb's law is no convex problem, and its path may turn back (`path`).
 
-mod centre;
-mod convex;
-mod folds;
-mod local;
-mod memory;
-mod near;
-mod newton_step;
+mod contact;
+mod path;
 mod proximal;
-mod shape;
 mod system;
 #[cfg(test)]
 mod tests;
 
 use std::marker::PhantomData;
 
-use self::local::Shared;
-pub(super) use self::memory::InteriorMemory;
-use self::memory::Workspace;
-use self::shape::{Cone, HalfLine, Leaning, Shape, Strip};
-use super::info::{MethodInfo, MethodOrder};
-use super::method::Method;
-use super::newton;
-use super::nsgs::{solve_models, sweep_of_model};
-use super::report::SolveReport;
-use crate::solver::friction_model::FrictionModel;
-use crate::solver::problem::{Kinematics, Model, StepProblem, natural_map};
-use crate::solver::settings::SolverSettings;
-
-/// What there is to know of it.
-pub(super) const INFO: MethodInfo = MethodInfo {
-    method: Method::InteriorPoint,
-    name: "interior-point",
-    summary: "interior point, sparse direct: the convex models of friction to any tolerance",
-    solves: "a convex model of friction, with a certificate; Coulomb's law where its path leads there",
-    source: "S. Mehrotra, On the implementation of a primal-dual interior point method (1992)",
-    order: MethodOrder::OfSettings,
-    takes_models: true,
-    takes_drives: false,
-    takes_shear: true,
+use self::contact::{
+    Cone, ContactNumbers, HalfLine, Leaning, PAIRS, PathContact, PathStep, Shape, Strip,
 };
+use self::proximal::ProximalContact;
+use self::system::StepMatrix;
+use super::newton::{self, NewtonMemory};
+use super::nsgs::{solve_models, sweep_of_model};
+use super::stopping::SolveReport;
+use crate::contact::law;
+use crate::solver::kinematics::Kinematics;
+use crate::solver::linear::ContactGraph;
+use crate::solver::method::Method;
+use crate::solver::model::Model;
+use crate::solver::problem::{StepProblem, natural_map};
+use crate::solver::settings::{FrictionModel, SolverSettings};
+use crate::world::FrictionCone;
 
 /// Sweeps before the first factorisation: many steps of a pile at rest need no more.
 const SWEEPS_FIRST: u32 = 4;
@@ -81,13 +66,58 @@ const CERTIFIED: SolverSettings = SolverSettings {
     ..SolverSettings::to_residual(Method::InteriorPoint, 1e-8, 1_000)
 };
 
+/// The product of slack and multiplier at the start, over the mean square of what the natural map still
+/// changes. Smaller, and contacts that end elsewhere than they began are freed slowly; larger, and a warm
+/// start is wasted.
+const CENTRE: f64 = 1e3;
+/// Factor of that product from one start to the next.
+const FURTHER_UP: f64 = 1e3;
+/// Bounds of friction below this share of the mean change are none: there is nothing between them to move in.
+const LEAST_BOUND: f64 = 1e-10;
+
+/// A workspace for each number of degrees of freedom; those that are not used hold no memory.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct InteriorMemory {
+    one: PathWorkspace<1>,
+    two: PathWorkspace<2>,
+    three: PathWorkspace<3>,
+    /// (σ, λ_t) of the rows of a problem that was not solved under Coulomb's law.
+    unsolved: Vec<[f64; 2]>,
+    /// Of Newton's method, which goes on where a path leads nowhere.
+    newton: NewtonMemory,
+}
+
+/// What is kept where a body has `D` degrees of freedom.
+#[derive(Clone, Debug, Default)]
+struct PathWorkspace<const D: usize> {
+    graph: ContactGraph,
+    system: StepMatrix<D>,
+    /// By place: a right-hand side, then the change of the velocities.
+    vector: Vec<[f64; D]>,
+    /// By row.
+    contacts: Vec<PathContact>,
+    targets: Vec<[f64; PAIRS]>,
+    step: Vec<PathStep>,
+    other_step: Vec<PathStep>,
+    /// (σ, λ_t) of the rows at the smallest natural map so far.
+    best: Vec<[f64; 2]>,
+    /// The same as the solve began.
+    first: Vec<[f64; 2]>,
+    /// Of the proximal multipliers, by row.
+    near: Vec<ProximalContact>,
+    /// M(V − V_free) of these, by place, kg m/s.
+    momenta: Vec<[f64; D]>,
+    /// Bodies at which a step was stopped.
+    stopped: Vec<bool>,
+}
+
 /// Solves a prepared problem under the model of friction that it was prepared for.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     memory: &mut InteriorMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    solve_models::<M>(problem, settings, |problem| match problem.friction_model {
+    solve_models::<M>(problem, settings, |problem| match problem.friction.model {
         _ if !M::FRICTION => convex::<M, HalfLine>(problem, memory, settings),
         FrictionModel::Tresca => convex::<M, Strip>(problem, memory, settings),
         FrictionModel::Associated | FrictionModel::Desaxce => {
@@ -114,22 +144,22 @@ fn convex<M: Model, S: Shape>(
 /// under bounds of friction at those impulses. Where that is not found, leaves them as they are.
 ///
 /// The bounds are nearer to Coulomb's than those of the step before, on which `tresca` stands.
-pub(super) fn fall_back<M: Model>(
+pub(in crate::solver) fn fall_back<M: Model>(
     problem: &mut StepProblem<M::Kinematics>,
     memory: &mut InteriorMemory,
     report: SolveReport,
 ) -> SolveReport {
     let mut impulses = std::mem::take(&mut memory.unsolved);
-    read_impulses(problem, &mut impulses);
-    problem.bound_by_present::<M>();
+    problem.rows.read_impulses(&mut impulses);
+    problem.bound_by_present();
     let mut instead = SolveReport::default();
-    if problem.held.iter().all(|bound| bound.is_finite()) {
+    if problem.friction.now.iter().all(|bound| bound.is_finite()) {
         instead = convex::<M, Strip>(problem, memory, &CERTIFIED);
     }
     let fell_back = instead.converged;
     if !fell_back {
         problem.forget_bounds();
-        set_impulses(problem, &impulses);
+        problem.write_impulses(impulses.iter().copied());
     }
     memory.unsolved = impulses;
     SolveReport { converged: false, stalled: report.stalled, fell_back, ..instead.after(report) }
@@ -144,7 +174,7 @@ fn coulomb<M: Model>(
 ) -> SolveReport {
     let InteriorMemory { two, three, newton, .. } = memory;
     let report = match M::Kinematics::DEGREES {
-        _ if M::COMPRESSIVE_CONE => SolveReport::default(),
+        _ if problem.law.cone() == FrictionCone::Compressive => SolveReport::default(),
         2 => InteriorPoint::<M, Leaning, 2>::new(problem, settings, two).follow_path(),
         _ => InteriorPoint::<M, Leaning, 3>::new(problem, settings, three).follow_path(),
     };
@@ -160,8 +190,8 @@ fn coulomb<M: Model>(
 struct InteriorPoint<'a, M: Model, S, const D: usize> {
     problem: &'a mut StepProblem<M::Kinematics>,
     settings: &'a SolverSettings,
-    workspace: &'a mut Workspace<D>,
-    shared: Shared,
+    workspace: &'a mut PathWorkspace<D>,
+    numbers: ContactNumbers,
     report: SolveReport,
     /// σ beyond this, m/s, is no part of a solution.
     largest_impulse: f64,
@@ -174,17 +204,17 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
     fn new(
         problem: &'a mut StepProblem<M::Kinematics>,
         settings: &'a SolverSettings,
-        workspace: &'a mut Workspace<D>,
+        workspace: &'a mut PathWorkspace<D>,
     ) -> Self {
-        let shared = Shared {
-            slope: if S::CONE || S::LEANS { problem.friction } else { 0.0 },
+        let numbers = ContactNumbers {
+            slope: if S::CONE || S::LEANS { problem.law.friction } else { 0.0 },
             tangential_compliance: M::Kinematics::TANGENTIAL_COMPLIANCE,
         };
         Self {
             problem,
             settings,
             workspace,
-            shared,
+            numbers,
             report: SolveReport::default(),
             largest_impulse: f64::INFINITY,
             best: f64::INFINITY,
@@ -196,7 +226,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
     fn settles_in(&mut self, sweeps: u32) -> bool {
         for _ in 0..sweeps.min(self.settings.max_sweeps - self.report.sweeps) {
             self.report.sweeps += 1;
-            if sweep_of_model::<M>(self.problem, self.settings) {
+            if sweep_of_model::<M>(self.problem, self.settings, false) {
                 self.report.converged = true;
                 break;
             }
@@ -231,19 +261,16 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
 
     /// Gives the rows the impulses of the present point, and the bodies the velocities that they make.
     fn take_impulses(&mut self) {
-        let rows = self.problem.fixed_rows.iter_mut().chain(&mut self.problem.pair_rows);
-        for (row, contact) in rows.zip(&self.workspace.contacts) {
-            [row.shifted_impulse, row.tangential_impulse] = contact.impulse;
-        }
-        self.problem.form_velocities();
+        let contacts = &self.workspace.contacts;
+        self.problem.write_impulses(contacts.iter().map(|contact| contact.impulse));
     }
 
     /// Notes what the solve begins with, and how far from it impulses may lead.
     fn begin(&mut self) {
         let Self { problem, workspace, .. } = self;
-        read_impulses(problem, &mut workspace.first);
+        problem.rows.read_impulses(&mut workspace.first);
         let mut largest: f64 = 0.0;
-        problem.for_each_velocity(&problem.bodies, |row, [normal, tangential]| {
+        problem.for_each_velocity(&problem.bodies.now, |row, [normal, tangential]| {
             let closing = (normal + row.restitution_velocity).abs();
             largest = largest.max(row.shifted_impulse + closing).max(tangential.abs());
         });
@@ -266,26 +293,59 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
     /// Keeps the rows' impulses, whose natural map is `left`.
     fn keep(&mut self, left: f64) {
         self.best = left;
-        read_impulses(self.problem, &mut self.workspace.kept);
+        self.problem.rows.read_impulses(&mut self.workspace.best);
     }
 
     /// Goes back to what was kept.
     fn go_back(&mut self) {
-        set_impulses(self.problem, &self.workspace.kept);
+        self.problem.write_impulses(self.workspace.best.iter().copied());
     }
-}
 
-/// (σ, λ_t) of the rows; `impulses` is cleared first.
-fn read_impulses<K: Kinematics>(problem: &StepProblem<K>, impulses: &mut Vec<[f64; 2]>) {
-    impulses.clear();
-    impulses.extend(problem.rows().map(|(_, row)| [row.shifted_impulse, row.tangential_impulse]));
-}
-
-/// Gives the rows impulses (σ, λ_t), and the bodies the velocities that they make.
-fn set_impulses<K: Kinematics>(problem: &mut StepProblem<K>, impulses: &[[f64; 2]]) {
-    let rows = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
-    for (row, &impulse) in rows.zip(impulses) {
-        [row.shifted_impulse, row.tangential_impulse] = impulse;
+    /// Begins at the point of the path that is nearest to where the natural map leads.
+    fn start(&mut self, starts_before: u32) {
+        let Self { problem, workspace, numbers, .. } = self;
+        let holds_opening = problem.friction.model != FrictionModel::Tresca && S::CONE;
+        let contacts = &mut workspace.contacts;
+        contacts.clear();
+        let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+        let (mut squares, mut number) = (0.0, 0);
+        problem.for_each_velocity(&problem.bodies.now, |row, [normal, tangential]| {
+            let held = problem.friction.now.get(number).copied().unwrap_or(0.0);
+            number += 1;
+            let (bound, extra) = if holds_opening { (0.0, held) } else { (held, 0.0) };
+            let opening = row.restitution_velocity + extra;
+            let trial = [
+                row.shifted_impulse - normal - opening,
+                row.tangential_impulse - compliance * tangential,
+            ];
+            squares += (row.shifted_impulse - trial[0].max(0.0)).powi(2);
+            if M::FRICTION {
+                let allowed = if S::CONE || S::LEANS {
+                    problem.law.friction * row.shifted_impulse
+                } else {
+                    bound
+                };
+                squares += (row.tangential_impulse - law::coulomb(trial[1], allowed)).powi(2);
+            }
+            // The trial waits where the velocity will be.
+            contacts.push(PathContact {
+                bound,
+                opening,
+                velocity: trial,
+                compliance: S::COMPLIANCE,
+                ..PathContact::default()
+            });
+        });
+        let mean_square = squares / contacts.len() as f64;
+        let centre = CENTRE * mean_square * FURTHER_UP.powi(starts_before as i32);
+        let least = LEAST_BOUND * mean_square.sqrt();
+        for contact in contacts {
+            if contact.bound < least {
+                contact.bound = 0.0;
+            }
+            let trial = contact.velocity;
+            contact.centre::<S>(*numbers, trial, centre);
+        }
+        self.take_impulses();
     }
-    problem.form_velocities();
 }

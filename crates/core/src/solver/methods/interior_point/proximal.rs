@@ -19,12 +19,14 @@
 //! V is not formed anew from impulses: the velocities of contacts and M(V − V_free) change by their parts of each step, since
 //! rounding would eat what a small ε magnifies.
 
-use super::InteriorPoint;
-use super::memory::Workspace;
-use super::near::Near;
-use super::shape::Shape;
+use super::contact::{ContactNumbers, Shape};
 use super::system::{for_each_change, push_all};
-use crate::solver::problem::{Kinematics, Model, natural_map};
+use super::{InteriorPoint, PathWorkspace};
+use crate::contact::law;
+use crate::solver::kinematics::Kinematics;
+use crate::solver::linear::Block;
+use crate::solver::model::Model;
+use crate::solver::problem::natural_map;
 
 /// ε of a solve from far away, and of one that ends what the interior point has begun.
 const FAR: f64 = 0.1;
@@ -45,6 +47,83 @@ const TRIALS: u32 = 40;
 /// F′ is 0 below this share of what it is where the line begins.
 const ROOT: f64 = 1e-9;
 
+/// A contact on its way.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ProximalContact {
+    /// p, m/s.
+    pub impulse: [f64; 2],
+    /// (w, v), m/s.
+    pub velocity: [f64; 2],
+    /// What a whole step adds to it, m/s.
+    pub change: [f64; 2],
+    /// What is held of the bound g, m/s.
+    pub bound: f64,
+}
+
+/// A piece of Π, on which J is the same.
+#[derive(Clone, Copy)]
+pub(super) enum ProjectionPiece {
+    /// Whether σ, and whether λ, follow the trial.
+    Free([bool; 2]),
+    /// An edge of the cone, by the sign of λ.
+    Edge(f64),
+}
+
+impl ProjectionPiece {
+    /// J R⁻¹/ε: on an edge of direction d it is d dᵀ/(ε dᵀR d).
+    pub(super) fn stiffness(self, numbers: ContactNumbers, compliance: f64) -> Block<2> {
+        let soft = numbers.tangential_compliance;
+        match self {
+            Self::Free([normal, tangential]) => {
+                let part = |is_free: bool| f64::from(u8::from(is_free)) / compliance;
+                [[part(normal), 0.0], [0.0, part(tangential) / soft]]
+            }
+            Self::Edge(sign) => {
+                let along = [1.0, sign * numbers.slope];
+                let scale = 1.0 / (compliance * (1.0 + soft * along[1] * along[1]));
+                along.map(|row| along.map(|column| scale * row * column))
+            }
+        }
+    }
+}
+
+impl ProximalContact {
+    /// y after a share of a step.
+    #[inline(always)]
+    pub(super) fn trial(&self, numbers: ContactNumbers, compliance: f64, share: f64) -> [f64; 2] {
+        let [normal, tangential] =
+            [0, 1].map(|part| (self.velocity[part] + share * self.change[part]) / compliance);
+        let [shifted, across] = self.impulse;
+        [shifted - normal, across - tangential / numbers.tangential_compliance]
+    }
+
+    /// Π.
+    #[inline(always)]
+    pub(super) fn allowed<S: Shape>(&self, numbers: ContactNumbers, trial: [f64; 2]) -> [f64; 2] {
+        if S::CONE {
+            return law::nearest_on_cone(numbers.slope, numbers.tangential_compliance, trial);
+        }
+        [law::signorini(trial[0]), law::coulomb(trial[1], self.bound)]
+    }
+
+    /// The piece of Π that a trial is in.
+    #[inline(always)]
+    pub(super) fn piece<S: Shape>(
+        &self,
+        numbers: ContactNumbers,
+        trial: [f64; 2],
+    ) -> ProjectionPiece {
+        if !S::CONE {
+            return ProjectionPiece::Free([trial[0] > 0.0, trial[1].abs() < self.bound]);
+        }
+        let is_inside = trial[1].abs() <= numbers.slope * trial[0];
+        if is_inside || self.allowed::<S>(numbers, trial)[0] == 0.0 {
+            return ProjectionPiece::Free([is_inside; 2]);
+        }
+        ProjectionPiece::Edge(1f64.copysign(trial[1]))
+    }
+}
+
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
     /// Goes on from the impulses of the present point, which are nearly a solution; whether that ends the solve.
     pub(super) fn polish(&mut self) -> bool {
@@ -53,8 +132,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
 
     /// Begins at the impulses of the smallest natural map so far; whether that ends the solve.
     pub(super) fn solve_from_far(&mut self) -> bool {
-        let Workspace { contacts, kept, .. } = &mut *self.workspace;
-        for (contact, &impulse) in contacts.iter_mut().zip(&*kept) {
+        let PathWorkspace { contacts, best, .. } = &mut *self.workspace;
+        for (contact, &impulse) in contacts.iter_mut().zip(&*best) {
             contact.impulse = impulse;
         }
         self.approach(FAR, u32::MAX, PATIENCE)
@@ -94,10 +173,10 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
             if steps == 0 {
                 return false;
             }
-            let Self { workspace, shared, .. } = self;
+            let Self { workspace, numbers, .. } = self;
             for contact in &mut workspace.near {
-                let trial = contact.trial(*shared, compliance, 0.0);
-                contact.impulse = contact.allowed::<S>(*shared, trial);
+                let trial = contact.trial(*numbers, compliance, 0.0);
+                contact.impulse = contact.allowed::<S>(*numbers, trial);
             }
             compliance = (FACTOR * compliance).max(LEAST);
         }
@@ -105,61 +184,57 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
 
     /// Takes up the contacts' impulses, and the velocities that they make.
     fn begin_near(&mut self) {
-        let shared = self.shared;
-        let Workspace { near, contacts, .. } = &mut *self.workspace;
+        let numbers = self.numbers;
+        let PathWorkspace { near, contacts, .. } = &mut *self.workspace;
         near.clear();
         near.extend(contacts.iter().map(|contact| {
-            let near = Near { bound: contact.bound, ..Near::default() };
-            Near { impulse: near.allowed::<S>(shared, contact.impulse), ..near }
+            let near = ProximalContact { bound: contact.bound, ..ProximalContact::default() };
+            ProximalContact { impulse: near.allowed::<S>(numbers, contact.impulse), ..near }
         }));
         self.take_near(|contact| contact.impulse);
         let Self { problem, workspace, .. } = self;
-        let Workspace { near, contacts, momenta, graph, .. } = &mut **workspace;
+        let PathWorkspace { near, contacts, momenta, graph, .. } = &mut **workspace;
         let mut of_contacts = near.iter_mut().zip(&*contacts);
-        problem.for_each_velocity(&problem.bodies, |_, [normal, tangential]| {
+        problem.for_each_velocity(&problem.bodies.now, |_, [normal, tangential]| {
             let Some((near, contact)) = of_contacts.next() else { return };
             near.velocity = [normal + contact.opening, tangential];
         });
         momenta.clear();
-        momenta.resize(problem.bodies.len(), [0.0; D]);
+        momenta.resize(problem.bodies.now.len(), [0.0; D]);
         let impulses = near.iter().map(|contact| contact.impulse);
         push_all::<M, D>(problem, &graph.elimination, impulses, momenta);
     }
 
     /// Gives the rows impulses, and the bodies the velocities that these make.
-    fn take_near(&mut self, impulse: impl Fn(&Near) -> [f64; 2]) {
+    fn take_near(&mut self, impulse: impl Fn(&ProximalContact) -> [f64; 2]) {
         let Self { problem, workspace, .. } = self;
-        let rows = problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows);
-        for (row, contact) in rows.zip(&workspace.near) {
-            [row.shifted_impulse, row.tangential_impulse] = impulse(contact);
-        }
-        problem.form_velocities();
+        problem.write_impulses(workspace.near.iter().map(impulse));
     }
 
     /// Gives the rows Π(y); the natural map there.
     fn take_allowed(&mut self, compliance: f64) -> f64 {
-        let shared = self.shared;
+        let numbers = self.numbers;
         self.take_near(|contact| {
-            contact.allowed::<S>(shared, contact.trial(shared, compliance, 0.0))
+            contact.allowed::<S>(numbers, contact.trial(numbers, compliance, 0.0))
         });
         natural_map::<M>(self.problem)
     }
 
     /// Puts −∇F in the place of a right-hand side; its square in the metric of M, J.
     fn gradient(&mut self, compliance: f64) -> f64 {
-        let Self { problem, workspace, shared, .. } = self;
-        let Workspace { graph, vector, near, momenta, .. } = &mut **workspace;
-        let (shared, elimination) = (*shared, &graph.elimination);
+        let Self { problem, workspace, numbers, .. } = self;
+        let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
+        let (numbers, elimination) = (*numbers, &graph.elimination);
         vector.clear();
         vector.extend(momenta.iter().map(|of_body| of_body.map(|momentum| -momentum)));
         let impulses = near
             .iter()
-            .map(|contact| contact.allowed::<S>(shared, contact.trial(shared, compliance, 0.0)));
+            .map(|contact| contact.allowed::<S>(numbers, contact.trial(numbers, compliance, 0.0)));
         push_all::<M, D>(problem, elimination, impulses, vector);
         let mut squared = 0.0;
         for (&body, momenta) in elimination.body_at.iter().zip(&*vector) {
             for (momentum, inertia) in momenta.iter().zip(M::Kinematics::INERTIA_OVER_MASS) {
-                squared += momentum * momentum / (inertia * problem.masses[body as usize]);
+                squared += momentum * momentum / (inertia * problem.bodies.masses[body as usize]);
             }
         }
         squared
@@ -167,12 +242,12 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
 
     /// Takes a Newton step, with the gradient that was formed.
     fn step_near(&mut self, compliance: f64) {
-        let Self { problem, workspace, shared, .. } = self;
-        let Workspace { graph, system, vector, near, .. } = &mut **workspace;
-        let (shared, elimination) = (*shared, &graph.elimination);
+        let Self { problem, workspace, numbers, .. } = self;
+        let PathWorkspace { graph, system, vector, near, .. } = &mut **workspace;
+        let (numbers, elimination) = (*numbers, &graph.elimination);
         let answers = near.iter().map(|contact| {
-            let trial = contact.trial(shared, compliance, 0.0);
-            contact.piece::<S>(shared, trial).stiffness(shared, compliance)
+            let trial = contact.trial(numbers, compliance, 0.0);
+            contact.piece::<S>(numbers, trial).stiffness(numbers, compliance)
         });
         system.assemble::<M, S>(problem, graph, answers);
         system.solve::<S>(elimination, vector);
@@ -181,11 +256,11 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         });
         let share = self.least_on_line(compliance);
         let Self { problem, workspace, .. } = self;
-        let Workspace { graph, vector, near, momenta, .. } = &mut **workspace;
+        let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
         for (&body, (momenta, change)) in
             graph.elimination.body_at.iter().zip(momenta.iter_mut().zip(&*vector))
         {
-            let mass = problem.masses[body as usize];
+            let mass = problem.bodies.masses[body as usize];
             for axis in 0..D {
                 let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
                 momenta[axis] += share * inertia * change[axis];
@@ -200,13 +275,13 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
 
     /// The share of the step at which F is least.
     fn least_on_line(&self, compliance: f64) -> f64 {
-        let Self { problem, workspace, shared, .. } = self;
-        let Workspace { graph, vector, near, momenta, .. } = &**workspace;
+        let Self { problem, workspace, numbers, .. } = self;
+        let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;
         let (mut of_masses, mut at_start) = (0.0, 0.0);
         for (&body, (momenta, change)) in
             graph.elimination.body_at.iter().zip(momenta.iter().zip(vector))
         {
-            let mass = problem.masses[body as usize];
+            let mass = problem.bodies.masses[body as usize];
             for axis in 0..D {
                 let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
                 of_masses += inertia * change[axis] * change[axis];
@@ -217,9 +292,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let slopes = |share: f64| {
             let mut slopes = [at_start + share * of_masses, of_masses];
             for ((_, row), contact) in problem.rows().zip(near) {
-                let trial = contact.trial(*shared, compliance, share);
-                let allowed = contact.allowed::<S>(*shared, trial);
-                let stiffness = contact.piece::<S>(*shared, trial).stiffness(*shared, compliance);
+                let trial = contact.trial(*numbers, compliance, share);
+                let allowed = contact.allowed::<S>(*numbers, trial);
+                let stiffness = contact.piece::<S>(*numbers, trial).stiffness(*numbers, compliance);
                 let [normal, tangential] = contact.change;
                 let along = |of: [f64; 2]| normal * of[0] + tangential * of[1];
                 slopes[0] -= row.effective_mass * along(allowed);

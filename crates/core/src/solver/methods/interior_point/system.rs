@@ -1,19 +1,20 @@
 //! The linear system of a Newton step: M + Hᵀ m S⁻¹ H, symmetric but for Coulomb's law.
 
-use super::shape::Shape;
-use crate::solver::linear::{Block, BlockMatrix, Elimination, SymmetricBlockMatrix};
-use crate::solver::methods::shared::contact_graph::ContactGraph;
-use crate::solver::problem::{Kinematics, Model, Row, StepProblem};
+use super::contact::Shape;
+use crate::solver::kinematics::Kinematics;
+use crate::solver::linear::{Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix};
+use crate::solver::model::Model;
+use crate::solver::problem::{Row, StepProblem};
 
 /// The matrix, then its factors.
 #[derive(Clone, Debug, Default)]
-pub(super) struct System<const D: usize> {
+pub(super) struct StepMatrix<const D: usize> {
     symmetric: SymmetricBlockMatrix<D>,
     /// In use where the shape leans.
     unsymmetric: BlockMatrix<D>,
 }
 
-impl<const D: usize> System<D> {
+impl<const D: usize> StepMatrix<D> {
     /// Sets the matrix up for the S⁻¹ of each contact, and factorises it.
     pub(super) fn assemble<M: Model, S: Shape>(
         &mut self,
@@ -27,21 +28,21 @@ impl<const D: usize> System<D> {
         } else {
             self.symmetric.clear(elimination);
         }
-        for (body, &mass) in problem.masses.iter().enumerate() {
+        for (body, &mass) in problem.bodies.masses.iter().enumerate() {
             let mut block = [[0.0; D]; D];
             for (axis, row) in block.iter_mut().enumerate() {
                 row[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
             }
             self.add_to_diagonal::<S>(elimination.place_of[body], &block);
         }
-        for (row, answer) in problem.fixed_rows.iter().zip(&mut answers) {
+        for (row, answer) in problem.rows.fixed.iter().zip(&mut answers) {
             let [on_i, _] = gradients::<M, D>(row);
             let answer = heavy(row.effective_mass, answer);
             let block = stiffness(&answer, &on_i, &on_i);
             self.add_to_diagonal::<S>(elimination.place_of[row.i as usize], &block);
         }
         for ((row, &number), answer) in
-            problem.pair_rows.iter().zip(&graph.pair_blocks).zip(answers)
+            problem.rows.pairs.iter().zip(&graph.pair_blocks).zip(answers)
         {
             let [on_i, on_j] = gradients::<M, D>(row);
             let (i, j) =
@@ -99,7 +100,7 @@ pub(super) fn push_all<M: Model, const D: usize>(
     impulses: impl Iterator<Item = [f64; 2]>,
     momenta: &mut [[f64; D]],
 ) {
-    let fixed_count = problem.fixed_rows.len();
+    let fixed_count = problem.rows.fixed.len();
     for ((number, row), impulse) in problem.rows().zip(impulses) {
         let impulse = impulse.map(|part| row.effective_mass * part);
         let [on_i, on_j] = gradients::<M, D>(row);
@@ -119,7 +120,7 @@ pub(super) fn for_each_change<M: Model, const D: usize>(
     changes: &[[f64; D]],
     mut visit: impl FnMut(usize, [f64; 2]),
 ) {
-    let fixed_count = problem.fixed_rows.len();
+    let fixed_count = problem.rows.fixed.len();
     for (number, row) in problem.rows() {
         let [on_i, on_j] = gradients::<M, D>(row);
         let mut change = relative(&changes[elimination.place_of[row.i as usize] as usize], &on_i);

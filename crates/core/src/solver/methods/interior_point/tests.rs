@@ -5,8 +5,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::*;
-use crate::solver::StopTest;
-use crate::solver::problem::{Line, Plane, Row, SpinningPlane, StepModel};
+use crate::contact::ContactLaw;
+use crate::solver::problem::{FixedRow, PairRow, Row};
+use crate::solver::{Line, Plane, SpinningPlane, StepModel, StopTest};
 
 const FRICTION: f64 = 0.6;
 
@@ -16,15 +17,16 @@ fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M::Kinemati
     let (bodies, contacts) = (40, 90);
     let mut random = Pcg64::seed_from_u64(seed);
     let mut problem = StepProblem::<M::Kinematics>::default();
-    (problem.friction, problem.capture_speed, problem.mean_mass) = (FRICTION, 0.1, 1.0);
-    problem.friction_model = model;
-    problem.contact_of_row.extend(0..contacts);
+    problem.law = ContactLaw::new(FRICTION, 0.1, FrictionCone::Shifted);
+    problem.bodies.mean_mass = 1.0;
+    problem.friction.model = model;
+    problem.rows.contacts.extend(0..contacts);
     for _ in 0..bodies {
-        problem.masses.push(random.random_range(0.2..5.0));
+        problem.bodies.masses.push(random.random_range(0.2..5.0));
         let speeds = [(); 3].map(|()| random.random_range(-1.0..1.0));
-        problem.free.push(M::Kinematics::from_coordinates(speeds));
+        problem.bodies.free.push(M::Kinematics::from_coordinates(speeds));
     }
-    problem.before.clone_from(&problem.free);
+    problem.bodies.before = problem.bodies.free.clone();
     for contact in 0..contacts {
         let i = random.random_range(0..bodies);
         let j = (i + random.random_range(1..6)) % bodies;
@@ -33,25 +35,26 @@ fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M::Kinemati
             1 => [angle.cos().signum(), 0.0],
             _ => [angle.cos(), angle.sin()],
         };
-        let (of_i, of_j) = (problem.masses[i], problem.masses[j]);
+        let (of_i, of_j) = (problem.bodies.masses[i], problem.bodies.masses[j]);
         let is_fixed = contact % 6 == 0;
         let share = if is_fixed { 1.0 } else { of_j / (of_i + of_j) };
+        // Drawn before the row's own numbers.
+        let surface_speed = if is_fixed { random.random_range(-0.1..0.1) } else { 0.0 };
         let row = Row {
             i: i as u32,
             j: j as u32,
             normal: M::Kinematics::normal(normal),
-            of_other: if is_fixed { random.random_range(-0.1..0.1) } else { share },
             restitution_velocity: random.random_range(0.0..0.3),
             shifted_impulse: random.random_range(0.0..1.0),
             tangential_impulse: 0.0,
             effective_mass: of_i * share,
         };
         if is_fixed {
-            problem.fixed_rows.push(row)
+            problem.rows.fixed.push(FixedRow { row, surface_speed });
         } else {
-            problem.pair_rows.push(row)
+            problem.rows.pairs.push(PairRow { row, share });
         }
-        problem.held.push(match model {
+        problem.friction.now.push(match model {
             FrictionModel::Tresca => random.random_range(0.0..0.2),
             _ => 0.0,
         });
@@ -69,7 +72,7 @@ fn both_ways<M: Model, S: Shape, const D: usize>(
     let settings = SolverSettings { stop, tolerance: 1e-10, ..SolverSettings::default() };
     let mut by_path = problem::<M>(seed, model);
     let mut from_far = by_path.clone();
-    let mut workspace = Workspace::<D>::default();
+    let mut workspace = PathWorkspace::<D>::default();
     let report =
         InteriorPoint::<M, S, D>::new(&mut by_path, &settings, &mut workspace).solve_convex();
     assert!(report.converged, "seed {seed}, {model}: {report:?}");
@@ -82,7 +85,7 @@ fn both_ways<M: Model, S: Shape, const D: usize>(
     assert!(solver.solve_from_far(), "seed {seed}, {model}: {}", solver.best);
     let factorisations = solver.report.factorisations;
     let velocities = |problem: &StepProblem<M::Kinematics>| {
-        problem.bodies.iter().map(M::Kinematics::coordinates::<f64>).collect()
+        problem.bodies.now.iter().map(M::Kinematics::coordinates::<f64>).collect()
     };
     ([velocities(&by_path), velocities(&from_far)], factorisations)
 }
@@ -102,8 +105,8 @@ fn proximal_multipliers_agree<M: Model, S: Shape, const D: usize>(model: Frictio
 
 #[test]
 fn proximal_multipliers_find_the_velocities_that_the_path_leads_to() {
-    type Turning = StepModel<SpinningPlane, true, false>;
-    type Unturning = StepModel<Plane, true, false>;
+    type Turning = StepModel<SpinningPlane, true>;
+    type Unturning = StepModel<Plane, true>;
     proximal_multipliers_agree::<Turning, Strip, 3>(FrictionModel::Tresca);
     proximal_multipliers_agree::<Unturning, Strip, 2>(FrictionModel::Tresca);
     proximal_multipliers_agree::<Turning, Cone, 3>(FrictionModel::Associated);
@@ -112,21 +115,21 @@ fn proximal_multipliers_find_the_velocities_that_the_path_leads_to() {
 
 #[test]
 fn they_do_without_friction() {
-    type Smooth = StepModel<SpinningPlane, false, false>;
-    type OnALine = StepModel<Line, false, false>;
+    type Smooth = StepModel<SpinningPlane, false>;
+    type OnALine = StepModel<Line, false>;
     proximal_multipliers_agree::<Smooth, HalfLine, 3>(FrictionModel::Coulomb);
     proximal_multipliers_agree::<OnALine, HalfLine, 1>(FrictionModel::Coulomb);
 }
 
 #[test]
 fn what_the_path_leaves_is_polished_in_a_few_factorisations() {
-    type Turning = StepModel<SpinningPlane, true, false>;
+    type Turning = StepModel<SpinningPlane, true>;
     let loose = SolverSettings { stop: StopTest::Residual, tolerance: 1e-5, ..Default::default() };
     let tight = SolverSettings { tolerance: 1e-10, ..loose };
     let (mut polished, mut factorisations) = (0, 0);
     for seed in 0..40 {
         let mut problem = problem::<Turning>(seed, FrictionModel::Tresca);
-        let mut workspace = Workspace::<3>::default();
+        let mut workspace = PathWorkspace::<3>::default();
         let path = InteriorPoint::<Turning, Strip, 3>::new(&mut problem, &loose, &mut workspace);
         assert!(path.solve_convex().converged);
         let mut solver =

@@ -1,14 +1,16 @@
 //! Contacts side by side: a block holds four that share no grain, one a lane, as structure of arrays.
 //!
-//! All four are solved at once by the arithmetic of one (`shared::update`), in the vector registers
+//! All four are solved at once by the arithmetic of one (`methods::sweep`), in the vector registers
 //! that the processor turns out to have: to the last bit what they give one after the other. A block
 //! that a colour does not fill has idle lanes, which act on a body that stands in and change nothing.
 
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x4};
 
-use crate::contact::Lanes;
-use crate::solver::methods::shared::update::{Body, Change, Law, Local, squared_impulse};
-use crate::solver::problem::{Kinematics, Model, Row, errors};
+use crate::contact::{ContactLaw, Lanes};
+use crate::solver::kinematics::Kinematics;
+use crate::solver::methods::sweep::{ImpulseChange, Local, ModelBody, squared_impulse};
+use crate::solver::model::Model;
+use crate::solver::problem::{Row, errors, project_by_coulomb};
 
 /// Contacts in a block: the numbers in a register of AVX2. Wider blocks would leave more lanes idle.
 pub(super) const LANES: usize = 4;
@@ -17,9 +19,9 @@ pub(super) const LANES: usize = 4;
 /// cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
-pub(super) struct Slot([f64; LANES]);
+pub(super) struct BodySlot([f64; LANES]);
 
-impl Slot {
+impl BodySlot {
     /// The slot of a body.
     pub(super) fn of<K: Kinematics>(body: &K::Body<f64>) -> Self {
         let [x, y, spin] = K::coordinates(body);
@@ -36,10 +38,11 @@ impl Slot {
 /// Four contacts, lane by lane as in [`Row`]: four cache lines, of which a sweep writes one.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(super) struct Block {
+pub(super) struct ContactBlock {
     i: [u32; LANES],
     j: [u32; LANES],
-    of_other: [f64; LANES],
+    /// g_i of pairs; against fixed bodies, how fast their surfaces go along t.
+    share_or_speed: [f64; LANES],
     normal: [[f64; LANES]; 2],
     shifted_impulse: [f64; LANES],
     tangential_impulse: [f64; LANES],
@@ -47,22 +50,25 @@ pub(super) struct Block {
     effective_mass: [f64; LANES],
 }
 
-impl Block {
-    /// The block of up to four rows, whose grains are in these slots. Idle lanes have the first.
-    pub(super) fn of<K: Kinematics>(rows: &[Row<K>], slots: impl Fn(&Row<K>) -> [u32; 2]) -> Self {
+impl ContactBlock {
+    /// The block of up to four rows, each with the slots of its grains and its share or surface speed. Idle lanes
+    /// have the first slot.
+    pub(super) fn of<'a, K: Kinematics>(
+        rows: impl Iterator<Item = (&'a Row<K>, [u32; 2], f64)>,
+    ) -> Self {
         let mut block = Self {
             i: [0; LANES],
             j: [0; LANES],
-            of_other: [0.0; LANES],
+            share_or_speed: [0.0; LANES],
             normal: [[0.0; LANES]; 2],
             shifted_impulse: [0.0; LANES],
             tangential_impulse: [0.0; LANES],
             restitution_velocity: [0.0; LANES],
             effective_mass: [0.0; LANES],
         };
-        for (lane, row) in rows.iter().enumerate() {
-            [block.i[lane], block.j[lane]] = slots(row);
-            block.of_other[lane] = row.of_other;
+        for (lane, (row, slots, share_or_speed)) in rows.enumerate() {
+            [block.i[lane], block.j[lane]] = slots;
+            block.share_or_speed[lane] = share_or_speed;
             [block.normal[0][lane], block.normal[1][lane]] = K::components(row.normal);
             block.shifted_impulse[lane] = row.shifted_impulse;
             block.tangential_impulse[lane] = row.tangential_impulse;
@@ -73,8 +79,11 @@ impl Block {
     }
 
     /// Gives its rows their impulses.
-    pub(super) fn store<M: Model>(&self, rows: &mut [Row<M::Kinematics>]) {
-        for (lane, row) in rows.iter_mut().enumerate() {
+    pub(super) fn store<'a, M: Model>(
+        &self,
+        rows: impl Iterator<Item = &'a mut Row<M::Kinematics>>,
+    ) {
+        for (lane, row) in rows.enumerate() {
             row.shifted_impulse = self.shifted_impulse[lane];
             if M::FRICTION {
                 row.tangential_impulse = self.tangential_impulse[lane];
@@ -97,7 +106,6 @@ impl Block {
         let [x, y] = self.normal;
         Local {
             normal: K::normal([f64x4::simd_from(simd, x), f64x4::simd_from(simd, y)]),
-            of_other: f64x4::simd_from(simd, self.of_other),
             restitution_velocity: f64x4::simd_from(simd, self.restitution_velocity),
             effective_mass: f64x4::simd_from(simd, self.effective_mass),
         }
@@ -107,11 +115,23 @@ impl Block {
     fn impulse<S: Simd>(&self, simd: S) -> [f64x4<S>; 2] {
         [self.shifted_impulse, self.tangential_impulse].map(|it| f64x4::simd_from(simd, it))
     }
+
+    #[inline(always)]
+    fn set_impulse<S: Simd, M: Model>(&mut self, [shifted, tangential]: [f64x4<S>; 2]) {
+        self.shifted_impulse = shifted.to_array();
+        if M::FRICTION {
+            self.tangential_impulse = tangential.to_array();
+        }
+    }
 }
 
 /// Bodies, one a lane.
 #[inline(always)]
-fn gather<S: Simd, M: Model>(simd: S, slots: &[Slot], indices: [u32; LANES]) -> Body<M, f64x4<S>> {
+fn gather<S: Simd, M: Model>(
+    simd: S,
+    slots: &[BodySlot],
+    indices: [u32; LANES],
+) -> ModelBody<M, f64x4<S>> {
     let bodies = indices.map(|index| f64x4::simd_from(simd, slots[index as usize].0));
     let [x, y, spin, _] = transposed(bodies);
     M::Kinematics::from_coordinates([x, y, spin])
@@ -129,72 +149,75 @@ fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
 /// Puts gathered bodies back.
 #[inline(always)]
 fn scatter<S: Simd, M: Model>(
-    slots: &mut [Slot],
+    slots: &mut [BodySlot],
     indices: [u32; LANES],
-    bodies: &Body<M, f64x4<S>>,
+    bodies: &ModelBody<M, f64x4<S>>,
 ) {
     let [x, y, spin] = M::Kinematics::coordinates(bodies);
     let bodies = transposed([x, y, spin, spin.same(0.0)]);
     for (index, body) in indices.into_iter().zip(bodies) {
-        slots[index as usize] = Slot(body.to_array());
+        slots[index as usize] = BodySlot(body.to_array());
     }
+}
+
+/// Blocks of a tile or of what lies between tiles; the first are of contacts with fixed bodies.
+pub(super) struct Blocks<'a> {
+    pub all: &'a mut [ContactBlock],
+    /// How many are of contacts with fixed bodies.
+    pub fixed: usize,
 }
 
 /// Solves blocks one after the other: of contacts with fixed bodies, then between grains.
 #[inline(always)]
 pub(super) fn solve_blocks<S: Simd, M: Model, const MEASURE: bool>(
     simd: S,
-    law: &Law,
-    (blocks, singles): (&mut [Block], usize),
-    slots: &mut [Slot],
-) -> Change {
+    law: &ContactLaw,
+    blocks: Blocks<'_>,
+    slots: &mut [BodySlot],
+) -> ImpulseChange {
     let none = f64x4::splat(simd, 0.0);
-    let mut change = Change { squared: none, absolute: none };
-    let (single, pair) = blocks.split_at_mut(singles);
-    for block in single {
+    let mut change = ImpulseChange { squared: none, absolute: none };
+    let (fixed, pairs) = blocks.all.split_at_mut(blocks.fixed);
+    let project = |trial| project_by_coulomb::<M, f64x4<S>>(law, trial);
+    for block in fixed {
         let local = block.local::<M::Kinematics, S>(simd);
-        let [mut shifted, mut tangential] = block.impulse(simd);
+        let surface_speed = f64x4::simd_from(simd, block.share_or_speed);
+        let mut impulse = block.impulse(simd);
         let mut i = gather::<S, M>(simd, slots, block.i);
-        let row = (&local, [&mut shifted, &mut tangential]);
-        law.solve_single::<M, _, MEASURE>(row, &mut i, &mut change);
+        local.solve_fixed::<M, MEASURE>(surface_speed, &mut impulse, &mut i, &mut change, project);
         scatter::<S, M>(slots, block.i, &i);
-        block.shifted_impulse = shifted.to_array();
-        if M::FRICTION {
-            block.tangential_impulse = tangential.to_array();
-        }
+        block.set_impulse::<S, M>(impulse);
     }
-    for block in pair {
+    for block in pairs {
         let local = block.local::<M::Kinematics, S>(simd);
-        let [mut shifted, mut tangential] = block.impulse(simd);
+        let share = f64x4::simd_from(simd, block.share_or_speed);
+        let mut impulse = block.impulse(simd);
         let mut i = gather::<S, M>(simd, slots, block.i);
         let mut j = gather::<S, M>(simd, slots, block.j);
-        let row = (&local, [&mut shifted, &mut tangential]);
-        law.solve_pair::<M, _, MEASURE>(row, &mut i, &mut j, &mut change);
+        let both = [&mut i, &mut j];
+        local.solve_pair::<M, MEASURE>(share, &mut impulse, both, &mut change, project);
         scatter::<S, M>(slots, block.i, &i);
         scatter::<S, M>(slots, block.j, &j);
-        block.shifted_impulse = shifted.to_array();
-        if M::FRICTION {
-            block.tangential_impulse = tangential.to_array();
-        }
+        block.set_impulse::<S, M>(impulse);
     }
-    let Change { squared, absolute } = change;
-    Change { squared: sum(squared.to_array()), absolute: sum(absolute.to_array()) }
+    let ImpulseChange { squared, absolute } = change;
+    ImpulseChange { squared: sum(squared.to_array()), absolute: sum(absolute.to_array()) }
 }
 
-/// Σ (e_n² + e_t²) of the common residual (`problem::measure`), (N·s)².
+/// Σ (e_n² + e_t²) of the common residual (`problem::residual`), (N·s)².
 #[inline(always)]
 pub(super) fn squared_error<S: Simd, M: Model>(
     simd: S,
-    law: [f64; 2],
-    (blocks, singles): (&[Block], usize),
-    slots: &[Slot],
+    law: &ContactLaw,
+    blocks: Blocks<'_>,
+    slots: &[BodySlot],
 ) -> f64 {
     let mut sum_of_lanes = f64x4::splat(simd, 0.0);
-    for (at, block) in blocks.iter().enumerate() {
+    for (at, block) in blocks.all.iter().enumerate() {
         let local = block.local::<M::Kinematics, S>(simd);
         let i = gather::<S, M>(simd, slots, block.i);
-        let velocity = if at < singles {
-            local.velocity(&i)
+        let velocity = if at < blocks.fixed {
+            local.velocity(f64x4::simd_from(simd, block.share_or_speed), &i)
         } else {
             let j = gather::<S, M>(simd, slots, block.j);
             M::Kinematics::relative_velocity(local.normal, &i, &j)

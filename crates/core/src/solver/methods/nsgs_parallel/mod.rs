@@ -7,37 +7,23 @@
 //! number of threads.
 
 mod block;
-mod layout;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
 
-use self::block::{Block, LANES, Slot, solve_blocks, squared_error};
-use self::layout::{Layout, Tile};
-use super::info::{COULOMB, MethodInfo, MethodOrder};
-use super::method::Method;
-use super::nsgs::{self, is_settled};
-use super::report::SolveReport;
-use super::shared::iterate::{is_tested, sweep_until_settled};
-use super::shared::update::{Change, Law};
-use crate::solver::ordering::Ordering;
-use crate::solver::problem::{Model, StepProblem, residual_of, squared_residual_scale};
+use self::block::{Blocks, BodySlot, ContactBlock, LANES, solve_blocks, squared_error};
+use super::nsgs;
+use super::stopping::{SolveReport, is_settled, is_tested, sweep_until_settled};
+use super::sweep::ImpulseChange;
+use crate::contact::ContactLaw;
+use crate::solver::kinematics::Kinematics;
+use crate::solver::model::Model;
+use crate::solver::problem::{ContactRows, Row, StepProblem, residual_of, squared_residual_scale};
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::threads;
-
-/// What there is to know of it.
-pub(super) const INFO: MethodInfo = MethodInfo {
-    method: Method::NsgsParallel,
-    name: "nsgs-parallel",
-    summary: "Gauss-Seidel by tiles and colours: four contacts at a time, large piles on several threads",
-    solves: COULOMB,
-    source: "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
-    order: MethodOrder::Always(Ordering::Coloured),
-    takes_models: false,
-    takes_drives: false,
-    takes_shear: false,
-};
 
 /// Blocks from which on tiles are shared out: 60 µs of work a sweep. With half of it two threads were slower than one.
 const WORTH_THREADS: usize = 4096;
@@ -45,9 +31,9 @@ const WORTH_THREADS: usize = 4096;
 /// What is kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockMemory {
-    layout: Layout,
+    layout: TileLayout,
     /// What the tiles changed.
-    changes: Vec<Change>,
+    changes: Vec<ImpulseChange>,
     /// What the tiles come to, of whatever is summed: squared errors or impulses.
     sums: Vec<f64>,
 }
@@ -57,13 +43,13 @@ impl BlockMemory {
     fn sum(
         &mut self,
         threads: bool,
-        add_up: impl Fn((&mut [Block], usize), &mut [Slot]) -> f64 + Sync,
+        add_up: impl Fn(Blocks<'_>, &mut [BodySlot]) -> f64 + Sync,
     ) -> f64 {
         let Self { layout, sums, .. } = self;
-        let Layout { tiles, blocks, slots, singles_between, .. } = layout;
+        let TileLayout { tiles, blocks, slots, fixed_between, .. } = layout;
         let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
         for_each_tile(threads, tiles, in_tiles, slots, sums, &add_up);
-        sums.iter().sum::<f64>() + add_up((between, *singles_between), slots)
+        sums.iter().sum::<f64>() + add_up(Blocks { all: between, fixed: *fixed_between }, slots)
     }
 }
 
@@ -85,7 +71,7 @@ fn solve_at<M: Model>(
 ) -> SolveReport {
     match Tiled::<M>::new(level, problem, memory) {
         Some(mut tiled) => tiled.run(settings),
-        None => nsgs::solve::<M>(problem, &mut (), settings),
+        None => nsgs::solve::<M>(problem, settings),
     }
 }
 
@@ -96,7 +82,7 @@ struct Tiled<'a, M: Model> {
     level: Level,
     /// Whether there are several tiles, threads for them, and enough for these to do.
     threads: bool,
-    law: Law,
+    law: ContactLaw,
     problem: &'a mut StepProblem<M::Kinematics>,
     memory: &'a mut BlockMemory,
     squared_scale: Option<f64>,
@@ -111,11 +97,11 @@ impl<'a, M: Model> Tiled<'a, M> {
     ) -> Option<Self> {
         memory.layout.fill(problem)?;
         let tiles = memory.layout.tiles.len();
-        memory.changes.resize(tiles, Change::default());
+        memory.changes.resize(tiles, ImpulseChange::default());
         memory.sums.resize(tiles, 0.0);
         let blocks = blocks_of(&memory.layout.tiles);
         let threads = tiles > 1 && blocks >= WORTH_THREADS && threads::are_there();
-        let law = Law::of(problem);
+        let law = problem.law;
         Some(Self { level, threads, law, problem, memory, squared_scale: None })
     }
 
@@ -132,8 +118,8 @@ impl<'a, M: Model> Tiled<'a, M> {
                 StopTest::Residual => tiled.sweep::<false>(),
                 _ => tiled.sweep::<true>(),
             };
-            let change = (change, tiled.problem.mean_mass);
-            is_settled(tiled, change, settings, Self::squared_impulses, Self::residual)
+            let mean_mass = tiled.problem.bodies.mean_mass;
+            is_settled(tiled, change, mean_mass, settings, Self::squared_impulses, Self::residual)
         };
         let report = sweep_until_settled(self, settings, sweep, Self::residual);
         self.store();
@@ -141,17 +127,17 @@ impl<'a, M: Model> Tiled<'a, M> {
     }
 
     /// One pass over all contacts.
-    fn sweep<const MEASURE: bool>(&mut self) -> Change {
+    fn sweep<const MEASURE: bool>(&mut self) -> ImpulseChange {
         let Self { level, threads, law, memory, .. } = self;
         let (level, law) = (*level, &*law);
         let BlockMemory { layout, changes, .. } = &mut **memory;
-        let Layout { tiles, blocks, slots, singles_between, .. } = layout;
+        let TileLayout { tiles, blocks, slots, fixed_between, .. } = layout;
         let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
-        let solve = |blocks: (&mut [Block], usize), slots: &mut [Slot]| dispatch!(level, simd => solve_blocks::<_, M, MEASURE>(simd, law, blocks, slots));
+        let solve = |blocks: Blocks<'_>, slots: &mut [BodySlot]| dispatch!(level, simd => solve_blocks::<_, M, MEASURE>(simd, law, blocks, slots));
         for_each_tile(*threads, tiles, in_tiles, slots, changes, &solve);
-        let mut change = Change::default();
+        let mut change = ImpulseChange::default();
         changes.iter().for_each(|&of_tile| change.add_all(of_tile));
-        change.add_all(solve((between, *singles_between), slots));
+        change.add_all(solve(Blocks { all: between, fixed: *fixed_between }, slots));
         change
     }
 
@@ -168,26 +154,28 @@ impl<'a, M: Model> Tiled<'a, M> {
     }
 
     fn squared_error(&mut self) -> f64 {
-        let (level, law) = (self.level, [self.problem.friction, self.problem.capture_speed]);
-        self.memory.sum(self.threads, |(blocks, singles), slots| {
-            let blocks = (&*blocks, singles);
-            dispatch!(level, simd => squared_error::<_, M>(simd, law, blocks, slots))
-        })
+        let (level, law) = (self.level, &self.law);
+        self.memory.sum(
+            self.threads,
+            |blocks, slots| dispatch!(level, simd => squared_error::<_, M>(simd, law, blocks, slots)),
+        )
     }
 
     /// Σ P², (N·s)².
     fn squared_impulses(&mut self) -> f64 {
-        let StepProblem { captures, capture_speed, .. } = &*self.problem;
+        let captures = &self.problem.rows.captures;
+        let capture_speed = self.law.capture_speed();
         if captures.is_empty() {
-            let the_same = [*capture_speed; LANES];
-            return self.memory.sum(self.threads, |(blocks, _), _| {
-                blocks.iter().map(|block| block.squared_impulses(the_same)).sum()
+            let the_same = [capture_speed; LANES];
+            return self.memory.sum(self.threads, |blocks, _| {
+                blocks.all.iter().map(|block| block.squared_impulses(the_same)).sum()
             });
         }
-        let Layout { blocks, places, .. } = &self.memory.layout;
-        let of_block = |(block, place): (&Block, &std::ops::Range<u32>)| {
+        let TileLayout { blocks, places, .. } = &self.memory.layout;
+        let of_block = |(block, place): (&ContactBlock, &Range<u32>)| {
             let first = place.start as usize;
-            let capture = |lane: usize| *captures.get(first + lane).unwrap_or(capture_speed);
+            let capture =
+                |lane: usize| captures.get(first + lane).copied().unwrap_or(capture_speed);
             block.squared_impulses(std::array::from_fn::<_, LANES, _>(capture))
         };
         blocks.iter().zip(places).map(of_block).sum()
@@ -199,7 +187,7 @@ impl<'a, M: Model> Tiled<'a, M> {
     }
 }
 
-fn blocks_of(tiles: &[Tile]) -> usize {
+fn blocks_of(tiles: &[ContactTile]) -> usize {
     tiles.iter().map(|tile| tile.blocks).sum()
 }
 
@@ -207,11 +195,11 @@ fn blocks_of(tiles: &[Tile]) -> usize {
 /// threads where these are wanted.
 fn for_each_tile<T: Send>(
     threads: bool,
-    tiles: &[Tile],
-    mut blocks: &mut [Block],
-    mut slots: &mut [Slot],
+    tiles: &[ContactTile],
+    mut blocks: &mut [ContactBlock],
+    mut slots: &mut [BodySlot],
     results: &mut [T],
-    visit: &(impl Fn((&mut [Block], usize), &mut [Slot]) -> T + Sync),
+    visit: &(impl Fn(Blocks<'_>, &mut [BodySlot]) -> T + Sync),
 ) {
     if threads && tiles.len() > 1 {
         let half = tiles.len() / 2;
@@ -228,7 +216,181 @@ fn for_each_tile<T: Send>(
     for (tile, result) in tiles.iter().zip(results) {
         let (of_tile, rest) = blocks.split_at_mut(tile.blocks);
         let (slots_of_tile, other_slots) = slots.split_at_mut(tile.slots);
-        *result = visit((of_tile, tile.singles), slots_of_tile);
+        *result = visit(Blocks { all: of_tile, fixed: tile.fixed }, slots_of_tile);
         (blocks, slots) = (rest, other_slots);
+    }
+}
+
+/// A slot that no grain is in, and a grain that has no slot.
+const NOBODY: u32 = u32::MAX;
+
+/// What one thread at a time works on: contacts whose grains no other tile's have.
+#[derive(Clone, Copy, Debug, Default)]
+struct ContactTile {
+    /// Its blocks.
+    blocks: usize,
+    /// How many of these, the first, are of contacts with fixed bodies.
+    fixed: usize,
+    /// Its slots.
+    slots: usize,
+}
+
+/// What is known of a grain while blocks are made.
+#[derive(Clone, Copy, Debug)]
+struct GrainMark {
+    slot: u32,
+    /// Number of its tile from 1.
+    tile: u32,
+    /// The last colour that it was seen in.
+    colour: u32,
+}
+
+const UNSEEN: GrainMark = GrainMark { slot: NOBODY, tile: 0, colour: 0 };
+
+/// Where blocks are added.
+#[derive(Clone, Copy)]
+struct BlockPlace {
+    /// Number of the tile from 1; 0 between tiles.
+    tile: u32,
+    /// The slot that indices are counted from.
+    first_slot: u32,
+}
+
+/// The rows of a problem in blocks. Memory is kept between steps.
+#[derive(Clone, Debug, Default)]
+struct TileLayout {
+    /// Tiles in the order of their blocks and slots.
+    tiles: Vec<ContactTile>,
+    /// Blocks tile by tile, each colour by colour; the indices of a tile's are into its own slots. Then those
+    /// between tiles, whose indices are into all slots.
+    blocks: Vec<ContactBlock>,
+    /// How many blocks between tiles are of contacts with fixed bodies.
+    fixed_between: usize,
+    /// Bodies tile by tile, in the order in which blocks first meet them. The first of a tile stands in where a
+    /// lane is idle.
+    slots: Vec<BodySlot>,
+    /// Rows of each block, numbered as in the problem.
+    places: Vec<Range<u32>>,
+    /// Grain of each slot.
+    grains: Vec<u32>,
+    marks: Vec<GrainMark>,
+    colours: u32,
+}
+
+impl TileLayout {
+    /// Lays out a problem. Nothing where its grains do not all exist, or a colour or two tiles share one.
+    fn fill<K: Kinematics>(&mut self, problem: &StepProblem<K>) -> Option<()> {
+        self.tiles.clear();
+        self.blocks.clear();
+        self.places.clear();
+        self.grains.clear();
+        self.marks.clear();
+        self.marks.resize(problem.bodies.now.len(), UNSEEN);
+        self.colours = 0;
+        let kinds = &problem.order.groups;
+        let rows = [problem.rows.fixed.len(), problem.rows.pairs.len()];
+        if kinds.each_ref().map(|groups| groups.colour_ends.last().copied().unwrap_or(0)) != rows {
+            return None;
+        }
+        let tiles = kinds.each_ref().map(|groups| groups.tile_ends.len());
+        let tiles = tiles[0].max(tiles[1]);
+        for tile in 0..tiles {
+            let (first_block, first_slot) = (self.blocks.len(), self.grains.len());
+            let place = BlockPlace { tile: tile as u32 + 1, first_slot: first_slot as u32 };
+            self.grains.push(NOBODY);
+            let fixed = self.add_all(problem, place, tile)?;
+            let blocks = self.blocks.len() - first_block;
+            let slots = self.grains.len() - first_slot;
+            self.tiles.push(ContactTile { blocks, fixed, slots });
+        }
+        self.fixed_between = self.add_all(problem, BlockPlace { tile: 0, first_slot: 0 }, tiles)?;
+        self.slots.clear();
+        self.slots.extend(self.grains.iter().map(|&grain| {
+            problem.bodies.now.get(grain as usize).map_or_else(BodySlot::default, BodySlot::of::<K>)
+        }));
+        Some(())
+    }
+
+    /// Adds the blocks of a tile, or those between tiles behind the last, and tells how many are of contacts
+    /// with fixed bodies.
+    fn add_all<K: Kinematics>(
+        &mut self,
+        problem: &StepProblem<K>,
+        place: BlockPlace,
+        tile: usize,
+    ) -> Option<usize> {
+        let first_block = self.blocks.len();
+        let ContactRows { fixed, pairs, .. } = &problem.rows;
+        let [of_fixed, of_pairs] = &problem.order.groups;
+        for rows in of_fixed.colours_of(tile) {
+            let of_colour = fixed.get(rows.clone())?;
+            let rows_of_it = of_colour.iter().map(|row| (&row.row, row.surface_speed));
+            self.add(rows_of_it, rows.start, place, false)?;
+        }
+        let fixed_blocks = self.blocks.len() - first_block;
+        for rows in of_pairs.colours_of(tile) {
+            let of_colour = pairs.get(rows.clone())?;
+            let rows_of_it = of_colour.iter().map(|row| (&row.row, row.share));
+            self.add(rows_of_it, fixed.len() + rows.start, place, true)?;
+        }
+        Some(fixed_blocks)
+    }
+
+    /// Adds the blocks of a colour, whose rows, with share or surface speed, are numbered from `first`.
+    fn add<'a, K: Kinematics>(
+        &mut self,
+        rows: impl ExactSizeIterator<Item = (&'a Row<K>, f64)> + Clone,
+        first: usize,
+        BlockPlace { tile, first_slot }: BlockPlace,
+        are_pairs: bool,
+    ) -> Option<()> {
+        self.colours += 1;
+        for (row, _) in rows.clone() {
+            for grain in [row.i, row.j].into_iter().take(if are_pairs { 2 } else { 1 }) {
+                let mark = self.marks.get_mut(grain as usize)?;
+                if std::mem::replace(&mut mark.colour, self.colours) == self.colours {
+                    return None;
+                }
+                if mark.slot == NOBODY {
+                    (mark.slot, mark.tile) = (self.grains.len() as u32, tile);
+                    self.grains.push(grain);
+                }
+                if tile > 0 && mark.tile != tile {
+                    return None;
+                }
+            }
+        }
+        let marks = &self.marks;
+        let slot = |grain: u32| marks[grain as usize].slot - first_slot;
+        let end = first + rows.len();
+        let mut rows = rows.map(|(row, share_or_speed)| {
+            let slots = [slot(row.i), slot(if are_pairs { row.j } else { row.i })];
+            (row, slots, share_or_speed)
+        });
+        for start in (first..end).step_by(LANES) {
+            self.blocks.push(ContactBlock::of(rows.by_ref().take(LANES)));
+            self.places.push(start as u32..(start + LANES).min(end) as u32);
+        }
+        Some(())
+    }
+
+    /// Gives rows and bodies what became of them.
+    fn store<M: Model>(&self, problem: &mut StepProblem<M::Kinematics>) {
+        let ContactRows { fixed, pairs, .. } = &mut problem.rows;
+        for (block, place) in self.blocks.iter().zip(&self.places) {
+            let [start, end] = [place.start as usize, place.end as usize];
+            match start.checked_sub(fixed.len()) {
+                None => block.store::<M>(fixed[start..end].iter_mut().map(|row| &mut row.row)),
+                Some(first) => {
+                    let rows = &mut pairs[first..first + end - start];
+                    block.store::<M>(rows.iter_mut().map(|row| &mut row.row));
+                }
+            }
+        }
+        for (slot, &grain) in self.slots.iter().zip(&self.grains) {
+            if let Some(body) = problem.bodies.now.get_mut(grain as usize) {
+                slot.store::<M::Kinematics>(body);
+            }
+        }
     }
 }

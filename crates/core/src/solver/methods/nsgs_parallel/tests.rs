@@ -7,26 +7,35 @@ use rayon::ThreadPoolBuilder;
 
 use super::*;
 use crate::contact::levels;
-use crate::solver::problem::{Kinematics, Line, Plane, Row, SpinningPlane, StepModel, residual};
+use crate::solver::problem::{FixedRow, PairRow, residual};
+use crate::solver::{Line, Plane, SpinningPlane, StepModel};
+use crate::world::FrictionCone::{self, Compressive, Shifted};
 
 /// Contacts between bodies whose numbers are near to each other, every eighth against a fixed one, by tiles and
 /// colours.
-fn problem<M: Model>(seed: u64, bodies: usize, contacts: u32) -> StepProblem<M::Kinematics> {
+fn problem<M: Model>(
+    seed: u64,
+    bodies: usize,
+    contacts: u32,
+    cone: FrictionCone,
+) -> StepProblem<M::Kinematics> {
     let mut random = Pcg64::seed_from_u64(seed);
     let mut problem = StepProblem::<M::Kinematics>::default();
-    (problem.friction, problem.capture_speed, problem.mean_mass) = (0.5, 0.3, 1.0);
-    problem.masses.resize(bodies, 1.0);
-    problem.contact_of_row.extend(0..contacts);
+    problem.law = ContactLaw::new(0.5, 0.3, cone);
+    problem.bodies.mean_mass = 1.0;
+    problem.bodies.masses.resize(bodies, 1.0);
+    problem.rows.contacts.extend(0..contacts);
     for _ in 0..bodies {
         let speeds = [(); 3].map(|()| random.random_range(-1.0..1.0));
-        problem.free.push(M::Kinematics::from_coordinates(speeds));
+        problem.bodies.free.push(M::Kinematics::from_coordinates(speeds));
     }
-    problem.before.clone_from(&problem.free);
+    problem.bodies.before = problem.bodies.free.clone();
     for contact in 0..contacts {
         let i = random.random_range(0..bodies);
         let j = (i + random.random_range(1..bodies.min(64))) % bodies;
         let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
         let normal = [if angle < 3.0 { 1.0 } else { -1.0 }, 0.0];
+        let share_or_speed = random.random_range(0.1..0.9);
         let row = Row {
             i: i as u32,
             j: j as u32,
@@ -34,28 +43,29 @@ fn problem<M: Model>(seed: u64, bodies: usize, contacts: u32) -> StepProblem<M::
                 1 => normal,
                 _ => [angle.cos(), angle.sin()],
             }),
-            of_other: random.random_range(0.1..0.9),
             restitution_velocity: random.random_range(-0.5..0.5),
             shifted_impulse: random.random_range(0.0..1.0),
             tangential_impulse: if M::FRICTION { random.random_range(-0.1..0.1) } else { 0.0 },
             effective_mass: random.random_range(0.5..2.0),
         };
-        let rows = match contact % 8 {
-            0 => &mut problem.fixed_rows,
-            _ => &mut problem.pair_rows,
-        };
-        rows.push(row);
+        let rows = &mut problem.rows;
+        match contact % 8 {
+            0 => rows.fixed.push(FixedRow { row, surface_speed: share_or_speed }),
+            _ => rows.pairs.push(PairRow { row, share: share_or_speed }),
+        }
     }
     problem.sort_by_colours();
     problem.form_velocities();
     problem
 }
 
+type Full = StepModel<SpinningPlane, true>;
+
 /// Every bit that a solve leaves: impulses, then velocities.
 fn bits<K: Kinematics>(problem: &StepProblem<K>) -> Vec<u64> {
     let impulses =
         problem.rows().flat_map(|(_, row)| [row.shifted_impulse, row.tangential_impulse]);
-    let velocities = problem.bodies.iter().flat_map(K::coordinates::<f64>);
+    let velocities = problem.bodies.now.iter().flat_map(K::coordinates::<f64>);
     impulses.chain(velocities).map(f64::to_bits).collect()
 }
 
@@ -67,11 +77,10 @@ fn sweeps(max_sweeps: u32) -> SolverSettings {
 
 #[test]
 fn the_sum_of_squared_impulses_is_that_of_the_rows_with_a_capture_speed_each() {
-    type Full = StepModel<SpinningPlane, true, false>;
     for captures in [false, true] {
-        let mut problem = problem::<Full>(3, 40, 203);
+        let mut problem = problem::<Full>(3, 40, 203, Shifted);
         if captures {
-            problem.captures = (0..203).map(|row| 1e-3 * f64::from(row)).collect();
+            problem.rows.captures = (0..203).map(|row| 1e-3 * f64::from(row)).collect();
         }
         let square = |(number, row): (usize, &Row<SpinningPlane>)| {
             let [normal, tangential] = problem.reduced_impulse(number, row);
@@ -85,12 +94,12 @@ fn the_sum_of_squared_impulses_is_that_of_the_rows_with_a_capture_speed_each() {
     }
 }
 
-fn residual_is_that_of_the_rows<M: Model>() {
+fn residual_is_that_of_the_rows<M: Model>(cone: FrictionCone) {
     // One tile, and some with contacts between them.
     for (bodies, contacts) in [(40, 203), (4000, 8000)] {
         for level in levels() {
-            let mut problem = problem::<M>(4, bodies, contacts);
-            nsgs::solve::<M>(&mut problem, &mut (), &sweeps(3));
+            let mut problem = problem::<M>(4, bodies, contacts, cone);
+            nsgs::solve::<M>(&mut problem, &sweeps(3));
             let expected = residual::<M>(&problem);
             let mut memory = BlockMemory::default();
             let mut tiled = Tiled::<M>::new(level, &mut problem, &mut memory).expect("colours");
@@ -103,23 +112,22 @@ fn residual_is_that_of_the_rows<M: Model>() {
 
 #[test]
 fn the_residual_in_blocks_is_that_of_the_rows() {
-    residual_is_that_of_the_rows::<StepModel<Line, false, false>>();
-    residual_is_that_of_the_rows::<StepModel<Plane, true, true>>();
-    residual_is_that_of_the_rows::<StepModel<SpinningPlane, true, false>>();
+    residual_is_that_of_the_rows::<StepModel<Line, false>>(Shifted);
+    residual_is_that_of_the_rows::<StepModel<Plane, true>>(Compressive);
+    residual_is_that_of_the_rows::<StepModel<SpinningPlane, true>>(Shifted);
 }
 
 #[test]
 fn where_nothing_would_move_the_residual_is_none_or_infinite() {
-    type Full = StepModel<SpinningPlane, true, false>;
     for (error, expected) in [(0.0, 0.0), (0.1, f64::INFINITY)] {
-        let mut problem = problem::<Full>(5, 40, 60);
-        problem.capture_speed = 0.0;
-        problem.free.iter_mut().for_each(|body| *body = Default::default());
-        for row in problem.fixed_rows.iter_mut().chain(&mut problem.pair_rows) {
+        let mut problem = problem::<Full>(5, 40, 60, Shifted);
+        problem.law = ContactLaw::new(0.5, 0.0, Shifted);
+        problem.bodies.free.iter_mut().for_each(|body| *body = Default::default());
+        for row in problem.rows.iter_mut() {
             (row.restitution_velocity, row.shifted_impulse) = (0.0, error);
             row.tangential_impulse = 0.0;
         }
-        problem.fixed_rows.iter_mut().for_each(|row| row.of_other = 0.0);
+        problem.rows.fixed.iter_mut().for_each(|row| row.surface_speed = 0.0);
         problem.form_velocities();
         assert_eq!(residual::<Full>(&problem), expected);
         let mut memory = BlockMemory::default();
@@ -128,14 +136,14 @@ fn where_nothing_would_move_the_residual_is_none_or_infinite() {
     }
 }
 
-fn same_bits_at_all_levels<M: Model>() {
+fn same_bits_at_all_levels<M: Model>(cone: FrictionCone) {
     let mut seen = [0; LANES];
     for seed in 0..60 {
         // So few that each number of rows that fill no block comes up.
-        let start = problem::<M>(seed, 40, 1 + 3 * seed as u32);
+        let start = problem::<M>(seed, 40, 1 + 3 * seed as u32, cone);
         let settings = sweeps(1 + seed as u32 % 30);
         let mut expected = start.clone();
-        nsgs::solve::<M>(&mut expected, &mut (), &settings);
+        nsgs::solve::<M>(&mut expected, &settings);
         for level in levels() {
             let (mut solved, mut memory) = (start.clone(), BlockMemory::default());
             let report = solve_at::<M>(level, &mut solved, &mut memory, &settings);
@@ -143,7 +151,7 @@ fn same_bits_at_all_levels<M: Model>() {
             assert!(bits(&solved) == bits(&expected), "{level:?}, seed {seed}");
         }
         assert!(bits(&start) != bits(&expected), "something moves");
-        for groups in &start.groups {
+        for groups in &start.order.groups {
             groups.colours_of(0).for_each(|rows| seen[rows.len() % LANES] += 1);
         }
     }
@@ -152,18 +160,17 @@ fn same_bits_at_all_levels<M: Model>() {
 
 #[test]
 fn contacts_side_by_side_give_the_bits_of_one_after_the_other() {
-    same_bits_at_all_levels::<StepModel<Line, false, false>>();
-    same_bits_at_all_levels::<StepModel<Plane, false, false>>();
-    same_bits_at_all_levels::<StepModel<Plane, true, false>>();
-    same_bits_at_all_levels::<StepModel<Plane, true, true>>();
-    same_bits_at_all_levels::<StepModel<SpinningPlane, true, false>>();
-    same_bits_at_all_levels::<StepModel<SpinningPlane, true, true>>();
+    same_bits_at_all_levels::<StepModel<Line, false>>(Shifted);
+    same_bits_at_all_levels::<StepModel<Plane, false>>(Shifted);
+    same_bits_at_all_levels::<StepModel<Plane, true>>(Shifted);
+    same_bits_at_all_levels::<StepModel<Plane, true>>(Compressive);
+    same_bits_at_all_levels::<StepModel<SpinningPlane, true>>(Shifted);
+    same_bits_at_all_levels::<StepModel<SpinningPlane, true>>(Compressive);
 }
 
 #[test]
 fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
-    type Full = StepModel<SpinningPlane, true, false>;
-    let start = problem::<Full>(1, 40_960, 80_000);
+    let start = problem::<Full>(1, 40_960, 80_000, Shifted);
     let mut one_by_one = start.clone();
     let expected = [(); 8].map(|()| nsgs::sweep::<Full, true>(&mut one_by_one));
     let (mut sums, mut residuals) = (Vec::new(), Vec::new());
@@ -183,11 +190,7 @@ fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
                     let between = memory.layout.blocks.len() - blocks_of(&memory.layout.tiles);
                     assert!(between > 100, "contacts between tiles");
                     assert!(
-                        memory
-                            .layout
-                            .tiles
-                            .iter()
-                            .all(|tile| tile.blocks > 100 && tile.singles > 10)
+                        memory.layout.tiles.iter().all(|tile| tile.blocks > 100 && tile.fixed > 10)
                     );
                     (changes, residual)
                 })
@@ -207,27 +210,25 @@ fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
 
 #[test]
 fn rows_whose_colours_share_a_grain_are_swept_as_they_come() {
-    type Full = StepModel<SpinningPlane, true, false>;
-    let mut start = problem::<Full>(2, 40, 200);
-    let second = start.groups[1].colour_ends[0];
-    start.pair_rows[second] = start.pair_rows[second - 1];
-    start.pair_rows.swap(0, second);
+    let mut start = problem::<Full>(2, 40, 200, Shifted);
+    let second = start.order.groups[1].colour_ends[0];
+    start.rows.pairs[second] = start.rows.pairs[second - 1];
+    start.rows.pairs.swap(0, second);
     let (mut expected, mut solved) = (start.clone(), start);
-    nsgs::solve::<Full>(&mut expected, &mut (), &sweeps(5));
+    nsgs::solve::<Full>(&mut expected, &sweeps(5));
     solve::<Full>(&mut solved, &mut BlockMemory::default(), &sweeps(5));
     assert!(bits(&solved) == bits(&expected));
 }
 
 #[test]
 fn tiles_that_share_a_grain_are_swept_as_they_come() {
-    type Full = StepModel<SpinningPlane, true, false>;
-    let mut start = problem::<Full>(6, 4000, 8000);
-    let ends = &start.groups[1];
+    let mut start = problem::<Full>(6, 4000, 8000, Shifted);
+    let ends = &start.order.groups[1];
     let of_second = ends.colours_of(1).next().expect("a colour").start;
     // The first contact of the second tile gets a grain of the first.
-    start.pair_rows[of_second].i = start.pair_rows[0].i;
+    start.rows.pairs[of_second].i = start.rows.pairs[0].i;
     let (mut expected, mut solved) = (start.clone(), start);
-    nsgs::solve::<Full>(&mut expected, &mut (), &sweeps(5));
+    nsgs::solve::<Full>(&mut expected, &sweeps(5));
     let mut memory = BlockMemory::default();
     assert!(Tiled::<Full>::new(Level::new(), &mut solved.clone(), &mut memory).is_none());
     solve::<Full>(&mut solved, &mut memory, &sweeps(5));

@@ -49,50 +49,298 @@
 //! **How tightly.** As the step. Solved less tightly, with what that leaves of approach taken up by the
 //! step, shocks cost less, but slump may then depend on Δt. A pair that shares its grains with no other is solved exactly.
 
-mod bodies;
-mod foreseen;
-mod result;
-mod struck;
+mod hand_over;
+mod next_impacts;
+mod solve_impacts;
 
-pub(super) use self::bodies::{Passed, Shocks};
-pub(super) use self::result::Closed;
+pub(super) use hand_over::ClosedBond;
 
-use self::bodies::{NEVER, Surroundings};
-use super::numbers::StepNumbers;
-use crate::sim::stepping::Stage;
-use crate::solver::{Model, SolverSettings};
+use glam::DVec2;
+
+use crate::contact::{Candidates, Contact, ContactList};
+use crate::sim::steppers::range::StepNumbers;
+use crate::sim::stepping::{Stage, StepResult};
+use crate::solver::{Kinematics, Model, SolverSettings, StepProblem, for_each_row};
+use crate::world::World;
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
 /// step, restitution is lost; larger: a wedge of grains that bounces ever faster holds the step up.
 const MOST_PASSES: u32 = 24;
 
-/// Takes a prepared problem through the shocks of its step: from then on its bodies begin with v⁺.
+/// Contacts that were struck and close again are struck once more above this part of the fastest shock of
+/// the step. Smaller: clusters of touching grains take more passes; larger: restitution is lost in them.
+const LEAST_AGAIN: f64 = 1e-3;
+
+/// Grains that come to what they touch slower than this many steps of gravity rest on it. Smaller: in a pile
+/// at rest grains would be taken to fall; larger: a ball that has just come down would not have the speed of its fall.
+const RESTS_BELOW: f64 = 2.0;
+
+/// Meetings that are this part of Δt apart happen at once: symmetric motions stay symmetric.
+const SAME_MOMENT: f64 = 1e-6;
+
+/// No moment of the step.
+const NEVER: f64 = f64::INFINITY;
+
+/// Takes a prepared problem through the shocks of its step: from then on its bodies begin with v⁺. What the shocks came
+/// to, if there were any: `gravity_work` is less what gravity did until meetings, since the step counts it once more.
 pub(super) fn pass<M: Model>(
     stage: &mut Stage<'_, M>,
     shocks: &mut Shocks,
     numbers: StepNumbers,
     settings: &SolverSettings,
-) -> Option<Passed> {
+) -> Option<StepResult> {
     let Stage { state, problem, part, memory } = stage;
     let (world, candidates, contacts) = (&state.world, &state.candidates, &state.contacts);
-    let around = Surroundings { world, candidates, contacts, numbers };
-    shocks.begin(problem, &around, settings.tolerance);
-    let mut passed: Option<Passed> = None;
+    let inputs = ShockInputs { world, candidates, contacts, numbers };
+    shocks.begin(problem, &inputs, settings.tolerance);
+    let mut result: Option<StepResult> = None;
     for _ in 0..MOST_PASSES {
-        let first = shocks.foresee(problem, &around);
-        if first == NEVER {
+        let first_secs = shocks.find_next(problem, &inputs);
+        if first_secs == NEVER {
             break;
         }
-        shocks.choose(problem, first, numbers);
-        shocks.refine(problem, &around);
-        let all = passed.get_or_insert(Passed::nothing_yet());
+        shocks.choose(problem, first_secs, numbers);
+        shocks.refine(problem, &inputs);
+        let all = result.get_or_insert_with(StepResult::nothing_yet);
         for alone in [true, false] {
-            if shocks.set_up(problem, part, &around, alone) {
-                shocks.strike::<M>((problem, part), memory, (settings, alone), all);
+            if shocks.set_up(problem, part, &inputs, alone) {
+                shocks.solve::<M>(problem, part, memory, settings, alone, all);
             }
         }
         shocks.move_on(problem);
     }
-    shocks.hand_over(problem, &around);
-    passed
+    shocks.hand_over(problem, &inputs);
+    result
+}
+
+/// A pair on its way through the shocks.
+#[derive(Clone, Copy, Debug)]
+struct ShockPair {
+    /// n, from j to i: at the beginning of the step, or where it last met.
+    normal: DVec2,
+    /// The gap along n at the beginning of the step, m; of one that has met, such that it closed then.
+    gap: f64,
+    /// What offsets have added to it, m.
+    shift: f64,
+    /// v_n, relative to a wall that moves, m/s.
+    speed: f64,
+    /// a_n of a grain that falls on what is fixed, m/s²; else 0.
+    acceleration: f64,
+    touch: Touch,
+    next: NextImpact,
+    /// What it has to do with the present pass.
+    role: Role,
+    /// λ_n of its shocks, m/s.
+    impulse: f64,
+    /// The moment of the last of them, s.
+    struck_at: f64,
+    /// What gravity had given it by then, m/s.
+    gained: f64,
+}
+
+/// Whether a pair touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Touch {
+    Apart,
+    FromStart,
+    /// It has closed a gap within the step.
+    Met,
+}
+
+/// When a pair is struck next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum NextImpact {
+    /// To be found: its bodies go otherwise than before, or it is never looked for.
+    Unknown,
+    Never,
+    /// It touches, and closes from this moment (s) on.
+    Closes(f64),
+    /// It meets.
+    Meets {
+        secs: f64,
+        normal: DVec2,
+    },
+}
+
+/// What a pair has to do with a pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Role {
+    Apart,
+    /// It touches, and is joined to what is struck.
+    Joined,
+    /// Its own impact is the next one of both its grains.
+    Struck,
+}
+
+/// A grain on its way through the shocks.
+#[derive(Clone, Copy, Debug)]
+struct ShockBody {
+    /// −Σ t Δv, an entry a degree of freedom, m.
+    offset: [f64; 3],
+    /// What the last pass added to that, m.
+    shift: DVec2,
+    /// The moment of its last shock, s.
+    since: f64,
+    /// The moment of its next one, s, or [`NEVER`].
+    next: f64,
+    struck_in_step: bool,
+    struck_in_pass: bool,
+    /// What gravity gives it in the step, m/s.
+    gain: [f64; 3],
+    /// Whether it rests against something or is bonded, and so does not fall freely.
+    is_supported: bool,
+    /// What the step's last velocity tells too little of its way, m: −½aΔt² of one that falls freely, and
+    /// −Σ tλ of the impulses that the step has for pairs that met.
+    rest_of_way: DVec2,
+    /// A grain of the cluster that it is struck with.
+    root: u32,
+    /// Of a root: the moment of the cluster's shock, s, and its rows.
+    cluster: (f64, u32),
+}
+
+/// What is known of shocks. Memory is kept from one step to the next.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shocks {
+    pairs: Vec<ShockPair>,
+    bodies: Vec<ShockBody>,
+    /// λ_n·m_ij from which on a contact that touches is struck, N·s.
+    least: f64,
+    /// The fastest shock of the step so far, m/s.
+    fastest: f64,
+}
+
+/// Where shocks happen.
+struct ShockInputs<'a> {
+    world: &'a World,
+    candidates: &'a Candidates,
+    contacts: &'a ContactList,
+    numbers: StepNumbers,
+}
+
+impl ShockInputs<'_> {
+    /// The contact behind a row.
+    fn contact<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> &Contact {
+        &self.contacts.contacts()[problem.rows.contacts[number] as usize]
+    }
+
+    /// Whether its pair is bonded.
+    fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
+        self.contacts.is_in_touch(problem.rows.contacts[number] as usize)
+    }
+
+    /// How far its bond is open, m.
+    fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
+        let bond = self.contacts.bonds()[problem.rows.contacts[number] as usize];
+        if bond.alive { bond.stretch } else { 0.0 }
+    }
+}
+
+/// The grains of a row by its number: i, and j unless that is fixed.
+fn grains<K: Kinematics>(problem: &StepProblem<K>, number: usize) -> (usize, Option<usize>) {
+    let row = problem.rows.get(number);
+    let is_pair = number >= problem.rows.fixed.len();
+    (row.i as usize, is_pair.then_some(row.j as usize))
+}
+
+/// ‖m_n (v_n^free + what the law adds)‖ of a problem, N·s, which its residual is measured by.
+fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
+    let mut squared = 0.0;
+    for_each_row(problem, |_, row, motion| {
+        let free = row.effective_mass * (motion.free[0] + row.restitution_velocity);
+        squared += free * free;
+    });
+    squared.sqrt()
+}
+
+/// Along x and y.
+fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
+    let [x, y, _] = K::coordinates(body);
+    if K::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
+}
+
+impl ShockBody {
+    /// One of which nothing has happened yet, as it begins and as gravity alone would leave it.
+    fn untouched<K: Kinematics>(before: &K::Body<f64>, free: &K::Body<f64>) -> Self {
+        let [before, free] = [before, free].map(K::coordinates);
+        Self {
+            offset: [0.0; 3],
+            shift: DVec2::ZERO,
+            since: 0.0,
+            next: NEVER,
+            struck_in_step: false,
+            struck_in_pass: false,
+            gain: std::array::from_fn(|axis| free[axis] - before[axis]),
+            is_supported: false,
+            rest_of_way: DVec2::ZERO,
+            root: 0,
+            cluster: (NEVER, 0),
+        }
+    }
+}
+
+impl Shocks {
+    /// Nothing has happened yet.
+    fn begin<K: Kinematics>(
+        &mut self,
+        problem: &StepProblem<K>,
+        inputs: &ShockInputs<'_>,
+        tolerance: f64,
+    ) {
+        let Self { pairs, bodies, .. } = self;
+        bodies.clear();
+        let ends = problem.bodies.before.iter().zip(&problem.bodies.free);
+        bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<K>(before, free)));
+        pairs.clear();
+        let is_cohesive = problem.law.capture_speed() > 0.0;
+        for_each_row(problem, |number, _, motion| {
+            let Contact { normal, gap, .. } = *inputs.contact(problem, number);
+            let touches = gap <= inputs.numbers.touch;
+            let speed = motion.before[0] - problem.wall_speed(number);
+            let (i, j) = grains(problem, number);
+            for grain in std::iter::once(i).chain(j) {
+                let [x, y, _] = bodies[grain].gain;
+                let rests = touches && speed.abs() <= RESTS_BELOW * x.hypot(y);
+                bodies[grain].is_supported |=
+                    rests || is_cohesive && inputs.is_bonded(problem, number);
+            }
+            // The step proper stops what comes to a wall that gives way (see the module).
+            let touches = touches && !problem.gives_way(number);
+            pairs.push(ShockPair {
+                normal,
+                gap,
+                shift: 0.0,
+                speed,
+                acceleration: 0.0,
+                touch: if touches { Touch::FromStart } else { Touch::Apart },
+                next: NextImpact::Unknown,
+                role: Role::Apart,
+                impulse: 0.0,
+                struck_at: 0.0,
+                gained: 0.0,
+            });
+        });
+        for body in bodies.iter_mut().filter(|body| !body.is_supported) {
+            let fallen = along_axes::<K>(&K::from_coordinates(body.gain));
+            body.rest_of_way = -0.5 * inputs.numbers.time_step_secs * fallen;
+        }
+        self.least = tolerance * scale(problem);
+        self.fastest = 0.0;
+    }
+}
+
+impl NextImpact {
+    /// Its moment, s, or [`NEVER`].
+    fn secs(self) -> f64 {
+        match self {
+            Self::Unknown | Self::Never => NEVER,
+            Self::Closes(secs) | Self::Meets { secs, .. } => secs,
+        }
+    }
+}
+
+impl ShockPair {
+    /// The gap along the normal at a moment, m: never above the gap itself.
+    fn gap_at(&self, secs: f64) -> f64 {
+        self.gap + self.shift + secs * (self.speed + 0.5 * self.acceleration * secs)
+    }
 }

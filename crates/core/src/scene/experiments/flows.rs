@@ -1,0 +1,197 @@
+//! Grains that flow: out of a column, a silo, down an incline, in a drum and in a shaken box.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::{SPACING, lattice, moved, of_loose_grains, open_box, place, view};
+use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
+use crate::scene::{Scene, rough_base};
+use crate::world::{Boundary, Disc, Grain, GravityTurn, Motion, MotionCourse, TurnCourse};
+
+/// Grains that R₀ = H₀ = d takes.
+const GRAINS_OF_SQUARE: f64 = 2.09;
+/// How far the gates go, m, and in which time, s: 15 m/s.
+const GATE_WAY: f64 = 3.0;
+const GATE_SECS: f64 = 0.2;
+/// How far the rough floor reaches, in the longest way that grains are known to go: beyond it is even.
+const REACH: f64 = 1.3;
+
+/// R₀ of a column of so many grains, in diameters.
+pub fn half_width(grains: usize, aspect: f64) -> f64 {
+    (grains as f64 / (GRAINS_OF_SQUARE * aspect)).sqrt()
+}
+
+/// 400 grains that fall into a column twice as high as half of its width and are let go after 0.7 s.
+///
+/// A column of grains between two gates over a rough floor. The gates are pulled away, faster than grains can follow,
+/// and the column spreads to both sides.
+///
+/// It is half as wide as R₀ on either side and H₀ high, so that with a = H₀/R₀ and a solid fraction of 0.82 it takes
+/// 2 a R₀² · 0.82/(π/4) = 2.09 a R₀²/d² grains.
+pub fn collapse() -> Scene {
+    let (grains, aspect) = (400, 2.0);
+    let half = half_width(grains, aspect);
+    let loose = of_loose_grains("collapse", lattice(grains, 2.0 * half, 1.2));
+    let mut scene = collapse_of(loose, half, 0.7);
+    scene.duration_secs = 2.5;
+    scene.view = view(DVec2::new(-5.4 * half, -2.0), DVec2::new(5.4 * half, 3.6 * half));
+    scene
+}
+
+/// The gates and the floor around a scene of grains, whose half width is R₀ in diameters; the gates go at
+/// `release_secs`.
+pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
+    let top = |grain: &Grain| grain.position.y + grain.radius;
+    let aspect = scene.grains.iter().map(top).fold(0.0, f64::max) / (half * DIAMETER);
+    // Beyond the longest run-out that columns are known for.
+    let reach = REACH * half * (1.0 + (2.5 * aspect).max(3.25 * aspect.powf(0.7)));
+    scene.fixed_discs = rough_base(2.0 * reach, DIAMETER);
+    let gate = |side: f64| half_space(DVec2::new(side * half, 0.0), DVec2::new(-side, 0.0));
+    scene.boundaries = vec![floor(), gate(-1.0), gate(1.0)];
+    let pulled = |(gate, side): (usize, f64)| {
+        let times_secs = vec![0.0, release_secs, release_secs + GATE_SECS];
+        let offsets = vec![DVec2::ZERO, DVec2::ZERO, DVec2::new(side * GATE_WAY, 0.0)];
+        moved(gate, MotionCourse::Table { times_secs, offsets })
+    };
+    scene.motions = [(1, -1.0), (2, 1.0)].map(pulled).into();
+    scene
+}
+
+/// Width of the silo and its height, in diameters.
+pub const SILO_WIDTH: f64 = 26.0;
+const SILO_HEIGHT: f64 = 60.0;
+/// How far below the bottom the floor lies that catches what flows out, in diameters.
+const FLOOR_DEPTH: f64 = 30.0;
+/// How far the plate falls, m, and in which time, s: faster than grains.
+const PLATE_WAY: f64 = 1.0;
+const PLATE_SECS: f64 = 0.1;
+
+/// 450 grains that flow out of an orifice of seven diameters from 0.5 s on.
+///
+/// A silo with a flat bottom and an orifice in the middle of it. A plate closes it, falls away, and grains flow out onto
+/// a floor below.
+pub fn silo() -> Scene {
+    let mut scene = silo_of(of_loose_grains("silo", lattice(450, SILO_WIDTH, 0.7)), 7.0, 0.5);
+    scene.duration_secs = 2.5;
+    scene.view =
+        view(DVec2::new(-0.8 * SILO_WIDTH, -FLOOR_DEPTH - 1.0), DVec2::new(0.8 * SILO_WIDTH, 30.0));
+    scene
+}
+
+/// The silo around a scene of grains, with an orifice of that width in diameters, which opens at `release_secs`.
+pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
+    let side = |sign: f64| Boundary::Polyline {
+        points: vec![
+            place(sign * 0.5 * SILO_WIDTH, SILO_HEIGHT),
+            place(sign * 0.5 * SILO_WIDTH, 0.0),
+            place(sign * 0.5 * orifice, 0.0),
+        ],
+    };
+    let plate =
+        Boundary::Segment { from: place(-0.5 * orifice, 0.0), to: place(0.5 * orifice, 0.0) };
+    let floor = half_space(DVec2::new(0.0, -FLOOR_DEPTH), DVec2::Y);
+    scene.boundaries = vec![side(-1.0), side(1.0), plate, floor];
+    let times_secs = vec![0.0, release_secs, release_secs + PLATE_SECS];
+    let offsets = vec![DVec2::ZERO, DVec2::ZERO, DVec2::new(0.0, -PLATE_WAY)];
+    scene.motions = vec![moved(2, MotionCourse::Table { times_secs, offsets })];
+    scene
+}
+
+/// Width of the box and height of its walls, in diameters.
+const INCLINE_WIDTH: f64 = 40.0;
+const INCLINE_HEIGHT: f64 = 30.0;
+/// How long grains come to rest before the box is tilted, s.
+pub const LEVEL_SECS: f64 = 0.4;
+/// How fast the box is tilted, rad/s.
+pub const TILT_RATE: f64 = 0.12;
+/// The steepest, rad.
+const STEEPEST: f64 = 0.72;
+
+/// 300 grains in a box that is tilted to the right, to 41 degrees.
+///
+/// A layer of grains in a flat box with a rough bottom that is tilted slowly: up to some angle it stays, then its surface
+/// flows. What is tilted is gravity, so that pictures are those of someone who sits in the box.
+pub fn incline() -> Scene {
+    let mut scene = of_loose_grains("incline", lattice(300, INCLINE_WIDTH, 1.2));
+    let tilting_secs = STEEPEST / TILT_RATE;
+    let times_secs = vec![0.0, LEVEL_SECS, LEVEL_SECS + tilting_secs];
+    let course = TurnCourse::Table { times_secs, angles: vec![0.0, 0.0, STEEPEST] };
+    scene.gravity_turn = Some(GravityTurn { course, elapsed_secs: 0.0 });
+    scene.fixed_discs = rough_base(INCLINE_WIDTH - 2.0, DIAMETER);
+    scene.boundaries = vec![open_box(0.5 * INCLINE_WIDTH, INCLINE_HEIGHT)];
+    scene.duration_secs = LEVEL_SECS + tilting_secs;
+    scene.view = view(
+        DVec2::new(-0.55 * INCLINE_WIDTH, -2.0),
+        DVec2::new(0.55 * INCLINE_WIDTH, 0.5 * INCLINE_WIDTH),
+    );
+    scene
+}
+
+/// Inner radius of the drum, in diameters.
+const DRUM_RADIUS: f64 = 12.0;
+/// Sides of its wall, and discs on it: they are nearly a diameter apart.
+const DRUM_SIDES: usize = 72;
+/// Ω, rad/s: Ω²R/g is 0.05, at which grains roll down a steady slope.
+const DRUM_RATE: f64 = 2.0;
+
+/// 150 grains in a drum.
+///
+/// A drum that turns about its axis, two fifths full: its wall is rough by discs that turn with it, and every sixth of
+/// them is larger, so that one sees it turn.
+pub fn drum() -> Scene {
+    let columns = |row: i32| {
+        let y = SPACING * f64::from(row) - 0.78 * DRUM_RADIUS;
+        let wide = ((DRUM_RADIUS - 1.4).powi(2) - y * y).max(0.0).sqrt();
+        let half = (wide / SPACING).floor() as i32;
+        (-half..=half).map(move |column| DVec2::new(SPACING * f64::from(column), y))
+    };
+    let mut scene = of_loose_grains("drum", (0..12).flat_map(columns).take(150));
+    let on_rim = |k: usize, radius: f64| {
+        DIAMETER * radius * DVec2::from_angle(TAU * (k % DRUM_SIDES) as f64 / DRUM_SIDES as f64)
+    };
+    let rough = |k: usize| Disc {
+        position: on_rim(k, DRUM_RADIUS),
+        radius: DIAMETER * if k.is_multiple_of(6) { 0.6 } else { 0.3 },
+    };
+    scene.fixed_discs = (0..DRUM_SIDES).map(rough).collect();
+    let points = (0..=DRUM_SIDES).map(|k| on_rim(k, DRUM_RADIUS)).collect();
+    scene.boundaries = vec![Boundary::Polyline { points }];
+    let course = MotionCourse::Rotation { pivot: DVec2::ZERO, rate: DRUM_RATE, travel: None };
+    scene.motions = vec![Motion { fixed_discs: (0..DRUM_SIDES).collect(), ..moved(0, course) }];
+    scene.duration_secs = 3.0;
+    scene.view = view(DVec2::splat(-DRUM_RADIUS - 1.0), DVec2::splat(DRUM_RADIUS + 1.0));
+    scene
+}
+
+/// Half the width of the box, and its height, in diameters.
+const HALF_WIDTH: f64 = 8.0;
+const BOX_HEIGHT: f64 = 30.0;
+/// Radius of the large grain, in diameters.
+const LARGE: f64 = 1.5;
+/// How often it is shaken, Hz.
+const FREQUENCY_HZ: f64 = 10.0;
+/// Largest acceleration of the box, in g: above 1 all that lies in it is thrown up.
+const ACCELERATION: f64 = 3.0;
+
+/// 120 grains and a large one in a box.
+pub(crate) fn vibrated() -> Scene {
+    let large = DVec2::new(0.0, 2.0 * SPACING + LARGE);
+    let columns = |row: i32| {
+        let y = 0.7 + SPACING * f64::from(row);
+        (-5..=5).map(move |column| DVec2::new(1.2 * SPACING * f64::from(column), y))
+    };
+    let is_free = |place: &DVec2| place.distance(large) > LARGE + 0.65;
+    let places = (0..12).flat_map(columns).filter(is_free).take(120);
+    let mut scene = of_loose_grains("vibrated", places);
+    let mut grain = Grain::at_rest(DIAMETER * large, DIAMETER * LARGE);
+    grain.tone = 40;
+    scene.grains.push(grain);
+    scene.boundaries = vec![open_box(HALF_WIDTH, BOX_HEIGHT)];
+    let amplitude = ACCELERATION * GRAVITY / (TAU * FREQUENCY_HZ).powi(2) * DVec2::Y;
+    let course = MotionCourse::Sine { amplitude, frequency_hz: FREQUENCY_HZ, phase: 0.0 };
+    scene.motions = vec![moved(0, course)];
+    scene.duration_secs = 5.0;
+    scene.view = view(DVec2::new(-HALF_WIDTH - 1.0, -2.0), DVec2::new(HALF_WIDTH + 1.0, 22.0));
+    scene
+}

@@ -1,0 +1,182 @@
+//! The paper's scenes: the pile (§3), the collision (§2.2) and the cradle (§4).
+
+use std::ops::RangeInclusive;
+
+use glam::DVec2;
+
+use crate::error::{Error, Result};
+use crate::scene::{NewPile, Scene, View};
+use crate::solver::{Method, Ordering, SolverSettings, StopTest};
+use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
+
+/// d, m.
+pub(super) const DIAMETER: f64 = 5e-3;
+/// g, m/s².
+pub(super) const GRAVITY: f64 = 9.8;
+/// Its name.
+const NAME: &str = "pile";
+/// How wide a base may be asked for.
+const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
+/// How far the rough base reaches beyond the box on either side, in heights of the pile: further
+/// than any grain of a collapsing pile gets in the paper's second.
+const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
+/// Grains of a pile may be this high above the base, and two diameters more for each of them: the
+/// loosest lattice that rain starts from is a column with 1.3 for each.
+const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
+/// Height of the layers that are told apart by their grey, in diameters.
+const LAYER_IN_DIAMETERS: f64 = 2.0;
+/// The greys of the layers.
+const LAYER_TONES: [u8; 2] = [222, 168];
+
+/// The initial state that all runs of a series share.
+const INITIAL_STATE: &str = include_str!("../../../../assets/pile_138.csv");
+
+/// The paper's 138 grains, from the initial state that is shipped with the program.
+///
+/// # Errors
+/// None in a program as shipped; a changed asset is told of with its line.
+pub fn paper_pile() -> Result<Scene> {
+    let lines = INITIAL_STATE.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let disc = |line: &str| {
+        let numbers: Vec<f64> = line.split(',').map_while(|number| number.parse().ok()).collect();
+        let [x, y, radius] = numbers[..] else {
+            return Err(Error::value("assets/pile_138.csv", line, "x,y,radius"));
+        };
+        Ok(Grain::at_rest(DVec2::new(x, y), radius))
+    };
+    let grains = lines.map(disc).collect::<Result<_>>()?;
+    pile_of(grains, NewPile::default().box_width_in_diameters)
+}
+
+/// A pile of the given grains, for a box that was `box_width_in_diameters` wide.
+///
+/// # Errors
+/// Where a grain is so high up that the base, which is as wide as a collapse may reach, would have
+/// far more discs than the pile.
+pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Scene> {
+    let highest = DIAMETER * (LEAST_ROOM_IN_DIAMETERS + 2.0 * grains.len() as f64);
+    if let Some(index) = grains.iter().position(|grain| grain.position.y > highest) {
+        let found = format!("at y = {} m", grains[index].position.y);
+        let allowed =
+            format!("within {highest:.3} m of the base where there are {} grains", grains.len());
+        return Err(Error::value(format!("grains[{index}]"), found, allowed));
+    }
+    let height = grains.iter().map(|grain| grain.position.y).fold(0.0, f64::max) / DIAMETER;
+    let base_width = box_width_in_diameters + 2.0 * BASE_MARGIN_IN_HEIGHTS * height;
+    tone_in_layers(&mut grains, DIAMETER);
+    let gravity = Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) };
+    let parameters =
+        Parameters { bond: 20.0, restitution: 0.1, friction: 0.5, ..Parameters::default() };
+    let fixed_discs = rough_base(base_width, DIAMETER);
+    Ok(Scene { fixed_discs, ..Scene::of(NAME, DIAMETER, gravity, parameters, grains) })
+}
+
+/// Fixed discs of diameter d, centres on y = 0 and spaced d, symmetric about x = 0, at least
+/// `width_in_diameters` wide.
+pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
+    let half = (0.5 * width_in_diameters).ceil() as i64;
+    (-half..=half)
+        .map(|k| Disc { position: DVec2::new(k as f64 * diameter, 0.0), radius: 0.5 * diameter })
+        .collect()
+}
+
+/// Gives a pile a rough base of that width.
+///
+/// # Errors
+/// Where the width is outside its range, or the scene is no pile.
+pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
+    if scene.name != NAME {
+        return Err(Error::value("scene", &scene.name, "pile where base-width is given"));
+    }
+    if !BASE_WIDTHS_IN_DIAMETERS.contains(&width_in_diameters) {
+        let (least, most) = BASE_WIDTHS_IN_DIAMETERS.into_inner();
+        let allowed = format!("{least} to {most} diameters");
+        return Err(Error::value("base-width", width_in_diameters, allowed));
+    }
+    scene.fixed_discs = rough_base(width_in_diameters, scene.mean_diameter);
+    Ok(())
+}
+
+/// Gives grains greys by the layer they start in, so that a picture shows what moved where.
+pub(crate) fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
+    for grain in grains {
+        let layer = (grain.position.y / (LAYER_IN_DIAMETERS * diameter)).floor() as i64;
+        grain.tone = LAYER_TONES[layer.rem_euclid(LAYER_TONES.len() as i64) as usize];
+    }
+}
+
+/// d of the collision and of the cradle, m.
+const LINE_DIAMETER: f64 = 0.3;
+/// The physics of both.
+const ON_LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
+
+/// What pictures of both show, in diameters.
+fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
+    Some(View { min: LINE_DIAMETER * min, max: LINE_DIAMETER * max })
+}
+
+/// A disc dropped from one diameter above a fixed one.
+///
+/// Two bodies, one contact (paper §2.2): a disc dropped on another, fixed one.
+///
+/// With A = the normal force that would give v̄ = 0, the three cases of the contact graph are: A > 0
+/// bounces, −C₀ < A < 0 closes again, A < −C₀ opens. The built-in scene starts in the first and runs
+/// through the others as the bounces die out.
+pub fn collision() -> Scene {
+    let radius = 0.5 * LINE_DIAMETER;
+    let gravity = Gravity::Uniform { acceleration: DVec2::new(-2.0, 0.0) };
+    let parameters = Parameters { bond: 3.0, restitution: 0.5, ..Parameters::default() };
+    let grain = Grain::at_rest(DVec2::new(2.0 * LINE_DIAMETER, 0.0), radius);
+    Scene {
+        duration_secs: 1.5,
+        physics: ON_LINE,
+        view: view_on_line(DVec2::new(-0.7, -0.7), DVec2::new(2.7, 0.7)),
+        fixed_discs: vec![Disc { position: DVec2::ZERO, radius }],
+        ..Scene::of("collision", LINE_DIAMETER, gravity, parameters, vec![grain])
+    }
+}
+
+/// The start of k, in diameters left of i, with which the paper's pattern of open and closed bonds
+/// comes out. The paper does not state its own; this one was searched for.
+const START_IN_DIAMETERS: f64 = 7.865;
+
+/// The paper's cradle, with the stopping test that gives its pattern.
+///
+/// Three discs on a line, drawn towards one of them (paper §4).
+///
+/// i sits at the centre of attraction, j touches it on the right, k starts at rest on the left and
+/// falls in. Whether the shock parts i and j depends on the time step, and, at small steps, on how
+/// far the solver is from the solution when it stops: an exactly solved step leaves v_ij = 0.
+pub fn cradle() -> Scene {
+    cradle_from(START_IN_DIAMETERS)
+}
+
+/// The cradle with k starting `start_in_diameters` left of i, centre to centre.
+pub fn cradle_from(start_in_diameters: f64) -> Scene {
+    let disc = |x: f64, tone: u8| Grain {
+        tone,
+        ..Grain::at_rest(DVec2::new(x * LINE_DIAMETER, 0.0), 0.5 * LINE_DIAMETER)
+    };
+    let i = disc(0.0, 255);
+    let j = Grain { feels_gravity: false, ..disc(1.0, 200) };
+    let k = disc(-start_in_diameters, 80);
+    let gravity = Gravity::Attraction { centre: DVec2::ZERO, magnitude: 2.0 };
+    let parameters =
+        Parameters { bond: 3.0, time_step_secs: 5e-4, restitution: 0.2, ..Parameters::default() };
+    Scene {
+        gap_tolerance: 1e-9,
+        duration_secs: 2.5,
+        physics: ON_LINE,
+        solver: SolverSettings {
+            method: Method::Nsgs,
+            ordering: Ordering::Interleaved,
+            stop: StopTest::ImpulsePerMass,
+            tolerance: 2.2e-3,
+            max_sweeps: 20_000,
+            warm_start: false,
+            ..SolverSettings::default()
+        },
+        view: view_on_line(DVec2::new(-9.0, -1.2), DVec2::new(5.0, 1.2)),
+        ..Scene::of("cradle", LINE_DIAMETER, gravity, parameters, vec![i, j, k])
+    }
+}

@@ -1,0 +1,102 @@
+//! Discs between walls that leave them no room.
+
+use glam::DVec2;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use super::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, view};
+use crate::scene::Scene;
+use crate::world::Boundary;
+
+/// Discs in a column.
+const HIGH: u8 = 6;
+/// Distance of columns at the end, in diameters.
+const NARROWEST: f64 = 0.6;
+/// Speed of each wall, m/s: the highest disc rises at half of √(g d) at most.
+const SPEED: f64 = 0.007;
+
+/// Where the discs have to be when the columns are `spacing` diameters apart, in diameters.
+fn places(spacing: f64) -> Vec<DVec2> {
+    let height = (1.0 - spacing * spacing).sqrt();
+    let column = |x: f64, lift: f64| {
+        (0..HIGH).map(move |k| DVec2::new(x, 0.5 + lift + f64::from(2 * k) * height))
+    };
+    column(-spacing, 0.0).chain(column(0.0, height)).chain(column(spacing, 0.0)).collect()
+}
+
+/// 18 discs and the two walls.
+///
+/// A packing between two walls that move in, without friction and open above.
+///
+/// Three columns of discs stand side by side, the one in the middle higher by h; with d = 1, columns s
+/// apart touch where s² + h² = 1. At the start h = 1/2, and a disc inside touches six others: more
+/// contacts than freedoms. As the walls push the columns together, h grows and the discs of a column
+/// part. Each disc then rests on two things below it, discs, a wall or the floor, which share its weight
+/// and all above it: every contact pushes, and there are as many as freedoms. So no disc can sink, and
+/// pushed slowly each has one place to be, the k-th of a column at
+///
+/// > x = −s, 0 or s,  y = 1/2 + 2kh, in the middle h more,
+///
+/// as long as s > 1/2, where the outer columns meet and nothing can give way any more. With more columns
+/// a disc on the floor would have none but those that stand on it beside it, and they push it away.
+pub fn press() -> Scene {
+    let widest = 0.75f64.sqrt();
+    let grains = places(widest).into_iter().map(|place| place * (1.0 - TOUCH));
+    let mut scene = dry("moving-walls", grains.map(|place| disc(place.x, place.y)).collect());
+    scene.parameters.friction = 0.0;
+    let wall = |normal: DVec2| Boundary::Piston {
+        point: -DIAMETER * (widest + 0.5) * (1.0 - TOUCH) * normal,
+        normal,
+        speed: SPEED,
+        travel: DIAMETER * (widest - NARROWEST),
+    };
+    scene.boundaries = vec![floor(), wall(DVec2::X), wall(-DVec2::X)];
+    scene.view = view(DVec2::new(-7.0, -0.5), DVec2::new(7.0, 10.5));
+    scene
+}
+
+/// Where the discs have to be in the end, m, in the order of the scene's.
+pub fn pressed_places() -> Vec<DVec2> {
+    places(NARROWEST).into_iter().map(|place| DIAMETER * place).collect()
+}
+
+/// When the walls have come to their ends, s.
+pub fn pressing_secs() -> f64 {
+    DIAMETER * (0.75f64.sqrt() - NARROWEST) / SPEED
+}
+
+/// Discs along each side.
+const SIDE: i32 = 5;
+/// Speed of each disc at the start, in √(g d).
+const SQUEEZED_SPEED: f64 = 0.3;
+
+/// 5 × 5 discs in a box that is shorter than they are by the share `strain`, along each side.
+///
+/// A lattice of discs in a box that is too small for it: more contacts than the discs have freedoms,
+/// and restitution that each of them asks for.
+pub fn squeeze(strain: f64) -> Scene {
+    let mut random = Pcg64::seed_from_u64(1);
+    let speed = SQUEEZED_SPEED * (GRAVITY * DIAMETER).sqrt();
+    let spacing = 1.0 - strain;
+    let mut grains = Vec::new();
+    for row in 0..SIDE {
+        for column in 0..SIDE {
+            let [x, y] = [column, row].map(|k| (f64::from(k) + 0.5) * spacing);
+            let mut grain = disc(x, y);
+            grain.velocity =
+                speed * DVec2::new(random.random_range(-1.0..1.0), random.random_range(-1.0..1.0));
+            grains.push(grain);
+        }
+    }
+    let mut scene = dry("squeeze", grains);
+    scene.parameters.restitution = 0.5;
+    let end = DIAMETER * f64::from(SIDE) * spacing;
+    let wall = |point: DVec2, normal: DVec2| Boundary::HalfSpace { point, normal };
+    scene.boundaries = vec![
+        wall(DVec2::ZERO, DVec2::Y),
+        wall(DVec2::ZERO, DVec2::X),
+        wall(DVec2::splat(end), -DVec2::X),
+        wall(DVec2::splat(end), -DVec2::Y),
+    ];
+    scene
+}

@@ -1,0 +1,94 @@
+//! Discs on discs: columns, unequal masses and sizes, overlap at the start.
+
+use glam::DVec2;
+
+use super::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, half_space};
+use crate::scene::Scene;
+use crate::world::{Grain, Gravity, Physics};
+
+/// A column of `count` discs on the floor.
+///
+/// A column of n discs. The floor carries n·m·g, the k-th contact n − k of it.
+///
+/// On the chain of contacts, Jacobi's iteration is P_k ← (P_{k−1} + P_{k+1})/2, with
+/// P_{−1} = P_1 at the floor and P_n = 0 at the top. Its modes cos kθ ask for cos nθ = 0, so the
+/// slowest shrinks by cos(π/2n) an iteration. A chain has no loops, so every order of the contacts
+/// is a consistent one (D. M. Young, 1971), and Gauss–Seidel shrinks it by cos²(π/2n) a sweep.
+pub fn column(count: usize) -> Scene {
+    let place = |k: usize| (0.5 + k as f64) * (1.0 - TOUCH) - 0.5 * TOUCH;
+    let mut scene = dry("column", (0..count).map(|k| disc(0.0, place(k))).collect());
+    scene.boundaries = vec![floor()];
+    scene
+}
+
+/// The same column lying along the x axis, gravity and all: the leanest model there is.
+pub fn column_on_line(count: usize) -> Scene {
+    let mut scene = column(count);
+    for grain in &mut scene.grains {
+        grain.position = DVec2::new(grain.position.y, 0.0);
+    }
+    scene.mean_diameter = DIAMETER;
+    scene.physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
+    scene.gravity = Gravity::Uniform { acceleration: DVec2::new(-GRAVITY, 0.0) };
+    scene.boundaries = vec![half_space(DVec2::ZERO, DVec2::X)];
+    scene
+}
+
+/// A disc of diameter d, and on it one that is `ratio` times as heavy.
+///
+/// A heavy disc on a light one. With R the ratio of their masses, Gauss–Seidel on the two contacts
+/// shrinks its error by W₀₁²/(W₀₀W₁₁) = R/(R + 1) a sweep: it needs sweeps by the R.
+pub fn mass_ratio(ratio: f64) -> Scene {
+    let radius = 0.5 * ratio.sqrt();
+    let heavy =
+        Grain::at_rest(DIAMETER * DVec2::new(0.0, 1.0 + radius - 2.0 * TOUCH), DIAMETER * radius);
+    let mut scene = dry("mass-ratio", vec![disc(0.0, 0.5 - TOUCH), heavy]);
+    scene.boundaries = vec![floor()];
+    scene
+}
+
+/// Discs under the heavy one.
+const BELOW: usize = 5;
+
+/// A column of five, and on it, the last in the list, a disc `ratio` times as heavy.
+///
+/// A column with a heavy disc on top that is taken away in mid-run: the impulses that carried it are
+/// the start of the next step's iteration, and must not throw what is left.
+pub fn lift_off(ratio: f64) -> Scene {
+    let mut scene = column(BELOW);
+    scene.name = "lift-off".into();
+    let heavy = &mass_ratio(ratio).grains[1];
+    let top = BELOW as f64 * (1.0 - TOUCH) - 2.0 * TOUCH;
+    let position = DVec2::new(0.0, DIAMETER * top + heavy.radius);
+    scene.grains.push(Grain { position, ..heavy.clone() });
+    scene
+}
+
+/// Two discs of diameter d side by side, and on them one that is `ratio` times as large.
+///
+/// A large disc on two small ones, as logs are piled.
+///
+/// With the centres of the small discs (radius r) 2r apart and the large one of radius R, the
+/// contacts lean by θ from the vertical, sin θ = r/(R + r). The two forces on a small disc, from
+/// the floor and from the large disc, pass through its two contact points and take up no torque, so
+/// the one from above is inclined by θ/2 to its contact's normal: it holds where μ ≥ tan(θ/2), and
+/// for R = r, θ = 30°, at μ ≥ tan 15° = 2 − √3. The floor needs less.
+pub fn logs(ratio: f64) -> Scene {
+    let half = 0.5 * (1.0 - TOUCH);
+    let reach = 0.5 * (1.0 + ratio) - TOUCH;
+    let height = 0.5 - TOUCH + (reach * reach - half * half).sqrt();
+    let large = Grain::at_rest(DIAMETER * DVec2::new(0.0, height), 0.5 * DIAMETER * ratio);
+    let small = |x: f64| disc(x, 0.5 - TOUCH);
+    let mut scene = dry("logs", vec![small(-half), small(half), large]);
+    scene.boundaries = vec![floor()];
+    scene
+}
+
+/// Two discs, one on the other, each overlapping what is below by `overlap` diameters.
+///
+/// Two discs on the floor that overlap at the start. Right is to part them without throwing them.
+pub fn overlapped(overlap: f64) -> Scene {
+    let mut scene = dry("overlap", vec![disc(0.0, 0.5 - overlap), disc(0.0, 1.5 - 2.0 * overlap)]);
+    scene.boundaries = vec![floor()];
+    scene
+}

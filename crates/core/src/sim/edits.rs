@@ -1,0 +1,192 @@
+//! What a hand does to a world between two steps: a grain more, a grain less, a wall drawn to another place.
+//!
+//! All that was computed stays: forces and bonds of the other contacts, and what was measured. Δy_G counts a grain
+//! that is put in from the height at which it is put there, and a grain that is taken out neither then nor now.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::sim::pull::gravity_that_scales;
+use crate::sim::simulation::Simulation;
+use crate::sim::snapshot::Surroundings;
+use crate::world::{Boundary, Disc, Edge, Grain, Motion, MotionCourse};
+
+/// Smallest and largest new grain, in mean diameters: beyond, the search for neighbours and the conditioning of
+/// steps are those of another scene.
+pub const NEW_GRAIN_DIAMETERS: [f64; 2] = [0.2, 5.0];
+
+/// What a hand does between two steps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Edit {
+    /// Puts a grain in, at rest, as the last one.
+    Add(Disc),
+    /// Takes the grain of that number out; those after it are numbered one lower.
+    Remove(u32),
+    /// Draws a boundary, so that its [`place_of`] goes straight to a point (m) and stays there until the hand
+    /// lets go.
+    Draw {
+        /// Its number.
+        boundary: u32,
+        /// m.
+        to: DVec2,
+    },
+    /// Lets go of the boundary, which then stays where it is.
+    LetGo,
+}
+
+/// The point of a boundary that a hand holds, m.
+pub fn place_of(boundary: &Boundary) -> DVec2 {
+    match boundary.edges().first() {
+        Some(Edge::Endless { point, .. }) => *point,
+        Some(Edge::Wall([from, _]) | Edge::Side([from, _])) => *from,
+        None => DVec2::ZERO,
+    }
+}
+
+/// Speed of a wall that a hand draws, in √(g·d): at Δt = 1 ms it goes a fiftieth of a diameter in a step, which every
+/// stepper bears.
+const SPEED_OF_HAND: f64 = 0.5;
+/// An overlap below this part of a diameter is rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl Simulation {
+    /// Does what a hand does. What it comes to shows in the next step.
+    ///
+    /// # Errors
+    /// Says in one sentence why it cannot be done; then nothing is changed.
+    pub fn edit(&mut self, edit: &Edit) -> Result<()> {
+        match *edit {
+            Edit::Add(disc) => self.add_grain(disc),
+            Edit::Remove(grain) => self.remove_grain(grain as usize),
+            Edit::Draw { boundary, to } => self.draw(boundary as usize, to),
+            Edit::LetGo => {
+                self.let_go();
+                Ok(())
+            }
+        }?;
+        self.edits += 1;
+        let time_step_secs = self.settings.parameters.time_step_secs;
+        self.surroundings = Arc::new(Surroundings::of(&self.state.world, time_step_secs));
+        Ok(())
+    }
+
+    /// How often that was done.
+    pub fn edits(&self) -> usize {
+        self.edits as usize
+    }
+
+    fn add_grain(&mut self, disc: Disc) -> Result<()> {
+        let Disc { mut position, radius } = disc;
+        let world = &self.state.world;
+        if self.state.physics.axes == 1 {
+            position.y = world.grains.positions[0].y;
+        }
+        let diameters = 2.0 * radius / world.mean_diameter;
+        if !(NEW_GRAIN_DIAMETERS[0]..=NEW_GRAIN_DIAMETERS[1]).contains(&diameters)
+            || !position.is_finite()
+        {
+            let allowed = format!(
+                "from {} to {} mean diameters",
+                NEW_GRAIN_DIAMETERS[0], NEW_GRAIN_DIAMETERS[1]
+            );
+            return Err(Error::value("diameter of a new grain", diameters, allowed));
+        }
+        let position = world.periodic.map_or(position, |periodic| periodic.wrap(position));
+        if let Some(what) = self.in_the_way(Disc { position, radius }) {
+            return Err(Error::value("place of a new grain", format!("on {what}"), "free"));
+        }
+        let mut grown = world.clone();
+        let density = grown.grains.masses[0] / grown.grains.radii[0].powi(2) / std::f64::consts::PI;
+        grown.grains.push(&Grain::at_rest(position, radius), density);
+        grown.validate(self.state.physics)?;
+        self.state.add_last_grain(grown)?;
+        self.watch.losses.add(position);
+        self.initial_heights += position.y;
+        Ok(())
+    }
+
+    /// What a disc would overlap, in words.
+    fn in_the_way(&self, disc: Disc) -> Option<&'static str> {
+        let (world, candidates) = (&self.state.world, &self.state.candidates);
+        let reach = disc.radius - ROUNDING * world.mean_diameter;
+        let overlaps = |place: DVec2, radius: f64| {
+            world.shortest(place - disc.position).length() < reach + radius
+        };
+        let mut grains = world.grains.positions.iter().zip(&world.grains.radii);
+        if grains.any(|(place, radius)| overlaps(*place, *radius)) {
+            return Some("another one");
+        }
+        if world.fixed_discs.iter().any(|fixed| overlaps(fixed.position, fixed.radius)) {
+            return Some("a fixed disc");
+        }
+        let is_in_wall = |feature| {
+            let distance = candidates.distance(world, feature, disc.position);
+            distance.is_some_and(|(_, distance)| distance < reach)
+        };
+        (0..candidates.features().len()).any(is_in_wall).then_some("a wall")
+    }
+
+    /// Takes a grain out of the world. The impulses of all other contacts stay.
+    ///
+    /// # Errors
+    /// Where there is none of that number, or it is the only one.
+    pub fn remove_grain(&mut self, grain: usize) -> Result<()> {
+        let count = self.state.world.grains.len();
+        if grain >= count {
+            return Err(Error::value(
+                "grain",
+                grain,
+                format!("below {count}, the number of grains"),
+            ));
+        }
+        if count == 1 {
+            return Err(Error::value("grains", 1, "more than one where one is taken away"));
+        }
+        self.initial_heights -= self.state.world.grains.positions[grain].y;
+        self.watch.losses.remove(grain);
+        self.state.remove_grain(grain)
+    }
+
+    fn draw(&mut self, boundary: usize, to: DVec2) -> Result<()> {
+        let mut world = self.state.world.clone();
+        let refuse = |why: &str| Err(Error::value("wall", why, "one that nothing else moves"));
+        let Some(shape) = world.boundaries.get(boundary) else {
+            return refuse("drawn until time passes");
+        };
+        if shape.moves_by_itself() {
+            return refuse("a piston");
+        }
+        // What the hand had before it lets go of.
+        if self.state.is_held {
+            world.motions.pop();
+        }
+        if world.motions.iter().any(|motion| motion.boundaries.contains(&boundary)) {
+            return refuse("moved by the scene");
+        }
+        let speed = SPEED_OF_HAND * (gravity_that_scales(&world) * world.mean_diameter).sqrt();
+        let way = to - place_of(shape);
+        let travel = Some(way.length());
+        let course = MotionCourse::Straight { direction: way, speed, travel };
+        let goes = way.is_finite() && way != DVec2::ZERO;
+        world.motions.push(Motion {
+            boundaries: vec![boundary],
+            course: goes.then_some(course),
+            ..Motion::default()
+        });
+        world.validate(self.state.physics)?;
+        self.state.world = world;
+        self.state.is_held = true;
+        self.watch.losses.let_walls_move(self.state.candidates.features());
+        Ok(())
+    }
+
+    fn let_go(&mut self) {
+        if std::mem::take(&mut self.state.is_held) {
+            self.state.world.motions.pop();
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! Augmented vertex block descent (C. Giles, E. Diaz and C. Yuksel, *Augmented Vertex Block Descent*, ACM
+//! Transactions on Graphics 44, 2025): penalties that stiffen as long as a contact is violated, minimised body by
+//! body, and multipliers that take over what they carry.
+//!
+//! With the bodies' velocities V at the end of a substep h as unknowns (their places are x + hV, normals stay) and
+//! c = v − w + b, the relative velocity less that of the wall, where b = gap/h keeps a gap from closing by more than
+//! it is, a contact pushes with the reduced impulse
+//!
+//! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·g·h),  |λ_t| ≤ μσ likewise around λ_t⁰ − κ_t c_t,  κ = k h²/m_ij.
+//!
+//! One iteration is, **for each body** in turn, a step of Newton's method on its own energy with all others held,
+//!
+//! > (D + Σ s κ ∇c ∇cᵀ) ΔV = D (V_free − V) + Σ s λ ∇c,  s = m_ij/m_i,
+//!
+//! where D is the inertia over the mass; and then **for each contact** λ⁰ ← λ, and κ grows by |c| where its bound
+//! did not cut λ. On the left are all contacts, those too that their bounds cut: without these, which hold a body
+//! back, piles that collapse explode. Bodies that touch something start from where they were, so that what slides
+//! is late by 2⁻¹⁰ of what a step would change. Stiffnesses are kept from step to step, a little less each time. A
+//! last pass over the bodies with b of the overlap beyond a margin moves the grains, but leaves their velocities.
+//!
+//! What it does not hold: **momentum**. Bodies see λ before their partners have answered, so that action and
+//! reaction differ by what the iterations leave, and so do work and energy. It has no restitution.
+
+use glam::{DMat3, DVec3};
+
+use crate::contact::{ContactLaw, law};
+use crate::sim::pull::gravity_that_scales;
+use crate::sim::settings::Settings;
+use crate::sim::steppers::StepperInfo;
+use crate::sim::steppers::substeps::{self, Substepping, Touching};
+use crate::sim::stepping::{Stage, StepResult};
+use crate::solver::{Kinematics, Model, Row, StepProblem};
+use crate::world::Parameters;
+
+/// The row of the registry.
+pub(super) const INFO: StepperInfo = StepperInfo {
+    solves: "the step's problem by penalties and multipliers, as far as its iterations get",
+    source: "C. Giles, E. Diaz and C. Yuksel (2025)",
+    settings: &["bond", "dt", "tilt", "mu", "cone", "warm-start", "substeps"],
+    substeps: |_, _, parameters| substeps(parameters),
+    ..StepperInfo::WHOLE
+};
+
+/// Iterations of a substep: what its authors' examples take.
+const ITERATIONS: u32 = 10;
+
+fn substeps(parameters: &Parameters) -> u32 {
+    parameters.substeps.max(1)
+}
+
+/// Takes one step.
+pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
+    let substeps = substeps(&settings.parameters);
+    let substepping = &mut Substepping::begin_step(stage, settings, substeps);
+    let substep_secs = substepping.substep_secs;
+    let gap_tolerance = stage.state.candidates.gap_tolerance();
+    let capture_speed = stage.problem.law.capture_speed() / f64::from(substeps);
+    let warm_secs = if settings.solver.warm_start { substep_secs } else { 0.0 };
+    let mut contacts = substeps::touching(stage, warm_secs);
+    let mut descent = BlockDescent::new(stage, substep_secs);
+    if settings.solver.warm_start {
+        descent.stiffen(stage);
+    }
+    stage.in_pieces(substeps, settings, StepResult::nothing_yet(), |stage, _, _| {
+        substepping.begin(stage);
+        let problem = &mut *stage.problem;
+        for contact in &mut contacts {
+            let cohesive = contact.gap < gap_tolerance;
+            contact.capture_speed = if cohesive { capture_speed } else { 0.0 };
+        }
+        descent.begin(problem, &substepping.start);
+        let keep_gaps = |gap: f64| gap.max(0.0) / substep_secs;
+        for _ in 0..ITERATIONS {
+            descent.minimise::<M>(problem, &substepping.free, &contacts, keep_gaps);
+            descent.multiply::<M>(problem, &mut contacts, keep_gaps);
+        }
+        let reached = problem.bodies.now.clone();
+        let margin = descent.margin;
+        let push_out = |gap: f64| {
+            if gap > 0.0 { gap / substep_secs } else { (gap + margin).min(0.0) / substep_secs }
+        };
+        descent.minimise::<M>(problem, &substepping.free, &contacts, push_out);
+        substepping.place(stage);
+        let problem = &mut *stage.problem;
+        substeps::follow_gaps(problem, &mut contacts, substep_secs);
+        problem.bodies.now = reached;
+        substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
+        substeps::end_substep(problem, &mut contacts, substepping);
+        // The spring that pulls a grain looks at its velocity.
+        substepping.store(stage);
+    });
+    substeps::remember(stage, &contacts, substep_secs);
+    descent.remember(stage);
+    substeps::hand_over(stage.problem, &contacts);
+    stage.problem.store_impulses(&mut stage.state.contacts);
+    substepping.end_step(stage, substeps * (ITERATIONS + 1))
+}
+
+/// Softest κ, and that of a new contact. Softer: new contacts sink in; stiffer: blocks cannot pass a force on.
+const SOFTEST: f64 = 1.0;
+/// Stiffest κ: beyond it a contact's partners no longer see anything else.
+const STIFFEST: f64 = 1e6;
+/// How much κ grows where a contact is violated by g·h. More: columns stand better, but impacts make contacts so stiff
+/// that blocks cannot pass them on, and piles that collapse explode.
+const GROWTH: f64 = 0.1;
+/// What is left of κ from one step to the next. Less: contacts soften where the grains rest.
+const KEPT: f64 = 0.99;
+/// Overlap that is left, in d: cohesive contacts live on it.
+const MARGIN: f64 = 5e-4;
+
+/// A contact as a body sees it.
+#[derive(Clone, Copy)]
+struct Side {
+    row: u32,
+    /// 0 if the body is the row's i, 1 if it is its j.
+    end: u8,
+}
+
+/// What the iterations of a step need beside problem and contacts.
+struct BlockDescent {
+    substep_secs: f64,
+    law: ContactLaw,
+    /// g·h, m/s.
+    speed_scale: f64,
+    /// Overlap that is left, m.
+    margin: f64,
+    /// (κ_n, κ_t) of each row.
+    stiffness: Vec<[f64; 2]>,
+    /// The contacts of all bodies, one body after the other.
+    sides: Vec<Side>,
+    /// Where those of each body end.
+    side_ends: Vec<usize>,
+}
+
+impl BlockDescent {
+    fn new<M: Model>(stage: &Stage<'_, M>, substep_secs: f64) -> Self {
+        let (world, problem) = (stage.world(), stage.problem());
+        let fixed = problem.rows.fixed.len();
+        let mut of_bodies: Vec<(u32, Side)> = Vec::new();
+        for (number, row) in problem.rows() {
+            let row_number = number as u32;
+            of_bodies.push((row.i, Side { row: row_number, end: 0 }));
+            if number >= fixed {
+                of_bodies.push((row.j, Side { row: row_number, end: 1 }));
+            }
+        }
+        of_bodies.sort_by_key(|&(body, _)| body);
+        let ends = 0..problem.bodies.now.len() as u32;
+        let side_ends = ends.map(|body| of_bodies.partition_point(|side| side.0 <= body)).collect();
+        let g = gravity_that_scales(world);
+        Self {
+            substep_secs,
+            law: problem.law,
+            speed_scale: g * substep_secs,
+            margin: MARGIN * world.mean_diameter,
+            stiffness: vec![[SOFTEST; 2]; problem.rows.contacts.len()],
+            sides: of_bodies.into_iter().map(|(_, side)| side).collect(),
+            side_ends,
+        }
+    }
+
+    /// Takes the stiffnesses from where the step before left them.
+    fn stiffen<M: Model>(&mut self, stage: &Stage<'_, M>) {
+        let memories = stage.state.contacts.memories();
+        let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
+        for (stiffness, ((_, row), &contact)) in self.stiffness.iter_mut().zip(rows) {
+            let to_reduced = self.substep_secs * self.substep_secs / row.effective_mass;
+            *stiffness =
+                memories[contact as usize].stiffness.map(|per_metre| to_reduced * per_metre);
+        }
+    }
+
+    /// Leaves the stiffnesses to the next step.
+    fn remember<M: Model>(&self, stage: &mut Stage<'_, M>) {
+        let (_, _, memories) = stage.state.contacts.parts_mut();
+        let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
+        for (stiffness, ((_, row), &contact)) in self.stiffness.iter().zip(rows) {
+            let per_reduced = row.effective_mass / (self.substep_secs * self.substep_secs);
+            memories[contact as usize].stiffness = stiffness.map(|reduced| per_reduced * reduced);
+        }
+    }
+
+    /// Begins a substep: bodies that touch something start from where they were, since what carried them then will
+    /// carry them now.
+    fn begin<K: Kinematics>(&mut self, problem: &mut StepProblem<K>, start: &[K::Body<f64>]) {
+        for stiffness in self.stiffness.as_flattened_mut() {
+            *stiffness = (KEPT * *stiffness).clamp(SOFTEST, STIFFEST);
+        }
+        let mut first = 0;
+        for ((body, start), &end) in problem.bodies.now.iter_mut().zip(start).zip(&self.side_ends) {
+            if first < end {
+                *body = *start;
+            }
+            first = end;
+        }
+    }
+
+    /// Sets each body's velocity to the minimum of its own energy, the others as they are. `bias` makes b of a gap.
+    fn minimise<M: Model>(
+        &self,
+        problem: &mut StepProblem<M::Kinematics>,
+        free: &[<M::Kinematics as Kinematics>::Body<f64>],
+        contacts: &[Touching],
+        bias: impl Fn(f64) -> f64,
+    ) {
+        let inertia = DVec3::from_array(M::Kinematics::INERTIA_OVER_MASS);
+        // Coordinates that are no degrees of freedom get a system that is not singular, and stay.
+        let diagonal = DVec3::select(inertia.cmpgt(DVec3::ZERO), inertia, DVec3::ONE);
+        let mut first = 0;
+        for (body, &end) in self.side_ends.iter().enumerate() {
+            if first == end {
+                continue;
+            }
+            let coordinates = |body| DVec3::from_array(M::Kinematics::coordinates(body));
+            let now = coordinates(&problem.bodies.now[body]);
+            let mut force = inertia * (coordinates(&free[body]) - now);
+            let mut matrix = DMat3::from_diagonal(diagonal);
+            for &Side { row: number, end } in &self.sides[first..end] {
+                let (number, end) = (number as usize, usize::from(end));
+                let contact = &contacts[number];
+                let push = self.push::<M>(problem, number, contact, bias(contact.gap));
+                let row = problem.rows.get(number);
+                let share = problem.rows.share(number);
+                let share = if end == 0 { share } else { 1.0 - share };
+                let directions = if M::FRICTION { 0..2 } else { 0..1 };
+                for direction in directions {
+                    let gradient = gradient::<M::Kinematics>(row, end, direction);
+                    force += share * push.impulse[direction] * gradient;
+                    let stiffness = share * self.stiffness[number][direction];
+                    let [x, y, spin] = gradient.to_array();
+                    let along = stiffness * gradient;
+                    matrix += DMat3::from_cols(x * along, y * along, spin * along);
+                }
+            }
+            first = end;
+            let reached = now + matrix.inverse() * force;
+            M::Kinematics::set(&mut problem.bodies.now[body], reached.to_array());
+        }
+    }
+
+    /// Has the multipliers take over what the penalties carry, and stiffens those that are violated.
+    fn multiply<M: Model>(
+        &mut self,
+        problem: &StepProblem<M::Kinematics>,
+        contacts: &mut [Touching],
+        bias: impl Fn(f64) -> f64,
+    ) {
+        for (number, contact) in contacts.iter_mut().enumerate() {
+            let push = self.push::<M>(problem, number, contact, bias(contact.gap));
+            contact.impulse = push.impulse;
+            for direction in 0..2 {
+                if !push.is_cut[direction] {
+                    let violated = push.violation[direction].abs() / self.speed_scale;
+                    let stiffness = &mut self.stiffness[number][direction];
+                    *stiffness = (*stiffness + GROWTH * violated).min(STIFFEST);
+                }
+            }
+        }
+    }
+
+    /// How a contact pushes at the bodies' present velocities.
+    #[inline(always)]
+    fn push<M: Model>(
+        &self,
+        problem: &StepProblem<M::Kinematics>,
+        number: usize,
+        contact: &Touching,
+        bias: f64,
+    ) -> Push {
+        let row = problem.rows.get(number);
+        let i = &problem.bodies.now[row.i as usize];
+        let [normal_velocity, tangential_velocity] = if number < problem.rows.fixed.len() {
+            M::Kinematics::velocity(row.normal, i)
+        } else {
+            M::Kinematics::relative_velocity(row.normal, i, &problem.bodies.now[row.j as usize])
+        };
+        let stiffness = self.stiffness[number];
+        let closing = normal_velocity - contact.wall_speed + bias;
+        let wanted = contact.impulse[0] + contact.capture_speed - stiffness[0] * closing;
+        let shifted = law::signorini(wanted);
+        let mut push = Push {
+            impulse: [shifted - contact.capture_speed, 0.0],
+            violation: [closing, 0.0],
+            is_cut: [wanted < 0.0, true],
+        };
+        if M::FRICTION {
+            let slip = tangential_velocity - contact.surface_speed;
+            let wanted = contact.impulse[1] - stiffness[1] * slip;
+            let law = self.law.with_capture_speed(contact.capture_speed);
+            let bound = law.friction_bound(shifted);
+            push.impulse[1] = law::coulomb(wanted, bound);
+            push.violation[1] = slip;
+            push.is_cut[1] = wanted.abs() > bound;
+        }
+        push
+    }
+}
+
+/// How a contact pushes: (λ_n, λ_t), m/s, the relative velocities (c_n, c_t) that it answers, m/s, and whether its
+/// bounds cut them.
+struct Push {
+    impulse: [f64; 2],
+    violation: [f64; 2],
+    is_cut: [bool; 2],
+}
+
+/// ∇c of a row along its normal (0) or tangent (1), for the body at its end.
+#[inline(always)]
+fn gradient<K: Kinematics>(row: &Row<K>, end: usize, direction: usize) -> DVec3 {
+    let mut gradient = K::gradients(row.normal)[end][direction];
+    gradient[K::DEGREES..].fill(0.0);
+    DVec3::from_array(gradient)
+}

@@ -1,0 +1,253 @@
+//! Smooth discrete elements (P. A. Cundall & O. D. L. Strack, 1979), with the linear cohesive law
+//! that S. Luding (2008) starts from: a contact is a spring and a dashpot, and pulls by C₀ as long
+//! as the discs overlap. With δ = −gap the overlap,
+//!
+//! > N = max(k δ − γ v_n, 0) − C₀,  T = −k_t ξ − γ_t v_t with ξ̇ = v_t,  |T| ≤ bound(N + C₀).
+//!
+//! Spring and dashpot together never pull: N ≥ −C₀, as everywhere here, and the cone is that of the
+//! contact laws. Where friction slides, ξ is shortened to what gives T at the bound.
+
+use crate::contact::{Contact, ContactLaw, ContactMemory, Impulse, law};
+use crate::sim::settings::Settings;
+use crate::sim::state::State;
+use crate::sim::steppers::spring_dashpot::{
+    SpringDashpot, contact_time_secs, critical_time_step_secs, substeps,
+};
+use crate::sim::steppers::substeps::{Substepping, Works, set_drive_speeds};
+use crate::sim::steppers::{MeanPair, StepperInfo};
+use crate::sim::stepping::{Stage, StepResult};
+use crate::solver::{DrivenWall, Kinematics, Model, cone_of};
+
+/// The row of the registry. Springs carry their stretch on whether asked to or not, so nothing is told of a
+/// warm start.
+pub(super) const INFO: StepperInfo = StepperInfo {
+    solves: "nothing exactly: contacts are damped springs",
+    source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
+    settings: &[
+        "bond",
+        "dt",
+        "tilt",
+        "rho",
+        "mu",
+        "cone",
+        "stiffness",
+        "damping-ratio",
+        "substeps",
+    ],
+    takes_drives: true,
+    substeps,
+    critical_time_step_secs: |world, physics, parameters| {
+        Some(critical_time_step_secs(world, physics, parameters))
+    },
+    contact_time_secs: |world, physics, parameters| {
+        Some(contact_time_secs(world, physics, parameters))
+    },
+    fracture_work: |world, physics, parameters| {
+        let springs = SpringDashpot::of(world, physics.axes, parameters);
+        MeanPair::of(world).fracture_work(physics, parameters, |force| springs.fracture_work(force))
+    },
+    ..StepperInfo::WHOLE
+};
+
+/// Takes one step. Contacts are detected in each substep; the problem's rows, those of the beginning of the
+/// step, get what their pairs transmitted in all.
+pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
+    let (world, physics) = (&stage.state.world, stage.state.physics);
+    let parameters = &settings.parameters;
+    let substeps = substeps(world, physics, parameters);
+    let cohesion = if physics.cohesion { parameters.bond } else { 0.0 };
+    let elements = Elements {
+        springs: SpringDashpot::of(world, physics.axes, parameters),
+        cohesive_acceleration: cohesion * world.gravity.magnitude(),
+        law: ContactLaw::new(parameters.friction, 0.0, cone_of(physics, parameters)),
+        substep_secs: parameters.time_step_secs / f64::from(substeps),
+    };
+    let substepping = &mut Substepping::begin_step(stage, settings, substeps);
+    let mut totals = Totals::new(stage.state.contacts.contacts());
+    stage.state.contacts.impulses_mut().fill(Impulse::default());
+    let mut pushes = Vec::new();
+    let mut is_first = true;
+    stage.in_pieces(substeps, settings, StepResult::nothing_yet(), |stage, _, _| {
+        if !std::mem::take(&mut is_first) {
+            stage.state.detect::<M>(None);
+        }
+        substepping.begin(stage);
+        elements.push(stage, &substepping.start, &mut totals, &mut pushes);
+        let bodies = &stage.problem.bodies.now;
+        let list = stage.state.contacts.contacts();
+        for (contact, &(mass, impulse, of_wall)) in list.iter().zip(&pushes) {
+            let normal = M::Kinematics::normal_of(&stage.state.world, contact);
+            let of = |bodies: &[_]| velocity::<M::Kinematics>(normal, contact, bodies);
+            let velocities = [of(&substepping.start), of(bodies)];
+            let works = &mut substepping.works;
+            works.add::<M::Kinematics>(mass, normal, impulse, velocities, of_wall);
+        }
+        substepping.add_gravity_work(bodies, &stage.state.world.grains.masses);
+        drive_walls(stage, substepping.substep_secs, &pushes, &mut substepping.works);
+        substepping.place(stage);
+    });
+    stage.problem.set_impulses(&totals.impulses);
+    set_drive_speeds(stage);
+    substepping.end_step(stage, substeps)
+}
+
+/// (v_n, v_t) of a contact, m/s.
+#[inline(always)]
+fn velocity<K: Kinematics>(
+    normal: K::Normal<f64>,
+    contact: &Contact,
+    bodies: &[K::Body<f64>],
+) -> [f64; 2] {
+    let i = &bodies[contact.grain as usize];
+    match bodies.get(contact.other as usize) {
+        Some(j) => K::relative_velocity(normal, i, j),
+        None => K::velocity(normal, i),
+    }
+}
+
+/// The law of the contacts.
+struct Elements {
+    springs: SpringDashpot,
+    /// C₀/m_ij = Bond·g, m/s².
+    cohesive_acceleration: f64,
+    law: ContactLaw,
+    substep_secs: f64,
+}
+
+impl Elements {
+    /// The forces of a contact of effective mass `mass` at a gap and relative velocities, into its memory.
+    #[inline(always)]
+    fn force<M: Model>(
+        &self,
+        memory: &mut ContactMemory,
+        gap: f64,
+        mass: f64,
+        [normal_velocity, tangential_velocity]: [f64; 2],
+    ) {
+        let stiffness = self.springs.stiffness;
+        let damping = self.springs.damping(mass);
+        let push = (-stiffness * gap - damping * normal_velocity).max(0.0);
+        let cohesion = mass * self.cohesive_acceleration;
+        memory.normal_force = push - cohesion;
+        if M::FRICTION {
+            let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            let bound = self.law.with_capture_speed(cohesion).friction_bound(push);
+            let dashpot = part * damping * tangential_velocity;
+            let spring = part * stiffness;
+            let stretch = memory.tangential_displacement + self.substep_secs * tangential_velocity;
+            let force = law::coulomb(-spring * stretch - dashpot, bound);
+            memory.tangential_displacement = -(force + dashpot) / spring;
+            memory.tangential_force = force;
+        }
+    }
+
+    /// Pushes the bodies by the forces that the present overlaps and the velocities `start` make.
+    /// `pushes` gets m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
+    fn push<M: Model>(
+        &self,
+        stage: &mut Stage<'_, M>,
+        start: &[<M::Kinematics as Kinematics>::Body<f64>],
+        totals: &mut Totals,
+        pushes: &mut Vec<(f64, [f64; 2], [f64; 2])>,
+    ) {
+        let h = self.substep_secs;
+        let State { world, contacts, walls, .. } = &mut *stage.state;
+        let bodies = &mut stage.problem.bodies.now;
+        let masses = &world.grains.masses;
+        let (list, impulses, memories) = contacts.parts_mut();
+        pushes.clear();
+        totals.rewind();
+        for ((contact, sum), memory) in list.iter().zip(impulses).zip(memories) {
+            let (i, j) = (contact.grain as usize, contact.other as usize);
+            let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
+            let mass = masses[i] * share;
+            let normal = M::Kinematics::normal_of(world, contact);
+            let [normal_velocity, tangential_velocity] =
+                velocity::<M::Kinematics>(normal, contact, start);
+            let of_wall = walls.velocity(world, contact);
+            let slip = [normal_velocity - of_wall[0], tangential_velocity - of_wall[1]];
+            self.force::<M>(memory, contact.gap, mass, slip);
+            let impulse = Impulse {
+                normal: h * memory.normal_force,
+                tangential: h * memory.tangential_force,
+            };
+            sum.normal += impulse.normal;
+            sum.tangential += impulse.tangential;
+            totals.add(contact, impulse);
+            let reduced = [impulse.normal / mass, impulse.tangential / mass];
+            pushes.push((mass, reduced, of_wall));
+            if j < bodies.len() {
+                let (mut one, mut other) = (bodies[i], bodies[j]);
+                M::Kinematics::push_pair(&mut one, &mut other, normal, reduced, share);
+                bodies[i] = one;
+                bodies[j] = other;
+            } else {
+                M::Kinematics::push_single(&mut bodies[i], normal, reduced);
+            }
+        }
+    }
+}
+
+/// What the contacts of the beginning of a step transmit in its substepping, N·s.
+struct Totals {
+    contacts: Vec<Contact>,
+    impulses: Vec<Impulse>,
+    next: usize,
+}
+
+impl Totals {
+    fn new(contacts: &[Contact]) -> Self {
+        let impulses = vec![Impulse::default(); contacts.len()];
+        Self { contacts: contacts.to_vec(), impulses, next: 0 }
+    }
+
+    /// Before the contacts of another substep.
+    fn rewind(&mut self) {
+        self.next = 0;
+    }
+
+    /// Adds to the contact of that pair, if it is one of them. Both lists are sorted alike.
+    fn add(&mut self, contact: &Contact, impulse: Impulse) {
+        let behind = |then: &Contact| then.pair() < contact.pair();
+        while self.contacts.get(self.next).is_some_and(behind) {
+            self.next += 1;
+        }
+        if self.contacts.get(self.next).is_some_and(|then| then.pair() == contact.pair()) {
+            self.impulses[self.next].normal += impulse.normal;
+            self.impulses[self.next].tangential += impulse.tangential;
+        }
+    }
+}
+
+/// Ends a substep of such walls; `pushes` are m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
+///
+/// Walls that a force drives, among springs: like grains they go on by the forces of the beginning of a substep.
+///
+/// That is stable while h < 2 √(M/nk) of a wall of mass M with n contacts of stiffness k, which is surely so where M is
+/// that of as many of the lightest grains: substeps are short enough for those.
+fn drive_walls<M: Model>(
+    stage: &mut Stage<'_, M>,
+    substep_secs: f64,
+    pushes: &[(f64, [f64; 2], [f64; 2])],
+    works: &mut Works,
+) {
+    let State { world, walls, contacts, .. } = &mut *stage.state;
+    let mut driven: Vec<DrivenWall> = walls.driven(world, substep_secs).collect();
+    if driven.is_empty() {
+        return;
+    }
+    driven.iter_mut().for_each(|wall| wall.now = wall.free);
+    let pushed = || {
+        contacts.contacts().iter().zip(pushes).filter_map(|(contact, &(mass, impulse, _))| {
+            let by = walls.surface(world, contact)?.driven?;
+            Some((by.wall as usize, mass * by.part_along(impulse)))
+        })
+    };
+    for (wall, along) in pushed() {
+        driven[wall].now -= driven[wall].response * along;
+    }
+    for (wall, along) in pushed() {
+        works.wall += 0.5 * along * (driven[wall].now - driven[wall].before);
+    }
+    works.drives += walls.take_driven(world, &driven);
+}

@@ -1,0 +1,175 @@
+//! What shocks hand over to the step.
+
+use glam::DVec2;
+
+use super::{NextImpact, ShockInputs, ShockPair, Shocks, Touch, grains};
+use crate::sim::steppers::range::StepNumbers;
+use crate::solver::{Kinematics, StepProblem};
+use crate::world::World;
+
+/// A bond that a shock closed.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct ClosedBond {
+    /// The part of the step that was left.
+    pub part: f64,
+    /// What gravity had given the pair by then, m/s.
+    pub gained: f64,
+}
+
+impl Shocks {
+    /// Lets a problem go on from its shocks: bodies begin with v⁺, and each contact may close the gap that it
+    /// has from where its bodies would have begun to be where they are.
+    ///
+    /// **What passes by.** A gap is taken to close with the speed along the normal that its pair had at the
+    /// beginning, which bars a grain from passing another one that it would have missed. Where that would
+    /// happen, and the two do not meet, the gap is taken as its tangent at the end of the step: v⁺ itself
+    /// then obeys every contact.
+    ///
+    /// **None has to open.** A pair that was struck at t opens from then on, as if from a gap of −t v_n⁺. Were
+    /// it to end the step with no overlap at all, v_n would have to be above 0 for it and could not be for
+    /// others that hold it: v = 0 would no longer obey every contact, and a cluster in which many were struck
+    /// is then often not solved. So v_n ≥ 0 is all that is asked for, and what is left of an overlap,
+    /// t v_n⁺ at the most, is pushed out (`range::separate`).
+    ///
+    /// **Gaps below the touch are none** after a shock as before it. Slacks of the size of rounding between
+    /// grains that touch make a contact open or shut by less than a step is solved to.
+    pub(super) fn hand_over<K: Kinematics>(
+        &mut self,
+        problem: &mut StepProblem<K>,
+        inputs: &ShockInputs<'_>,
+    ) {
+        let mut moved = false;
+        for (index, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.struck_in_step)
+        {
+            moved = true;
+            let before = K::coordinates(&problem.bodies.before[index]);
+            let free = std::array::from_fn(|axis| before[axis] + body.gain[axis]);
+            K::set(&mut problem.bodies.free[index], free);
+        }
+        for number in 0..self.pairs.len() {
+            let Some((allowed, normal)) = self.closing_left(problem, inputs, number) else {
+                continue;
+            };
+            moved = true;
+            let capture = self.capture_left(problem, inputs, number);
+            let wall_speed = match normal {
+                Some(normal) => problem.turn_row(number, normal),
+                None => problem.wall_speed(number),
+            };
+            problem.let_close(number, allowed.max(0.0), wall_speed);
+            let row = problem.rows.get_mut(number);
+            if let Some([before, after]) = capture {
+                row.shifted_impulse = (row.shifted_impulse - before + after).max(0.0);
+                problem.rows.captures[number] = after;
+            }
+        }
+        if moved {
+            problem.form_velocities();
+        }
+    }
+
+    /// How fast a contact may close after the shocks, m/s, relative to a wall that moves, and along which normal
+    /// if that is another one; nothing where all is as it was.
+    fn closing_left<K: Kinematics>(
+        &self,
+        problem: &StepProblem<K>,
+        inputs: &ShockInputs<'_>,
+        number: usize,
+    ) -> Option<(f64, Option<DVec2>)> {
+        let StepNumbers { time_step_secs: secs, touch, .. } = inputs.numbers;
+        let pair = self.pairs[number];
+        let (i, j) = grains(problem, number);
+        let rest_of_way =
+            self.bodies[i].rest_of_way - j.map_or(DVec2::ZERO, |j| self.bodies[j].rest_of_way);
+        let rest = pair.normal.dot(rest_of_way) / secs;
+        let left = 1.0 - pair.struck_at / secs;
+        let mut allowed = (pair.gap + pair.shift - touch) / secs + rest;
+        if self.acts_late(number, i, j) {
+            allowed = left * rest.max(0.0);
+        }
+        let mut normal = None;
+        if pair.next == NextImpact::Never && pair.speed + allowed < 0.0 {
+            let is_in_touch = self.is_in_touch(problem, number, inputs);
+            if let Some((at_end, gap)) = self.approach(problem, number, inputs, secs)
+                && (!is_in_touch || gap > touch)
+            {
+                normal = Some(at_end);
+                let velocity = self.course(problem, number, secs).velocity_at(secs);
+                allowed = gap.max(0.0) / secs - at_end.dot(velocity);
+            } else if pair.speed > 0.0 {
+                allowed = -pair.speed;
+            }
+        }
+        let is_struck = |grain: usize| self.bodies[grain].struck_in_step;
+        let changes = is_struck(i) || j.is_some_and(is_struck) || rest_of_way != DVec2::ZERO;
+        (changes || normal.is_some()).then_some((allowed, normal))
+    }
+
+    /// The capture speeds, m/s, that a row was prepared with and that a pair has for what is left of the step
+    /// after it has closed its bond; nothing where it has not.
+    fn capture_left<K: Kinematics>(
+        &self,
+        problem: &StepProblem<K>,
+        inputs: &ShockInputs<'_>,
+        number: usize,
+    ) -> Option<[f64; 2]> {
+        let before = *problem.rows.captures.get(number)?;
+        let is_bonded = inputs.is_bonded(problem, number);
+        let ClosedBond { part, .. } =
+            self.closed(number, is_bonded, inputs.numbers.time_step_secs)?;
+        Some([before, part * problem.law.capture_speed()])
+    }
+
+    /// What a shock has left of the step to the bond of a row, if it closed that: a pair that touches and is
+    /// bonded has it as before.
+    pub(in super::super) fn closed(
+        &self,
+        number: usize,
+        is_bonded: bool,
+        time_step_secs: f64,
+    ) -> Option<ClosedBond> {
+        let pair = self.pairs.get(number)?;
+        let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !is_bonded);
+        closes.then(|| ClosedBond {
+            part: 1.0 - pair.struck_at / time_step_secs,
+            gained: pair.gained,
+        })
+    }
+
+    /// Whether what the step does to a row acts in what a meeting has left of it: a pair that met at t and was
+    /// not struck since has no gap at t, so that at the end it has (Δt − t) v^n, and −½a(Δt − t)² where it falls.
+    fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
+        let pair = &self.pairs[number];
+        pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
+    }
+
+    /// Takes note of a solved step: its impulse λ on a pair that met at t moves grains for the time that was left
+    /// alone, and not by Δt·λ.
+    pub(in super::super) fn finish<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+        for (number, row) in problem.rows() {
+            let (i, j) = grains(problem, number);
+            if !self.acts_late(number, i, j) {
+                continue;
+            }
+            let [impulse, _] = problem.reduced_impulse(number, row);
+            let ShockPair { normal, struck_at, .. } = self.pairs[number];
+            let way = -struck_at * impulse * normal;
+            let share = problem.rows.share(number);
+            self.bodies[i].rest_of_way += share * way;
+            if let Some(j) = j {
+                self.bodies[j].rest_of_way -= (1.0 - share) * way;
+            }
+        }
+    }
+
+    /// Moves grains by what shocks and falling within the step leave out of the way that their last velocity
+    /// tells.
+    pub(in super::super) fn shift(&self, world: &mut World) {
+        let grains = &mut world.grains;
+        for (index, body) in self.bodies.iter().enumerate() {
+            let [x, y, turn] = body.offset;
+            grains.positions[index] += DVec2::new(x, y) + body.rest_of_way;
+            grains.angles[index] += turn / grains.radii[index];
+        }
+    }
+}

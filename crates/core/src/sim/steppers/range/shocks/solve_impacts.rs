@@ -1,0 +1,214 @@
+//! One pass: what is struck is put into a problem of its own, solved, and taken over.
+
+use glam::DVec2;
+
+use super::{NEVER, NextImpact, Role, ShockInputs, Shocks, Touch, along_axes, grains, scale};
+use crate::sim::stepping::StepResult;
+use crate::solver::{
+    Kinematics, Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
+    StopTest, measure, solve, sweep,
+};
+
+/// Rows from which on shocks are solved no more tightly than the step.
+const FEW: usize = 16;
+
+/// How tightly few rows are solved, which takes next to no time.
+const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13, 500);
+
+/// Largest tolerance of shocks, which are small against the step's own velocities.
+const LOOSEST: f64 = 1e-3;
+
+/// Solves shocks that share grains, as tightly as a step is solved in which contacts may err by `least` (N·s).
+fn solve_together<M: Model>(
+    part: &mut StepProblem<M::Kinematics>,
+    memory: &mut Memory<M::Kinematics>,
+    settings: &SolverSettings,
+    least: f64,
+) -> SolveReport {
+    let mut earlier = SolveReport::default();
+    if part.rows.contacts.len() <= FEW {
+        let tolerance = match settings.stop {
+            StopTest::Residual => settings.tolerance.min(TIGHTLY.tolerance),
+            StopTest::RelativeChange | StopTest::ImpulsePerMass => TIGHTLY.tolerance,
+        };
+        earlier = solve::<M>(part, memory, &SolverSettings { tolerance, ..TIGHTLY });
+        if earlier.converged {
+            return earlier;
+        }
+    }
+    let of_step = (least / scale(part)).min(LOOSEST);
+    let tolerance = match settings.stop {
+        StopTest::Residual => settings.tolerance.max(of_step),
+        StopTest::RelativeChange | StopTest::ImpulsePerMass => settings.tolerance,
+    };
+    solve::<M>(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
+}
+
+impl Shocks {
+    /// Puts what is struck in this pass into `part`: either pairs that are struck alone, or all others.
+    /// Whether there are any.
+    pub(super) fn set_up<K: Kinematics>(
+        &mut self,
+        problem: &mut StepProblem<K>,
+        part: &mut StepProblem<K>,
+        inputs: &ShockInputs<'_>,
+        alone: bool,
+    ) -> bool {
+        part.rows.clear();
+        for number in 0..self.pairs.len() {
+            let root = self.root(problem.rows.get(number).i as usize);
+            let (moment, rows) = self.bodies[root].cluster;
+            if self.pairs[number].role == Role::Apart || moment == NEVER || (rows == 1) != alone {
+                continue;
+            }
+            let restitution_velocity = self.strike_row(problem, inputs, number);
+            part.rows.push_copy(&problem.rows, number, |row| {
+                row.restitution_velocity = restitution_velocity;
+                (row.shifted_impulse, row.tangential_impulse) = (0.0, 0.0);
+            });
+            self.pairs[number].struck_at = moment;
+        }
+        if part.rows.is_empty() {
+            return false;
+        }
+        for copy in [&mut part.bodies.before, &mut part.bodies.free, &mut part.bodies.now] {
+            copy.clone_from(&problem.bodies.before);
+        }
+        part.bodies.masses.clone_from(&problem.bodies.masses);
+        part.bodies.mean_mass = problem.bodies.mean_mass;
+        part.law = problem.law.with_capture_speed(0.0);
+        // A solve of other shocks may have fallen back to bounds, which are of those shocks' rows.
+        part.forget_bounds();
+        true
+    }
+
+    /// What a shock adds to v_n of a row in its law, m/s. From now on the row is along the normal of a meeting.
+    fn strike_row<K: Kinematics>(
+        &mut self,
+        problem: &mut StepProblem<K>,
+        inputs: &ShockInputs<'_>,
+        number: usize,
+    ) -> f64 {
+        let numbers = inputs.numbers;
+        let mut wall_speed = problem.wall_speed(number);
+        let (i, j) = grains(problem, number);
+        let pair = &mut self.pairs[number];
+        let (mut gained, mut closing) = (0.0, pair.speed);
+        if let (Role::Struck, NextImpact::Meets { secs, normal }) = (pair.role, pair.next) {
+            wall_speed = problem.turn_row(number, normal);
+            let (row, before) = (problem.rows.get(number), &problem.bodies.before);
+            let [speed, _] = j.map_or_else(
+                || K::velocity(row.normal, &before[i]),
+                |j| K::relative_velocity(row.normal, &before[i], &before[j]),
+            );
+            pair.speed = speed - wall_speed;
+            pair.normal = normal;
+            gained = pair.acceleration * secs;
+            (pair.gap, pair.shift) = (0.0, 0.0);
+            pair.gap = -pair.gap_at(secs);
+            pair.touch = Touch::Met;
+            let stored = inputs.stretch(problem, number) * problem.law.capture_speed();
+            let squared = (pair.speed + gained).powi(2) + 2.0 * stored / numbers.time_step_secs;
+            closing = -squared.sqrt();
+        }
+        pair.gained = gained;
+        self.fastest = self.fastest.max(-closing);
+        let bounce = if closing < 0.0 {
+            numbers.rebound(closing)
+        } else {
+            numbers.parameters.restitution * closing
+        };
+        bounce + gained - wall_speed
+    }
+
+    /// Solves what was set up and takes it over; what is struck alone by one sweep, which is exact.
+    pub(super) fn solve<M: Model>(
+        &mut self,
+        problem: &mut StepProblem<M::Kinematics>,
+        part: &mut StepProblem<M::Kinematics>,
+        memory: &mut Memory<M::Kinematics>,
+        settings: &SolverSettings,
+        alone: bool,
+        result: &mut StepResult,
+    ) {
+        let mut report = if alone {
+            sweep::<M, false>(part);
+            SolveReport::nothing_yet()
+        } else {
+            solve_together::<M>(part, memory, settings, self.least)
+        };
+        let measures = measure::<M>(part);
+        let Measures { residual, normal_work, mut tangential_work, border_work, .. } = measures;
+        let [wall_work, of_surfaces] = problem.surface_works_in(part);
+        tangential_work += of_surfaces;
+        // Against the scale of the step, as all of it is.
+        let residual = residual * (settings.tolerance * scale(part) / self.least).min(1.0);
+        if alone && settings.stop == StopTest::Residual {
+            // Exact but for rounding, which may be more than is asked for.
+            report.converged = residual <= settings.tolerance;
+        }
+        let mut measures = Measures {
+            residual,
+            normal_work,
+            tangential_work,
+            wall_work,
+            border_work,
+            ..Measures::default()
+        };
+        for ((_, row), &number) in part.rows().zip(&part.rows.contacts) {
+            let pair = &mut self.pairs[number as usize];
+            pair.impulse += row.shifted_impulse;
+            let of_gravity = row.effective_mass * row.shifted_impulse * pair.gained;
+            measures.normal_work += of_gravity;
+            result.gravity_work -= of_gravity;
+        }
+        result.add(StepResult { report, measures, ..StepResult::default() });
+        for (grain, after) in part.bodies.now.iter().enumerate() {
+            let root = self.root(grain);
+            let (moment, rows) = self.bodies[root].cluster;
+            if moment == NEVER || (rows == 1) != alone {
+                continue;
+            }
+            let [before, after] =
+                [&problem.bodies.before[grain], after].map(M::Kinematics::coordinates);
+            if before == after {
+                continue;
+            }
+            let shift = std::array::from_fn(|axis| -moment * (after[axis] - before[axis]));
+            let body = &mut self.bodies[grain];
+            body.offset = std::array::from_fn(|axis| body.offset[axis] + shift[axis]);
+            body.shift = along_axes::<M::Kinematics>(&M::Kinematics::from_coordinates(shift));
+            body.since = body.since.max(moment);
+            body.struck_in_step = true;
+            body.struck_in_pass = true;
+            M::Kinematics::set(&mut problem.bodies.before[grain], after);
+        }
+    }
+
+    /// Tells the pairs of grains that were struck where these are now, and how fast they come.
+    pub(super) fn move_on<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+        let bodies = &self.bodies;
+        let shift = |grain: usize| {
+            if bodies[grain].struck_in_pass { bodies[grain].shift } else { DVec2::ZERO }
+        };
+        for (number, row) in problem.rows() {
+            let (i, j) = grains(problem, number);
+            let is_struck = |grain: usize| bodies[grain].struck_in_pass;
+            if !is_struck(i) && !j.is_some_and(is_struck) {
+                continue;
+            }
+            let before = &problem.bodies.before;
+            let [speed, _] = j.map_or_else(
+                || K::velocity(row.normal, &before[i]),
+                |j| K::relative_velocity(row.normal, &before[i], &before[j]),
+            );
+            let pair = &mut self.pairs[number];
+            pair.speed = speed - problem.wall_speed(number);
+            pair.shift += pair.normal.dot(shift(i) - j.map_or(DVec2::ZERO, shift));
+            pair.next = NextImpact::Unknown;
+        }
+        for body in &mut self.bodies {
+            body.struck_in_pass = false;
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Springs and dashpots of discrete elements: how stiff, how damped, and stable up to which substep.
+//!
+//! **Damping from restitution.** Two discs meet with closing speed v. With ω₀ = √(k/m_ij) and
+//! γ = 2ζ m_ij ω₀, δ̈ + 2ζω₀ δ̇ + ω₀² δ = 0 until the force is 0, and from then on they fly. For ζ < 1 write
+//! ζ = cos φ, so that δ ∝ e^{−ζω₀t} sin(ω₀ sin φ t). Setting δ̈ = 0 gives ω₀ sin φ t = 2φ, and there
+//! the speed is v e^{−ζω₀t}. So
+//!
+//! > ρ = exp(−2ζ arccos ζ / √(1 − ζ²)),  for ζ > 1  ρ = exp(−2ζ arcosh ζ / √(ζ² − 1)),
+//!
+//! e^{−2} between the two. It falls with ζ, towards 1/(4ζ²), and reaches 0 at no finite damping:
+//! smaller restitutions than [`LEAST_RESTITUTION`] are taken as that.
+//!
+//! **Contact time.** The same time at which the force ends (T. Schwager & T. Pöschel, 2007) is
+//!
+//! > t_c = (2/ω₀) arccos ζ / √(1 − ζ²),  for ζ > 1  t_c = (2/ω₀) arcosh ζ / √(ζ² − 1),
+//!
+//! π/ω₀ without damping, and ρ = e^{−ζω₀t_c}. The discs are then still parting.
+//!
+//! **Work of fracture.** A bonded pair without load rests at the overlap C₀/k, where N = 0. It resists with
+//! C₀ − kδ where it is pulled apart so slowly that the dashpot does nothing, and with nothing from δ = 0 on:
+//!
+//! > W = ∫₀^{C₀/k} (C₀ − kδ) dδ = C₀²/(2k).
+//!
+//! Thrown apart it may lose more. Where γ v_n > kδ spring and dashpot do not push, and all of C₀ pulls: a pair
+//! that leaves that fast loses C₀·C₀/k = 2W, and none loses more.
+//!
+//! **Critical time step.** Velocities first, then positions, with the forces of the beginning of
+//! the substep: a mode of frequency ω and damping ratio ζ has z² − (2 − 2ζωh − ω²h²) z + 1 − 2ζωh = 0,
+//! and its first root to leave the unit circle does so at z = −1, where ω²h² + 4ζωh = 4:
+//!
+//! > h = (2/ω) (√(1 + ζ²) − ζ).
+//!
+//! If each of the bodies of a contact has z contacts, and each contact its 1/z of their masses, no
+//! mode of the whole is faster than the fastest one of a contact by itself, ω² = z k/m_ij, ζ√z.
+//! With k_t = k m_t/m_n and γ_t = γ m_t/m_n the tangential mode is as fast as the normal one.
+
+use crate::sim::pull::gravity_that_scales;
+use crate::sim::steppers::MeanPair;
+use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
+
+/// Overlap that the weight of a whole pile makes, in d. Smaller: stiffer and dearer, h ∝ its root;
+/// larger: softer grains, until their overlap shows in the shape of the pile.
+const STATIC_OVERLAP: f64 = 1e-3;
+/// Restitution below this is taken as this. Smaller: more damping, and h falls as its root.
+const LEAST_RESTITUTION: f64 = 0.02;
+/// Substeps are this part of the critical step where their number is left to the scheme. Larger:
+/// a collision is cut into fewer substeps, and its restitution is less exact; at 1 it may blow up.
+const SAFE_FRACTION: f64 = 0.5;
+/// Equal discs that fit around one, in the plane and on a line.
+const NEIGHBOURS: [f64; 2] = [6.0, 2.0];
+/// Halvings of the interval that the damping ratio is looked for in: down to rounding.
+const HALVINGS: u32 = 60;
+
+/// Spring and dashpot of the contacts of a world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringDashpot {
+    /// k, N/m.
+    pub stiffness: f64,
+    /// ζ of a contact by itself.
+    pub damping_ratio: f64,
+}
+
+impl SpringDashpot {
+    /// As the parameters say; where they leave it open, stiff enough for a pile of the world's grains, and
+    /// damped for restitution ρ.
+    pub fn of(world: &World, axes: u8, parameters: &Parameters) -> Self {
+        Self {
+            stiffness: match parameters.stiffness {
+                0.0 => stiffness_for_weight(world, axes),
+                given => given,
+            },
+            damping_ratio: match parameters.damping_ratio {
+                0.0 => damping_ratio(parameters.restitution),
+                given => given,
+            },
+        }
+    }
+
+    /// γ of a contact, N·s/m.
+    pub(crate) fn damping(&self, effective_mass: f64) -> f64 {
+        2.0 * self.damping_ratio * (self.stiffness * effective_mass).sqrt()
+    }
+
+    /// The critical time step, s, of contacts of that effective mass (kg) whose bodies have
+    /// `neighbours` contacts each: exact for 1, a lower bound for more.
+    pub fn critical_time_step_secs(&self, effective_mass: f64, neighbours: f64) -> f64 {
+        let frequency = (neighbours * self.stiffness / effective_mass).sqrt();
+        let damping_ratio = self.damping_ratio * neighbours.sqrt();
+        2.0 / frequency / (damping_ratio.hypot(1.0) + damping_ratio)
+    }
+
+    /// t_c, s, of two discs of that effective mass (kg) that meet and do not cohere.
+    pub fn contact_time_secs(&self, effective_mass: f64) -> f64 {
+        let frequency = (self.stiffness / effective_mass).sqrt();
+        match angle_and_root(self.damping_ratio) {
+            Some((angle, root)) => 2.0 * angle / root / frequency,
+            None => 2.0 / frequency,
+        }
+    }
+
+    /// C₀²/(2k), J, of a bond of that C₀ (N).
+    pub fn fracture_work(&self, cohesion_force: f64) -> f64 {
+        0.5 * cohesion_force * cohesion_force / self.stiffness
+    }
+}
+
+/// The stiffness, N/m, at which the weight of a column as high as the grains are many along an axis, √n in the
+/// plane, makes the static overlap.
+fn stiffness_for_weight(world: &World, axes: u8) -> f64 {
+    let masses = &world.grains.masses;
+    let count = masses.len() as f64;
+    let column = if axes == 1 { count } else { count.sqrt() };
+    let g = gravity_that_scales(world);
+    let load = column * g * masses.iter().sum::<f64>() / count;
+    load / (STATIC_OVERLAP * world.mean_diameter)
+}
+
+/// The ζ that gives a restitution.
+fn damping_ratio(restitution: f64) -> f64 {
+    let wanted = restitution.max(LEAST_RESTITUTION);
+    // At ζ = 1/√ρ it is below ρ for every ρ < 1.
+    let (mut low, mut high) = (0.0, 1.0 / wanted.sqrt());
+    if wanted == 1.0 {
+        return low;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if restitution_of(middle) > wanted {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// The restitution that a damping ratio gives.
+fn restitution_of(damping_ratio: f64) -> f64 {
+    match angle_and_root(damping_ratio) {
+        Some((angle, root)) => (-2.0 * damping_ratio * angle / root).exp(),
+        None => (-2f64).exp(),
+    }
+}
+
+/// arccos ζ and √(1 − ζ²), or arcosh ζ and √(ζ² − 1); none at ζ = 1, where their ratio is 1.
+fn angle_and_root(damping_ratio: f64) -> Option<(f64, f64)> {
+    // As a product: near 1 the difference of squares would lose its digits.
+    let root = ((1.0 - damping_ratio) * (1.0 + damping_ratio)).abs().sqrt();
+    // From the root for the same reason.
+    let angle = if damping_ratio < 1.0 { root.atan2(damping_ratio) } else { root.asinh() };
+    (root != 0.0).then_some((angle, root))
+}
+
+/// The longest stable substep, s, when the smallest grains have as many neighbours as fit.
+pub(super) fn critical_time_step_secs(
+    world: &World,
+    physics: Physics,
+    parameters: &Parameters,
+) -> f64 {
+    let springs = SpringDashpot::of(world, physics.axes, parameters);
+    let mut smallest = [f64::INFINITY; 2];
+    for &mass in &world.grains.masses {
+        smallest[1] = smallest[1].min(mass.max(smallest[0]));
+        smallest[0] = smallest[0].min(mass);
+    }
+    let effective_mass = 1.0 / (1.0 / smallest[0] + 1.0 / smallest[1]);
+    let neighbours = NEIGHBOURS[usize::from(physics.axes == 1)];
+    springs.critical_time_step_secs(effective_mass, neighbours)
+}
+
+/// t_c, s, of two grains of the mean mass.
+pub(super) fn contact_time_secs(world: &World, physics: Physics, parameters: &Parameters) -> f64 {
+    let springs = SpringDashpot::of(world, physics.axes, parameters);
+    springs.contact_time_secs(MeanPair::of(world).effective_mass())
+}
+
+/// As many substeps as are asked for, or as keep h at the safe fraction of the critical step.
+pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters) -> u32 {
+    if parameters.substeps > 0 {
+        return parameters.substeps;
+    }
+    let longest_secs = SAFE_FRACTION * critical_time_step_secs(world, physics, parameters);
+    let count = (parameters.time_step_secs / longest_secs).ceil();
+    (count as u32).clamp(1, MAX_SUBSTEPS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_damping_ratio_inverts_the_restitution() {
+        for restitution in [LEAST_RESTITUTION, 0.1, (-2f64).exp(), 0.2, 0.5, 0.9, 0.999] {
+            let found = restitution_of(damping_ratio(restitution));
+            assert!((found - restitution).abs() < 1e-12, "{restitution} gave {found}");
+        }
+        assert_eq!(damping_ratio(1.0), 0.0);
+        assert_eq!(damping_ratio(0.0), damping_ratio(LEAST_RESTITUTION));
+    }
+}

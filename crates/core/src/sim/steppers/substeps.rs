@@ -1,0 +1,261 @@
+//! What ways to step have in common that know no problem of the whole step: they cut Δt into substeps h and
+//! move the grains in each of them.
+//!
+//! The step's Contact Dynamics problem is set up all the same, and judged at the end with the
+//! impulses that were summed up over the step and the velocities it ended with: its residual
+//! is the common measure of all. None iterates to a tolerance, so stopping test, tolerance and sweep
+//! limit mean nothing.
+
+use crate::contact::ContactMemory;
+use crate::sim::settings::Settings;
+use crate::sim::state::State;
+use crate::sim::steppers::moreau::set_up;
+use crate::sim::stepping::{Stage, StepResult};
+use crate::solver::{
+    DrivenRow, Kinematics, Measures, Model, Row, SolveReport, StepProblem, measure,
+};
+
+/// A step on its way through its substeps. Lives for one step: what is carried on is in the
+/// world and in the contacts' memories.
+pub(super) struct Substepping<K: Kinematics> {
+    /// h, s.
+    pub substep_secs: f64,
+    /// Bodies at the beginning of the substep.
+    pub start: Vec<K::Body<f64>>,
+    /// Bodies at the end of the substep if no contact acted.
+    pub free: Vec<K::Body<f64>>,
+    pub works: Works,
+}
+
+/// Works since the beginning of the step, J.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Works {
+    normal: f64,
+    tangential: f64,
+    gravity: f64,
+    pub wall: f64,
+    border: f64,
+    pub drives: f64,
+}
+
+impl<K: Kinematics> Substepping<K> {
+    /// Begins a step in so many substeps: its problem is set up, and the bodies are where they were.
+    pub(super) fn begin_step<M: Model<Kinematics = K>>(
+        stage: &mut Stage<'_, M>,
+        settings: &Settings,
+        substeps: u32,
+    ) -> Self {
+        set_up(stage, settings);
+        stage.problem.bodies.now.clone_from(&stage.problem.bodies.before);
+        Self {
+            substep_secs: settings.parameters.time_step_secs / f64::from(substeps),
+            start: Vec::new(),
+            free: Vec::new(),
+            works: Works::default(),
+        }
+    }
+
+    /// Ends the step, after so many passes over its contacts.
+    pub(super) fn end_step<M: Model<Kinematics = K>>(
+        &self,
+        stage: &Stage<'_, M>,
+        sweeps: u32,
+    ) -> StepResult {
+        let Works { normal, tangential, gravity, wall, border, drives } = self.works;
+        let measures = Measures {
+            normal_work: normal,
+            tangential_work: tangential,
+            wall_work: wall,
+            border_work: border,
+            ..measure::<M>(stage.problem)
+        };
+        let report = SolveReport { sweeps, ..SolveReport::nothing_yet() };
+        StepResult { report, measures, gravity_work: gravity, drive_work: drives, bonds: None }
+    }
+
+    /// Begins a substep: gravity and a spring that pulls act on the bodies.
+    pub(super) fn begin<M: Model<Kinematics = K>>(&mut self, stage: &mut Stage<'_, M>) {
+        let push = stage.state.push_of_pull(K::AXES, self.substep_secs);
+        let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);
+        self.start.clone_from(bodies);
+        for (index, body) in bodies.iter_mut().enumerate() {
+            if world.grains.feels_gravity[index] {
+                *body = K::accelerated(body, world, index, self.substep_secs);
+            }
+        }
+        if let Some(push) = push {
+            push.apply::<K>(bodies);
+        }
+        self.free.clone_from(bodies);
+    }
+
+    /// Moves the grains for h with the bodies' velocities.
+    pub(super) fn place<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
+        self.store(stage);
+        stage.state.integrate::<M>(self.substep_secs);
+    }
+
+    /// Hands the bodies' velocities to the world.
+    pub(super) fn store<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
+        for (index, body) in stage.problem.bodies.now.iter().enumerate() {
+            K::store(body, &mut stage.state.world, index);
+        }
+    }
+
+    /// Counts the work of gravity and of the spring in the substep that ends with `bodies`.
+    pub(super) fn add_gravity_work(&mut self, bodies: &[K::Body<f64>], masses: &[f64]) {
+        for (index, body) in bodies.iter().enumerate() {
+            let (start, free) = (&self.start[index], &self.free[index]);
+            self.works.gravity += K::work_of_gravity(start, body, free, masses[index]);
+        }
+    }
+}
+
+impl Works {
+    /// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
+    /// the mean of the velocities at its beginning and its end. `wall` is (V_n, V_t) of its wall, m/s.
+    #[inline(always)]
+    pub(super) fn add<K: Kinematics>(
+        &mut self,
+        mass: f64,
+        normal: K::Normal<f64>,
+        impulse: [f64; 2],
+        [start, end]: [[f64; 2]; 2],
+        wall: [f64; 2],
+    ) {
+        self.normal += 0.5 * mass * impulse[0] * (start[0] + end[0]);
+        self.tangential += 0.5 * mass * impulse[1] * (start[1] + end[1]);
+        self.wall += mass * (impulse[0] * wall[0] + impulse[1] * wall[1]);
+        if K::SLIDES {
+            let along = K::slide_along(normal);
+            self.border += mass * (impulse[0] * along[0] + impulse[1] * along[1]);
+        }
+    }
+}
+
+/// Tells the problem that a step is judged by how walls that a force drives go at its end.
+pub(super) fn set_drive_speeds<M: Model>(stage: &mut Stage<'_, M>) {
+    let drives = stage.state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
+    stage.problem.set_wall_velocities(drives.map(|drive| drive.speed));
+}
+
+/// A contact in the course of a step.
+pub(super) struct Touching {
+    /// Gap, m.
+    pub gap: f64,
+    /// How fast its wall comes, m/s.
+    pub wall_speed: f64,
+    /// How fast its surface goes along the tangent, m/s.
+    pub surface_speed: f64,
+    /// What it knows of a wall that a force drives, if its own is one.
+    pub driven: Option<DrivenRow>,
+    /// 1 but where a wall gives way: how much an impulse changes v_n and v_t, over how much it would if the wall did
+    /// not.
+    pub answers: [f64; 2],
+    /// What the law asks it to part with, relative to its wall, m/s; below 0 where it closed.
+    pub rebound: f64,
+    /// Bond·g·h where it is cohesive in this substep, else 0, m/s.
+    pub capture_speed: f64,
+    /// (λ_n, λ_t) of this substep, m/s.
+    pub impulse: [f64; 2],
+    /// (λ_n, λ_t) of the step so far, m/s.
+    pub total: [f64; 2],
+}
+
+impl Touching {
+    /// (V_n, V_t) of its wall, m/s.
+    pub(super) fn wall_velocity(&self) -> [f64; 2] {
+        [self.wall_speed, self.surface_speed]
+    }
+}
+
+/// The contacts in the order of the rows, with the forces of the step before for so long (s).
+pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
+    let (contacts, problem) = (&stage.state.contacts, &stage.problem);
+    let contact = |((number, row), &index): ((usize, &Row<M::Kinematics>), &u32)| {
+        let memory = contacts.memories()[index as usize];
+        let per_mass = warm_secs / row.effective_mass;
+        let wall_speed = problem.wall_speed(number);
+        Touching {
+            gap: contacts.contacts()[index as usize].gap,
+            wall_speed,
+            driven: problem.walls.driven_row(number).copied(),
+            answers: [1.0; 2],
+            rebound: row.restitution_velocity + wall_speed,
+            surface_speed: problem.rows.surface_speed(number),
+            capture_speed: 0.0,
+            impulse: [per_mass * memory.normal_force, per_mass * memory.tangential_force],
+            total: [0.0; 2],
+        }
+    };
+    problem.rows().zip(&problem.rows.contacts).map(contact).collect()
+}
+
+/// Has the gaps follow the bodies' velocities for h.
+pub(super) fn follow_gaps<K: Kinematics>(
+    problem: &StepProblem<K>,
+    contacts: &mut [Touching],
+    substep_secs: f64,
+) {
+    let velocities = velocities(problem, &problem.bodies.now);
+    for (contact, [normal_velocity, _]) in contacts.iter_mut().zip(velocities) {
+        contact.gap += substep_secs * (normal_velocity - contact.wall_speed);
+    }
+}
+
+/// Sums up impulses and works of a substep.
+pub(super) fn end_substep<K: Kinematics>(
+    problem: &StepProblem<K>,
+    contacts: &mut [Touching],
+    substepping: &mut Substepping<K>,
+) {
+    let Substepping { works, start, .. } = substepping;
+    let start = velocities(problem, start);
+    let end = velocities(problem, &problem.bodies.now);
+    let rows = problem.rows.iter();
+    for (((row, contact), start), end) in rows.zip(contacts).zip(start).zip(end) {
+        contact.total[0] += contact.impulse[0];
+        contact.total[1] += contact.impulse[1];
+        let velocities = [start, end];
+        let wall = contact.wall_velocity();
+        works.add::<K>(row.effective_mass, row.normal, contact.impulse, velocities, wall);
+    }
+}
+
+/// Hands the forces of the last substep to the contacts' memories.
+pub(super) fn remember<M: Model>(
+    stage: &mut Stage<'_, M>,
+    contacts: &[Touching],
+    substep_secs: f64,
+) {
+    let Stage { state: State { contacts: list, .. }, problem, .. } = stage;
+    let (_, _, memories) = list.parts_mut();
+    let rows = problem.rows.iter();
+    for ((row, contact), &index) in rows.zip(contacts).zip(&problem.rows.contacts) {
+        let per_secs = row.effective_mass / substep_secs;
+        memories[index as usize] = ContactMemory {
+            normal_force: per_secs * contact.impulse[0],
+            tangential_force: per_secs * contact.impulse[1],
+            ..ContactMemory::default()
+        };
+    }
+}
+
+/// Gives the problem of the step the impulses that were summed up.
+pub(super) fn hand_over<K: Kinematics>(problem: &mut StepProblem<K>, contacts: &[Touching]) {
+    let capture_speed = problem.law.capture_speed();
+    for (row, contact) in problem.rows.iter_mut().zip(contacts) {
+        row.shifted_impulse = contact.total[0] + capture_speed;
+        row.tangential_impulse = contact.total[1];
+    }
+}
+
+/// The relative velocities of all rows with the given bodies, m/s.
+pub(super) fn velocities<'a, K: Kinematics>(
+    problem: &'a StepProblem<K>,
+    bodies: &'a [K::Body<f64>],
+) -> impl Iterator<Item = [f64; 2]> + 'a {
+    let fixed = problem.rows.fixed.iter();
+    let of_fixed = fixed.map(|row| K::velocity(row.normal, &bodies[row.i as usize]));
+    of_fixed.chain(problem.rows.pairs.iter().map(|row| row.velocity(bodies)))
+}

@@ -1,0 +1,231 @@
+//! W and q: those of a step's problem, and W from its entries, as 2×2 blocks in rows, checked.
+//!
+//! With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates and M the inertias in
+//! them, W = G M⁻¹ Gᵀ and q = G v^free, plus restitution's term in the normal rows. A contact
+//! meets those that share one of its grains, and no others: where n of them share one, W has n² blocks.
+
+use crate::error::{Error, Result};
+use crate::solver::kinematics::Kinematics;
+use crate::solver::problem::{Row, StepProblem};
+
+/// Two entries of W that stand opposite each other may differ by this part of √(W_ii W_jj): what a
+/// file of six digits loses.
+const ASYMMETRY: f64 = 1e-5;
+
+/// Entries of a sparse matrix; those of one place are added. Plain data, checked where a problem
+/// is made of it.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Triplets {
+    /// Row of each entry.
+    pub row: Vec<u32>,
+    /// Column of each entry.
+    pub col: Vec<u32>,
+    /// Each entry, 1/kg.
+    pub val: Vec<f64>,
+}
+
+impl Triplets {
+    /// (row, column, entry), in the order in which they stand.
+    pub fn entries(&self) -> impl Iterator<Item = (u32, u32, f64)> {
+        let places = self.row.iter().zip(&self.col);
+        places.zip(&self.val).map(|((&row, &column), &value)| (row, column, value))
+    }
+}
+
+pub(super) fn check_length(field: &str, length: usize, wanted: usize, meaning: &str) -> Result<()> {
+    if length == wanted {
+        return Ok(());
+    }
+    let allowed = format!("{wanted} ({meaning})");
+    Err(Error::value(format!("the length of {field}"), length, allowed))
+}
+
+pub(super) fn check_each(
+    field: &str,
+    values: &[f64],
+    allowed: &str,
+    fits: impl Fn(f64) -> bool,
+) -> Result<()> {
+    match values.iter().position(|&value| !fits(value)) {
+        Some(at) => Err(Error::value(format!("{field}[{at}]"), values[at], allowed)),
+        None => Ok(()),
+    }
+}
+
+/// [row contact, column contact] and what stands there.
+pub(super) type EntryBlock = ([u32; 2], [[f64; 2]; 2]);
+
+/// The blocks of W in rows.
+pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBlock>> {
+    let Triplets { row, col, val } = matrix;
+    if val.is_empty() {
+        return Err(Error::value("W", "empty", "a matrix with an entry on each diagonal place"));
+    }
+    check_length("W.row", row.len(), val.len(), "that of W.val")?;
+    check_length("W.col", col.len(), val.len(), "that of W.val")?;
+    check_each("W.val", val, "a finite number", |value| value.is_finite())?;
+    for (field, indices) in [("W.row", row), ("W.col", col)] {
+        if let Some(at) = indices.iter().position(|&index| index as usize >= 2 * contacts) {
+            let allowed = format!("below {} (2 nc)", 2 * contacts);
+            return Err(Error::value(format!("{field}[{at}]"), indices[at], allowed));
+        }
+    }
+    let mut order: Vec<usize> = (0..val.len()).collect();
+    order.sort_by_key(|&entry| [row[entry] / 2, col[entry] / 2]);
+    let mut blocks: Vec<EntryBlock> = Vec::new();
+    for entry in order {
+        let place = [row[entry] / 2, col[entry] / 2];
+        if blocks.last().is_none_or(|(last, _)| *last != place) {
+            blocks.push((place, [[0.0; 2]; 2]));
+        }
+        // A block has just been pushed where there was none.
+        let (_, block) = blocks.last_mut().expect("a block");
+        block[row[entry] as usize % 2][col[entry] as usize % 2] += val[entry];
+    }
+    Ok(blocks)
+}
+
+pub(super) fn own_blocks(blocks: &[EntryBlock], contacts: usize) -> Result<Vec<[[f64; 2]; 2]>> {
+    let mut own = vec![[[0.0; 2]; 2]; contacts];
+    for ([row, column], block) in blocks {
+        if row == column {
+            own[*row as usize] = *block;
+        }
+    }
+    for (contact, [[normal, mixed], [_, tangential]]) in own.iter().enumerate() {
+        for (value, index) in [(normal, 2 * contact), (tangential, 2 * contact + 1)] {
+            if *value <= 0.0 {
+                return Err(Error::value(format!("W[{index}, {index}]"), value, "> 0"));
+            }
+        }
+        let determinant = normal * tangential - mixed * mixed;
+        if determinant <= 0.0 {
+            let field = format!("the determinant of contact {contact}'s block of W");
+            return Err(Error::value(field, determinant, "> 0"));
+        }
+    }
+    Ok(own)
+}
+
+pub(super) fn check_symmetry(blocks: &[EntryBlock], own: &[[[f64; 2]; 2]]) -> Result<()> {
+    for &([row, column], block) in blocks {
+        let opposite = blocks
+            .binary_search_by_key(&[column, row], |(place, _)| *place)
+            .map_or([[0.0; 2]; 2], |at| blocks[at].1);
+        for a in 0..2 {
+            for b in 0..2 {
+                let scale = (own[row as usize][a][a] * own[column as usize][b][b]).sqrt();
+                let (one, other) = (block[a][b], opposite[b][a]);
+                if (one - other).abs() > ASYMMETRY * scale {
+                    let (i, j) = (2 * row as usize + a, 2 * column as usize + b);
+                    let field = format!("W[{i}, {j}]");
+                    let allowed = format!("W[{j}, {i}], which is {other}: W is symmetric");
+                    return Err(Error::value(field, one, allowed));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Entries of W: a problem file of this many has some 500 MB. Piles of 300,000 discs have fewer.
+const MOST_ENTRIES: u64 = 20_000_000;
+
+/// W and q of a step's problem, its contacts in the order of its rows.
+pub struct Assembled {
+    /// W, 1/kg, exactly symmetric, sorted by row and column, without zeros.
+    pub matrix: Triplets,
+    /// q, m/s.
+    pub free_velocities: Vec<f64>,
+}
+
+impl Assembled {
+    /// Works W and q out. On a line, where there is no tangent, a tangential row has W_tt = W_nn and
+    /// meets nothing.
+    ///
+    /// # Errors
+    /// Names the body that most contacts share, where they make W too large.
+    pub fn of<K: Kinematics>(problem: &StepProblem<K>) -> Result<Self> {
+        let mut contacts_of_body = vec![Vec::new(); problem.bodies.masses.len()];
+        for (number, row) in problem.rows() {
+            contacts_of_body[row.i as usize].push(number);
+            if problem.rows.is_pair(number) {
+                contacts_of_body[row.j as usize].push(number);
+            }
+        }
+        check_entries(&contacts_of_body)?;
+        let mut matrix = Triplets::default();
+        let mut free_velocities = Vec::with_capacity(2 * problem.rows.len());
+        for (number, row) in problem.rows() {
+            let mut others = contacts_of_body[row.i as usize].clone();
+            if problem.rows.is_pair(number) {
+                others.extend(&contacts_of_body[row.j as usize]);
+            }
+            others.sort_unstable();
+            others.dedup();
+            for axis in 0..2 {
+                for &other in &others {
+                    for other_axis in 0..2 {
+                        let value = entry(problem, [number, axis], [other, other_axis]);
+                        if value != 0.0 {
+                            matrix.row.push((2 * number + axis) as u32);
+                            matrix.col.push((2 * other + other_axis) as u32);
+                            matrix.val.push(value);
+                        }
+                    }
+                }
+            }
+        }
+        problem.for_each_velocity(&problem.bodies.free, |row, [normal, tangential]| {
+            free_velocities.extend([normal + row.restitution_velocity, tangential]);
+        });
+        Ok(Self { matrix, free_velocities })
+    }
+}
+
+/// Checks that W has room, by the contacts of each body: each meets all others.
+fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
+    let of_body = |contacts: &Vec<usize>| 4 * (contacts.len() as u64).pow(2);
+    let entries: u64 = contacts_of_body.iter().map(of_body).sum();
+    let most = contacts_of_body.iter().enumerate().max_by_key(|(_, contacts)| contacts.len());
+    match most {
+        Some((body, contacts)) if entries > MOST_ENTRIES => {
+            let field = format!("the number of contacts of grains[{body}]");
+            let allowed = format!(
+                "so small that W has at most {MOST_ENTRIES} entries, where it has up to {entries}"
+            );
+            Err(Error::value(field, contacts.len(), allowed))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The entry of W of two rows, each by its number and axis: 0 normal, 1 tangential.
+fn entry<K: Kinematics>(
+    problem: &StepProblem<K>,
+    [number, axis]: [usize; 2],
+    [other_number, other_axis]: [usize; 2],
+) -> f64 {
+    let (row, other) = (problem.rows.get(number), problem.rows.get(other_number));
+    if K::AXES == 1 && (axis, other_axis) != (0, 0) {
+        let same = number == other_number && axis == other_axis;
+        return if same { 1.0 / row.effective_mass } else { 0.0 };
+    }
+    let bodies =
+        |row: &Row<K>, number: usize| [Some(row.i), problem.rows.is_pair(number).then_some(row.j)];
+    let gradients = [K::gradients(row.normal), K::gradients(other.normal)];
+    let mut sum = 0.0;
+    for (side, body) in bodies(row, number).into_iter().enumerate() {
+        for (other_side, other_body) in bodies(other, other_number).into_iter().enumerate() {
+            let Some(body) = body.filter(|_| body == other_body) else { continue };
+            let mass = problem.bodies.masses[body as usize];
+            let (one, two) = (gradients[0][side][axis], gradients[1][other_side][other_axis]);
+            let inertias = K::INERTIA_OVER_MASS.iter().take(K::DEGREES);
+            for ((a, b), inertia) in one.iter().zip(two).zip(inertias) {
+                sum += a * b / (mass * inertia);
+            }
+        }
+    }
+    sum
+}

@@ -1,0 +1,297 @@
+//! Alternating directions of multipliers with a cached sparse factorisation (S. Boyd and others
+//! 2011; on contact problems V. Acary, M. Brémond, O. Huber 2018).
+//!
+//! Body velocities V and contact velocities z are two unknowns, tied by HV = z with the impulses as
+//! multipliers and a penalty m_ij/ε. In reduced impulses (`contact::law`), with u = v_n + ρ v_n^{n−1}
+//! of V, one iteration takes the impulses from V by the law,
+//!
+//! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±bound(σ')),
+//!
+//! sets z = u + ε (σ' − σ), and then V from the impulses, pulled towards z,
+//!
+//! > (M + Σ m_ij/ε (n nᵀ + m_t/m_n t tᵀ)) V = M V_free + Σ m_ij [n (2σ' − σ − c + v_n/ε) + t (…)],
+//!
+//! c the capture speed. The matrix stays while ε does, so an iteration is one pass over the contacts
+//! and one solve with factors at hand. Where it rests, V obeys the impulses and the impulses obey
+//! the law: the common natural map is 0. Penalty and law pull against each other; ε is changed where
+//! one of σ' − σ and (z' − z)/ε is much the larger.
+
+use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
+use super::stopping::{SolveReport, is_tested};
+use crate::contact::law::{coulomb, signorini};
+use crate::solver::kinematics::Kinematics;
+use crate::solver::linear::{BlockMatrix, Elimination};
+use crate::solver::model::Model;
+use crate::solver::problem::{Row, StepProblem};
+use crate::solver::settings::SolverSettings;
+
+/// ε at first.
+const FIRST_COMPLIANCE: f64 = 0.03;
+/// Iterations between two looks at ε: a factorisation costs as much as some ten iterations.
+const BALANCE_INTERVAL: u32 = 24;
+/// How much larger one of the two residuals must be for ε to change.
+const OUT_OF_BALANCE: f64 = 4.0;
+/// The most that ε changes at a time.
+const LARGEST_CHANGE: f64 = 10.0;
+/// Below, rounding in the factorisation tells; above, impulses hardly spread.
+const COMPLIANCES: [f64; 2] = [1e-5, 1.0];
+
+/// The directions for each number of degrees of freedom; those that are not used hold no memory.
+#[derive(Debug, Default)]
+pub(crate) struct AdmmMemory {
+    one: Directions<1>,
+    two: Directions<2>,
+    three: Directions<3>,
+    /// The best impulses of a solve.
+    best: ScaledVector,
+    /// Of the system whose residual is looked at.
+    root_masses: Vec<f64>,
+}
+
+impl Clone for AdmmMemory {
+    /// Nothing in them outlives a solve, so a copy of a simulation need not carry them.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// V and z of one solve, and the matrix that ties them.
+#[derive(Debug, Default)]
+struct Directions<const D: usize> {
+    elimination: Elimination,
+    matrix: BlockMatrix<D>,
+    /// V, or the right-hand side that it is solved from, by place in the elimination.
+    vector: Vec<[f64; D]>,
+    /// z of each contact without restitution's term, m/s.
+    targets: ScaledVector,
+    impulses: ScaledVector,
+    before: ScaledVector,
+}
+
+/// Solves a prepared problem.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    memory: &mut AdmmMemory,
+    settings: &SolverSettings,
+) -> SolveReport {
+    let AdmmMemory { one, two, three, best, root_masses } = memory;
+    match M::Kinematics::DEGREES {
+        1 => run::<M, 1>(problem, one, best, root_masses, settings),
+        2 => run::<M, 2>(problem, two, best, root_masses, settings),
+        _ => run::<M, 3>(problem, three, best, root_masses, settings),
+    }
+}
+
+fn run<M: Model, const D: usize>(
+    problem: &mut StepProblem<M::Kinematics>,
+    directions: &mut Directions<D>,
+    best_impulses: &mut ScaledVector,
+    roots: &mut Vec<f64>,
+    settings: &SolverSettings,
+) -> SolveReport {
+    let pairs = problem.rows.pairs.iter().map(|row| (row.i, row.j));
+    directions.elimination.analyse(problem.bodies.now.len(), pairs);
+    let mut best = BestIterate::new(&BodySystem::<M>::new(problem, roots), best_impulses);
+    let mut report = SolveReport::default();
+    let mut compliance = FIRST_COMPLIANCE;
+    directions.factorise::<M>(problem, compliance);
+    report.factorisations += 1;
+    directions.start::<M>(problem);
+    while report.sweeps < settings.max_sweeps {
+        report.sweeps += 1;
+        let is_tested = is_tested(report.sweeps, settings);
+        if is_tested {
+            BodySystem::<M>::new(problem, roots).read(&mut directions.before);
+        }
+        let balance = directions.apply_law::<M>(problem, compliance);
+        if is_tested {
+            problem.form_velocities();
+            let system = BodySystem::<M>::new(problem, roots);
+            if system.is_settled(&directions.before, settings) {
+                report.converged = true;
+                break;
+            }
+            system.read(&mut directions.impulses);
+            if best.look(&system, &directions.impulses, report.sweeps, settings) {
+                break;
+            }
+        }
+        if report.sweeps.is_multiple_of(BALANCE_INTERVAL) {
+            let wanted = compliance * balance.clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE);
+            let wanted = wanted.clamp(COMPLIANCES[0], COMPLIANCES[1]);
+            let change = wanted / compliance;
+            if change.max(1.0 / change) > OUT_OF_BALANCE.sqrt() {
+                compliance = wanted;
+                directions.factorise::<M>(problem, compliance);
+                report.factorisations += 1;
+            }
+        }
+        directions.take_loads::<M>(problem, compliance);
+        directions.matrix.solve(&directions.elimination, &mut directions.vector);
+    }
+    if !report.converged {
+        problem.form_velocities();
+        report.stalled =
+            best.restore(&mut BodySystem::<M>::new(problem, roots), report.sweeps).stalled;
+    }
+    report
+}
+
+impl<const D: usize> Directions<D> {
+    /// Factorises the matrix of a compliance ε.
+    fn factorise<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>, compliance: f64) {
+        let Self { elimination, matrix, .. } = self;
+        matrix.clear(elimination);
+        for (body, &mass) in problem.bodies.masses.iter().enumerate() {
+            let block = matrix.diagonal_mut(elimination.place_of[body]);
+            for (axis, entries) in block.iter_mut().enumerate() {
+                entries[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+            }
+        }
+        let tangential = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+        let add = |block: &mut [[f64; D]; D], stiffness: f64, a: &Gradients, b: &Gradients| {
+            for (row, entries) in block.iter_mut().enumerate() {
+                for (column, entry) in entries.iter_mut().enumerate() {
+                    *entry += stiffness * a[0][row] * b[0][column];
+                    if M::FRICTION {
+                        *entry += stiffness * tangential * a[1][row] * b[1][column];
+                    }
+                }
+            }
+        };
+        for row in &problem.rows.fixed {
+            let [on_i, _] = M::Kinematics::gradients(row.normal);
+            let i = elimination.place_of[row.i as usize];
+            add(matrix.diagonal_mut(i), row.effective_mass / compliance, &on_i, &on_i);
+        }
+        for row in &problem.rows.pairs {
+            let [on_i, on_j] = M::Kinematics::gradients(row.normal);
+            let i = elimination.place_of[row.i as usize];
+            let j = elimination.place_of[row.j as usize];
+            let stiffness = row.effective_mass / compliance;
+            add(matrix.diagonal_mut(i), stiffness, &on_i, &on_i);
+            add(matrix.diagonal_mut(j), stiffness, &on_j, &on_j);
+            let number = elimination.block(i.min(j), i.max(j)) as u32;
+            let (i_to_j, j_to_i) = matrix.off_diagonal_mut(number, i < j);
+            add(i_to_j, stiffness, &on_i, &on_j);
+            add(j_to_i, stiffness, &on_j, &on_i);
+        }
+        matrix.factorise(elimination);
+    }
+
+    /// V and z of the present impulses.
+    fn start<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>) {
+        let bodies =
+            self.elimination.body_at.iter().map(|&body| &problem.bodies.now[body as usize]);
+        self.vector.clear();
+        self.vector.extend(bodies.map(|body| {
+            let coordinates = M::Kinematics::coordinates(body);
+            std::array::from_fn::<f64, D, _>(|axis| coordinates[axis])
+        }));
+        let mut targets = std::mem::take(&mut self.targets);
+        targets.clear();
+        targets.extend(
+            problem
+                .rows()
+                .map(|(number, row)| self.velocity::<M>(row, problem.rows.is_pair(number))),
+        );
+        self.targets = targets;
+    }
+
+    /// (v_n, v_t) of V at a contact, m/s.
+    #[inline(always)]
+    fn velocity<M: Model>(&self, row: &Row<M::Kinematics>, is_pair: bool) -> [f64; 2] {
+        let [on_i, on_j] = M::Kinematics::gradients(row.normal);
+        let along = |gradient: &[f64; 3], body: u32| -> f64 {
+            let velocity = &self.vector[self.elimination.place_of[body as usize] as usize];
+            (0..D).map(|axis| gradient[axis] * velocity[axis]).sum()
+        };
+        let mut velocity = [along(&on_i[0], row.i), along(&on_i[1], row.i)];
+        if is_pair {
+            velocity[0] += along(&on_j[0], row.j);
+            velocity[1] += along(&on_j[1], row.j);
+        }
+        velocity
+    }
+
+    /// Takes the rows' impulses and z from V. Gives the factor by which ε would have to change for
+    /// the two residuals to be alike.
+    fn apply_law<M: Model>(
+        &mut self,
+        problem: &mut StepProblem<M::Kinematics>,
+        compliance: f64,
+    ) -> f64 {
+        let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
+        let mut targets = std::mem::take(&mut self.targets);
+        let law = problem.law;
+        for (number, target) in targets.iter_mut().enumerate() {
+            // V knows no images, and no surfaces.
+            let is_pair = problem.rows.is_pair(number);
+            let [away, along] = match is_pair {
+                true => M::Kinematics::slide_along(problem.rows.get(number).normal),
+                false => [0.0, problem.rows.surface_speed(number)],
+            };
+            let row = problem.rows.get_mut(number);
+            let [normal, tangential] = self.velocity::<M>(row, is_pair);
+            let opening = normal - away + row.restitution_velocity;
+            let shifted = signorini(row.shifted_impulse - opening / compliance);
+            let change = compliance * (shifted - row.shifted_impulse);
+            row.shifted_impulse = shifted;
+            let before = std::mem::replace(&mut target[0], normal + change);
+            let mut note = |change: f64, of_target: f64| {
+                of_velocities += row.effective_mass * change * change;
+                of_impulses += row.effective_mass * of_target * of_target;
+            };
+            note(change, (target[0] - before) / compliance);
+            if M::FRICTION {
+                let softness = compliance * M::Kinematics::TANGENTIAL_COMPLIANCE;
+                let bound = law.friction_bound(shifted);
+                let slip = tangential - along;
+                let moved = coulomb(row.tangential_impulse - slip / softness, bound);
+                let change = softness * (moved - row.tangential_impulse);
+                row.tangential_impulse = moved;
+                let before = std::mem::replace(&mut target[1], tangential + change);
+                note(change, (target[1] - before) / softness);
+            }
+        }
+        self.targets = targets;
+        let balance: f64 = of_impulses / of_velocities;
+        // Nothing is out of balance where nothing changes.
+        if balance.is_finite() && balance > 0.0 { balance.sqrt().sqrt() } else { 1.0 }
+    }
+
+    /// The right-hand side from impulses and z.
+    fn take_loads<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>, compliance: f64) {
+        let Self { elimination, vector, targets, .. } = self;
+        for (place, &body) in elimination.body_at.iter().enumerate() {
+            let free = M::Kinematics::coordinates(&problem.bodies.free[body as usize]);
+            let mass = problem.bodies.masses[body as usize];
+            for axis in 0..D {
+                let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+                vector[place][axis] = inertia * free[axis];
+            }
+        }
+        let softness = compliance * M::Kinematics::TANGENTIAL_COMPLIANCE;
+        for ((number, row), target) in problem.rows().zip(targets) {
+            let [normal, tangential] = problem.reduced_impulse(number, row);
+            let mass = row.effective_mass;
+            let normal = mass * (normal + target[0] / compliance);
+            let tangential =
+                if M::FRICTION { mass * (tangential + target[1] / softness) } else { 0.0 };
+            let [on_i, on_j] = M::Kinematics::gradients(row.normal);
+            let mut push = |gradients: &Gradients, body: u32| {
+                let load = &mut vector[elimination.place_of[body as usize] as usize];
+                for (axis, load) in load.iter_mut().enumerate() {
+                    *load += normal * gradients[0][axis] + tangential * gradients[1][axis];
+                }
+            };
+            push(&on_i, row.i);
+            if problem.rows.is_pair(number) {
+                push(&on_j, row.j);
+            }
+        }
+    }
+}
+
+/// How a body's coordinates enter v_n and v_t.
+type Gradients = [[f64; 3]; 2];

@@ -1,0 +1,352 @@
+//! A contact problem as methods see it that treat all impulses as one vector.
+//!
+//! **Scaled variables.** With p = P_n + C₀Δt and u_n = v_n + ρ v_n^{n−1} a step's problem is to find
+//! impulses and velocities, affine in the impulses, with
+//!
+//! > p = max(0, p − m_n u_n),  P_t = clamp(P_t − m_t v_t, ±bound(p)).
+//!
+//! In s = (p, P_t)/√m_n and w = √m_n·(u_n, v_t) the map w(s) = A s + b has a *symmetric* positive
+//! semi-definite A (it is the Delassus operator between m_n^½ and m_n^½) with 1 on the diagonal of
+//! every normal entry and m_n/m_t on that of every tangential one, and the conditions read
+//!
+//! > s_n = max(0, s_n − w_n),  s_t = clamp(s_t − w_t m_t/m_n, ±bound(s_n)).
+//!
+//! Both scaled quantities have the unit √J. A method written on this trait knows nothing of bodies.
+
+use super::nsgs::{sweep, tested_sweep};
+use super::stopping::{SolveReport, StallWatch};
+use crate::contact::law;
+use crate::solver::kinematics::Kinematics;
+use crate::solver::model::Model;
+use crate::solver::problem::{ContactRows, Row, StepProblem, residual};
+use crate::solver::settings::{SolverSettings, StopTest};
+use crate::world::FrictionCone;
+
+/// Scaled impulses or velocities of all contacts: (normal, tangential) each, √J.
+pub type ScaledVector = Vec<[f64; 2]>;
+
+/// WorkVectors that a method works with. Memory is kept between steps, contents are not.
+#[derive(Debug, Default)]
+pub(crate) struct WorkVectors {
+    /// As many vectors as the hungriest method needs.
+    pub pairs: [ScaledVector; 8],
+    /// One number a contact.
+    pub weights: Vec<f64>,
+}
+
+impl Clone for WorkVectors {
+    /// Nothing in them outlives a solve, so a copy of a simulation need not carry them.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// One step's contact problem in scaled variables (see the module). `contact` is an index below
+/// [`ContactSystem::len`].
+pub trait ContactSystem {
+    /// Whether contacts carry tangential impulses. Where they do not, tangential entries are 0.
+    const FRICTION: bool;
+
+    /// Number of contacts.
+    fn len(&self) -> usize;
+
+    /// Whether there is no contact.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The present impulses s; `impulses` is cleared first.
+    fn read(&self, impulses: &mut ScaledVector);
+
+    /// Takes impulses, of any sign and size, and forms the velocities that they make.
+    fn write(&mut self, impulses: &[[f64; 2]]);
+
+    /// w of the present velocities; `velocities` is cleared first.
+    fn velocities(&self, velocities: &mut ScaledVector);
+
+    /// m_n/m_t: the tangential entry on the diagonal of A, where the normal one is 1.
+    fn tangential_diagonal(&self, contact: usize) -> f64;
+
+    /// μ of a contact.
+    fn friction(&self, contact: usize) -> f64;
+
+    /// The largest |s_t| that a normal impulse s_n ≥ 0 allows.
+    fn friction_bound(&self, contact: usize, normal: f64) -> f64;
+
+    /// A number d > 0 a contact such that A ⪯ D⁻¹, where D has the entries (d, d m_t/m_n): with it a
+    /// projected step s − D w of all contacts at once cannot diverge. `weights` is cleared first.
+    fn splitting(&self, weights: &mut Vec<f64>);
+
+    /// One Gauss–Seidel sweep from the present impulses. Leaves impulses that the laws allow.
+    fn sweep(&mut self);
+
+    /// A sweep, and whether the stopping test is met after it.
+    fn tested_sweep(&mut self, settings: &SolverSettings) -> bool;
+
+    /// The common residual of the present impulses.
+    fn residual(&self) -> f64;
+
+    /// Whether the stopping test is met by an iteration that led from the impulses `before` to the
+    /// present ones.
+    fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool;
+}
+
+/// What is kept by a method that works on a system of bodies.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SystemMemory {
+    vectors: WorkVectors,
+    root_masses: Vec<f64>,
+}
+
+impl SystemMemory {
+    /// A problem as a system, and vectors to work with.
+    pub(crate) fn system<'a, M: Model>(
+        &'a mut self,
+        problem: &'a mut StepProblem<M::Kinematics>,
+    ) -> (BodySystem<'a, M>, &'a mut WorkVectors) {
+        (BodySystem::new(problem, &mut self.root_masses), &mut self.vectors)
+    }
+}
+
+/// The problem of a step: impulses move bodies, and A is never formed.
+#[derive(Debug)]
+pub struct BodySystem<'a, M: Model> {
+    problem: &'a mut StepProblem<M::Kinematics>,
+    /// √m_n of the rows, kg^½.
+    root_masses: &'a [f64],
+}
+
+impl<'a, M: Model> BodySystem<'a, M> {
+    /// Contacts are numbered as the rows: those with fixed bodies first. `root_masses` is cleared
+    /// first.
+    pub fn new(problem: &'a mut StepProblem<M::Kinematics>, root_masses: &'a mut Vec<f64>) -> Self {
+        root_masses.clear();
+        root_masses.extend(problem.rows.iter().map(|row| row.effective_mass.sqrt()));
+        Self { problem, root_masses }
+    }
+
+    /// √m_n of a contact, kg^½: P = √m_n s.
+    pub fn root_mass(&self, contact: usize) -> f64 {
+        self.root_masses[contact]
+    }
+
+    /// Rows with √m_n, kg^½.
+    fn rows(&self) -> impl Iterator<Item = (&Row<M::Kinematics>, &f64)> {
+        self.problem.rows.iter().zip(self.root_masses)
+    }
+}
+
+impl<M: Model> ContactSystem for BodySystem<'_, M> {
+    const FRICTION: bool = M::FRICTION;
+
+    fn len(&self) -> usize {
+        self.root_masses.len()
+    }
+
+    fn read(&self, impulses: &mut ScaledVector) {
+        impulses.clear();
+        impulses.extend(
+            self.rows()
+                .map(|(row, root)| [root * row.shifted_impulse, root * row.tangential_impulse]),
+        );
+    }
+
+    fn write(&mut self, impulses: &[[f64; 2]]) {
+        let rows = self.problem.rows.iter_mut();
+        for ((row, root), [normal, tangential]) in rows.zip(self.root_masses).zip(impulses) {
+            row.shifted_impulse = normal / root;
+            if M::FRICTION {
+                row.tangential_impulse = tangential / root;
+            }
+        }
+        self.problem.form_velocities();
+    }
+
+    fn velocities(&self, velocities: &mut ScaledVector) {
+        velocities.clear();
+        let mut roots = self.root_masses.iter();
+        self.problem.for_each_velocity(&self.problem.bodies.now, |row, [normal, tangential]| {
+            let Some(root) = roots.next() else { return };
+            let tangential = if M::FRICTION { root * tangential } else { 0.0 };
+            velocities.push([root * (normal + row.restitution_velocity), tangential]);
+        });
+    }
+
+    #[inline(always)]
+    fn tangential_diagonal(&self, _contact: usize) -> f64 {
+        M::Kinematics::TANGENTIAL_COMPLIANCE
+    }
+
+    #[inline(always)]
+    fn friction(&self, _contact: usize) -> f64 {
+        self.problem.law.friction
+    }
+
+    #[inline(always)]
+    fn friction_bound(&self, contact: usize, normal: f64) -> f64 {
+        let law = &self.problem.law;
+        match law.cone() {
+            FrictionCone::Shifted => law.friction_bound(normal),
+            FrictionCone::Compressive => {
+                let root = self.root_masses[contact];
+                root * law.friction_bound(normal / root)
+            }
+        }
+    }
+
+    /// Mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov 2012): a body with k contacts is cut
+    /// into k parts of 1/k of its mass and inertia, one a contact. By Cauchy–Schwarz the parts,
+    /// moved each on its own, answer at least as much as the body does: A ⪯ D⁻¹. For the contact's
+    /// own diagonal, 1/m_i becomes k_i/m_i, and with g_i = m_ij/m_i
+    ///
+    /// > 1/d = k_i g_i + k_j (1 − g_i), against a fixed body k_i,
+    ///
+    /// and k_i + k κ(b_n² + b_t² m_t/m_n) against a wall with k contacts that is driven (`problem::walls`).
+    fn splitting(&self, weights: &mut Vec<f64>) {
+        let ContactRows { fixed, pairs, .. } = &self.problem.rows;
+        // Counts come first in the same memory, one a body.
+        let count = self.problem.bodies.now.len();
+        weights.clear();
+        weights.resize(count, 0.0);
+        for row in fixed {
+            weights[row.i as usize] += 1.0;
+        }
+        for row in pairs {
+            weights[row.i as usize] += 1.0;
+            weights[row.j as usize] += 1.0;
+        }
+        for (row, of_wall) in fixed.iter().zip(self.problem.wall_compliances()) {
+            weights.push(1.0 / (weights[row.i as usize] + of_wall.unwrap_or(0.0)));
+        }
+        for row in pairs {
+            let (i, j) = (weights[row.i as usize], weights[row.j as usize]);
+            weights.push(1.0 / (row.share * i + (1.0 - row.share) * j));
+        }
+        weights.drain(..count);
+    }
+
+    fn sweep(&mut self) {
+        sweep::<M, false>(self.problem);
+    }
+
+    fn tested_sweep(&mut self, settings: &SolverSettings) -> bool {
+        tested_sweep::<M>(self.problem, settings)
+    }
+
+    fn residual(&self) -> f64 {
+        residual::<M>(self.problem)
+    }
+
+    fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool {
+        let tolerance = settings.tolerance;
+        if settings.stop == StopTest::Residual {
+            return self.residual() <= tolerance;
+        }
+        // Impulses in N·s, and without the shift.
+        let (mut squared, mut absolute, mut whole) = (0.0, 0.0, 0.0);
+        for ((number, (row, root)), [normal, tangential]) in self.rows().enumerate().zip(before) {
+            let mass = row.effective_mass;
+            let mut add = |now: f64, change: f64| {
+                squared += change * change;
+                absolute += change.abs();
+                whole += now * now;
+            };
+            let [now, now_tangential] = self.problem.reduced_impulse(number, row);
+            add(mass * now, mass * row.shifted_impulse - root * normal);
+            if M::FRICTION {
+                add(mass * now_tangential, mass * row.tangential_impulse - root * tangential);
+            }
+        }
+        match settings.stop {
+            StopTest::ImpulsePerMass => absolute <= tolerance * self.problem.bodies.mean_mass,
+            // An infinite change is no larger than infinite impulses, and settles nothing.
+            _ => squared.is_finite() && squared <= tolerance * tolerance * whole,
+        }
+    }
+}
+
+/// Iterations between two looks at the residual, where the stopping test does not ask for it. More
+/// often costs more; less often, and a better iterate may be missed when a solve fails.
+const LOOK_INTERVAL: u32 = 16;
+
+/// What the contact laws make of impulses that a step has led to: the nearest normal impulse that
+/// is allowed, then the nearest tangential one that this allows.
+#[inline(always)]
+pub(crate) fn projected<S: ContactSystem>(
+    system: &S,
+    contact: usize,
+    [normal, tangential]: [f64; 2],
+) -> [f64; 2] {
+    let normal = law::signorini(normal);
+    if !S::FRICTION {
+        return [normal, 0.0];
+    }
+    [normal, law::coulomb(tangential, system.friction_bound(contact, normal))]
+}
+
+/// Σ a·b, in four sums that do not wait for each other.
+pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (mut pairs_of_a, mut pairs_of_b) = (a.chunks_exact(2), b.chunks_exact(2));
+    for (a, b) in (&mut pairs_of_a).zip(&mut pairs_of_b) {
+        sums[0] += a[0][0] * b[0][0];
+        sums[1] += a[0][1] * b[0][1];
+        sums[2] += a[1][0] * b[1][0];
+        sums[3] += a[1][1] * b[1][1];
+    }
+    for (a, b) in pairs_of_a.remainder().iter().zip(pairs_of_b.remainder()) {
+        sums[0] += a[0] * b[0];
+        sums[1] += a[1] * b[1];
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+/// The impulses of the smallest residual seen so far.
+pub(crate) struct BestIterate<'a> {
+    impulses: &'a mut ScaledVector,
+    residual: f64,
+    watch: StallWatch,
+}
+
+impl<'a> BestIterate<'a> {
+    /// Starts with the present impulses of a system.
+    pub(crate) fn new<S: ContactSystem>(system: &S, impulses: &'a mut ScaledVector) -> Self {
+        system.read(impulses);
+        Self { impulses, residual: system.residual(), watch: StallWatch::default() }
+    }
+
+    /// Looks at `impulses`, which are the system's present ones, after iteration `sweeps`; now and
+    /// then only. Tells whether to stop, since nothing better is to be had.
+    pub(crate) fn look<S: ContactSystem>(
+        &mut self,
+        system: &S,
+        impulses: &[[f64; 2]],
+        sweeps: u32,
+        settings: &SolverSettings,
+    ) -> bool {
+        if !sweeps.is_multiple_of(LOOK_INTERVAL) {
+            return false;
+        }
+        let residual = system.residual();
+        if residual < self.residual {
+            self.residual = residual;
+            self.impulses.clear();
+            self.impulses.extend_from_slice(impulses);
+        }
+        self.watch.look(sweeps, settings, || self.residual)
+    }
+
+    /// The end of a solve that failed: the system has the best impulses of all, its present ones
+    /// included.
+    pub(crate) fn restore<S: ContactSystem>(self, system: &mut S, sweeps: u32) -> SolveReport {
+        let residual = system.residual();
+        // Not a number is not better than anything.
+        let present_is_best = residual <= self.residual;
+        if !present_is_best {
+            system.write(self.impulses);
+        }
+        let best = if present_is_best { residual } else { self.residual };
+        let stalled = self.watch.has_stalled(sweeps, best);
+        SolveReport { sweeps, stalled, ..SolveReport::default() }
+    }
+}

@@ -1,0 +1,440 @@
+//! Semi-smooth Newton in body-velocity space, with a sparse direct factorisation.
+//!
+//! The contact law is a fixed point of projections (`contact::law`). Regularised with a compliance ε
+//! it reads, per contact and in reduced impulses,
+//!
+//! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±μσ'),
+//!
+//! u = v_n + ρ v_n^{n−1}, with the velocities at the *end* of the Newton step. Whether a contact is
+//! open, sticks or slips is guessed from the present state; each guess makes the law linear, so that
+//! impulses can be eliminated and velocities V remain:
+//!
+//! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],  c the capture speed,
+//!
+//! one sparse system with a D × D block a body: masses plus contact stiffnesses m_ij/ε. A slipping
+//! contact, λ_t' = ±μσ', brings the unsymmetric n + (±μ) t. The exact solution is a fixed point for
+//! any ε: a small one converges in few steps, a larger one is more robust where guesses flip.
+//! After each step the impulses are projected on what the law allows, velocities are formed
+//! anew from them, and a few Gauss–Seidel sweeps mend what the guesses got wrong.
+//!
+//! What is solved for is the *change* of the velocities, with the change of the impulses at rest as
+//! the load. Solved for the velocities themselves, rounding would leave an error of V·10⁻¹⁶ in them
+//! and, times the stiffness 1/ε twice, stall the residual of a fast pile at 10⁻⁴ … 10⁻⁷.
+//!
+//! The method is that of an augmented Lagrangian treated by generalised Newton steps (P. Alart,
+//! A. Curnier 1991), with ε adapted as in a trust region.
+
+use super::contact_system::SystemMemory;
+use super::nncg;
+use super::nsgs::{sweep, tested_sweep};
+use super::stopping::SolveReport;
+use crate::contact::law::{coulomb, signorini};
+use crate::solver::kinematics::Kinematics;
+use crate::solver::linear::{BlockMatrix, ContactGraph};
+use crate::solver::model::Model;
+use crate::solver::problem::{Row, StepProblem, residual};
+use crate::solver::settings::SolverSettings;
+
+/// Compliance of the first step.
+const FIRST_COMPLIANCE: f64 = 1e-7;
+/// Below this, rounding in the factorisation eats what a smaller compliance would gain.
+const SMALLEST_COMPLIANCE: f64 = 1e-7;
+/// Above this a Newton step is no better than sweeps, which then take over for a while.
+const LARGEST_COMPLIANCE: f64 = 0.1;
+/// Factor of the compliance after a step that is accepted.
+const AFTER_SUCCESS: f64 = 0.2;
+/// Factor of the compliance after a step that is refused.
+const AFTER_FAILURE: f64 = 10.0;
+/// Sweeps before the first factorisation: many steps of a pile at rest need no more.
+const SWEEPS_FIRST: u32 = 4;
+/// Sweeps after each factorisation: they mend what the guesses got wrong, at a fraction of its cost.
+const SWEEPS_AFTER: u32 = 4;
+/// Sweeps where Newton stalls, doubled each time up to [`MOST_SWEEPS_BETWEEN`].
+const SWEEPS_BETWEEN: u32 = 20;
+/// See [`SWEEPS_BETWEEN`].
+const MOST_SWEEPS_BETWEEN: u32 = 200;
+/// Factorisations without halving the best residual after which the solve is given up.
+const PATIENCE: u32 = 100;
+
+/// A step is accepted if its residual is below [`ENOUGH`] times the largest of this many before:
+/// the residual may rise for a few steps on the way down. With 1, steps are refused that lead on;
+/// with 15, many are taken that lead nowhere.
+const HISTORY: usize = 6;
+/// See [`HISTORY`].
+const ENOUGH: f64 = 0.99;
+
+/// A workspace for each number of degrees of freedom; those that are not used hold no memory.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NewtonMemory {
+    one: NewtonWorkspace<1>,
+    two: NewtonWorkspace<2>,
+    three: NewtonWorkspace<3>,
+    /// Of the conjugate gradients that go on where Newton's method leads nowhere.
+    gradients: SystemMemory,
+}
+
+/// What is kept where a body has `D` degrees of freedom.
+#[derive(Clone, Debug, Default)]
+struct NewtonWorkspace<const D: usize> {
+    graph: ContactGraph,
+    matrix: BlockMatrix<D>,
+    vector: Vec<[f64; D]>,
+    guesses: Vec<Guess>,
+    /// (σ, λ_t) of the rows to go back to.
+    saved: Vec<[f64; 2]>,
+    /// (σ, λ_t) of the smallest residual so far.
+    best: Vec<[f64; 2]>,
+}
+
+/// What the present state lets one guess of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Guess {
+    Open,
+    Stick,
+    /// The tangential impulse is at its bound, with this sign; 0 where the bound itself is 0.
+    Slip(f64),
+}
+
+/// Solves a prepared problem.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    memory: &mut NewtonMemory,
+    settings: &SolverSettings,
+) -> SolveReport {
+    let NewtonMemory { one, two, three, gradients } = memory;
+    match M::Kinematics::DEGREES {
+        1 => Newton::<M, 1> { problem, settings, workspace: one, gradients }.run(),
+        2 => Newton::<M, 2> { problem, settings, workspace: two, gradients }.run(),
+        _ => Newton::<M, 3> { problem, settings, workspace: three, gradients }.run(),
+    }
+}
+
+/// One solve.
+struct Newton<'a, M: Model, const D: usize> {
+    problem: &'a mut StepProblem<M::Kinematics>,
+    settings: &'a SolverSettings,
+    workspace: &'a mut NewtonWorkspace<D>,
+    gradients: &'a mut SystemMemory,
+}
+
+impl<M: Model, const D: usize> Newton<'_, M, D> {
+    fn run(mut self) -> SolveReport {
+        let mut report = SolveReport::default();
+        let most_sweeps = self.settings.max_sweeps;
+        if self.settles_in(SWEEPS_FIRST.min(most_sweeps), &mut report) {
+            return report;
+        }
+        self.workspace.graph.analyse(self.problem);
+        let mut history = ResidualHistory::new(residual::<M>(self.problem));
+        self.problem.rows.read_impulses(&mut self.workspace.saved);
+        self.workspace.best.clone_from(&self.workspace.saved);
+        let mut compliance = FIRST_COMPLIANCE;
+        let mut sweeps_between = SWEEPS_BETWEEN;
+        while report.sweeps + SWEEPS_AFTER <= most_sweeps && history.since_milestone < PATIENCE {
+            self.newton_step(compliance);
+            report.factorisations += 1;
+            for _ in 1..SWEEPS_AFTER {
+                sweep::<M, false>(self.problem);
+            }
+            report.sweeps += SWEEPS_AFTER - 1;
+            if self.settles_in(1, &mut report) {
+                return report;
+            }
+            let mut now = residual::<M>(self.problem);
+            history.since_milestone += 1;
+            // Not a number is not below anything.
+            if now < history.bound() {
+                compliance = (compliance * AFTER_SUCCESS).max(SMALLEST_COMPLIANCE);
+            } else {
+                self.problem.write_impulses(self.workspace.saved.iter().copied());
+                compliance *= AFTER_FAILURE;
+                if compliance <= LARGEST_COMPLIANCE {
+                    continue;
+                }
+                let sweeps = sweeps_between.min(most_sweeps - report.sweeps);
+                if self.settles_in(sweeps, &mut report) {
+                    return report;
+                }
+                sweeps_between = (2 * sweeps_between).min(MOST_SWEEPS_BETWEEN);
+                compliance = FIRST_COMPLIANCE;
+                now = residual::<M>(self.problem);
+            }
+            self.problem.rows.read_impulses(&mut self.workspace.saved);
+            if history.accept(now) {
+                self.workspace.best.clone_from(&self.workspace.saved);
+            }
+        }
+        self.problem.write_impulses(self.workspace.best.iter().copied());
+        self.go_on_without(report)
+    }
+
+    /// Sweeps up to so many times; whether the stopping test is met.
+    fn settles_in(&mut self, sweeps: u32, report: &mut SolveReport) -> bool {
+        for _ in 0..sweeps {
+            report.sweeps += 1;
+            if tested_sweep::<M>(self.problem, self.settings) {
+                report.converged = true;
+                break;
+            }
+        }
+        report.converged
+    }
+
+    /// Where Newton's method leads nowhere, conjugate gradients use up the sweeps that are left:
+    /// they solve some of what it cannot, and tell where there is nothing to be solved.
+    fn go_on_without(self, report: SolveReport) -> SolveReport {
+        let left = self.settings.max_sweeps - report.sweeps;
+        if left == 0 {
+            return report;
+        }
+        let settings = SolverSettings { max_sweeps: left, ..*self.settings };
+        let rest = nncg::solve::<M>(self.problem, self.gradients, &settings);
+        SolveReport {
+            sweeps: report.sweeps + rest.sweeps,
+            factorisations: report.factorisations,
+            ..rest
+        }
+    }
+
+    /// Guesses, solves for velocities, and takes the impulses that go with them.
+    fn newton_step(&mut self, compliance: f64) {
+        assemble::<M, D>(self.problem, self.workspace, compliance);
+        let NewtonWorkspace { graph, matrix, vector, .. } = &mut *self.workspace;
+        matrix.factorise(&graph.elimination);
+        matrix.solve(&graph.elimination, vector);
+        self.take_impulses(compliance);
+        self.problem.form_velocities();
+    }
+
+    /// The regularised law at the new velocities, projected on what the law allows.
+    fn take_impulses(&mut self, compliance: f64) {
+        let NewtonWorkspace { graph, vector, guesses, .. } = &*self.workspace;
+        let places = &graph.elimination.place_of;
+        let StepProblem { bodies, rows, law, .. } = &mut *self.problem;
+        let along = |gradient: &[f64; 3], body: u32| -> f64 {
+            let velocity = &vector[places[body as usize] as usize];
+            (0..D).map(|axis| gradient[axis] * velocity[axis]).sum()
+        };
+        let fixed_count = rows.fixed.len();
+        for (number, guess) in guesses.iter().enumerate() {
+            let is_pair = number >= fixed_count;
+            let [mut normal_velocity, mut tangential_velocity] = match is_pair {
+                true => rows.pairs[number - fixed_count].velocity(&bodies.now),
+                false => rows.fixed[number].velocity(&bodies.now),
+            };
+            let row = rows.get_mut(number);
+            let [[normal_i, tangent_i], [normal_j, tangent_j]] =
+                M::Kinematics::gradients(row.normal);
+            normal_velocity += along(&normal_i, row.i);
+            tangential_velocity += along(&tangent_i, row.i);
+            if is_pair {
+                normal_velocity += along(&normal_j, row.j);
+                tangential_velocity += along(&tangent_j, row.j);
+            }
+            let u = normal_velocity + row.restitution_velocity;
+            let shifted = match guess {
+                Guess::Open => 0.0,
+                _ => signorini(row.shifted_impulse - u / compliance),
+            };
+            row.shifted_impulse = shifted;
+            if M::FRICTION {
+                let bound = law.friction_bound(shifted);
+                let softness = M::Kinematics::TANGENTIAL_COMPLIANCE * compliance;
+                row.tangential_impulse = match guess {
+                    Guess::Open => 0.0,
+                    Guess::Stick => {
+                        coulomb(row.tangential_impulse - tangential_velocity / softness, bound)
+                    }
+                    Guess::Slip(sign) => sign * bound,
+                };
+            }
+        }
+    }
+}
+
+/// Guesses what every contact does, and sets up the equations of the velocities that follow.
+fn assemble<M: Model, const D: usize>(
+    problem: &StepProblem<M::Kinematics>,
+    workspace: &mut NewtonWorkspace<D>,
+    compliance: f64,
+) {
+    let NewtonWorkspace { graph, matrix, vector, guesses, .. } = workspace;
+    let (elimination, pair_blocks) = (&graph.elimination, &graph.pair_blocks);
+    matrix.clear(elimination);
+    vector.clear();
+    vector.resize(problem.bodies.now.len(), [0.0; D]);
+    for (body, &mass) in problem.bodies.masses.iter().enumerate() {
+        let place = elimination.place_of[body];
+        let block = matrix.diagonal_mut(place);
+        for (axis, row) in block.iter_mut().enumerate() {
+            row[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+        }
+    }
+    guesses.clear();
+    for row in &problem.rows.fixed {
+        let velocity = row.velocity(&problem.bodies.now);
+        let guess = guess::<M>(problem, row, velocity);
+        guesses.push(guess);
+        let gradients = M::Kinematics::gradients(row.normal);
+        let terms = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[0]);
+        let place = elimination.place_of[row.i as usize];
+        terms.add(matrix.diagonal_mut(place), &terms);
+        terms.add_load(&mut vector[place as usize]);
+    }
+    for (row, &block) in problem.rows.pairs.iter().zip(pair_blocks) {
+        let velocity = row.velocity(&problem.bodies.now);
+        let guess = guess::<M>(problem, row, velocity);
+        guesses.push(guess);
+        let gradients = M::Kinematics::gradients(row.normal);
+        let on_i = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[0]);
+        let on_j = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[1]);
+        let i = elimination.place_of[row.i as usize];
+        let j = elimination.place_of[row.j as usize];
+        on_i.add_load(&mut vector[i as usize]);
+        on_j.add_load(&mut vector[j as usize]);
+        if guess != Guess::Open {
+            on_i.add(matrix.diagonal_mut(i), &on_i);
+            on_j.add(matrix.diagonal_mut(j), &on_j);
+            let (i_to_j, j_to_i) = matrix.off_diagonal_mut(block, i < j);
+            on_i.add(i_to_j, &on_j);
+            on_j.add(j_to_i, &on_i);
+        }
+    }
+}
+
+/// What a contact would do next, by its law.
+fn guess<M: Model>(
+    problem: &StepProblem<M::Kinematics>,
+    row: &Row<M::Kinematics>,
+    [normal_velocity, tangential_velocity]: [f64; 2],
+) -> Guess {
+    let shifted = row.shifted_impulse - normal_velocity - row.restitution_velocity;
+    if shifted <= 0.0 {
+        return Guess::Open;
+    }
+    let bound = if M::FRICTION { problem.law.friction_bound(shifted) } else { 0.0 };
+    if bound == 0.0 {
+        return Guess::Slip(0.0);
+    }
+    let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+    let tangential = row.tangential_impulse - compliance * tangential_velocity;
+    if tangential.abs() <= bound { Guess::Stick } else { Guess::Slip(tangential.signum()) }
+}
+
+/// A contact's part in the equations of one of its bodies.
+struct Terms<const D: usize> {
+    /// How the body's velocity enters v_n and v_t.
+    normal: [f64; D],
+    tangent: [f64; D],
+    /// Where the law's answer to v_n acts: n, or n ± μt in slip.
+    answer: [f64; D],
+    /// Stiffnesses against v_n and v_t, kg.
+    normal_stiffness: f64,
+    tangential_stiffness: f64,
+    /// What the impulse changes by at the present velocities, kg·m/s.
+    load: [f64; D],
+}
+
+impl<const D: usize> Terms<D> {
+    #[inline(always)]
+    fn new<M: Model>(
+        problem: &StepProblem<M::Kinematics>,
+        row: &Row<M::Kinematics>,
+        [normal_velocity, tangential_velocity]: [f64; 2],
+        guess: Guess,
+        compliance: f64,
+        gradients: &[[f64; 3]; 2],
+    ) -> Self {
+        let part = |vector: &[f64; 3]| std::array::from_fn::<f64, D, _>(|axis| vector[axis]);
+        let (normal, tangent) = (part(&gradients[0]), part(&gradients[1]));
+        let mass = row.effective_mass;
+        let stiffness = mass / compliance;
+        let (shifted, tangential) = (row.shifted_impulse, row.tangential_impulse);
+        let normal_change = -(normal_velocity + row.restitution_velocity) / compliance;
+        let (slope, normal_stiffness, tangential_stiffness, changes) = match guess {
+            Guess::Open => (0.0, 0.0, 0.0, [-shifted, -tangential]),
+            Guess::Stick => {
+                let softness = M::Kinematics::TANGENTIAL_COMPLIANCE;
+                let tangential_change = -tangential_velocity / (softness * compliance);
+                (0.0, stiffness, stiffness / softness, [normal_change, tangential_change])
+            }
+            Guess::Slip(sign) => {
+                let slope = sign * problem.law.friction;
+                let rubbing = problem.law.rubbing(shifted + normal_change);
+                (slope, stiffness, 0.0, [normal_change, slope * rubbing - tangential])
+            }
+        };
+        let [normal_load, tangential_load] = changes.map(|change| mass * change);
+        Self {
+            normal,
+            tangent,
+            answer: std::array::from_fn(|axis| normal[axis] + slope * tangent[axis]),
+            normal_stiffness,
+            tangential_stiffness,
+            load: std::array::from_fn(|axis| {
+                normal_load * normal[axis] + tangential_load * tangent[axis]
+            }),
+        }
+    }
+
+    /// Adds the answer of this body's equations to the velocity of `other` to their block.
+    #[inline(always)]
+    fn add(&self, block: &mut [[f64; D]; D], other: &Self) {
+        for (row, entries) in block.iter_mut().enumerate() {
+            let normal = self.normal_stiffness * self.answer[row];
+            let tangential = self.tangential_stiffness * self.tangent[row];
+            for (column, entry) in entries.iter_mut().enumerate() {
+                *entry += normal * other.normal[column] + tangential * other.tangent[column];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_load(&self, vector: &mut [f64; D]) {
+        for (entry, load) in vector.iter_mut().zip(self.load) {
+            *entry += load;
+        }
+    }
+}
+
+/// How the residual has come down.
+struct ResidualHistory {
+    /// Residuals of the last accepted steps.
+    history: [f64; HISTORY],
+    accepted: usize,
+    best: f64,
+    /// The last best residual that was half of the milestone before: creeping down does not count as
+    /// progress.
+    milestone: f64,
+    /// Steps since then.
+    since_milestone: u32,
+}
+
+impl ResidualHistory {
+    /// From a residual.
+    fn new(residual: f64) -> Self {
+        let mut history = [0.0; HISTORY];
+        history[0] = residual;
+        Self { history, accepted: 0, best: residual, milestone: residual, since_milestone: 0 }
+    }
+
+    /// The residual that a step has to be below.
+    fn bound(&self) -> f64 {
+        ENOUGH * self.history.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Accepts a state of that residual; whether it is the best.
+    fn accept(&mut self, residual: f64) -> bool {
+        self.accepted += 1;
+        self.history[self.accepted % HISTORY] = residual;
+        let is_best = residual < self.best;
+        if is_best {
+            self.best = residual;
+        }
+        if self.best < 0.5 * self.milestone {
+            self.milestone = self.best;
+            self.since_milestone = 0;
+        }
+        is_best
+    }
+}

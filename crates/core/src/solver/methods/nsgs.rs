@@ -1,0 +1,264 @@
+//! Non-linear Gauss–Seidel (M. Jean, 1999): one contact after the other, each solved exactly with
+//! the velocities that the ones before it left.
+//!
+//! For solid discs the local Delassus block is diagonal (W_nt = 0), so a contact's solution is two
+//! scalar projections (`methods::sweep`). For the models of friction that lag (`problem::friction`) it is the
+//! projection of the model.
+
+use super::stopping::{SolveReport, is_settled, is_tested, sweep_until_settled};
+use super::sweep::{ImpulseChange, squared_impulse};
+use crate::contact::{ContactLaw, law};
+use crate::solver::kinematics::Kinematics;
+use crate::solver::method::Ordering;
+use crate::solver::model::Model;
+use crate::solver::problem::{
+    Bodies, BoundedFriction, ConeFriction, ContactRows, CoulombFriction, DrivenRow, DrivenWall,
+    FixedRow, FrictionProjection, MovingWalls, StepProblem, natural_map,
+};
+use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
+
+/// Sweeps under Coulomb's law after which contacts that have not been solved yet take their bounds. They are
+/// few and far between but in the first step of a run.
+const SWEEPS_FOR_NEW_BOUNDS: u32 = 10;
+
+/// Solves a prepared problem by sweeps, under the model of friction that it was prepared for.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+) -> SolveReport {
+    solve_models::<M>(problem, settings, |problem| {
+        let sweep = |problem: &mut StepProblem<M::Kinematics>, sweeps| {
+            let backward = settings.ordering == Ordering::Symmetric && sweeps % 2 == 0;
+            if is_tested(sweeps, settings) {
+                return sweep_of_model::<M>(problem, settings, backward);
+            }
+            match problem.friction.model {
+                FrictionModel::Tresca if M::FRICTION => {
+                    sweep_by::<M, BoundedFriction, false>(problem, backward)
+                }
+                FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
+                    sweep_by::<M, ConeFriction, false>(problem, backward)
+                }
+                _ => sweep_by::<M, CoulombFriction, false>(problem, backward),
+            };
+            false
+        };
+        sweep_until_settled(problem, settings, sweep, |problem| natural_map::<M>(problem))
+    })
+}
+
+/// Solves a problem by `solve_once` as often as the settings ask for, the lagged numbers of its model of friction
+/// taken anew each time. The step is solved where the last solve is: those before it only say what lags.
+pub(super) fn solve_models<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+    mut solve_once: impl FnMut(&mut StepProblem<M::Kinematics>) -> SolveReport,
+) -> SolveReport {
+    if !M::FRICTION || problem.friction.model == FrictionModel::Coulomb {
+        return solve_once(problem);
+    }
+    problem.restart_friction();
+    if problem.has_unset_bounds() {
+        for _ in 0..SWEEPS_FOR_NEW_BOUNDS {
+            sweep_by::<M, BoundedFriction, false>(problem, false);
+        }
+        problem.set_unset_bounds();
+    }
+    let mut report = solve_once(problem);
+    for _ in 1..settings.model_solves {
+        problem.renew_friction();
+        report = solve_once(problem).after(report);
+    }
+    report
+}
+
+/// One sweep of the model of friction that a problem was prepared for, and whether the stopping test is met
+/// after it.
+pub(super) fn sweep_of_model<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+    backward: bool,
+) -> bool {
+    match problem.friction.model {
+        FrictionModel::Tresca if M::FRICTION => {
+            tested::<M, BoundedFriction>(problem, settings, backward)
+        }
+        FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
+            tested::<M, ConeFriction>(problem, settings, backward)
+        }
+        _ => tested::<M, CoulombFriction>(problem, settings, backward),
+    }
+}
+
+/// One sweep under Coulomb's law, and whether the stopping test is met after it.
+pub(super) fn tested_sweep<M: Model>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+) -> bool {
+    tested::<M, CoulombFriction>(problem, settings, false)
+}
+
+fn tested<M: Model, P: FrictionProjection>(
+    problem: &mut StepProblem<M::Kinematics>,
+    settings: &SolverSettings,
+    backward: bool,
+) -> bool {
+    let change = if settings.stop == StopTest::Residual {
+        sweep_by::<M, P, false>(problem, backward)
+    } else {
+        sweep_by::<M, P, true>(problem, backward)
+    };
+    let mean_mass = problem.bodies.mean_mass;
+    is_settled(problem, change, mean_mass, settings, squared_impulses, |problem| {
+        P::residual::<M>(problem)
+    })
+}
+
+/// Σ P², (N·s)².
+fn squared_impulses<K: Kinematics>(problem: &mut StepProblem<K>) -> f64 {
+    let squared = |number: usize| {
+        let row = problem.rows.get(number);
+        squared_impulse(row.effective_mass, problem.reduced_impulse(number, row))
+    };
+    let fixed = problem.rows.fixed.len();
+    (0..fixed).map(squared).sum::<f64>() + (fixed..problem.rows.len()).map(squared).sum::<f64>()
+}
+
+/// One pass over all contacts under Coulomb's law.
+pub fn sweep<M: Model, const MEASURE: bool>(
+    problem: &mut StepProblem<M::Kinematics>,
+) -> ImpulseChange {
+    sweep_by::<M, CoulombFriction, MEASURE>(problem, false)
+}
+
+/// One pass over all contacts, from the last to the first where it goes backward.
+fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
+    problem: &mut StepProblem<M::Kinematics>,
+    backward: bool,
+) -> ImpulseChange {
+    if !P::LAGS && problem.is_driven() {
+        return pass_with_driven_walls::<M, MEASURE>(problem, backward);
+    }
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx") {
+        // SAFETY: the processor has just been asked.
+        return unsafe { pass_with_avx::<M, P, MEASURE>(problem, backward) };
+    }
+    pass::<M, P, MEASURE>(problem, backward)
+}
+
+/// The same operations in the same order, and so bitwise the same result, in the three-operand
+/// encoding, which saves the copies that the older one needs.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx")]
+fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
+    problem: &mut StepProblem<M::Kinematics>,
+    backward: bool,
+) -> ImpulseChange {
+    pass::<M, P, MEASURE>(problem, backward)
+}
+
+#[inline(always)]
+fn pass<M: Model, P: FrictionProjection, const MEASURE: bool>(
+    problem: &mut StepProblem<M::Kinematics>,
+    backward: bool,
+) -> ImpulseChange {
+    let law = problem.law;
+    let lagged = &problem.friction.now;
+    let Bodies { now: bodies, .. } = &mut problem.bodies;
+    let ContactRows { fixed, pairs, .. } = &mut problem.rows;
+    let first_pair = fixed.len();
+    let project = |number: usize| {
+        let lagged = if P::LAGS { lagged[number] } else { 0.0 };
+        move |trial| P::project::<M>(&law, lagged, trial)
+    };
+    let mut change = ImpulseChange::default();
+    if backward {
+        for (number, row) in pairs.iter_mut().enumerate().rev() {
+            row.solve::<M, MEASURE>(bodies, &mut change, project(first_pair + number));
+        }
+        for (number, row) in fixed.iter_mut().enumerate().rev() {
+            row.solve::<M, MEASURE>(bodies, &mut change, project(number));
+        }
+    } else {
+        for (number, row) in fixed.iter_mut().enumerate() {
+            row.solve::<M, MEASURE>(bodies, &mut change, project(number));
+        }
+        for (number, row) in pairs.iter_mut().enumerate() {
+            row.solve::<M, MEASURE>(bodies, &mut change, project(first_pair + number));
+        }
+    }
+    change
+}
+
+/// A pass where walls are driven (`problem::walls`): what a contact does to its wall is told to the wall at once, and
+/// each contact is solved for its wall's answer as for its grain's.
+fn pass_with_driven_walls<M: Model, const MEASURE: bool>(
+    problem: &mut StepProblem<M::Kinematics>,
+    backward: bool,
+) -> ImpulseChange {
+    let law = problem.law;
+    let project = |trial| CoulombFriction::project::<M>(&law, 0.0, trial);
+    let Bodies { now: bodies, .. } = &mut problem.bodies;
+    let ContactRows { fixed, pairs, .. } = &mut problem.rows;
+    let walls = &mut problem.walls;
+    let mut change = ImpulseChange::default();
+    let fixed_count = fixed.len();
+    let mut solve_fixed = |number: usize, bodies: &mut [_], change: &mut ImpulseChange| {
+        let row: &mut FixedRow<_> = &mut fixed[number];
+        let Some(known) = walls.driven_row(number).copied() else {
+            return row.solve::<M, MEASURE>(bodies, change, project);
+        };
+        let MovingWalls { driven, .. } = &mut *walls;
+        let wall = &mut driven[known.by.wall as usize];
+        let impulse = solve_driven::<M>(&law, row, &known, &mut bodies[row.i as usize], wall);
+        change.add::<M, MEASURE>(row.effective_mass, impulse);
+    };
+    if backward {
+        for row in pairs.iter_mut().rev() {
+            row.solve::<M, MEASURE>(bodies, &mut change, project);
+        }
+        (0..fixed_count).rev().for_each(|number| solve_fixed(number, bodies, &mut change));
+    } else {
+        (0..fixed_count).for_each(|number| solve_fixed(number, bodies, &mut change));
+        for row in pairs {
+            row.solve::<M, MEASURE>(bodies, &mut change, project);
+        }
+    }
+    problem.tell_of_walls();
+    change
+}
+
+/// Solves the contact of a grain with a driven wall, and returns the change of (λ_n, λ_t). A normal impulse moves the
+/// wall along the tangent, too, where it goes askew, so the tangential velocity is read after it.
+fn solve_driven<M: Model>(
+    law: &ContactLaw,
+    row: &mut FixedRow<M::Kinematics>,
+    known: &DrivenRow,
+    i: &mut <M::Kinematics as Kinematics>::Body<f64>,
+    wall: &mut DrivenWall,
+) -> [f64; 2] {
+    let [along_normal, along_tangent] = known.by.along;
+    let answer = wall.response * row.effective_mass;
+    let [normal_velocity, _] = M::Kinematics::velocity(row.normal, i);
+    let closing = normal_velocity + known.still[0] - along_normal * wall.now;
+    let before = row.shifted_impulse;
+    let compliance = 1.0 + answer * along_normal * along_normal;
+    row.shifted_impulse = law::signorini(before - closing / compliance);
+    let normal = row.shifted_impulse - before;
+    M::Kinematics::push_single(i, row.normal, [normal, 0.0]);
+    wall.now -= answer * along_normal * normal;
+    if !M::FRICTION {
+        return [normal, 0.0];
+    }
+    let [_, tangential_velocity] = M::Kinematics::velocity(row.normal, i);
+    let slip = tangential_velocity - known.still[1] - along_tangent * wall.now;
+    let before = row.tangential_impulse;
+    let compliance = M::Kinematics::TANGENTIAL_COMPLIANCE + answer * along_tangent * along_tangent;
+    let bound = law.friction_bound(row.shifted_impulse);
+    row.tangential_impulse = law::coulomb(before - slip / compliance, bound);
+    let tangential = row.tangential_impulse - before;
+    M::Kinematics::push_single(i, row.normal, [0.0, tangential]);
+    wall.now -= answer * along_tangent * tangential;
+    [normal, tangential]
+}

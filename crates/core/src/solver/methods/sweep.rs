@@ -1,0 +1,175 @@
+//! The update of one contact in a Gauss–Seidel sweep, or of several that share no grain.
+//!
+//! In reduced impulses (`contact::law`, `solver::kinematics`):
+//!
+//! > σ ← max(σ − (v_n + ρ v_n^{n−1}), 0),  λ_t ← clamp(λ_t − v_t · m_t/m_n, ±bound(σ)).
+//!
+//! The normal impulse does not change v_t, so both velocities are read once. Other models of friction project the
+//! same trial impulses in another way (`problem::friction`).
+
+use crate::contact::Lanes;
+use crate::solver::kinematics::Kinematics;
+use crate::solver::model::Model;
+use crate::solver::problem::{FixedRow, PairRow, Row};
+
+/// A body of a model; with several lanes, a body a lane.
+pub(crate) type ModelBody<M, T> = <<M as Model>::Kinematics as Kinematics>::Body<T>;
+
+/// What an update needs of a row beside its impulses; with several lanes, of a row a lane. Units as
+/// in [`Row`].
+#[derive(Clone, Copy)]
+pub(crate) struct Local<K: Kinematics, T: Lanes> {
+    pub normal: K::Normal<T>,
+    pub restitution_velocity: T,
+    pub effective_mass: T,
+}
+
+/// How much a sweep changed the impulses; zero where it was not asked to measure. With several
+/// lanes, how much those of each lane.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ImpulseChange<T = f64> {
+    /// Σ ΔP², (N·s)².
+    pub squared: T,
+    /// Σ |ΔP|, N·s.
+    pub absolute: T,
+}
+
+impl ImpulseChange {
+    /// Adds the change of other contacts.
+    pub(crate) fn add_all(&mut self, other: Self) {
+        self.squared += other.squared;
+        self.absolute += other.absolute;
+    }
+}
+
+impl<T: Lanes> ImpulseChange<T> {
+    /// Counts a change of (λ_n, λ_t) of an effective mass, where it is asked to measure.
+    #[inline(always)]
+    pub(crate) fn add<M: Model, const MEASURE: bool>(
+        &mut self,
+        mass: T,
+        [normal, tangential]: [T; 2],
+    ) {
+        if MEASURE {
+            let normal = mass * normal;
+            self.squared += normal * normal;
+            self.absolute += normal.magnitude();
+            if M::FRICTION {
+                let tangential = mass * tangential;
+                self.squared += tangential * tangential;
+                self.absolute += tangential.magnitude();
+            }
+        }
+    }
+}
+
+impl<K: Kinematics, T: Lanes> Local<K, T> {
+    /// (v_n, v_t) of grains i against fixed bodies, as [`FixedRow::velocity`] has it, m/s.
+    #[inline(always)]
+    pub(crate) fn velocity(&self, surface_speed: T, i: &K::Body<T>) -> [T; 2] {
+        let [normal, tangential] = K::velocity(self.normal, i);
+        [normal, tangential - surface_speed]
+    }
+
+    /// Solves contacts of grains i with fixed bodies, of which `impulse` is (σ, λ_t).
+    #[inline(always)]
+    pub(crate) fn solve_fixed<M: Model<Kinematics = K>, const MEASURE: bool>(
+        &self,
+        surface_speed: T,
+        impulse: &mut [T; 2],
+        i: &mut K::Body<T>,
+        change: &mut ImpulseChange<T>,
+        project: impl FnOnce([T; 2]) -> [T; 2],
+    ) {
+        let pushed = self.update::<M>(impulse, self.velocity(surface_speed, i), project);
+        K::push_single(i, self.normal, pushed);
+        change.add::<M, MEASURE>(self.effective_mass, pushed);
+    }
+
+    /// Solves contacts between grains i and j, g_i being `share`.
+    #[inline(always)]
+    pub(crate) fn solve_pair<M: Model<Kinematics = K>, const MEASURE: bool>(
+        &self,
+        share: T,
+        impulse: &mut [T; 2],
+        [i, j]: [&mut K::Body<T>; 2],
+        change: &mut ImpulseChange<T>,
+        project: impl FnOnce([T; 2]) -> [T; 2],
+    ) {
+        let velocity = K::relative_velocity(self.normal, i, j);
+        let pushed = self.update::<M>(impulse, velocity, project);
+        K::push_pair(i, j, self.normal, pushed, share);
+        change.add::<M, MEASURE>(self.effective_mass, pushed);
+    }
+
+    /// Solves at the given (v_n, v_t) and returns the change of (λ_n, λ_t).
+    #[inline(always)]
+    fn update<M: Model<Kinematics = K>>(
+        &self,
+        impulse: &mut [T; 2],
+        [normal_velocity, tangential_velocity]: [T; 2],
+        project: impl FnOnce([T; 2]) -> [T; 2],
+    ) -> [T; 2] {
+        let before = *impulse;
+        let closing = normal_velocity + self.restitution_velocity;
+        let compliance = closing.same(1.0 / K::TANGENTIAL_COMPLIANCE);
+        let after = project([before[0] - closing, before[1] - compliance * tangential_velocity]);
+        impulse[0] = after[0];
+        let normal_change = after[0] - before[0];
+        if !M::FRICTION {
+            return [normal_change, normal_change.same(0.0)];
+        }
+        impulse[1] = after[1];
+        [normal_change, after[1] - before[1]]
+    }
+}
+
+impl<K: Kinematics> FixedRow<K> {
+    /// Solves the contact of one of the bodies with a fixed one.
+    #[inline(always)]
+    pub(crate) fn solve<M: Model<Kinematics = K>, const MEASURE: bool>(
+        &mut self,
+        bodies: &mut [K::Body<f64>],
+        change: &mut ImpulseChange,
+        project: impl FnOnce([f64; 2]) -> [f64; 2],
+    ) {
+        let mut impulse = self.impulse();
+        let i = &mut bodies[self.i as usize];
+        let speed = self.surface_speed;
+        self.local().solve_fixed::<M, MEASURE>(speed, &mut impulse, i, change, project);
+        [self.shifted_impulse, self.tangential_impulse] = impulse;
+    }
+}
+
+impl<K: Kinematics> PairRow<K> {
+    /// Solves the contact between two of the bodies.
+    #[inline(always)]
+    pub(crate) fn solve<M: Model<Kinematics = K>, const MEASURE: bool>(
+        &mut self,
+        bodies: &mut [K::Body<f64>],
+        change: &mut ImpulseChange,
+        project: impl FnOnce([f64; 2]) -> [f64; 2],
+    ) {
+        let mut impulse = self.impulse();
+        let (mut i, mut j) = (bodies[self.i as usize], bodies[self.j as usize]);
+        let both = [&mut i, &mut j];
+        self.local().solve_pair::<M, MEASURE>(self.share, &mut impulse, both, change, project);
+        bodies[self.i as usize] = i;
+        bodies[self.j as usize] = j;
+        [self.shifted_impulse, self.tangential_impulse] = impulse;
+    }
+}
+
+impl<K: Kinematics> Row<K> {
+    #[inline(always)]
+    fn local(&self) -> Local<K, f64> {
+        let Self { normal, restitution_velocity, effective_mass, .. } = *self;
+        Local { normal, restitution_velocity, effective_mass }
+    }
+}
+
+/// P² of an impulse (λ_n, λ_t) of an effective mass, (N·s)².
+#[inline(always)]
+pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
+    mass * mass * (normal * normal + tangential * tangential)
+}

@@ -1,0 +1,266 @@
+//! Models of friction that lag: numbers that stay the same while a step is solved make the problem convex.
+//!
+//! With w = v_n + ρ v_n^{n−1} and v = v_t of a contact, in reduced impulses (`contact::law`):
+//!
+//! * `tresca`: 0 ≤ σ ⟂ w ≥ 0 and λ_t = clamp(λ_t − v m_t/m_n, ±g). The lagged number is g, Coulomb's bound at
+//!   the σ of the contact's last solve. A contact that has not been solved yet has no such σ, and gets Coulomb's
+//!   bound within its first solve (P. D. Panagiotopoulos, 1975, solved Coulomb's law by such problems).
+//! * `associated`: K ∋ (σ, λ_t) ⟂ (w, v) ∈ K* with K = {|λ_t| ≤ μσ} (M. Anitescu, 2006; A. Tasora and
+//!   M. Anitescu, 2011). Where it slides, w = μ|v|: a contact opens that ought to stay closed.
+//! * `desaxce`: the same with w + s in the place of w. With s = μ|v| of the solution that would be Coulomb's
+//!   law (G. de Saxcé and Z.-Q. Feng, 1998; V. Acary and others, 2011). The lagged number is s of the solve
+//!   before, at first that of the velocities that the step begins with.
+//!
+//! In each the impulses of a contact are the point nearest to (σ − w − s, λ_t − v m_t/m_n) of a convex set, in
+//! the metric diag(1, m_n/m_t). That is Gauss–Seidel's update of a solid disc's contact, whose Delassus
+//! block is diagonal, and the natural map.
+
+use super::residual::{projection_residual, residual};
+use super::{Row, StepProblem};
+use crate::contact::{ContactLaw, ContactList, Lanes, law};
+use crate::solver::kinematics::Kinematics;
+use crate::solver::model::Model;
+use crate::solver::settings::FrictionModel;
+
+/// The bound of a contact that has not been solved yet: none is set.
+const UNSET_BOUND: f64 = f64::INFINITY;
+
+/// What is asked of friction in a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LaggedFriction {
+    pub model: FrictionModel,
+    /// The lagged number of each row as the step begins, m/s; empty under Coulomb's law.
+    pub at_start: Vec<f64>,
+    /// The same in the last solve.
+    pub now: Vec<f64>,
+}
+
+/// How a contact's impulses are projected under a model of friction.
+pub(crate) trait FrictionProjection {
+    /// True where each row has a lagged number.
+    const LAGS: bool;
+
+    /// The (σ, λ_t) that are allowed nearest to `trial`, in the metric diag(1, m_n/m_t).
+    fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
+
+    /// The natural map's residual of this projection.
+    fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64;
+}
+
+/// Coulomb's law itself.
+pub(crate) enum CoulombFriction {}
+
+impl FrictionProjection for CoulombFriction {
+    const LAGS: bool = false;
+
+    #[inline(always)]
+    fn project<M: Model>(law: &ContactLaw, _: f64, trial: [f64; 2]) -> [f64; 2] {
+        project_by_coulomb::<M, f64>(law, trial)
+    }
+
+    fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
+        residual::<M>(problem)
+    }
+}
+
+/// The nearest σ that is allowed, then the nearest λ_t that this allows.
+#[inline(always)]
+pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
+    law: &ContactLaw,
+    [normal, tangential]: [T; 2],
+) -> [T; 2] {
+    let shifted = law::signorini(normal);
+    if !M::FRICTION {
+        return [shifted, tangential];
+    }
+    [shifted, law::coulomb(tangential, law.friction_bound(shifted))]
+}
+
+/// `tresca`: the bound lags.
+pub(crate) enum BoundedFriction {}
+
+impl FrictionProjection for BoundedFriction {
+    const LAGS: bool = true;
+
+    #[inline(always)]
+    fn project<M: Model>(
+        law: &ContactLaw,
+        lagged: f64,
+        [normal, tangential]: [f64; 2],
+    ) -> [f64; 2] {
+        let shifted = law::signorini(normal);
+        let bound = if lagged == UNSET_BOUND { law.friction_bound(shifted) } else { lagged };
+        [shifted, law::coulomb(tangential, bound)]
+    }
+
+    fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
+        projection_residual::<M, Self>(problem)
+    }
+}
+
+/// `associated` and `desaxce`: what is added to w lags.
+pub(crate) enum ConeFriction {}
+
+impl FrictionProjection for ConeFriction {
+    const LAGS: bool = true;
+
+    #[inline(always)]
+    fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2] {
+        let compliance = M::Kinematics::TANGENTIAL_COMPLIANCE;
+        law::nearest_on_cone(law.friction, compliance, [trial[0] - lagged, trial[1]])
+    }
+
+    fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
+        projection_residual::<M, Self>(problem)
+    }
+}
+
+impl<K: Kinematics> StepProblem<K> {
+    /// Says by which model a problem is to be solved whose rows and velocities are there.
+    pub(super) fn begin_friction<M: Model<Kinematics = K>>(
+        &mut self,
+        contacts: &ContactList,
+        model: FrictionModel,
+    ) {
+        self.friction.model = model;
+        let mut lagged = std::mem::take(&mut self.friction.at_start);
+        lagged.clear();
+        match model {
+            _ if !M::FRICTION => {}
+            FrictionModel::Coulomb => {}
+            FrictionModel::Tresca => {
+                lagged.extend(self.rows().map(|(number, row)| {
+                    let index = self.rows.contacts[number] as usize;
+                    if contacts.is_unsolved(index) {
+                        return UNSET_BOUND;
+                    }
+                    let normal_impulse = contacts.impulses()[index].normal / row.effective_mass;
+                    let shifted = law::signorini(normal_impulse + self.capture(number));
+                    self.law.friction_bound(shifted)
+                }));
+            }
+            FrictionModel::Associated => lagged.resize(self.rows.len(), 0.0),
+            FrictionModel::Desaxce => {
+                self.for_each_velocity(&self.bodies.before, |row, [_, tangential]| {
+                    lagged.push(opening(&self.law, row, tangential));
+                });
+            }
+        }
+        self.friction.at_start = lagged;
+        self.restart_friction();
+    }
+
+    /// Takes the lagged numbers that the step begins with.
+    pub(crate) fn restart_friction(&mut self) {
+        let LaggedFriction { at_start, now, .. } = &mut self.friction;
+        now.clone_from(at_start);
+    }
+
+    /// Bounds friction by what Coulomb's law allows at the present impulses.
+    pub(crate) fn bound_by_present(&mut self) {
+        self.friction.model = FrictionModel::Tresca;
+        self.lag_by(bound);
+    }
+
+    /// Goes back to Coulomb's law.
+    pub(crate) fn forget_bounds(&mut self) {
+        self.friction.model = FrictionModel::Coulomb;
+        self.friction.now.clear();
+    }
+
+    /// True where contacts are to be bounded that have not been solved yet.
+    pub(crate) fn has_unset_bounds(&self) -> bool {
+        let LaggedFriction { model, now, .. } = &self.friction;
+        *model == FrictionModel::Tresca && now.contains(&UNSET_BOUND)
+    }
+
+    /// Gives such contacts Coulomb's bounds at the present impulses, for all solves of the step.
+    pub(crate) fn set_unset_bounds(&mut self) {
+        for (row, lagged) in self.rows.iter().zip(&mut self.friction.now) {
+            if *lagged == UNSET_BOUND {
+                *lagged = self.law.friction_bound(row.shifted_impulse);
+            }
+        }
+    }
+
+    /// Takes the lagged numbers anew, from the present impulses and velocities.
+    pub(crate) fn renew_friction(&mut self) {
+        match self.friction.model {
+            FrictionModel::Tresca => self.lag_by(bound),
+            FrictionModel::Desaxce => self.lag_by(opening),
+            FrictionModel::Coulomb | FrictionModel::Associated => {}
+        }
+    }
+
+    /// Takes as lagged what `lagged_of` makes of each row and its v_t.
+    fn lag_by(&mut self, lagged_of: impl Fn(&ContactLaw, &Row<K>, f64) -> f64) {
+        let mut lagged = std::mem::take(&mut self.friction.now);
+        lagged.clear();
+        self.for_each_velocity(&self.bodies.now, |row, [_, tangential]| {
+            lagged.push(lagged_of(&self.law, row, tangential));
+        });
+        self.friction.now = lagged;
+    }
+}
+
+/// g of `tresca` after a solve.
+fn bound<K: Kinematics>(law: &ContactLaw, row: &Row<K>, _: f64) -> f64 {
+    law.friction_bound(row.shifted_impulse)
+}
+
+/// s of `desaxce` after a solve that came to this v_t.
+fn opening<K: Kinematics>(law: &ContactLaw, _: &Row<K>, tangential_velocity: f64) -> f64 {
+    law.friction * tangential_velocity.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::{Plane, SpinningPlane, StepModel};
+    use crate::world::FrictionCone;
+
+    type Turning = StepModel<SpinningPlane, true>;
+
+    fn law(friction: f64) -> ContactLaw {
+        ContactLaw::new(friction, 0.0, FrictionCone::Shifted)
+    }
+
+    /// ½(σ − a)² + ½c(λ − b)².
+    fn distance<M: Model>(point: [f64; 2], trial: [f64; 2]) -> f64 {
+        let across = M::Kinematics::TANGENTIAL_COMPLIANCE * (point[1] - trial[1]).powi(2);
+        0.5 * ((point[0] - trial[0]).powi(2) + across)
+    }
+
+    fn no_point_of_the_cone_is_nearer<M: Model>() {
+        let law = law(0.7);
+        for step in 0..48 {
+            let angle = std::f64::consts::TAU * (f64::from(step) + 0.5) / 48.0;
+            let trial = [angle.cos(), angle.sin()];
+            let found = ConeFriction::project::<M>(&law, 0.0, trial);
+            assert!(found[1].abs() <= law.friction * found[0] + 1e-15, "{trial:?}: {found:?}");
+            let least = distance::<M>(found, trial);
+            for up in 0..200 {
+                let shifted = 0.02 * f64::from(up);
+                for share in -20..=20 {
+                    let point = [shifted, law.friction * shifted * f64::from(share) / 20.0];
+                    let other = distance::<M>(point, trial);
+                    assert!(other >= least - 1e-15, "{trial:?}: {point:?} beats {found:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_projection_on_the_cone_is_the_nearest_point_in_its_metric() {
+        no_point_of_the_cone_is_nearer::<Turning>();
+        no_point_of_the_cone_is_nearer::<StepModel<Plane, true>>();
+    }
+
+    #[test]
+    fn a_bound_lags_but_for_contacts_that_have_none_yet() {
+        let project = |bound, trial| BoundedFriction::project::<Turning>(&law(0.5), bound, trial);
+        assert_eq!(project(0.3, [4.0, -9.0]), [4.0, -0.3]);
+        assert_eq!(project(0.3, [-4.0, 9.0]), [0.0, 0.3]);
+        assert_eq!(project(UNSET_BOUND, [4.0, -9.0]), [4.0, -2.0]);
+    }
+}

@@ -1,0 +1,242 @@
+//! The bodies of a step's problem, and one row a contact, in the order of the sweep.
+
+use std::ops::{Deref, DerefMut};
+
+use crate::solver::kinematics::Kinematics;
+
+/// The bodies of a step, one a grain.
+#[derive(Clone, Debug)]
+pub struct Bodies<K: Kinematics> {
+    /// As the rows' impulses move them.
+    pub now: Vec<K::Body<f64>>,
+    /// At the beginning of the step.
+    pub before: Vec<K::Body<f64>>,
+    /// At the end of the step if no contact acted.
+    pub free: Vec<K::Body<f64>>,
+    /// Masses, kg.
+    pub masses: Vec<f64>,
+    /// Mean mass of the grains, kg.
+    pub mean_mass: f64,
+}
+
+impl<K: Kinematics> Default for Bodies<K> {
+    fn default() -> Self {
+        Self {
+            now: Vec::new(),
+            before: Vec::new(),
+            free: Vec::new(),
+            masses: Vec::new(),
+            mean_mass: 0.0,
+        }
+    }
+}
+
+/// What a row against a fixed body and a row between grains have in common.
+///
+/// Impulses are reduced ones, λ = P/m_ij (see `solver::kinematics` and `contact::law`). Plain data: a
+/// problem shows its rows and takes none.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Row<K: Kinematics> {
+    /// Grain i.
+    pub i: u32,
+    /// Grain j; unused in a row against a fixed body.
+    pub j: u32,
+    /// n, from j to i.
+    pub normal: K::Normal<f64>,
+    /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold, and less
+    /// the speed of a wall that comes (`problem::walls`).
+    pub restitution_velocity: f64,
+    /// σ = λ_n + capture speed, m/s.
+    pub shifted_impulse: f64,
+    /// λ_t, m/s.
+    pub tangential_impulse: f64,
+    /// m_ij, kg.
+    pub effective_mass: f64,
+}
+
+/// A contact with a fixed body: exactly one cache line in the plane.
+///
+/// Array of structures was measured against structure of arrays before it was chosen
+/// (`cargo bench --bench layout`).
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct FixedRow<K: Kinematics> {
+    /// What every row has.
+    pub row: Row<K>,
+    /// How fast the body's surface goes along t, m/s. The law's v_t is relative to it.
+    pub surface_speed: f64,
+}
+
+/// A contact between two grains: exactly one cache line in the plane.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct PairRow<K: Kinematics> {
+    /// What every row has.
+    pub row: Row<K>,
+    /// g_i = m_ij/m_i.
+    pub share: f64,
+}
+
+macro_rules! is_a_row {
+    ($name:ident) => {
+        impl<K: Kinematics> Deref for $name<K> {
+            type Target = Row<K>;
+
+            #[inline(always)]
+            fn deref(&self) -> &Row<K> {
+                &self.row
+            }
+        }
+
+        impl<K: Kinematics> DerefMut for $name<K> {
+            #[inline(always)]
+            fn deref_mut(&mut self) -> &mut Row<K> {
+                &mut self.row
+            }
+        }
+    };
+}
+
+is_a_row!(FixedRow);
+is_a_row!(PairRow);
+
+impl<K: Kinematics> Row<K> {
+    /// (σ, λ_t), m/s.
+    #[inline(always)]
+    pub fn impulse(&self) -> [f64; 2] {
+        [self.shifted_impulse, self.tangential_impulse]
+    }
+}
+
+impl<K: Kinematics> FixedRow<K> {
+    /// (v_n, v_t) of the grain, m/s. v_t is relative to the body's surface. v_n is relative to a body at
+    /// rest, since the speed of a wall that comes is in `restitution_velocity`.
+    #[inline(always)]
+    pub fn velocity(&self, bodies: &[K::Body<f64>]) -> [f64; 2] {
+        let [normal, tangential] = K::velocity(self.normal, &bodies[self.i as usize]);
+        [normal, tangential - self.surface_speed]
+    }
+}
+
+impl<K: Kinematics> PairRow<K> {
+    /// (v_n, v_t) of grain i relative to grain j, m/s.
+    #[inline(always)]
+    pub fn velocity(&self, bodies: &[K::Body<f64>]) -> [f64; 2] {
+        K::relative_velocity(self.normal, &bodies[self.i as usize], &bodies[self.j as usize])
+    }
+}
+
+/// The rows of a step. They are numbered through: first those against fixed bodies, then those between
+/// grains, each in the order of the sweep (`problem::order`).
+#[derive(Clone, Debug)]
+pub struct ContactRows<K: Kinematics> {
+    /// Rows against fixed bodies.
+    pub fixed: Vec<FixedRow<K>>,
+    /// Rows between grains.
+    pub pairs: Vec<PairRow<K>>,
+    /// The contact behind each row.
+    pub contacts: Vec<u32>,
+    /// The capture speed of each row, m/s, where rows differ in it (law `range`); else empty. Sweeps do
+    /// not need it: they see σ alone.
+    pub captures: Vec<f64>,
+}
+
+impl<K: Kinematics> Default for ContactRows<K> {
+    fn default() -> Self {
+        Self { fixed: Vec::new(), pairs: Vec::new(), contacts: Vec::new(), captures: Vec::new() }
+    }
+}
+
+impl<K: Kinematics> ContactRows<K> {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.fixed.len() + self.pairs.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Drops all rows.
+    pub(crate) fn clear(&mut self) {
+        self.fixed.clear();
+        self.pairs.clear();
+        self.contacts.clear();
+        self.captures.clear();
+    }
+
+    /// The rows by their numbers.
+    pub fn iter(&self) -> impl Iterator<Item = &Row<K>> {
+        self.fixed.iter().map(|row| &row.row).chain(self.pairs.iter().map(|row| &row.row))
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Row<K>> {
+        let fixed = self.fixed.iter_mut().map(|row| &mut row.row);
+        fixed.chain(self.pairs.iter_mut().map(|row| &mut row.row))
+    }
+
+    /// Whether the row of a number is one between grains.
+    #[inline(always)]
+    pub fn is_pair(&self, number: usize) -> bool {
+        number >= self.fixed.len()
+    }
+
+    /// The row of a number.
+    pub(crate) fn get(&self, number: usize) -> &Row<K> {
+        match number.checked_sub(self.fixed.len()) {
+            None => &self.fixed[number],
+            Some(number) => &self.pairs[number],
+        }
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn get_mut(&mut self, number: usize) -> &mut Row<K> {
+        match number.checked_sub(self.fixed.len()) {
+            None => &mut self.fixed[number],
+            Some(number) => &mut self.pairs[number],
+        }
+    }
+
+    /// g_i of the row of a number; 1 against a fixed body.
+    #[inline(always)]
+    pub(crate) fn share(&self, number: usize) -> f64 {
+        number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
+    }
+
+    /// How fast the surface behind the row of a number goes along t, m/s; 0 between grains.
+    #[inline(always)]
+    pub(crate) fn surface_speed(&self, number: usize) -> f64 {
+        self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
+    }
+
+    /// Adds a copy of row `number` of others, changed by `change`. In the place of the contact behind it stands
+    /// that number.
+    pub(crate) fn push_copy(
+        &mut self,
+        others: &Self,
+        number: usize,
+        change: impl FnOnce(&mut Row<K>),
+    ) {
+        match number.checked_sub(others.fixed.len()) {
+            None => {
+                self.fixed.push(others.fixed[number]);
+                self.fixed.last_mut().map(|row| &mut row.row)
+            }
+            Some(number) => {
+                self.pairs.push(others.pairs[number]);
+                self.pairs.last_mut().map(|row| &mut row.row)
+            }
+        }
+        .map(change);
+        self.contacts.push(number as u32);
+    }
+
+    /// Copies (σ, λ_t) of all rows, m/s; `impulses` is cleared first.
+    pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
+        impulses.clear();
+        impulses.extend(self.iter().map(Row::impulse));
+    }
+}

@@ -1,0 +1,265 @@
+//! What a run is made of: as words of a command line, as texts that a file carries, and as facts of a recording.
+
+use serde::Serialize;
+use serde_json::{Map, Value as Json, json};
+
+use super::Config;
+use crate::data::RunFacts;
+use crate::error::{Error, Result};
+use crate::output::Texts;
+use crate::scene::Scene;
+use crate::setting::Value;
+use crate::sim::Settings;
+
+impl Config {
+    /// The options that ask for this scene with these settings: where it comes from, and each setting that
+    /// differs from what the scene says.
+    ///
+    /// # Errors
+    /// Where the scene is no longer there.
+    pub fn words(&self, settings: &Settings) -> Result<Vec<String>> {
+        let unchanged = Self { source: self.source.clone(), ..Self::default() };
+        let before = unchanged.without_settling()?.settings();
+        let mut words = self.source_words();
+        words.extend(words_of(settings, Some(&before)));
+        Ok(words)
+    }
+
+    /// What says where the scene comes from.
+    fn source_words(&self) -> Vec<String> {
+        // A name that is no text is refused where it is read.
+        let Ok(Json::Object(fields)) = serde_json::to_value(&self.source) else {
+            return Vec::new();
+        };
+        let said = |value: Json| match value {
+            Json::String(text) => text,
+            other => other.to_string(),
+        };
+        fields.into_iter().flat_map(|(name, value)| [format!("--{name}"), said(value)]).collect()
+    }
+}
+
+/// Settings as options: all of them, or those that differ from others.
+pub fn words_of(settings: &Settings, others: Option<&Settings>) -> Vec<String> {
+    let differs = |name| others.is_none_or(|others| settings.get(name) != others.get(name));
+    let names = Settings::about().map(|about| about.name).filter(|&name| differs(name));
+    let words = names.filter_map(|name| Some([format!("--{name}"), said(settings.get(name)?)]));
+    words.flatten().collect()
+}
+
+fn said(value: Value) -> String {
+    match value {
+        Value::Number(number) => number.to_string(),
+        Value::Count(count) => count.to_string(),
+        Value::Switch(on) => on.to_string(),
+        Value::Word(word) => word.to_owned(),
+    }
+}
+
+/// Words as a shell takes them.
+pub fn joined(words: &[String]) -> String {
+    // Refused is what no argument can hold.
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
+}
+
+/// What a run is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Provenance {
+    /// Name of its scene.
+    pub scene: String,
+    /// Its settings.
+    pub settings: Settings,
+    /// The options that make it.
+    pub words: Vec<String>,
+}
+
+impl Provenance {
+    /// What a file says of itself that shows this run, at a simulated time (s) if it is of one moment. The command
+    /// has these options besides.
+    pub fn texts(&self, time_secs: Option<f64>, besides: &[String]) -> Texts {
+        let Self { scene, settings, words } = self;
+        let mut texts = Texts::default();
+        let at = time_secs.map_or_else(String::new, |secs| format!(", t = {secs} s"));
+        texts.add("Title", format!("{scene}{at}"));
+        texts.add("Scene", scene);
+        if let Some(secs) = time_secs {
+            texts.add("Time", format!("{secs} s"));
+        }
+        texts.add("Settings", joined(&words_of(settings, None)));
+        let command = ["slump".to_owned(), "--headless".to_owned()];
+        texts.add("Command line", joined(&[&command[..], words, besides].concat()));
+        texts
+    }
+}
+
+/// The options that ask for a run up to a simulated time (s), with a picture there. One may be later than the
+/// scene's own end.
+pub fn words_up_to(time_secs: f64) -> Vec<String> {
+    let secs = time_secs.to_string();
+    let mut words = vec!["--times".to_owned(), secs.clone()];
+    if time_secs > 0.0 {
+        words.extend(["--duration".to_owned(), secs]);
+    }
+    words
+}
+
+/// A simulated time as one asks for it: without the rounding of a sum of many steps.
+pub fn asked_time_secs(time_secs: f64) -> f64 {
+    format!("{time_secs:.12}").parse().unwrap_or(time_secs)
+}
+
+/// What is in the tables themselves, or is of the recording.
+const LEFT_OUT: [&str; 4] = ["grains", "fixed_discs", "source", "data"];
+
+/// What a fact about changes is called.
+const CHANGES: &str = "changes";
+
+/// All that a scene says but for its discs, as facts of a recording, with the program's version.
+///
+/// # Errors
+/// Where it says something that JSON cannot.
+pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
+    let program = concat!("slump ", env!("CARGO_PKG_VERSION"));
+    let mut facts = vec![("program".to_owned(), program.to_owned())];
+    facts.extend(
+        values_of(scene, scene)?.iter().map(|(name, value)| (name.clone(), one_line(value))),
+    );
+    Ok(RunFacts { facts })
+}
+
+/// The same of a run that began with the scene's settings, and went on with others after some steps: the
+/// number of each step, its simulated time in seconds, and all settings from there on. What was not
+/// changed is not told.
+///
+/// # Errors
+/// As [`scene_facts`].
+pub fn run_facts(scene: &Scene, changes: &[(u64, f64, Settings)]) -> Result<RunFacts> {
+    let mut run = scene_facts(scene)?;
+    let mut told = Vec::new();
+    let mut before = values_of(scene, &all_settings(&scene.settings()))?;
+    for (after_step, time_secs, settings) in changes {
+        let after = values_of(scene, &all_settings(settings))?;
+        let others = after.iter().filter(|&(name, value)| before.get(name) != Some(value));
+        let others: Map<_, _> = others.map(|(name, it)| (name.clone(), it.clone())).collect();
+        if !others.is_empty() {
+            let mut change = json!({ "after_step": after_step, "time": time_secs });
+            change.as_object_mut().into_iter().for_each(|change| change.extend(others.clone()));
+            told.push(change);
+        }
+        before = after;
+    }
+    if !told.is_empty() {
+        run.facts.push((CHANGES.to_owned(), Json::from(told).to_string()));
+    }
+    Ok(run)
+}
+
+/// What something says, value by value.
+fn values_of(scene: &Scene, something: &impl Serialize) -> Result<Map<String, Json>> {
+    let said = serde_json::to_value(something)
+        .map_err(|error| Error::value("scene", &scene.name, error.to_string()))?;
+    let mut values = Map::new();
+    for (name, value) in said.as_object().into_iter().flatten() {
+        if !LEFT_OUT.contains(&name.as_str()) {
+            flatten(name, value, &mut values);
+        }
+    }
+    Ok(values)
+}
+
+/// Settings with those that are off, which scene files leave out.
+fn all_settings(settings: &Settings) -> Json {
+    let Settings { stepper, parameters, solver, remedies } = settings;
+    json!({ "stepper": stepper, "parameters": parameters, "solver": solver, "remedies": remedies })
+}
+
+/// Adds a value by its name, or the values of a table by theirs behind it.
+fn flatten(name: &str, value: &Json, values: &mut Map<String, Json>) {
+    match value {
+        Json::Object(table) => {
+            for (key, value) in table {
+                flatten(&format!("{name}.{key}"), value, values);
+            }
+        }
+        other => {
+            values.insert(name.to_owned(), other.clone());
+        }
+    }
+}
+
+fn one_line(value: &Json) -> String {
+    match value {
+        // A line of a comment is to stay one.
+        Json::String(text) => text.replace(char::is_control, " "),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::built_in;
+    use crate::sim::Stepper;
+
+    #[test]
+    fn a_command_has_what_differs_and_a_file_all_settings() {
+        let config = Config::of_scene("pile");
+        let mut settings = config.without_settling().unwrap().settings();
+        settings.parameters.bond = 33.5;
+        let words = config.words(&settings).unwrap();
+        assert_eq!(words, ["--scene", "pile", "--bond", "33.5"]);
+        let told = Provenance { scene: "pile".into(), settings, words };
+        let texts = told.texts(Some(0.25), &["--theme".into(), "dark".into()]);
+        let text = |name: &str| texts.get(name).unwrap().to_owned();
+        assert_eq!(text("Title"), "pile, t = 0.25 s");
+        let command = "slump --headless --scene pile --bond 33.5 --theme dark";
+        assert_eq!(text("Command line"), command);
+        assert!(text("Settings").contains("--bond 33.5 --dt 0.001"), "{}", text("Settings"));
+        assert!(text("Software").starts_with("slump "));
+    }
+
+    #[test]
+    fn times_are_asked_for_without_the_rounding_of_sums() {
+        let sum: f64 = (0..1000).map(|_| 1e-3).sum();
+        assert_ne!(sum, 1.0);
+        assert_eq!(asked_time_secs(sum), 1.0);
+    }
+
+    #[test]
+    fn every_number_of_a_scene_is_told_by_its_name() {
+        let mut scene = built_in("moving-walls").expect("a scene");
+        scene.name = "two\nlines".into();
+        let facts = scene_facts(&scene).expect("facts").facts;
+        let said = |name: &str| {
+            facts.iter().find(|(there, _)| there == name).map(|(_, said)| said.as_str())
+        };
+        assert_eq!(said("name"), Some("two lines"));
+        assert_eq!(said("parameters.bond"), Some(&*format!("{:?}", scene.parameters.bond)));
+        assert_eq!(said("physics.axes"), Some("2"));
+        assert!(said("boundaries").is_some_and(|said| said.contains("piston")));
+        assert_eq!(said("grains"), None);
+        assert!(facts.iter().all(|(_, said)| !said.contains('\n')));
+    }
+
+    #[test]
+    fn changes_on_the_way_are_told_one_by_one() {
+        let scene = built_in("moving-walls").expect("a scene");
+        assert_eq!(run_facts(&scene, &[]).expect("facts"), scene_facts(&scene).expect("facts"));
+        let mut settings = scene.settings();
+        settings.parameters.bond += 1.0;
+        settings.remedies.push_out = true;
+        let first = (30, 0.5, settings);
+        settings.remedies.push_out = false;
+        settings.stepper = Stepper::Range;
+        let run = run_facts(&scene, &[first, first, (40, 0.75, settings)]).expect("facts");
+        let (name, said) = run.facts.last().expect("a fact");
+        assert_eq!(name, "changes");
+        let bond = settings.parameters.bond;
+        let expected = serde_json::json!([
+            { "after_step": 30, "time": 0.5, "parameters.bond": bond, "remedies.push_out": true },
+            { "after_step": 40, "time": 0.75, "remedies.push_out": false, "stepper": "range" },
+        ]);
+        let said: serde_json::Value = serde_json::from_str(said).expect("JSON");
+        assert_eq!(said, expected);
+    }
+}

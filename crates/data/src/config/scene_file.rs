@@ -1,0 +1,109 @@
+//! Scene files in TOML, and discs as CSV.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use glam::DVec2;
+
+use crate::data::{parse_grains, read_grains};
+use crate::error::{Error, Result};
+use crate::scene::{GrainSource, NewPile, Scene, settle, start_of};
+use crate::world::Grain;
+
+/// What a scene file must be, for messages.
+const FORM: &str = "a scene file in TOML, such as `slump scene` prints";
+
+/// Reads a scene from a TOML file. Grains that come from a CSV or are a new pile are read or made.
+///
+/// # Errors
+/// Where the file cannot be read, is no TOML, or says something that no scene says (the message
+/// names line and column), or where a value is outside its range.
+pub fn read_scene(path: &Path) -> Result<Scene> {
+    match read_unsettled(path)? {
+        (scene, Some(pile)) => Ok(scene.with_settled(settle(&pile, |_| true)?)),
+        (scene, None) => Ok(scene),
+    }
+}
+
+/// The same but for the settling: a new pile is given as well, and the scene has its grains
+/// where they start from. Quick.
+///
+/// # Errors
+/// As [`read_scene`].
+pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
+    let text = std::fs::read_to_string(path).map_err(|error| Error::unread(path, error, FORM))?;
+    let scene = toml::from_str(&text).map_err(|error| {
+        let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+        let place = line.map_or(String::new(), |line| format!("line {line}: "));
+        Error::unread(path, format!("{place}{}", error.message()), FORM)
+    })?;
+    unsettled(scene, path.parent().unwrap_or(Path::new("")))
+}
+
+/// A scene with its grains, or with those that a new pile starts from; files that it names lie in `folder`.
+///
+/// # Errors
+/// As [`read_scene`].
+pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<NewPile>)> {
+    let mut new_pile = None;
+    if let Some(source) = scene.source.take() {
+        if !scene.grains.is_empty() {
+            let allowed = "left out where grains are listed";
+            return Err(Error::value("source", "given", allowed));
+        }
+        let grains = match source {
+            GrainSource::Csv { path } => read_grains(&folder.join(path), None)?.grains,
+            GrainSource::Data { path, step } => read_grains(&folder.join(path), step)?.grains,
+            GrainSource::NewPile(pile) => {
+                pile.validate()?;
+                let start = start_of(&pile);
+                new_pile = Some(pile);
+                start
+            }
+        };
+        scene = scene.with_settled(grains);
+    }
+    if let Some(data) = scene.data.as_mut().and_then(|data| data.folder.as_mut()) {
+        *data = folder.join(&*data);
+    }
+    scene.validate()?;
+    Ok((scene, new_pile))
+}
+
+/// The TOML file that says what a scene says.
+///
+/// # Errors
+/// Where the scene holds what TOML cannot say.
+pub fn scene_to_toml(scene: &Scene) -> Result<String> {
+    toml::to_string(scene).map_err(|error| Error::value("scene", &scene.name, error.to_string()))
+}
+
+/// Reads discs from the text of a CSV file: header `x,y,radius` and, where there are any, `vx,vy,omega`; SI units;
+/// lines that start with `#` are comments. `path` is for messages.
+///
+/// # Errors
+/// Where a line is none; the message names it.
+pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
+    Ok(parse_grains(text, path)?.grains)
+}
+
+/// The text of a CSV file of discs, of numbers that read back bit for bit; `comment` goes in front, each line of it behind `# `.
+pub fn write_discs(grains: &[Grain], comment: &str) -> String {
+    let mut text = String::new();
+    for line in comment.lines() {
+        let _ = writeln!(text, "# {line}");
+    }
+    let moving =
+        grains.iter().any(|grain| grain.velocity != DVec2::ZERO || grain.angular_velocity != 0.0);
+    text.push_str(if moving { "x,y,radius,vx,vy,omega\n" } else { "x,y,radius\n" });
+    for grain in grains {
+        let DVec2 { x, y } = grain.position;
+        let _ = write!(text, "{x:e},{y:e},{:e}", grain.radius);
+        if moving {
+            let DVec2 { x, y } = grain.velocity;
+            let _ = write!(text, ",{x:e},{y:e},{:e}", grain.angular_velocity);
+        }
+        text.push('\n');
+    }
+    text
+}

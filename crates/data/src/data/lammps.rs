@@ -1,0 +1,303 @@
+//! For OVITO and others that read what LAMMPS writes: `ovito/grains.dump`, a text dump with a row a grain,
+//! and `ovito/contacts.dump`, a `dump local` with a row a contact between two discs, as bonds. A contact
+//! with a boundary is left out: OVITO draws bonds between particles alone, and refuses the frame else.
+//!
+//! Dumps have the columns that OVITO knows under the names that it knows them by. There is no z: without it OVITO
+//! takes the world for the plane that it is. Numbers are written in the shortest form that reads back as the same
+//! number.
+
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind::NotFound};
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+
+use super::format::{Format, Frame, RunFacts};
+use super::recording_folder::{make_folder, remove};
+use super::table::{Column, Table, Values};
+use crate::error::{Error, Result};
+use crate::output::GrowingFile;
+use crate::sim::{Moment, OtherBody};
+
+/// Where the dumps are.
+pub(super) const FOLDER: &str = "ovito";
+/// Those of grains and contacts.
+pub(super) const FILES: [&str; 2] = ["grains.dump", "contacts.dump"];
+
+/// Begins what is no frame yet. No reader knows such an item, and each skips it at the end of a file.
+const DRAFT: &str = "ITEM: DRAFT";
+/// What a line begins with that belongs to a draft, also to one of whose word a kill has left a part.
+const OF_A_DRAFT: &str = "ITEM: D";
+/// How the head of a frame begins, …
+const TIME: &str = "ITEM: TIME";
+/// … and what says its step.
+const STEP: &str = "ITEM: TIMESTEP";
+/// Columns of grains as dumps call them, in this order, and ours; all others follow as they are.
+const GRAIN_COLUMNS: [(&str, &str); 10] = [
+    ("id", "id"),
+    ("type", "kind"),
+    ("element", "kind"),
+    ("x", "x"),
+    ("y", "y"),
+    ("radius", "radius"),
+    ("vx", "vx"),
+    ("vy", "vy"),
+    ("omegaz", "omega"),
+    // What OVITO knows as `coordination` are whole numbers, and fixed discs have none.
+    ("coordination_number", "coordination"),
+];
+/// The same of contacts.
+const CONTACT_COLUMNS: [(&str, &str); 2] = [("batom1", "id_i"), ("batom2", "id_j")];
+/// What stands at the head of a frame, or says nothing of contacts between discs.
+const LEFT_OUT: [&str; 3] = ["step", "time", "name_j"];
+/// The column that has words; all others have numbers for them.
+const IN_WORDS: &str = "element";
+/// LAMMPS counts types from here.
+const FIRST_TYPE: u32 = 1;
+
+/// Writes dumps.
+pub(super) struct Lammps {
+    facts: RunFacts,
+    grains: GrowingDump,
+    contacts: GrowingDump,
+}
+
+/// A dump that grows.
+struct GrowingDump {
+    path: PathBuf,
+    /// From the first frame on.
+    file: Option<GrowingFile>,
+}
+
+impl Lammps {
+    /// Starts, or goes on with what is there.
+    ///
+    /// # Errors
+    /// Where the folder cannot be made.
+    pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
+        let folder = folder.join(FOLDER);
+        make_folder(&folder)?;
+        let [grains, contacts] =
+            FILES.map(|name| GrowingDump { path: folder.join(name), file: None });
+        Ok(Self { facts: facts.clone(), grains, contacts })
+    }
+}
+
+impl Format for Lammps {
+    fn add(&mut self, frame: &Frame) -> Result<()> {
+        self.grains.add(&grains(frame, &self.facts))?;
+        self.contacts.add(&contacts(frame, &self.facts))
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        let files = [&self.grains.file, &self.contacts.file];
+        files.into_iter().flatten().for_each(GrowingFile::sync);
+        Ok(())
+    }
+
+    fn roll_back(&mut self, _step: u64, last_frame: Option<u64>) -> Result<()> {
+        self.grains.roll_back(last_frame)?;
+        self.contacts.roll_back(last_frame)
+    }
+}
+
+impl GrowingDump {
+    fn add(&mut self, text: &FrameText) -> Result<()> {
+        match &mut self.file {
+            Some(file) => file.add_at_once(DRAFT, &text.head, &text.rows),
+            none => {
+                let file = none.insert(GrowingFile::start(self.path.clone())?);
+                file.add_at_once(DRAFT, &(text.front.clone() + &text.head), &text.rows)
+            }
+        }
+    }
+
+    fn roll_back(&mut self, last_frame: Option<u64>) -> Result<()> {
+        self.file = None;
+        match length_until(&self.path, last_frame)? {
+            None => Ok(()),
+            Some(0) => remove(&self.path),
+            Some(length) => {
+                self.file = Some(GrowingFile::go_on(self.path.clone(), length)?);
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Length of the frames of a dump of ours up to a step, bytes, or of none; none where there is no file.
+///
+/// # Errors
+/// Where it cannot be read, or a step is none.
+fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
+    let file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == NotFound => return Ok(None),
+        Err(error) => return Err(Error::file(path, error)),
+    };
+    let mut lines = BufReader::new(file);
+    let mut line = String::new();
+    let (mut line_start, mut frame_start) = (0, None);
+    let mut says_step = false;
+    loop {
+        line.clear();
+        let length = lines.read_line(&mut line).map_err(|error| Error::file(path, error))?;
+        if length == 0 || line.starts_with(OF_A_DRAFT) {
+            return Ok(Some(line_start));
+        }
+        let text = line.trim_end();
+        if says_step {
+            let there = text.parse::<u64>().map_err(|_| {
+                let reason = format!("the step is '{text}', but must be a whole number ≥ 0");
+                Error::file(path, reason)
+            })?;
+            if Some(there) > step {
+                return Ok(frame_start);
+            }
+        }
+        says_step = text == STEP;
+        if text == TIME {
+            // What stands ahead of the first frame goes with it.
+            frame_start = Some(frame_start.map_or(0, |_| line_start));
+        }
+        line_start += length as u64;
+    }
+}
+
+/// The text of a frame.
+struct FrameText {
+    /// Ahead of the first frame: units, and what is to be known of the run. Readers skip items that
+    /// they do not know there, and nowhere else.
+    pub front: String,
+    /// All up to the names of the columns.
+    pub head: String,
+    pub rows: String,
+}
+
+/// A row a grain, then a row a fixed disc.
+fn grains(frame: &Frame, facts: &RunFacts) -> FrameText {
+    let rows = 0..frame.grains.len();
+    dump("ATOMS", frame, facts, (&frame.grains, &GRAIN_COLUMNS), rows)
+}
+
+/// A row a contact between two discs.
+fn contacts(frame: &Frame, facts: &RunFacts) -> FrameText {
+    let contacts = frame.moment.contacts.iter().enumerate();
+    let between_discs =
+        contacts.filter(|(_, contact)| !matches!(contact.other, OtherBody::Boundary(_)));
+    let rows: Vec<usize> = between_discs.map(|(row, _)| row).collect();
+    dump("BONDS", frame, facts, (&frame.contacts, &CONTACT_COLUMNS), rows.into_iter())
+}
+
+fn dump(
+    label: &str,
+    frame: &Frame,
+    facts: &RunFacts,
+    (table, first): (&Table, &[(&'static str, &str)]),
+    rows: impl ExactSizeIterator<Item = usize>,
+) -> FrameText {
+    let columns = columns(table, first);
+    let mut head = head(&frame.moment, label, rows.len());
+    columns.iter().for_each(|(name, _)| head.extend([" ", name]));
+    head.push('\n');
+    let mut text = String::new();
+    for row in rows {
+        for (place, (name, column)) in columns.iter().enumerate() {
+            if place > 0 {
+                text.push(' ');
+            }
+            push(&mut text, name, &column.values, row);
+        }
+        text.push('\n');
+    }
+    FrameText { front: front(facts, &columns), head, rows: text }
+}
+
+fn columns<'a>(
+    table: &'a Table,
+    first: &[(&'static str, &str)],
+) -> Vec<(&'static str, &'a Column)> {
+    let named = first.iter().filter_map(|&(name, ours)| Some((name, table.column(ours)?)));
+    let is_first = |column: &&Column| first.iter().any(|(_, ours)| *ours == column.name);
+    let others = table.columns.iter().filter(|column| !is_first(column));
+    let others = others.filter(|column| !LEFT_OUT.contains(&column.name));
+    named.chain(others.map(|column| (column.name, column))).collect()
+}
+
+fn push(text: &mut String, name: &str, values: &Values, row: usize) {
+    let mut buffer = ryu::Buffer::new();
+    let _ = match values {
+        Values::Numbers(numbers) => text.write_str(buffer.format(numbers[row])),
+        Values::SomeNumbers(numbers) => {
+            text.write_str(buffer.format(numbers[row].unwrap_or(f64::NAN)))
+        }
+        Values::Counts(counts) => write!(text, "{}", counts[row]),
+        Values::Flags(flags) => write!(text, "{}", flags[row].map_or(-1, i8::from)),
+        Values::Words { words, codes } if name == IN_WORDS => {
+            text.write_str(&words[codes[row] as usize])
+        }
+        Values::Words { codes, .. } => write!(text, "{}", codes[row] + first_code(name)),
+    };
+}
+
+/// The number of the first word of a list.
+fn first_code(name: &str) -> u32 {
+    if name == "type" { FIRST_TYPE } else { 0 }
+}
+
+/// A line of what is known of the run and one of what the columns are: OVITO looks for the first frame in the
+/// first 20 lines alone, and takes a file for none of its formats if it is not there.
+fn front(facts: &RunFacts, columns: &[(&'static str, &Column)]) -> String {
+    let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
+    let columns = columns.iter().filter(|(name, _)| *name != IN_WORDS);
+    let columns = columns.map(|(name, column)| column.described_with_codes(name, first_code(name)));
+    let [facts, columns] = [facts.collect::<Vec<_>>(), columns.collect()].map(|all| all.join("; "));
+    format!("ITEM: UNITS\nsi\nITEM: PARAMETERS\n{facts}\n{columns}\n")
+}
+
+fn head(moment: &Moment, label: &str, count: usize) -> String {
+    let observables = &moment.observables;
+    let ([min, max], radius) = bounds(moment);
+    // Periodic where the borders wrap, else as far as there is anything.
+    let periodic = moment.surroundings.periodic.unwrap_or_default();
+    let [along_x, along_y] =
+        periodic.periods().map(|period| if period.is_some() { "pp" } else { "ss" });
+    let tilt = periodic.shift;
+    let bounds = match tilt == 0.0 {
+        true => {
+            format!("{along_x} {along_y} ss\n{:?} {:?}\n{:?} {:?}\n", min.x, max.x, min.y, max.y)
+        }
+        // Of a leaning box: those of the upright one around it, and by how much it leans.
+        false => format!(
+            "xy xz yz {along_x} {along_y} ss\n{:?} {:?} {tilt:?}\n{:?} {:?} 0.0\n",
+            min.x + tilt.min(0.0),
+            max.x + tilt.max(0.0),
+            min.y,
+            max.y
+        ),
+    };
+    let along_z = if tilt == 0.0 { "" } else { " 0.0" };
+    format!(
+        "ITEM: TIME\n{:?}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF {label}\n{count}\n\
+         ITEM: BOX BOUNDS {bounds}{:?} {:?}{along_z}\nITEM: {label}",
+        observables.time_secs, observables.step, -radius, radius
+    )
+}
+
+/// What holds all discs that are not lost, along an axis whose borders wrap the cell, and the largest radius, m.
+fn bounds(moment: &Moment) -> ([DVec2; 2], f64) {
+    let grains = moment.grains.iter().filter(|grain| !grain.lost);
+    let grains = grains.map(|grain| (grain.position, grain.radius));
+    let fixed = moment.surroundings.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
+    let mut largest = 0f64;
+    let mut corners: Option<[DVec2; 2]> = None;
+    for (centre, radius) in grains.chain(fixed) {
+        let [low, high] = [centre - radius, centre + radius];
+        let [min, max] = corners.unwrap_or([low, high]);
+        corners = Some([min.min(low), max.max(high)]);
+        largest = largest.max(radius);
+    }
+    let periodic = moment.surroundings.periodic.unwrap_or_default();
+    (periodic.borders_or(corners.unwrap_or_default()), largest)
+}

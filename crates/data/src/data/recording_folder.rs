@@ -1,0 +1,226 @@
+//! The folder of a recording: which of its files are a recording's, the lock by which it is one recording's alone,
+//! and `data.json`, which says what a recording is made of.
+
+use std::io::ErrorKind::NotFound;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value, json};
+
+use super::columns::empty_tables;
+use super::format::RunFacts;
+use super::table::{Column, Values};
+use super::{csv, lammps, vtk};
+use crate::error::{Error, Result};
+use crate::output::{FolderLock, Locked, check_writable, final_name, write_file};
+use crate::scene::FormatName;
+
+/// What a recording is made of.
+const MANIFEST: &str = "data.json";
+/// The list of frames that are there in every format.
+pub(super) const FRAMES: &str = "frames.csv";
+/// What the name of a part of a table in Parquet begins with, …
+const BEGINNING_OF_PART: &str = "part-";
+/// … and ends with.
+const ENDING_OF_PART: &str = ".parquet";
+
+/// A folder that no other recording is written to while this is there.
+pub struct RecordingFolder {
+    path: PathBuf,
+    overwrite: bool,
+    _lock: FolderLock,
+}
+
+impl RecordingFolder {
+    /// Makes the folder where it is not there, and takes it.
+    ///
+    /// # Errors
+    /// Where it cannot be written to, another recording is being written to it, or, without `overwrite`, an
+    /// earlier one is there.
+    pub fn of(path: &Path, overwrite: bool) -> Result<Self> {
+        let folder = Self::lock(path)?;
+        if !overwrite && let Some(first) = files_of_a_recording(path)?.first() {
+            let name = first.strip_prefix(path).unwrap_or(first).display();
+            let allowed = format!(
+                "a folder without an earlier recording ({name} is there), unless --overwrite is given to \
+                 remove it"
+            );
+            return Err(Error::value("data", path.display(), allowed));
+        }
+        Ok(Self { overwrite, ..folder })
+    }
+
+    /// Takes a folder to go on with the recording that is there, but for what a kill left of its files.
+    ///
+    /// # Errors
+    /// As [`RecordingFolder::of`].
+    pub fn to_go_on(path: &Path) -> Result<Self> {
+        let folder = Self::lock(path)?;
+        let mut left = files_of_a_recording(path)?;
+        left.retain(|file| is_left(file));
+        left.iter().try_for_each(|file| remove(file))?;
+        Ok(folder)
+    }
+
+    fn lock(path: &Path) -> Result<Self> {
+        check_writable("data", path)?;
+        let lock = FolderLock::of(path, Locked::Recording)?;
+        Ok(Self { path: path.to_owned(), overwrite: false, _lock: lock })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Removes an earlier recording, where that was asked for.
+    ///
+    /// # Errors
+    /// Names the file that cannot be removed.
+    pub(super) fn clear(&self) -> Result<()> {
+        if !self.overwrite {
+            return Ok(());
+        }
+        files_of_a_recording(&self.path)?.iter().try_for_each(|file| remove(file))
+    }
+}
+
+/// The files of a recording that are in a folder, whatever its formats and whatever this build can write, and what a
+/// kill left of such.
+fn files_of_a_recording(folder: &Path) -> Result<Vec<PathBuf>> {
+    let tables: Vec<_> = empty_tables().map(|table| table.name).collect();
+    let mut all = files_named(folder, |name| [MANIFEST, FRAMES].contains(&name))?;
+    for table in &tables {
+        all.extend(files_named(&folder.join(table), |name| part_number(name).is_some())?);
+    }
+    all.extend(files_named(&folder.join(csv::FOLDER), |name| {
+        name.strip_suffix(".csv").is_some_and(|name| tables.contains(&name))
+    })?);
+    all.extend(files_named(&folder.join(vtk::FOLDER), vtk::is_name_of_file)?);
+    all.extend(files_named(&folder.join(lammps::FOLDER), |name| lammps::FILES.contains(&name))?);
+    Ok(all)
+}
+
+/// The plain files of a folder whose names are a recording's, sorted, with what a kill left of such; none
+/// where there is no folder. Links and pipes are nobody's leftovers.
+///
+/// # Errors
+/// Where the folder cannot be read.
+pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>> {
+    let refuse = |error| Error::file(folder, error);
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(refuse(error)),
+    };
+    let mut files = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(refuse)?;
+        let is_plain = entry.file_type().map_err(refuse)?.is_file();
+        if is_plain && entry.file_name().to_str().is_some_and(|name| is_ours(final_name(name))) {
+            files.push(entry.path());
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Whether a file is what a kill left of one.
+fn is_left(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    name.is_some_and(|name| final_name(name) != name)
+}
+
+/// Removes a file.
+///
+/// # Errors
+/// Names the file and what the system says.
+pub(super) fn remove(path: &Path) -> Result<()> {
+    std::fs::remove_file(path).map_err(|error| Error::file(path, error))
+}
+
+/// Makes a folder where it is not there.
+///
+/// # Errors
+/// Names the folder and what the system says.
+pub(super) fn make_folder(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path)
+        .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))
+}
+
+/// The part of that number in a table's folder.
+#[cfg(feature = "data")]
+pub(super) fn path_of_part(folder: &Path, number: u64) -> PathBuf {
+    folder.join(format!("{BEGINNING_OF_PART}{number:05}{ENDING_OF_PART}"))
+}
+
+fn part_number(name: &str) -> Option<u64> {
+    let digits = name.strip_prefix(BEGINNING_OF_PART)?.strip_suffix(ENDING_OF_PART)?;
+    digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())?
+}
+
+/// The parts in a table's folder with their numbers, by which they are sorted.
+///
+/// # Errors
+/// Where the folder cannot be read.
+pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
+    let paths = files_named(folder, |name| part_number(name).is_some())?;
+    let number = |path: &Path| path.file_name().and_then(|name| part_number(name.to_str()?));
+    let numbered = paths.into_iter().filter_map(|path| Some((number(&path)?, path)));
+    let mut numbered: Vec<_> = numbered.collect();
+    // Beyond 99999 parts, names have more digits and sort otherwise.
+    numbered.sort();
+    Ok(numbered)
+}
+
+/// Writes the manifest of a recording.
+///
+/// # Errors
+/// Names the file and what the system says.
+pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFacts) -> Result<()> {
+    let path = folder.join(MANIFEST);
+    let facts = run.facts.iter().map(|(name, said)| (name.clone(), Value::from(said.as_str())));
+    let tables = empty_tables().map(|table| {
+        let columns: Vec<Value> = table.columns.iter().map(column_in_manifest).collect();
+        (table.name.to_owned(), Value::from(columns))
+    });
+    let manifest = json!({
+        "program": "slump",
+        "version": env!("CARGO_PKG_VERSION"),
+        "formats": formats,
+        "about": facts.collect::<Map<_, _>>(),
+        "tables": Map::from_iter(tables),
+    });
+    let mut text =
+        serde_json::to_string_pretty(&manifest).map_err(|error| Error::file(&path, error))?;
+    text.push('\n');
+    write_file(&path, text.as_bytes())
+}
+
+/// Refuses to go on with a recording in other formats.
+///
+/// # Errors
+/// Names the formats that it has.
+pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()> {
+    let path = folder.join(MANIFEST);
+    // Without one there is no recording yet.
+    let Ok(text) = std::fs::read(&path) else { return Ok(()) };
+    let manifest: Value = serde_json::from_slice(&text)
+        .map_err(|error| Error::unread(&path, error, "the manifest of a recording"))?;
+    if manifest["formats"] == json!(formats) {
+        return Ok(());
+    }
+    let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
+    let allowed = format!("as {} has it: {}", path.display(), manifest["formats"]);
+    Err(Error::value("data-format", names.join(","), allowed))
+}
+
+fn column_in_manifest(column: &Column) -> Value {
+    let Column { name, unit, about, values } = column;
+    let values = match values {
+        Values::Numbers(_) | Values::SomeNumbers(_) => "number",
+        Values::Counts(_) => "count",
+        Values::Flags(_) => "flag",
+        Values::Words { .. } => "word",
+    };
+    json!({ "name": name, "unit": unit, "about": about, "values": values })
+}

@@ -1,0 +1,413 @@
+//! The cell of each grain: the room that is nearer to it than to any other, as far as it belongs to the packing.
+//!
+//! *Power cells.* Near is measured by the power |p − x|² − r² of a point to a disc (Laguerre, also radical, tessellation;
+//! F. Aurenhammer, *Power Diagrams*, SIAM J. Comput. 16, 1987). Where radii differ, cells of the plain Voronoi diagram
+//! cut through larger discs; those of the power diagram part two discs that touch at their contact point, so that each
+//! disc lies in its cell but for overlaps. Where radii are equal, both are the same. Fixed discs have cells, too, which
+//! are no grain's.
+//!
+//! *Walls.* A side of a boundary cuts along its line the cells of grains that stand before it, between its ends. Where a
+//! grain stands before no side of a boundary, the corner that it is nearest to cuts across the line from the grain's
+//! centre. So no cell reaches into a solid or through a wall, and a wall that ends takes a little of what lies around
+//! its end. *Across periodic borders* the images of discs and walls cut cells as they do themselves.
+//!
+//! *How far.* A point belongs to the packing if its power to the nearest grain is below 3r̄², r̄ the mean radius: in a
+//! pore between grains of that radius which is just large enough for one more, the middle is the first point that does
+//! not. A cell with corners beyond is open: it lies at a free surface or at a hole, and says nothing of how densely
+//! grains are packed. Its area counts up to that border and inside of the box around all grains, so that a packing with
+//! straight sides and no hole has just its box, whether there are walls at its sides or not.
+
+use std::f64::consts::PI;
+
+use glam::DVec2;
+use parry2d_f64::query::details::clip_halfspace_polygon;
+
+use super::network::Network;
+use crate::contact::BroadPhase;
+use crate::sim::{GrainState, Surroundings};
+use crate::world::{Boundary, Edge, Periodic};
+
+/// The border of the packing: the largest power to the nearest grain, in squares of the mean radius. Smaller: loose
+/// packings have open cells inside; larger: more of the air above a free surface counts.
+const LARGEST_POWER: f64 = 3.0;
+
+/// How much nearer than the border a closed cell's corners are, as a part of the distance squared: rounding.
+const CLOSED_WITHIN: f64 = 1e-9;
+
+/// The cells of all grains.
+pub(super) struct PowerCells {
+    /// Areas, m²; NaN for a grain that does not count.
+    pub areas: Vec<f64>,
+    /// Area of a grain's disc in that of its cell; NaN where the cell is not closed.
+    pub solid_fractions: Vec<f64>,
+    /// Σ areas of cells, m².
+    pub area: f64,
+    /// Area of the box around all grains, m²; NaN without grains.
+    pub box_area: f64,
+    /// Σ πr² over all grains, m².
+    pub disc_area: f64,
+    /// Number of closed cells.
+    pub closed: u32,
+    /// Σ πr² over the grains with closed cells, in Σ areas of those; NaN without any.
+    pub solid_fraction: f64,
+}
+
+/// Corners of the upright box around all grains, without end across periodic borders.
+#[derive(Clone, Copy)]
+struct GrainBox {
+    low: DVec2,
+    high: DVec2,
+    periodic: Option<Periodic>,
+}
+
+impl PowerCells {
+    pub(super) fn of(network: &Network, surroundings: &Surroundings) -> Self {
+        let (indices, mut sites) = sites(network, surroundings);
+        let bounds = GrainBox::around(&sites[..indices.len()], surroundings.periodic);
+        append_images(&mut sites, surroundings.periodic);
+        let grains = &sites[..indices.len()];
+        let walls = surroundings.boundaries.iter().map(Boundary::edges).collect::<Vec<_>>();
+        let neighbours = SiteNeighbours::of(&sites, grains.len());
+        let mut cells = Self::without_any(network.grains.len());
+        let (mut cuts, mut cell) = (Vec::new(), CellPolygon::default());
+        let mut closed_areas = [0.0; 2];
+        for (place, (&index, site)) in indices.iter().zip(grains).enumerate() {
+            cuts.clear();
+            cuts.extend(
+                neighbours.of_site(place).iter().map(|&other| cut(&sites, place, other as usize)),
+            );
+            for image in with_images(site, surroundings.periodic) {
+                cut_by_walls(&walls, &image, &mut cuts);
+            }
+            cell.fill(site.reach, &mut cuts);
+            let disc_area = PI * site.radius * site.radius;
+            let is_closed = cell.is_closed(site.reach);
+            if !is_closed {
+                cell.clip(bounds.cuts(site.position));
+            }
+            let area = cell.area_within(site.reach);
+            if is_closed {
+                cells.solid_fractions[index] = disc_area / area;
+                cells.closed += 1;
+                closed_areas[0] += disc_area;
+                closed_areas[1] += area;
+            }
+            cells.areas[index] = area;
+            cells.area += area;
+            cells.disc_area += disc_area;
+        }
+        cells.box_area = bounds.area();
+        cells.solid_fraction = closed_areas[0] / closed_areas[1];
+        cells
+    }
+
+    fn without_any(grains: usize) -> Self {
+        Self {
+            areas: vec![f64::NAN; grains],
+            solid_fractions: vec![f64::NAN; grains],
+            area: 0.0,
+            box_area: f64::NAN,
+            disc_area: 0.0,
+            closed: 0,
+            solid_fraction: f64::NAN,
+        }
+    }
+}
+
+/// The grains that count, with their indices, and after them the fixed discs.
+fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Site>) {
+    let (indices, grains): (Vec<usize>, Vec<&GrainState>) = network.grains().unzip();
+    let mean_radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;
+    let largest_power = LARGEST_POWER * mean_radius * mean_radius;
+    let site = |(position, radius): (DVec2, f64)| Site {
+        position,
+        radius,
+        reach: (radius * radius + largest_power).sqrt(),
+    };
+    let grains = grains.iter().map(|grain| (grain.position, grain.radius));
+    let fixed = surroundings.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
+    (indices, grains.chain(fixed).map(site).collect())
+}
+
+/// The line of equal powers, as it cuts the cell of the first site.
+fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
+    let (site, other) = (&sites[first], &sites[second]);
+    let branch = other.position - site.position;
+    let distance = branch.length();
+    if distance == 0.0 {
+        // One of two discs in one place has all: the larger one, or else the first.
+        let has_none = (other.radius, first) > (site.radius, second);
+        let offset = if has_none { f64::NEG_INFINITY } else { f64::INFINITY };
+        return HalfPlane { offset, direction: DVec2::X };
+    }
+    let powers = (site.radius - other.radius) * (site.radius + other.radius);
+    HalfPlane { offset: 0.5 * (distance + powers / distance), direction: branch / distance }
+}
+
+/// The sites whose cells may border on that of each grain: what two cells can reach overlaps where they do.
+struct SiteNeighbours {
+    starts: Vec<usize>,
+    others: Vec<u32>,
+}
+
+impl SiteNeighbours {
+    /// Of the first `grains` sites.
+    fn of(sites: &[Site], grains: usize) -> Self {
+        let mut pairs = Vec::new();
+        let centres: Vec<DVec2> = sites.iter().map(|site| site.position).collect();
+        let reaches: Vec<f64> = sites.iter().map(|site| site.reach).collect();
+        BroadPhase::of(&reaches).pairs::<2>(&centres, reaches.iter().copied(), |i, j| {
+            let (first, second) = (i as usize, j as usize);
+            let reach = reaches[first] + reaches[second];
+            if centres[first].distance_squared(centres[second]) < reach * reach {
+                pairs.extend([(i, j), (j, i)]);
+            }
+        });
+        pairs.retain(|&(of, _)| (of as usize) < grains);
+        let mut starts = vec![0; grains + 1];
+        for &(of, _) in &pairs {
+            starts[of as usize + 1] += 1;
+        }
+        for index in 0..grains {
+            starts[index + 1] += starts[index];
+        }
+        let (mut ends, mut others) = (starts.clone(), vec![0; pairs.len()]);
+        for (of, other) in pairs {
+            let end = &mut ends[of as usize];
+            others[*end] = other;
+            *end += 1;
+        }
+        Self { starts, others }
+    }
+
+    fn of_site(&self, place: usize) -> &[u32] {
+        &self.others[self.starts[place]..self.starts[place + 1]]
+    }
+}
+
+impl GrainBox {
+    fn around(sites: &[Site], periodic: Option<Periodic>) -> Self {
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for site in sites {
+            low = low.min(site.position - site.radius);
+            high = high.max(site.position + site.radius);
+        }
+        Self { low, high, periodic }
+    }
+
+    fn area(&self) -> f64 {
+        let size = self.high - self.low;
+        let [width, height] = self.periodic.unwrap_or_default().periods();
+        let area = width.unwrap_or(size.x) * height.unwrap_or(size.y);
+        if size.y < 0.0 { f64::NAN } else { area }
+    }
+
+    /// Its sides, seen from a point inside.
+    fn cuts(&self, centre: DVec2) -> [HalfPlane; 4] {
+        let (mut above, mut below) = (self.high - centre, centre - self.low);
+        let [width, height] = self.periodic.unwrap_or_default().periods();
+        // Farther than any cell reaches.
+        if let Some(width) = width {
+            (above.x, below.x) = (2.0 * width, 2.0 * width);
+        }
+        if let Some(height) = height {
+            (above.y, below.y) = (2.0 * height, 2.0 * height);
+        }
+        [
+            HalfPlane { offset: above.x, direction: DVec2::X },
+            HalfPlane { offset: above.y, direction: DVec2::Y },
+            HalfPlane { offset: below.x, direction: DVec2::NEG_X },
+            HalfPlane { offset: below.y, direction: DVec2::NEG_Y },
+        ]
+    }
+}
+
+/// What a straight line leaves of a cell: the points p with (p − x)·direction ≤ offset, x the centre of the cell's disc.
+#[derive(Clone, Copy, Debug)]
+struct HalfPlane {
+    /// m; negative where the centre is beyond the line.
+    offset: f64,
+    /// Of length 1.
+    direction: DVec2,
+}
+
+/// A disc that has a cell.
+#[derive(Clone, Copy)]
+struct Site {
+    position: DVec2,
+    radius: f64,
+    /// Radius of the part of the plane that can be its cell, m.
+    reach: f64,
+}
+
+/// Adds to sites those images of theirs whose cells may border on one in the cell of the borders.
+fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
+    let Some(periodic) = periodic else { return };
+    let reach = 2.0 * sites.iter().map(|site| site.reach).fold(0.0, f64::max);
+    let images: Vec<Site> = sites
+        .iter()
+        .flat_map(|site| {
+            let by = periodic.images([site.position - reach, site.position + reach]);
+            by.map(|by| Site { position: site.position + by, ..*site })
+        })
+        .filter(|image| {
+            let place = image.position;
+            [(periodic.x, place.x), (periodic.y, place.y)].into_iter().all(|(borders, at)| {
+                borders.is_none_or(|[low, high]| (low - reach..high + reach).contains(&at))
+            })
+        })
+        .collect();
+    sites.extend(images);
+}
+
+/// A site, and where borders are periodic its images a period to each side: what the walls are to each of them, they
+/// and their images are to the site.
+fn with_images(site: &Site, periodic: Option<Periodic>) -> impl Iterator<Item = Site> {
+    let site = *site;
+    let around = periodic.unwrap_or_default().around();
+    around.map(move |by| Site { position: site.position + by, ..site })
+}
+
+/// Where a grain stands to a side.
+enum Stands {
+    /// Before it: the cut along its line.
+    Before(HalfPlane),
+    /// Beside it: the way to the nearer end, m.
+    Beside(DVec2),
+}
+
+/// Adds the cuts by the sides of each boundary that can matter to a site's cell.
+fn cut_by_walls(boundaries: &[Vec<Edge>], site: &Site, cuts: &mut Vec<HalfPlane>) {
+    for edges in boundaries {
+        let mut before = false;
+        // The shortest way to a corner, m.
+        let mut corner: Option<DVec2> = None;
+        for edge in edges {
+            match stands(site.position, edge) {
+                Stands::Before(cut) if cut.offset < site.reach => {
+                    before = true;
+                    cuts.push(cut);
+                }
+                Stands::Before(_) => {}
+                Stands::Beside(way) => {
+                    if corner.is_none_or(|found| way.length_squared() < found.length_squared()) {
+                        corner = Some(way);
+                    }
+                }
+            }
+        }
+        if let (false, Some(way)) = (before, corner)
+            && way.length() < site.reach
+        {
+            cuts.push(HalfPlane { offset: way.length(), direction: way.normalize_or(DVec2::X) });
+        }
+    }
+}
+
+fn stands(centre: DVec2, edge: &Edge) -> Stands {
+    match *edge {
+        Edge::Endless { point, normal } => {
+            let normal = normal.normalize_or_zero();
+            Stands::Before(HalfPlane { offset: (centre - point).dot(normal), direction: -normal })
+        }
+        Edge::Wall([from, to]) | Edge::Side([from, to]) => {
+            let along = to - from;
+            let part = (centre - from).dot(along) / along.length_squared();
+            if part > 0.0 && part < 1.0 {
+                // On the line itself either side would do.
+                let way = from + part * along - centre;
+                let direction = way.normalize_or(-along.perp().normalize_or_zero());
+                Stands::Before(HalfPlane { offset: way.length(), direction })
+            } else {
+                Stands::Beside(if part >= 1.0 { to } else { from } - centre)
+            }
+        }
+    }
+}
+
+/// A cell while it is cut: its corners in order, anticlockwise, relative to the centre of its disc. All memory is kept from cell to cell.
+#[derive(Default)]
+struct CellPolygon {
+    corners: Vec<DVec2>,
+    before: Vec<DVec2>,
+}
+
+impl CellPolygon {
+    /// Makes it what the cuts leave of a square around all that is within `reach` (m) of the centre.
+    fn fill(&mut self, reach: f64, cuts: &mut [HalfPlane]) {
+        self.corners.clear();
+        let signs = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+        self.corners.extend(signs.map(|sign| reach * sign));
+        cuts.sort_unstable_by(|a, b| a.offset.total_cmp(&b.offset));
+        for &cut in cuts.iter() {
+            // Those that follow are no nearer.
+            if cut.offset > 0.0 && cut.offset * cut.offset >= self.farthest_squared() {
+                break;
+            }
+            self.clip([cut]);
+        }
+    }
+
+    /// Leaves what is on this side of the cuts.
+    fn clip<const COUNT: usize>(&mut self, cuts: [HalfPlane; COUNT]) {
+        for HalfPlane { offset, direction } in cuts {
+            if offset < 0.0 && offset * offset >= self.farthest_squared() {
+                self.corners.clear();
+                return;
+            }
+            std::mem::swap(&mut self.corners, &mut self.before);
+            clip_halfspace_polygon(offset * direction, direction, &self.before, &mut self.corners);
+        }
+    }
+
+    /// Whether it is a cell of which all corners are nearer to the centre than `reach`, m.
+    fn is_closed(&self, reach: f64) -> bool {
+        !self.corners.is_empty() && self.farthest_squared() < (1.0 - CLOSED_WITHIN) * reach * reach
+    }
+
+    /// Squared distance of its farthest corner, m²; 0 where nothing is left of it.
+    fn farthest_squared(&self) -> f64 {
+        self.corners.iter().map(|corner| corner.length_squared()).fold(0.0, f64::max)
+    }
+
+    /// Area of what lies within `radius` (m) of the centre: each side spans a triangle with the centre, of which the
+    /// circle leaves a triangle and a sector at either end.
+    fn area_within(&self, radius: f64) -> f64 {
+        let nexts = self.corners.iter().cycle().skip(1);
+        let sides = self.corners.iter().zip(nexts);
+        sides.map(|(&from, &to)| area_below(from, to, radius)).sum()
+    }
+}
+
+/// Signed area of what a circle about the origin leaves of the triangle between the origin and a side.
+fn area_below(from: DVec2, to: DVec2, radius: f64) -> f64 {
+    let inside = radius * radius;
+    if from.length_squared() <= inside && to.length_squared() <= inside {
+        return 0.5 * from.perp_dot(to);
+    }
+    let sector = |from: DVec2, to: DVec2| 0.5 * inside * from.perp_dot(to).atan2(from.dot(to));
+    let along = to - from;
+    let length_squared = along.length_squared();
+    if length_squared == 0.0 {
+        return 0.0;
+    }
+    let middle = -from.dot(along) / length_squared;
+    let half_squared = (inside - (from + middle * along).length_squared()) / length_squared;
+    if half_squared <= 0.0 {
+        return sector(from, to);
+    }
+    let half = half_squared.sqrt();
+    let [enters, leaves] = [middle - half, middle + half].map(|part| part.clamp(0.0, 1.0));
+    if enters >= leaves {
+        return sector(from, to);
+    }
+    let (first, last) = (from + enters * along, from + leaves * along);
+    let mut area = 0.5 * first.perp_dot(last);
+    if enters > 0.0 {
+        area += sector(from, first);
+    }
+    if leaves < 1.0 {
+        area += sector(last, to);
+    }
+    area
+}

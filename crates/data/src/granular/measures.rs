@@ -1,0 +1,227 @@
+//! What a pile is around each of its grains, and as a whole.
+
+use super::MomentParts;
+use super::stress::{self, Tensor};
+use crate::column_spec::{CellValue, ColumnSpec};
+use crate::sim::{ContactStatus, Moment};
+
+/// Declares a kind of row once: a structure, and a [`ColumnSpec`] for each field, whose unit follows its type.
+macro_rules! columns {
+    (@value f64 $field:ident) => {
+        CellValue::SomeNumber(|row| (!row.$field.is_nan()).then_some(row.$field))
+    };
+    (@value u32 $field:ident) => {
+        CellValue::Count(|row| u64::from(row.$field))
+    };
+    (@value bool $field:ident) => {
+        CellValue::Flag(|row| Some(row.$field))
+    };
+    (
+        $(#[$meta:meta])* $vis:vis struct $Name:ident {
+            $($(#[doc = $about:literal])+ $field:ident: $type:ident, $unit:literal;)*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+        $vis struct $Name {
+            $(
+                $(#[doc = $about])+
+                #[doc = concat!("\n\nUnit: ", $unit, ".")]
+                pub $field: $type,
+            )*
+        }
+
+        impl $Name {
+            /// The fields, in the order of the declaration.
+            pub const COLUMNS: &'static [ColumnSpec<Self>] = &[$(
+                ColumnSpec {
+                    name: stringify!($field),
+                    unit: $unit,
+                    about: concat!($($about),+).trim_ascii(),
+                    value: columns!(@value $type $field),
+                },
+            )*];
+        }
+    };
+}
+
+columns! {
+    /// The pile around one grain at one moment. A lost grain has no contacts, and its other numbers are NaN.
+    pub struct GrainMeasures {
+        /// Contacts with grains and with what does not move.
+        coordination: u32, "1";
+        /// Whether it carries nothing on: it is one of the pile's rattlers.
+        rattler: bool, "1";
+        /// a: area of its cell, as far as that belongs to the packing.
+        cell_area: f64, "m²";
+        /// σ_xx of (1/a) Σ f ⊗ ℓ over its contacts, compression positive: f on the grain, ℓ from the contact point to
+        /// its centre. The mean over all grains, weighted by a, is the pile's. NaN without a cell.
+        stress_xx: f64, "N/m";
+        /// σ_xy: x of the forces, y of the branches.
+        stress_xy: f64, "N/m";
+        /// σ_yx: y of the forces, x of the branches.
+        stress_yx: f64, "N/m";
+        /// σ_yy.
+        stress_yy: f64, "N/m";
+        /// p = (σ_1 + σ_2)/2, half the trace of σ.
+        pressure: f64, "N/m";
+        /// q = (σ_1 − σ_2)/2 of the symmetric part of σ, never negative.
+        deviator: f64, "N/m";
+        /// Area of its disc in that of its cell; NaN where the cell is not closed.
+        solid_fraction: f64, "1";
+    }
+}
+
+impl GrainMeasures {
+    /// Measures each grain of a pile, in their order.
+    pub fn of_each(moment: &Moment) -> Vec<Self> {
+        Self::of_parts(&MomentParts::of(moment))
+    }
+
+    pub(super) fn of_parts(parts: &MomentParts) -> Vec<Self> {
+        let MomentParts { network, cells, coordination, .. } = parts;
+        let sums = stress::stress_of_grains(network);
+        let of_grain = |(index, sum): (usize, Tensor)| {
+            let cell_area = cells.areas[index];
+            // A disc within a larger one may have no cell at all.
+            let stress = sum.over(if cell_area > 0.0 { cell_area } else { f64::NAN });
+            Self {
+                coordination: coordination.of_grains[index],
+                rattler: coordination.rattlers[index],
+                cell_area,
+                stress_xx: stress.xx,
+                stress_xy: stress.xy,
+                stress_yx: stress.yx,
+                stress_yy: stress.yy,
+                pressure: stress.mean(),
+                deviator: stress.deviator(),
+                solid_fraction: cells.solid_fractions[index],
+            }
+        };
+        sums.into_iter().enumerate().map(of_grain).collect()
+    }
+}
+
+columns! {
+    /// The whole pile at one moment. A number that does not exist is NaN: a mean over nothing, a direction where
+    /// all directions are alike.
+    pub struct PileMeasures {
+        /// Grains that count: all that are not lost.
+        grains: u32, "1";
+        /// Contacts that count: in touch, and of grains that count.
+        contacts: u32, "1";
+        /// A: area of the grains' cells, as far as they belong to the packing.
+        area: f64, "m²";
+        /// Area of the upright box around all grains.
+        box_area: f64, "m²";
+        /// σ_xx of σ = (1/A) Σ f ⊗ ℓ over all contacts, compression positive: f on grain i, ℓ to its centre from
+        /// that of the other grain, or from the touched point of a body that no grain moves.
+        stress_xx: f64, "N/m";
+        /// σ_xy: x of the forces, y of the branches.
+        stress_xy: f64, "N/m";
+        /// σ_yx: y of the forces, x of the branches. It is σ_xy where no grain begins to spin.
+        stress_yx: f64, "N/m";
+        /// σ_yy.
+        stress_yy: f64, "N/m";
+        /// p = (σ_1 + σ_2)/2, half the trace of σ.
+        pressure: f64, "N/m";
+        /// q = (σ_1 − σ_2)/2 of the symmetric part of σ, never negative.
+        deviator: f64, "N/m";
+        /// Direction in which compression is largest, from the x axis anticlockwise, at least 0 and below 180.
+        principal_direction: f64, "degree";
+        /// (1/2A) Σ m |v − v̄|², v̄ the velocity of the centre of mass: the part of the pressure that is momentum
+        /// carried by grains. It is in none of the stresses above.
+        kinetic_pressure: f64, "N/m";
+        /// F_xx of the fabric F = mean of n ⊗ n over all contacts; its trace is 1.
+        fabric_xx: f64, "1";
+        /// F_xy.
+        fabric_xy: f64, "1";
+        /// F_yy.
+        fabric_yy: f64, "1";
+        /// F_1 − F_2: 0 where normals have no direction in common, 1 where they all have the same.
+        fabric_anisotropy: f64, "1";
+        /// Direction that most normals have, from the x axis anticlockwise, at least 0 and below 180.
+        fabric_direction: f64, "degree";
+        /// Contacts of a grain, with grains and with what does not move: the mean over all grains.
+        coordination: f64, "1";
+        /// The mean over the grains that are no rattlers, of their contacts that bear a force and lead to no rattler.
+        coordination_without_rattlers: f64, "1";
+        /// Grains that carry nothing on: those with fewer than two contacts that bear a force and lead to no
+        /// rattler.
+        rattlers: u32, "1";
+        /// Area of all discs, overlaps twice, in that of the box around them.
+        solid_fraction_box: f64, "1";
+        /// Area of the discs with closed cells in that of their cells.
+        solid_fraction_cells: f64, "1";
+        /// Grains whose cells are closed: their pores are too small for a mean grain.
+        closed_cells: u32, "1";
+        /// Part of the contacts that slip.
+        sliding_share: f64, "1";
+        /// Part of the contacts that open: they pull as hard as they can, which without cohesion is not at all.
+        open_share: f64, "1";
+        /// Part of the contacts that pull.
+        tensile_share: f64, "1";
+        /// Sets of grains that contacts join; a grain alone is one. Bodies that no grain moves join none.
+        clusters: u32, "1";
+        /// Grains of the largest cluster.
+        largest_cluster: u32, "1";
+        /// ⟨|N|⟩, the mean over contacts that bear a force: the scale of P(f), f = N/⟨|N|⟩.
+        mean_normal_force: f64, "N";
+        /// ⟨f²⟩: 1 where all forces are the same, 2 where they are distributed exponentially.
+        normal_force_second_moment: f64, "1";
+        /// ⟨|f|³⟩: 1 where all forces are the same, 6 where they are distributed exponentially.
+        normal_force_third_moment: f64, "1";
+        /// Largest |f|.
+        largest_normal_force: f64, "1";
+        /// Part of the contacts that bear a force whose |f| is more than 1: the strong network.
+        strong_share: f64, "1";
+    }
+}
+
+impl PileMeasures {
+    /// Measures a pile. What is asked for of its grains besides is cheaper from [`measure`](super::measure).
+    pub fn of(moment: &Moment) -> Self {
+        Self::of_parts(&MomentParts::of(moment))
+    }
+
+    pub(super) fn of_parts(parts: &MomentParts) -> Self {
+        let MomentParts { network, cells, coordination, forces, clusters } = parts;
+        let stress = stress::stress_of_contacts(network).over(cells.area);
+        let fabric = stress::fabric(network);
+        Self {
+            grains: network.len() as u32,
+            contacts: network.links.len() as u32,
+            area: cells.area,
+            box_area: cells.box_area,
+            stress_xx: stress.xx,
+            stress_xy: stress.xy,
+            stress_yx: stress.yx,
+            stress_yy: stress.yy,
+            pressure: stress.mean(),
+            deviator: stress.deviator(),
+            principal_direction: stress.direction(),
+            kinetic_pressure: stress::energy_about_mean(network) / cells.area,
+            fabric_xx: fabric.xx,
+            fabric_xy: fabric.xy,
+            fabric_yy: fabric.yy,
+            fabric_anisotropy: 2.0 * fabric.deviator(),
+            fabric_direction: fabric.direction(),
+            coordination: coordination.mean,
+            coordination_without_rattlers: coordination.mean_without_rattlers,
+            rattlers: coordination.rattlers.iter().filter(|&&rattler| rattler).count() as u32,
+            solid_fraction_box: cells.disc_area / cells.box_area,
+            solid_fraction_cells: cells.solid_fraction,
+            closed_cells: cells.closed,
+            sliding_share: network.share(|link| link.status == ContactStatus::Slip),
+            open_share: network.share(|link| link.status == ContactStatus::Open),
+            tensile_share: network.share(|link| link.normal_force < 0.0),
+            clusters: clusters.count,
+            largest_cluster: clusters.largest,
+            mean_normal_force: forces.mean,
+            normal_force_second_moment: forces.moment(2),
+            normal_force_third_moment: forces.moment(3),
+            largest_normal_force: forces.largest(),
+            strong_share: forces.strong_share(),
+        }
+    }
+}

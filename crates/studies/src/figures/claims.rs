@@ -1,0 +1,176 @@
+//! Claims and their verdicts, and how often a test says that a claim holds where nothing is behind it: the same test, on
+//! the same runs, with Δt shuffled among those that are alike but for Δt. What scatters and how much is then as it was,
+//! and no effect is left.
+
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_pcg::Pcg64;
+
+/// p-values below this count as evidence.
+pub(super) const SIGNIFICANT: f64 = 0.05;
+
+/// Ratio of the ends of an interval that is narrow enough to confirm what lies in it.
+const NARROW: f64 = 3.0;
+
+/// Whether a claim holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// The data show it.
+    Holds,
+    /// The data show the contrary.
+    Fails,
+    /// The data show neither.
+    Open,
+}
+
+impl Verdict {
+    /// A claim that is shown where `p` is small, and its contrary where `p_contrary` is.
+    pub(super) fn of(p: f64, p_contrary: f64) -> Self {
+        match (p < SIGNIFICANT, p_contrary < SIGNIFICANT) {
+            (true, _) => Self::Holds,
+            (false, true) => Self::Fails,
+            (false, false) => Self::Open,
+        }
+    }
+
+    /// A guess at a ratio: it fails outside the interval, and an interval wider than a factor of
+    /// [`NARROW`] decides nothing.
+    pub(super) fn of_interval(guess: f64, low: f64, high: f64) -> Self {
+        if guess < low || guess > high {
+            Self::Fails
+        } else if high < NARROW * low {
+            Self::Holds
+        } else {
+            Self::Open
+        }
+    }
+
+    /// In words.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Fails => "does not hold",
+            Self::Open => "not decided by these data",
+        }
+    }
+}
+
+impl From<bool> for Verdict {
+    fn from(holds: bool) -> Self {
+        if holds { Self::Holds } else { Self::Fails }
+    }
+}
+
+/// What is said, what was measured, and whether it holds.
+#[derive(Clone, Debug)]
+pub(super) struct Claim {
+    /// What the paper says, or is asked beyond it.
+    pub said: String,
+    /// What was measured, with its interval or p-value.
+    pub measured: String,
+    /// Whether it holds.
+    pub verdict: Verdict,
+    /// How often the test would say that it holds with nothing behind it; empty where nothing is drawn at random.
+    pub by_chance: String,
+    /// The free choices that the verdict hangs on; empty where there are none but those of all runs of the figure.
+    pub hangs_on: String,
+}
+
+impl Claim {
+    /// A claim.
+    pub(super) fn new(
+        said: impl Into<String>,
+        measured: impl Into<String>,
+        verdict: Verdict,
+    ) -> Self {
+        let [by_chance, hangs_on] = [String::new(), String::new()];
+        Self { said: said.into(), measured: measured.into(), verdict, by_chance, hangs_on }
+    }
+
+    /// The same with how often its test would say so with nothing behind it, in words.
+    pub(super) fn by_chance(self, by_chance: impl Into<String>) -> Self {
+        Self { by_chance: by_chance.into(), ..self }
+    }
+
+    /// The same with how often its test says that it holds after shuffles of `groups`, to which the effect at the
+    /// `border` of what it allows is added.
+    pub(super) fn shuffled(
+        self,
+        groups: &[Alike],
+        border: impl Fn(f64) -> f64,
+        holds: impl Fn(&[Alike]) -> bool,
+    ) -> Self {
+        let share = 100.0 * share_by_chance(groups, border, holds);
+        self.by_chance(format!(
+            "holds in {share:.1} % of {SHUFFLES} shuffles of Δt within each state"
+        ))
+    }
+
+    /// The same with the free choices that it hangs on.
+    pub(super) fn hanging_on(self, hangs_on: impl Into<String>) -> Self {
+        Self { hangs_on: hangs_on.into(), ..self }
+    }
+}
+
+/// Shuffles. The share of a test at 5 % is then known to ± 1.4 %.
+const SHUFFLES: usize = 1000;
+
+/// Runs that are alike but for one number: that number, and a result, of each.
+pub(super) type Alike = Vec<(f64, f64)>;
+
+/// The share of shuffles of all groups after which the claim `holds`. `border` is put back in after the shuffle: an
+/// effect that a claim allows for, at the border of what it allows.
+fn share_by_chance(
+    groups: &[Alike],
+    border: impl Fn(f64) -> f64,
+    holds: impl Fn(&[Alike]) -> bool,
+) -> f64 {
+    let mut random = Pcg64::seed_from_u64(1);
+    let mut shuffled = |group: &Alike| -> Alike {
+        let mut results: Vec<f64> = group.iter().map(|(_, result)| *result).collect();
+        results.shuffle(&mut random);
+        group.iter().zip(results).map(|((x, _), result)| (*x, result + border(*x))).collect()
+    };
+    let holding = (0..SHUFFLES)
+        .filter(|_| holds(&groups.iter().map(&mut shuffled).collect::<Vec<_>>()))
+        .count();
+    holding as f64 / SHUFFLES as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::{mean, slope};
+
+    /// Sixteen states with six Δt each, whose results fall by `fall` a decade.
+    fn states(fall: f64) -> Vec<Alike> {
+        let of_state = |state: usize| {
+            let run = |step: usize| {
+                let scatter = (1.3 * state as f64 + 7.1 * (state * step) as f64).sin();
+                (step as f64, 0.1 * scatter - fall * step as f64)
+            };
+            (0..6).map(run).collect()
+        };
+        (1..=16).map(of_state).collect()
+    }
+
+    fn falls(states: &[Alike]) -> bool {
+        let slopes: Vec<f64> = states.iter().map(|state| slope(state)).collect();
+        mean(&slopes).p_below(0.0) < SIGNIFICANT
+    }
+
+    #[test]
+    fn a_sound_test_says_so_by_chance_in_five_of_a_hundred_whatever_the_effect() {
+        for fall in [0.0, 0.02, 0.5] {
+            let share = share_by_chance(&states(fall), |_| 0.0, falls);
+            assert!((share - 0.05).abs() < 0.02, "{share} where it falls by {fall}");
+        }
+        assert!(falls(&states(0.02)) && !falls(&states(-0.02)));
+    }
+
+    #[test]
+    fn one_that_always_says_so_is_found_out_and_the_border_counts() {
+        assert_eq!(share_by_chance(&states(0.0), |_| 0.0, |_| true), 1.0);
+        assert!(share_by_chance(&states(0.0), |step| -0.5 * step, falls) > 0.99);
+    }
+}

@@ -1,0 +1,285 @@
+//! Fig. 5: slump (a) and mean overlap (b) of piles against Δt, as means over initial states, with the single state of
+//! Fig. 4 as thin lines; and what is asked of them state by state, with how often each test would say so by chance.
+
+use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
+use super::studies::{Rows, log_step};
+use super::{Figure, StudyRunner};
+use crate::RunResult;
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Point, Sheet, points};
+use crate::error::Result;
+use crate::scene::NewPile;
+use crate::statistics::{Mean, mean, p_value, slope};
+
+/// What every claim about the slump of piles hangs on besides the cone.
+const CHOICES: &str = "the base, a row of fixed discs (the paper names none); the stop, a relative change of 1e−7; \
+                       restitution without a threshold; the states. pile-choices has what becomes of it where they are \
+                       changed";
+/// The cones and the studies in them.
+const CONES: [(&str, &str); 2] = [("shifted", "pile"), ("compressive", "pile-compressive")];
+/// A pile whose slump changes by less than this per decade of Δt is flat: a tenth of what the paper's
+/// cohesive piles do.
+const FLAT_PER_DECADE: f64 = 0.02;
+/// The mean overlap at which the paper has contacts begin to be lost, in diameters.
+const LARGE_OVERLAP: f64 = 0.01;
+/// Where the paper's axis of overlaps ends, in diameters.
+const END_OF_AXIS: f64 = 0.06;
+
+/// A claim of Fig. 5a about one Bond: in words, its test, and the slope a decade at the border of what it allows.
+type SlumpClaim = (f64, &'static str, SlumpTest, f64);
+/// What was measured, over slumps of each initial state by log₁₀ Δt, rising; and whether the claim holds.
+type SlumpTest = fn(&[Alike]) -> (String, Verdict);
+
+const SLUMP_CLAIMS: [SlumpClaim; 4] = [
+    (0.0, "at Bond 0 the slump does not depend on Δt", flat, FLAT_PER_DECADE),
+    (20.0, "at Bond 20 it falls as Δt grows", falling, 0.0),
+    (50.0, "at Bond 50 it has a minimum", minimum, 0.0),
+    (100.0, "at Bond 100 it rises as Δt grows", rising, 0.0),
+];
+
+/// Fig. 5a, in both readings of the paper's friction cone.
+pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
+    let mut charts = Vec::new();
+    let mut claims: Vec<Claim> = Vec::new();
+    let mut states = Vec::new();
+    for (cone, study) in CONES {
+        let all = studies.rows(study)?;
+        let ensemble = all.ensemble();
+        let y = Axis::linear("slump Δy_G", 0.0, 0.7);
+        let title = format!("Fig. 5a: slump after 1 s, {cone} cone");
+        charts.push(chart(&all, &title, time_steps(), y, |result| result.slump));
+        claims.extend(SLUMP_CLAIMS.map(|(bond, said, test, border)| {
+            let states = ensemble.of_bond(bond).groups(log_step, |result| result.slump);
+            let (measured, verdict) = test(&states);
+            let holds = |states: &[Alike]| test(states).1 == Verdict::Holds;
+            Claim::new(format!("Fig. 5a, {cone} cone: {said}"), measured, verdict)
+                .shuffled(&states, |log_step| border * log_step, holds)
+                .hanging_on(CHOICES)
+        }));
+        states.push(ensemble.seeds().len());
+    }
+    let caption = vec![
+        format!(
+            "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no \
+             mean.",
+            states[0]
+        ),
+        "Left |T| ≤ μ(N + C₀), right |T| ≤ μ max(N, 0): the paper's words can be read either way."
+            .into(),
+    ];
+    let sheet = Sheet { size: (2000, 860), charts, caption };
+    Ok(Figure { name: "fig5a", sheet, claims, table: None })
+}
+
+/// Fig. 5b: the mean overlap on axes that tell an exponent and on the paper's; and whether slump rises with Δt where
+/// overlaps are large and contacts are lost.
+pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
+    let all = studies.rows("pile")?;
+    let rows = all.ensemble();
+    let overlap = |result: &RunResult| result.tally.mean_overlap;
+    let y = Axis::log("mean overlap δ/d", 1e-5, 0.2);
+    let mut of_exponent = chart(&all, "Fig. 5b: mean overlap during 1 s", time_steps(), y, overlap);
+    of_exponent.legend = LegendCorner::UpperLeft;
+    let x = Axis::linear("Δt (s)", 0.0, 5.5e-3);
+    let y = Axis::linear("mean overlap δ/d", 0.0, END_OF_AXIS);
+    let mut of_paper = chart(&all, "On the paper's axes", x, y, overlap);
+    of_paper.legend = LegendCorner::UpperLeft;
+    let caption = vec![format!(
+        "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no mean.",
+        rows.seeds().len()
+    )];
+    let sheet = Sheet { size: (2000, 860), charts: vec![of_exponent, of_paper], caption };
+    let cohesive = rows.such_that(|config| config.parameters.bond > Some(0.0));
+    let claims = vec![grows(&cohesive), stays_below(&rows), reverses(&cohesive), loses(&cohesive)];
+    Ok(Figure { name: "fig5b", sheet, claims, table: None })
+}
+
+/// The axis of the paper's time steps.
+fn time_steps() -> Axis {
+    Axis::log("Δt (s)", 8e-5, 6.5e-3)
+}
+
+/// A number of all runs against Δt, a curve a Bond.
+fn chart(rows: &Rows<'_>, title: &str, x: Axis, y: Axis, number: fn(&RunResult) -> f64) -> Chart {
+    let mut chart = Chart::new(title, x, y);
+    let bonds = rows.bonds();
+    for (index, &bond) in bonds.iter().enumerate() {
+        let of_bond = rows.of_bond(bond);
+        let (single, ensemble) = (of_bond.of_seed(NewPile::default().seed), of_bond.ensemble());
+        let colour = PALETTE[index % PALETTE.len()];
+        let steps = of_bond.steps();
+        let shown = steps
+            .iter()
+            .filter_map(|&step| Some((step, *single.of_step(step).results(number).first()?)));
+        let name = format!("Bond {bond}, single state");
+        chart.layers.push(Layer::quiet(name, points(shown), colour, Look::Line(1)));
+        let means = steps.iter().map(|&step| {
+            let mean = mean(&ensemble.of_step(step).results(number));
+            Point { x: step, y: mean.mean, interval: Some((mean.low.max(1e-6), mean.high)) }
+        });
+        let name = format!("Bond {bond}");
+        let curve = Layer::curve(name, means.collect(), colour, Look::LineAndDots);
+        chart.layers.push(curve.beside(index, bonds.len()));
+    }
+    chart
+}
+
+/// The mean slope of groups.
+fn slopes(groups: &[Alike]) -> Mean {
+    mean(&groups.iter().map(|pairs| slope(pairs)).collect::<Vec<_>>())
+}
+
+fn measured(what: &str, mean: &Mean) -> String {
+    let Mean { mean, low, high, count, .. } = mean;
+    format!("{what} {mean:+.3}, 95 % interval {low:+.3} … {high:+.3}, {count} states")
+        .replace('-', "−")
+}
+
+fn flat(states: &[Alike]) -> (String, Verdict) {
+    let slope = slopes(states);
+    let p = slope.p_within(FLAT_PER_DECADE);
+    let p_not = slope.p_above(FLAT_PER_DECADE).min(slope.p_below(-FLAT_PER_DECADE));
+    let measured = measured("slope per decade", &slope);
+    (format!("{measured}; within ±{FLAT_PER_DECADE}: {}", p_value(p)), Verdict::of(p, p_not))
+}
+
+fn falling(states: &[Alike]) -> (String, Verdict) {
+    let slope = slopes(states);
+    let (p, measured) = (slope.p_below(0.0), measured("slope per decade", &slope));
+    (format!("{measured}; below 0: {}", p_value(p)), Verdict::of(p, slope.p_above(0.0)))
+}
+
+fn rising(states: &[Alike]) -> (String, Verdict) {
+    let slope = slopes(states);
+    let (p, measured) = (slope.p_above(0.0), measured("slope per decade", &slope));
+    (format!("{measured}; above 0: {}", p_value(p)), Verdict::of(p, slope.p_below(0.0)))
+}
+
+/// Both ends lie above the mean of what is between them, state by state. Which Δt is lowest is not
+/// asked, so that nothing is picked after the fact.
+fn minimum(states: &[Alike]) -> (String, Verdict) {
+    let rise = |end: fn(&Alike) -> f64| {
+        let over = |pairs: &Alike| {
+            let inner = &pairs[1..pairs.len() - 1];
+            end(pairs) - inner.iter().map(|(_, slump)| slump).sum::<f64>() / inner.len() as f64
+        };
+        mean(&states.iter().filter(|pairs| pairs.len() > 2).map(over).collect::<Vec<_>>())
+    };
+    let left = rise(|pairs| pairs[0].1);
+    let right = rise(|pairs| pairs[pairs.len() - 1].1);
+    let p = left.p_above(0.0).max(right.p_above(0.0));
+    let p_not = left.p_below(0.0).min(right.p_below(0.0));
+    let measured = format!(
+        "{}; {}; both above 0: {}",
+        measured("smallest Δt above those between", &left),
+        measured("largest Δt above those between", &right),
+        p_value(p)
+    );
+    (measured, Verdict::of(p, p_not))
+}
+
+fn grows(cohesive: &Rows<'_>) -> Claim {
+    let states = cohesive.groups(log_step, |result| result.tally.mean_overlap.max(1e-12).log10());
+    let exponent = slopes(&states);
+    let Mean { mean, low, high, .. } = exponent;
+    Claim::new(
+        "Fig. 5b: the mean overlap grows with Δt",
+        format!("δ ∝ Δt^{mean:.2} over all Bond > 0, 95 % interval {low:.2} … {high:.2}"),
+        Verdict::of(exponent.p_above(0.0), exponent.p_below(0.0)),
+    )
+    .shuffled(&states, |_| 0.0, |states| slopes(states).p_above(0.0) < SIGNIFICANT)
+    .hanging_on("the states; no choice of cone or solver is known that undoes it")
+}
+
+fn stays_below(rows: &Rows<'_>) -> Claim {
+    let largest = rows.results(|result| result.tally.mean_overlap).into_iter().fold(0.0, f64::max);
+    Claim::new(
+        format!("Fig. 5b: it stays below {END_OF_AXIS} d, where the paper's axis ends"),
+        format!("largest mean overlap of a run {largest:.3} d"),
+        (largest < END_OF_AXIS).into(),
+    )
+    .by_chance("nothing is drawn at random but the states: a largest value of all runs has no null hypothesis")
+    .hanging_on("what counts as overlap: |gap|/d of touching grains, averaged over steps")
+}
+
+/// Slope of slump between neighbouring Δt where the larger of the two has a mean overlap above the border, less
+/// that where it has not, state and Bond by state and Bond; those that lie on one side alone say nothing.
+fn turn(slumps: &[Alike], overlaps: &[Alike]) -> Mean {
+    let of_group = |(slumps, overlaps): (&Alike, &Alike)| {
+        let pairs = slumps.windows(2).zip(&overlaps[1..]);
+        let slopes = pairs.map(|(pair, (_, overlap))| {
+            ((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0), *overlap > LARGE_OVERLAP)
+        });
+        let (above, below): (Vec<_>, Vec<_>) = slopes.partition(|(_, above)| *above);
+        let mean_of = |side: &[(f64, bool)]| {
+            let sum: f64 = side.iter().map(|(slope, _)| slope).sum();
+            (!side.is_empty()).then(|| sum / side.len() as f64)
+        };
+        Some(mean_of(&above)? - mean_of(&below)?)
+    };
+    mean(&slumps.iter().zip(overlaps).filter_map(of_group).collect::<Vec<_>>())
+}
+
+/// That slump begins to rise with Δt where overlaps are large.
+fn reverses(cohesive: &Rows<'_>) -> Claim {
+    let slumps = cohesive.groups(log_step, |result| result.slump);
+    let overlaps = cohesive.groups(log_step, |result| result.tally.mean_overlap);
+    let turning = turn(&slumps, &overlaps);
+    let measured = format!(
+        "slope of slump a decade of Δt, above {LARGE_OVERLAP} d less below, at the same state and Bond: {}, {} pairs; \
+         above 0: {}",
+        turning.signed(3),
+        turning.count,
+        p_value(turning.p_above(0.0))
+    );
+    Claim::new(
+        "The paper's explanation: larger steps weaken piles where the mean overlap is above 1 %",
+        measured.replace('-', "−"),
+        Verdict::of(turning.p_above(0.0), turning.p_below(0.0)),
+    )
+    .shuffled(&slumps, |_| 0.0, |slumps| turn(slumps, &overlaps).p_above(0.0) < SIGNIFICANT)
+    .hanging_on(
+        "the shifted cone; and on overlap and Δt growing together: what else grows with Δt would do as well",
+    )
+}
+
+/// That piles have fewer contacts at larger Δt where they are strong, and that those with fewer slump more.
+fn loses(cohesive: &Rows<'_>) -> Claim {
+    let strong = cohesive.bonds().last().copied();
+    let strong = cohesive.such_that(|config| config.parameters.bond == strong);
+    let contacts = strong.groups(log_step, |result| result.tally.mean_contacts);
+    let falls = slopes(&contacts);
+    let slumps = strong.groups(log_step, |result| result.slump);
+    let with = |slumps: &[Alike]| {
+        let of_state = |(slumps, contacts): (&Alike, &Alike)| {
+            let pairs: Vec<_> = contacts.iter().zip(slumps).map(|(c, s)| (c.1, s.1)).collect();
+            slope(&pairs)
+        };
+        let slopes = slumps.iter().zip(&contacts).map(of_state);
+        mean(&slopes.filter(|slope| slope.is_finite()).collect::<Vec<_>>())
+    };
+    let of_slump = with(&slumps);
+    let p = falls.p_below(0.0).max(of_slump.p_below(0.0));
+    let p_not = falls.p_above(0.0).min(of_slump.p_above(0.0));
+    let measured = format!(
+        "at the largest Bond contacts change by {:+.1} a decade of Δt ({:+.1} … {:+.1}), and slump by {:+.4} a contact \
+         within a state ({:+.4} … {:+.4}); both below 0: {}",
+        falls.mean,
+        falls.low,
+        falls.high,
+        of_slump.mean,
+        of_slump.low,
+        of_slump.high,
+        p_value(p)
+    );
+    Claim::new(
+        "The paper's explanation: strong piles lose contacts at large Δt, and slump for it",
+        measured.replace('-', "−"),
+        Verdict::of(p, p_not),
+    )
+    .shuffled(
+        &slumps,
+        |_| 0.0,
+        |slumps| falls.p_below(0.0).max(with(slumps).p_below(0.0)) < SIGNIFICANT,
+    )
+    .hanging_on("the shifted cone; which of the two is the cause is not told: a pile that spreads loses contacts, too")
+}

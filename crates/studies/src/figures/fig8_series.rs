@@ -1,0 +1,224 @@
+//! Fig. 8: where j goes after the shock, on the paper's axes; and what else the paper says of these runs.
+
+use super::fig8::{OPEN_GAP, PHASE_SECS};
+use super::{Claim, Figure, StudyRunner};
+use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet, points};
+use crate::error::{Error, Result};
+use crate::scene::cradle;
+
+/// Time steps that are shown, s: both sides of the threshold, and steps at which the
+/// outcome is a matter of phase.
+const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
+/// Where the paper's axes end, s and d.
+const ENDS: (f64, f64) = (2.0, 5.0);
+/// The steps at which the paper has j leave with one velocity, s.
+const FREE_SECS: (f64, f64) = (1e-4, 6e-4);
+/// The steps at which the paper has k stay with i and j, s.
+const CLUSTER_SECS: (f64, f64) = (7e-4, 3e-3);
+/// The step at which the paper has i catch up with j, s.
+const CAUGHT_SECS: f64 = 5e-3;
+/// Ratio of the largest to the smallest of velocities that are one.
+const ONE_VELOCITY: f64 = 1.1;
+/// What verdicts on three discs hang on.
+const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states none), the stop and the cold start: \
+                       cradle-choices";
+
+/// A row of a series: the time since k first touched i, s, and the places of i, j and k, in diameters.
+struct SeriesRow {
+    secs: f64,
+    places: [f64; 3],
+}
+
+impl SeriesRow {
+    /// Between i and j, in diameters.
+    fn gap(&self) -> f64 {
+        self.places[1] - self.places[0] - 1.0
+    }
+}
+
+/// Where the discs of one run are over time.
+struct DiscSeries {
+    step_secs: f64,
+    rows: Vec<SeriesRow>,
+}
+
+impl DiscSeries {
+    fn after_shock(&self) -> impl DoubleEndedIterator<Item = &SeriesRow> {
+        self.rows.iter().filter(|row| row.secs >= 0.0)
+    }
+
+    fn last(&self) -> Option<&SeriesRow> {
+        self.rows.last()
+    }
+
+    fn ends_open(&self) -> bool {
+        self.last().is_some_and(|row| row.gap() > OPEN_GAP)
+    }
+
+    /// The largest gap of i and j after the shock.
+    fn widest(&self) -> f64 {
+        self.after_shock().map(SeriesRow::gap).fold(0.0, f64::max)
+    }
+
+    /// Whether j has come back from the farthest that it has been.
+    fn turns_back(&self) -> bool {
+        let farthest = self.after_shock().map(|row| row.places[1]).fold(1.0, f64::max);
+        self.last().is_some_and(|row| row.places[1] < farthest - OPEN_GAP)
+    }
+
+    /// Mean velocity of j over the last quarter of a second, d/s.
+    fn final_velocity(&self) -> f64 {
+        let Some(last) = self.last() else { return 0.0 };
+        let before = self.after_shock().find(|row| row.secs >= last.secs - 0.25);
+        before.map_or(0.0, |one| (last.places[1] - one.places[1]) / (last.secs - one.secs))
+    }
+}
+
+pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
+    let diameter = cradle().mean_diameter;
+    let mut runs = Vec::new();
+    for (config, text) in studies.series("cradle-courses")? {
+        let step_secs = config.parameters.time_step_secs.unwrap_or(0.0);
+        runs.push(DiscSeries { step_secs, rows: read(&text, diameter)? });
+    }
+    let mut near = chart(&runs, "place of j after the shock", (-0.1, 0.8))?;
+    let highest = highest(&near);
+    (near.y.from, near.y.to) = (1.0 - 0.05 * (highest - 1.0), 1.0 + 1.05 * (highest - 1.0));
+    let mut far = chart(&runs, "the same on the paper's axes", (0.0, ENDS.0))?;
+    (far.y.from, far.y.to) = (0.0, ENDS.1);
+    let caption = vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
+    let sheet = Sheet { size: (2000, 860), charts: vec![near, far], caption };
+    let claims = vec![swings(&runs), caught(&runs), cluster(&runs), one_velocity(&runs)];
+    let claims = claims.into_iter().map(|claim| claim.hanging_on(CHOICES)).collect();
+    Ok(Figure { name: "fig8", sheet, claims, table: None })
+}
+
+fn chart(runs: &[DiscSeries], title: &str, (from, to): (f64, f64)) -> Result<Chart> {
+    let axes = (Axis::linear("t − t_shock (s)", from, to), Axis::linear("x_j / d", 0.98, 1.2));
+    let mut chart = Chart::new(format!("Fig. 8: {title}"), axes.0, axes.1);
+    chart.legend = LegendCorner::UpperLeft;
+    for (index, shown) in SHOWN_SECS.into_iter().enumerate() {
+        let run = runs.iter().find(|run| run.step_secs == shown);
+        let run = run.ok_or_else(|| Error::value("dt", shown, "part of the study"))?;
+        let on_axes = |one: &&SeriesRow| (from..=to).contains(&one.secs) && one.places[1] <= ENDS.1;
+        let shown_rows = run.rows.iter().filter(on_axes);
+        let places = points(shown_rows.map(|one| (one.secs, one.places[1])));
+        let name = format!("Δt = {shown:e} s").replace('-', "−");
+        // Its curve is that of 1e-3 s as long as the bond holds in both.
+        let look = if shown == CAUGHT_SECS { Look::Dashes(3) } else { Look::Line(3) };
+        chart.layers.push(Layer::curve(name, places, PALETTE[index], look));
+    }
+    Ok(chart)
+}
+
+fn highest(chart: &Chart) -> f64 {
+    let curves = chart.layers.iter().filter_map(|layer| match layer {
+        Layer::Curve { points, .. } => Some(points),
+        _ => None,
+    });
+    curves.flatten().map(|point| point.y).fold(1.1, f64::max)
+}
+
+/// A series from its file.
+fn read(text: &str, diameter: f64) -> Result<Vec<SeriesRow>> {
+    let refuse = |error: csv::Error| Error::file("series", error);
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let headers = reader.headers().map_err(refuse)?.clone();
+    let column = |name: &str| headers.iter().position(|header| header == name).unwrap_or(0);
+    let columns = ["time_secs", "x0", "x1", "x2"].map(column);
+    let mut rows: Vec<SeriesRow> = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(refuse)?;
+        let [secs, i, j, k] = columns.map(|index| {
+            record.get(index).and_then(|cell| cell.parse::<f64>().ok()).unwrap_or(0.0)
+        });
+        rows.push(SeriesRow { secs, places: [i, j, k].map(|place| place / diameter) });
+    }
+    // Within a hundredth of a diameter: rows are further apart than the touch lasts.
+    let touches = |row: &&SeriesRow| row.places[0] - row.places[2] <= 1.01;
+    let shock_secs = rows.iter().find(touches).map_or(0.0, |row| row.secs);
+    rows.iter_mut().for_each(|row| row.secs -= shock_secs);
+    Ok(rows)
+}
+
+/// The runs with a Δt in a range, its ends among them.
+fn between(runs: &[DiscSeries], (least, most): (f64, f64)) -> impl Iterator<Item = &DiscSeries> {
+    runs.iter().filter(move |run| (least..=most).contains(&run.step_secs))
+}
+
+fn swings(runs: &[DiscSeries]) -> Claim {
+    let agree = runs.iter().filter(|one| one.turns_back() != one.ends_open()).count();
+    let closed = runs.iter().filter(|one| !one.ends_open()).count();
+    let ways = statrs::function::factorial::binomial(runs.len() as u64, closed as u64);
+    Claim::new(
+        "Fig. 8: where the bond holds j swings back with i, and where it is lost j goes on",
+        format!(
+            "so in {agree} of {} runs; in {closed} of them the bond holds at the end",
+            runs.len()
+        ),
+        (agree == runs.len()).into(),
+    )
+    .by_chance(format!("in 1 of {ways:.0} ways to choose {closed} of {} runs", runs.len()))
+}
+
+fn caught(runs: &[DiscSeries]) -> Claim {
+    let said = "§4: at Δt = 5·10⁻³ s the bond opens and i catches up with j";
+    let Some(run) = runs.iter().find(|run| run.step_secs == CAUGHT_SECS) else {
+        return Claim::new(said, "no run", false.into());
+    };
+    let open = |row: &&SeriesRow| row.gap() > OPEN_GAP;
+    let (first, last) = (run.after_shock().find(open), run.after_shock().rev().find(open));
+    let measured = match (first, last) {
+        (Some(first), Some(last)) => format!(
+            "i and j are up to {:.4} d apart, from {:.3} to {:.3} s after the shock",
+            run.widest(),
+            first.secs,
+            last.secs
+        ),
+        _ => "i and j are never apart".to_owned(),
+    };
+    let holds = run.widest() > OPEN_GAP && !run.ends_open();
+    let phase = format!(
+        "at Δt ≥ {PHASE_SECS} s the outcome is a matter of phase: fig8-share has how often"
+    );
+    Claim::new(said, measured, holds.into()).by_chance(phase.replace("0.0035", "3.5·10⁻³"))
+}
+
+fn cluster(runs: &[DiscSeries]) -> Claim {
+    let ends: Vec<f64> = between(runs, CLUSTER_SECS)
+        .filter_map(|run| run.last())
+        .map(|row| row.places[0] - row.places[2] - 1.0)
+        .collect();
+    let apart = ends.iter().filter(|gap| **gap > OPEN_GAP).count();
+    let [least, most] = [f64::min, f64::max].map(|pick| ends.iter().copied().fold(ends[0], pick));
+    Claim::new(
+        "§4: at Δt = 7·10⁻⁴…3·10⁻³ s all three discs stay together",
+        format!(
+            "k is apart from i at the end in {apart} of {} runs, by {least:.3} … {most:.3} d; the outcomes told of the \
+             bond are those of i and j alone",
+            ends.len()
+        ),
+        (apart == 0).into(),
+    )
+    .by_chance("nothing is drawn at random: one start, four time steps")
+}
+
+fn one_velocity(runs: &[DiscSeries]) -> Claim {
+    let velocities: Vec<(f64, f64)> =
+        between(runs, FREE_SECS).map(|run| (run.step_secs, run.final_velocity())).collect();
+    let [least, most] = [f64::min, f64::max]
+        .map(|pick| velocities.iter().map(|(_, velocity)| *velocity).fold(velocities[0].1, pick));
+    let listed: Vec<String> =
+        velocities.iter().map(|(step, velocity)| format!("{velocity:.3} at {step:e}")).collect();
+    Claim::new(
+        "Fig. 8: at Δt = 1…6·10⁻⁴ s j leaves with one velocity, whatever Δt is",
+        format!(
+            "{} (d/s, Δt in s); the largest is {:.2} times the smallest, and {ONE_VELOCITY} would count as one",
+            listed.join(", "),
+            most / least
+        )
+            .replace('-', "−"),
+        (least > 0.0 && most <= ONE_VELOCITY * least).into(),
+    )
+    .by_chance("nothing is drawn at random: one start, six time steps")
+}

@@ -1,0 +1,293 @@
+//! What one run of a study comes to, and `runs.csv`: a row a run, in the study's own order, with its whole config and
+//! its result.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
+
+use super::Study;
+use super::runner::FinishedCase;
+use super::series::Series;
+use super::sweep::SweptRun;
+use crate::config::Config;
+use crate::data::Recording;
+use crate::error::{Error, Result};
+use crate::number;
+use crate::output::write_file;
+use crate::scene::Scene;
+use crate::sim::{AlarmKind, RunEnding, Simulation, Tally};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// At its full duration.
+    Done,
+    /// Its state was no longer finite.
+    NotFinite,
+}
+
+/// What a run comes to. A row of the study's table. Numbers of a run whose state was no longer finite are those that
+/// it ended with, finite or not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunResult {
+    /// How it ended.
+    pub status: Status,
+    /// Sums over its steps.
+    #[serde(flatten)]
+    pub tally: Tally,
+    /// Δy_G at the end (paper eq. 11).
+    #[serde(with = "number")]
+    pub slump: f64,
+    /// Gap between the first two grains at the end, in diameters; 0 where there is one grain.
+    #[serde(with = "number")]
+    pub first_gap: f64,
+    /// Grains that went through a wall or left the world.
+    pub lost_grains: u32,
+    /// The kinds of alarms that it raised.
+    pub alarms: Alarms,
+}
+
+impl RunResult {
+    /// Its columns in a table.
+    const COLUMNS: [&str; 14] = [
+        "status",
+        "steps",
+        "slump",
+        "mean_overlap",
+        "max_overlap",
+        "mean_contacts",
+        "first_gap",
+        "unconverged_steps",
+        "stalled_steps",
+        "fallback_steps",
+        "sweeps",
+        "largest_residual",
+        "lost_grains",
+        "alarms",
+    ];
+
+    /// What stands in these columns.
+    fn cells(&self) -> impl Serialize {
+        let Self { status, tally, slump, first_gap, lost_grains, alarms } = *self;
+        (
+            status,
+            tally.steps,
+            slump,
+            tally.mean_overlap,
+            tally.max_overlap,
+            tally.mean_contacts,
+            first_gap,
+            tally.unconverged_steps,
+            tally.stalled_steps,
+            tally.fallback_steps,
+            tally.sweeps,
+            tally.largest_residual,
+            lost_grains,
+            alarms,
+        )
+    }
+}
+
+#[cfg(test)]
+impl RunResult {
+    /// Of a run of which all is well, for tests.
+    pub(crate) fn of_slump(slump: f64) -> Self {
+        let tally = Tally { steps: 1, sweeps: 1, ..Tally::default() };
+        let (status, alarms) = (Status::Done, Alarms::default());
+        Self { status, tally, slump, first_gap: 0.0, lost_grains: 0, alarms }
+    }
+}
+
+/// Takes a scene to its end.
+///
+/// # Errors
+/// Where the scene is not sound, or series or recording cannot be written. A state that is no longer finite is a result.
+pub(super) fn run_to_end(
+    scene: &Scene,
+    mut series: Option<&mut Series<'_>>,
+    mut recording: Option<&mut Recording>,
+) -> Result<RunResult> {
+    let mut simulation = scene.simulation()?;
+    let steps = scene.parameters.steps_in(scene.duration_secs);
+    let mut tally = Tally::default();
+    let mut record = |simulation: &Simulation, is_step: bool| -> Result<()> {
+        if let Some(series) = &mut series {
+            series.add_if_due(simulation)?;
+        }
+        let Some(recording) = &mut recording else { return Ok(()) };
+        if is_step {
+            recording.add_step(simulation.observables())?;
+        }
+        recording.add_if_due(simulation)
+    };
+    record(&simulation, false)?;
+    let ended = simulation.run(steps, |simulation| {
+        tally.add(simulation.observables());
+        record(simulation, true)?;
+        Ok(ControlFlow::Continue(()))
+    })?;
+    let status = match ended {
+        RunEnding::NotFinite(_) => {
+            tally.add(simulation.observables());
+            if let Some(recording) = recording {
+                recording.add_step(simulation.observables())?;
+            }
+            Status::NotFinite
+        }
+        RunEnding::Done | RunEnding::Stopped => Status::Done,
+    };
+    let observables = simulation.observables();
+    Ok(RunResult {
+        status,
+        tally,
+        slump: observables.slump,
+        first_gap: first_gap(&simulation),
+        lost_grains: observables.lost_grains,
+        alarms: simulation.alarms().iter().map(|alarm| alarm.kind).collect(),
+    })
+}
+
+fn first_gap(simulation: &Simulation) -> f64 {
+    let grains = &simulation.world().grains;
+    match (&grains.positions[..], &grains.radii[..]) {
+        ([i, j, ..], [r_i, r_j, ..]) => {
+            (i.distance(*j) - (r_i + r_j)) / simulation.world().mean_diameter
+        }
+        _ => 0.0,
+    }
+}
+
+/// The results of a study.
+#[derive(Clone, Debug)]
+pub struct RunsTable {
+    /// Key, config and result of each run, in the study's order.
+    pub rows: Vec<(String, Config, RunResult)>,
+    /// Wall-clock time of all runs together, one after the other, s. Not in the file: it is
+    /// another one every time.
+    pub core_secs: f64,
+}
+
+impl RunsTable {
+    /// Puts finished runs in the study's order.
+    pub(super) fn new(
+        study: &Study,
+        finished: &HashMap<String, FinishedCase<SweptRun>>,
+    ) -> Result<Self> {
+        let mut rows = Vec::with_capacity(study.runs.len());
+        let mut core_secs = 0.0;
+        for run in &study.runs {
+            if let Some(case) = finished.get(&run.key) {
+                core_secs += case.wall_secs;
+                rows.push((run.key.clone(), run.config.clone(), case.result.outcome));
+            }
+        }
+        let (done, all) = (rows.len(), study.runs.len());
+        if done < all {
+            let allowed = "complete; run the sweep or its missing parts again";
+            return Err(Error::value(&study.name, format!("{done} of {all} runs"), allowed));
+        }
+        Ok(Self { rows, core_secs })
+    }
+
+    /// Runs whose state was no longer finite.
+    pub fn not_finite(&self) -> usize {
+        self.rows.iter().filter(|(.., result)| result.status == Status::NotFinite).count()
+    }
+
+    /// How many runs raised alarms, and of which kinds, in words; nothing where none did.
+    pub fn alarms(&self) -> Option<String> {
+        alarms_of(self.rows.iter().map(|(.., result)| result))
+    }
+
+    /// Writes the table as CSV. Numbers read back bit for bit.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(super) fn write(&self, path: &Path) -> Result<()> {
+        let refuse = |error: csv::Error| Error::file("runs.csv", error);
+        let fields = Config::names();
+        let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+        let fixed = ["run", "key"].into_iter().chain(fields.iter().map(String::as_str));
+        writer.write_record(fixed.chain(RunResult::COLUMNS)).map_err(refuse)?;
+        for (number, (key, config, result)) in self.rows.iter().enumerate() {
+            let settings = serde_json::to_value(config)
+                .map_err(|error| Error::value("config", key, error.to_string()))?;
+            let cell = |field: &String| match settings.get(field) {
+                None | Some(Value::Null) => String::new(),
+                Some(Value::String(text)) => text.clone(),
+                Some(other) => other.to_string(),
+            };
+            let settings: Vec<String> = fields.iter().map(cell).collect();
+            writer.serialize((number, key, settings, result.cells())).map_err(refuse)?;
+        }
+        let bytes = writer.into_inner().map_err(|error| Error::file("runs.csv", error.error()))?;
+        write_file(path, &bytes)
+    }
+}
+
+/// How many of some runs raised alarms, in words: "3 of 40 runs raised alarms (overlap 2, grain-lost 1)";
+/// nothing where none did.
+pub(super) fn alarms_of<'a>(results: impl Iterator<Item = &'a RunResult>) -> Option<String> {
+    let (mut all, mut alarmed, mut by_kind) = (0, 0, [0; AlarmKind::ALL.len()]);
+    for result in results {
+        all += 1;
+        alarmed += u32::from(result.alarms != Alarms::default());
+        for (count, kind) in by_kind.iter_mut().zip(AlarmKind::ALL) {
+            *count += u32::from(result.alarms.has(kind));
+        }
+    }
+    let counts = AlarmKind::ALL.iter().zip(by_kind).filter(|(_, count)| *count > 0);
+    let counts: Vec<_> = counts.map(|(kind, count)| format!("{} {count}", kind.name())).collect();
+    let counts = counts.join(", ");
+    (alarmed > 0).then(|| format!("{alarmed} of {all} runs raised alarms ({counts})"))
+}
+
+/// Kinds of alarms, each once. In files their names, with spaces between them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Alarms(u8);
+
+impl Alarms {
+    /// Whether there are some of that kind.
+    pub(crate) fn has(self, kind: AlarmKind) -> bool {
+        self.0 & (1 << kind as u8) != 0
+    }
+
+    fn kinds(self) -> impl Iterator<Item = AlarmKind> {
+        AlarmKind::ALL.into_iter().filter(move |kind| self.has(*kind))
+    }
+}
+
+impl FromIterator<AlarmKind> for Alarms {
+    fn from_iter<I: IntoIterator<Item = AlarmKind>>(kinds: I) -> Self {
+        Self(kinds.into_iter().fold(0, |all, kind| all | 1 << kind as u8))
+    }
+}
+
+impl fmt::Display for Alarms {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<_> = self.kinds().map(AlarmKind::name).collect();
+        formatter.write_str(&names.join(" "))
+    }
+}
+
+impl Serialize for Alarms {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Alarms {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        let kind = |name: &str| {
+            let found = AlarmKind::ALL.into_iter().find(|kind| kind.name() == name);
+            found.ok_or_else(|| D::Error::custom(format!("{name} is no kind of alarm")))
+        };
+        String::deserialize(deserializer)?.split_whitespace().map(kind).collect()
+    }
+}

@@ -1,0 +1,197 @@
+//! One runner for all experiments: it runs the cases that are not finished yet, keeps each result in a journal as
+//! it comes, and gives all results in the order of the cases.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::time::Instant;
+
+use rayon::prelude::*;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::journal::{self, Journal};
+use crate::output::{Progress, note_line};
+
+/// Lines that report progress where there is no terminal to draw a bar on.
+const LINES_OF_PROGRESS: usize = 20;
+
+/// One case of an experiment.
+pub(crate) struct Case<C> {
+    /// Tells it apart from all other cases of its journal.
+    pub key: String,
+    /// How long it may take, in any unit: for the order of work and for progress.
+    pub cost: f64,
+    /// What it is computed from.
+    pub setup: C,
+}
+
+/// A line of a journal: a case and its result, whose fields stand beside the others.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct FinishedCase<T> {
+    /// The key of its case.
+    pub key: String,
+    /// Wall-clock time that it took, s.
+    pub wall_secs: f64,
+    /// A structure without a field `key` or `wall_secs`.
+    #[serde(flatten)]
+    pub result: T,
+}
+
+/// How many cases run at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Threads {
+    /// As many as there are threads, the longest first, so that no thread waits long for the last one.
+    All,
+    /// One after the other, for what is timed.
+    One,
+}
+
+/// Runs the cases of one experiment.
+pub(crate) struct Runner<T> {
+    name: String,
+    journal: Journal,
+    finished: HashMap<String, FinishedCase<T>>,
+}
+
+impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
+    /// A runner with a journal in `folder` that goes on where the journal ends, and says so.
+    ///
+    /// # Errors
+    /// Where the journal cannot be read or written, or another program is at it.
+    pub(crate) fn open(name: &str, folder: &Path, journal_name: &str) -> Result<Self> {
+        // Opening cuts off a half line, so it comes first.
+        let journal = Journal::open(folder, journal_name)?;
+        let finished = journal::read(&journal::path_of(folder, journal_name))?;
+        if !finished.is_empty() {
+            note_line(format_args!("{journal_name}: {} measurements were there", finished.len()));
+        }
+        let by_key = |case: FinishedCase<T>| (case.key.clone(), case);
+        Ok(Self::new(name, journal, finished.into_iter().map(by_key).collect()))
+    }
+
+    /// A runner that adds to `journal`. Cases that are `finished` are not run again.
+    pub(crate) fn new(
+        name: &str,
+        journal: Journal,
+        finished: HashMap<String, FinishedCase<T>>,
+    ) -> Self {
+        Self { name: name.to_owned(), journal, finished }
+    }
+
+    /// Whether the case of that key is finished.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.finished.contains_key(key)
+    }
+
+    /// Runs the cases that are not finished, and gives all of them in their order.
+    ///
+    /// # Errors
+    /// The first error of a case, or where the journal cannot be written. What is finished by then is in the journal.
+    pub(crate) fn run<C: Sync>(
+        &self,
+        cases: &[Case<C>],
+        threads: Threads,
+        compute: impl Fn(&C) -> Result<T> + Sync,
+    ) -> Result<Vec<FinishedCase<T>>> {
+        let is_finished = |(_, case): &(usize, &Case<C>)| self.finished.contains_key(&case.key);
+        let mut pending: Vec<_> =
+            cases.iter().enumerate().filter(|case| !is_finished(case)).collect();
+        if threads == Threads::All {
+            // The sort is stable.
+            pending.sort_by(|(_, one), (_, other)| other.cost.total_cmp(&one.cost));
+        }
+        let units = |case: &Case<C>| case.cost.ceil() as u64;
+        let progress = Progress::new(&self.name, pending.iter().map(|(_, case)| units(case)).sum());
+        let (total, count) = (pending.len(), AtomicUsize::new(0));
+        let run_one = |(index, case): (usize, &Case<C>)| {
+            let finished = self.result(&case.key, || compute(&case.setup))?;
+            progress.advance(units(case));
+            let count = 1 + count.fetch_add(1, Relaxed);
+            let lines = |count: usize| count * LINES_OF_PROGRESS / total;
+            if !progress.is_drawn() && lines(count) > lines(count - 1) {
+                progress.say(&format!("{}: {count} of {total} runs", self.name));
+            }
+            Ok((index, finished))
+        };
+        let computed: Result<Vec<_>> = match threads {
+            Threads::All => pending.into_iter().par_bridge().map(run_one).collect(),
+            Threads::One => pending.into_iter().map(run_one).collect(),
+        };
+        progress.finish();
+        let mut results: Vec<_> =
+            cases.iter().map(|case| self.finished.get(&case.key).cloned()).collect();
+        for (index, finished) in computed? {
+            results[index] = Some(finished);
+        }
+        Ok(results.into_iter().flatten().collect())
+    }
+
+    /// The result of a case that depends on others, so that it cannot be one of many: from the journal, or computed.
+    ///
+    /// # Errors
+    /// That of the case, or where the journal cannot be written.
+    pub(crate) fn result(
+        &self,
+        key: &str,
+        compute: impl FnOnce() -> Result<T>,
+    ) -> Result<FinishedCase<T>> {
+        if let Some(finished) = self.finished.get(key) {
+            return Ok(finished.clone());
+        }
+        let started = Instant::now();
+        let result = compute()?;
+        let wall_secs = started.elapsed().as_secs_f64();
+        let finished = FinishedCase { key: key.to_owned(), wall_secs, result };
+        self.journal.add(&finished)?;
+        Ok(finished)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Square {
+        square: f64,
+    }
+
+    fn cases() -> Vec<Case<f64>> {
+        let case = |number: i32| Case {
+            key: format!("case {number}"),
+            cost: f64::from(number % 3),
+            setup: f64::from(number),
+        };
+        (0..7).map(case).collect()
+    }
+
+    #[test]
+    fn finished_cases_are_not_run_again_and_results_have_the_order_of_the_cases() {
+        let folder = tempfile::tempdir().unwrap();
+        let runner = || Runner::<Square>::open("squares", folder.path(), "squares").unwrap();
+        let squares = |finished: Vec<FinishedCase<Square>>| -> Vec<f64> {
+            finished.into_iter().map(|case| case.result.square).collect()
+        };
+        for threads in [Threads::One, Threads::All] {
+            std::fs::remove_file(journal::path_of(folder.path(), "squares")).ok();
+            let fails = |number: &f64| match *number {
+                4.0 => Err(Error::value("number", 4, "another")),
+                number => Ok(Square { square: number * number }),
+            };
+            assert!(runner().run(&cases(), threads, fails).is_err());
+            let kept = runner().finished.len();
+            assert!(kept < 7 && (threads == Threads::All || kept == 4), "{kept}");
+            let count = AtomicUsize::new(0);
+            let computes = |number: &f64| {
+                count.fetch_add(1, Relaxed);
+                Ok(Square { square: number * number })
+            };
+            let whole = runner().run(&cases(), threads, computes).unwrap();
+            assert_eq!(squares(whole), [0.0, 1.0, 4.0, 9.0, 16.0, 25.0, 36.0]);
+            assert_eq!(count.load(Relaxed), 7 - kept);
+        }
+    }
+}

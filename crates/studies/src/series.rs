@@ -1,0 +1,95 @@
+//! A run's rows over time: a CSV a run in `series/`. The journal has the checksum of each, so that the files stay
+//! plain tables.
+
+use std::path::{Path, PathBuf};
+
+use super::runner::FinishedCase;
+use super::sweep::SweptRun;
+use super::{SeriesSettings, journal};
+use crate::error::{Error, Result};
+use crate::output::{note_line, write_file};
+use crate::scene::Scene;
+use crate::sim::{Observables, Simulation};
+
+/// Folder of the runs' series.
+pub(super) const SERIES: &str = "series";
+
+/// Where the series of the run with a key lies.
+pub fn series_path(folder: &Path, key: &str) -> PathBuf {
+    folder.join(SERIES).join(format!("{key}.csv"))
+}
+
+/// The series of a run that goes on.
+pub(super) struct Series<'a> {
+    settings: &'a SeriesSettings,
+    time_step_secs: f64,
+    /// The number of the next row: it is due at as many intervals.
+    next: u32,
+    writer: csv::Writer<Vec<u8>>,
+}
+
+impl<'a> Series<'a> {
+    /// Starts with no row.
+    pub(super) fn start(settings: &'a SeriesSettings, scene: &Scene) -> Self {
+        let time_step_secs = scene.parameters.time_step_secs;
+        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+        Self { settings, time_step_secs, next: 0, writer }
+    }
+
+    /// Adds the observables and the chosen grains' places, where a row is due: at the first step that reaches its
+    /// time, but for rounding.
+    ///
+    /// # Errors
+    /// Where it cannot be written as CSV.
+    pub(super) fn add_if_due(&mut self, simulation: &Simulation) -> Result<()> {
+        let reached = simulation.time_secs() + 1e-6 * self.time_step_secs;
+        if reached < f64::from(self.next) * self.settings.interval {
+            return Ok(());
+        }
+        let refuse = |error: csv::Error| Error::file(SERIES, error);
+        let (observables, grains) = (simulation.observables(), &self.settings.grains);
+        if self.next == 0 {
+            let places = grains.iter().flat_map(|grain| [format!("x{grain}"), format!("y{grain}")]);
+            let names = column_names(observables)?;
+            let names = names.split(',').map(str::to_owned).chain(places);
+            self.writer.write_record(names).map_err(refuse)?;
+        }
+        self.next = 1 + (reached / self.settings.interval) as u32;
+        let positions = &simulation.world().grains.positions;
+        let place =
+            |&grain: &usize| [positions[grain].x.to_string(), positions[grain].y.to_string()];
+        let places: Vec<String> = grains.iter().flat_map(place).collect();
+        self.writer.serialize((observables, places)).map_err(refuse)
+    }
+
+    /// Writes the file and gives its checksum.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(super) fn finish(self, folder: &Path, key: &str) -> Result<String> {
+        let bytes = self.writer.into_inner().map_err(|error| Error::file(SERIES, error.error()))?;
+        let series = folder.join(SERIES);
+        std::fs::create_dir_all(&series).map_err(|error| Error::file(&series, error))?;
+        write_file(&series_path(folder, key), &bytes)?;
+        Ok(journal::checksum(&bytes))
+    }
+}
+
+/// The header of a table of observables: no name has a comma.
+fn column_names(observables: &Observables) -> Result<String> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.serialize(observables).map_err(|error| Error::file(SERIES, error))?;
+    let bytes = table.into_inner().map_err(|error| Error::file(SERIES, error.error()))?;
+    Ok(String::from_utf8_lossy(&bytes).lines().next().unwrap_or_default().to_owned())
+}
+
+/// Whether the series of a finished run is there as it was written. One that is damaged is named.
+pub(super) fn is_whole(folder: &Path, case: &FinishedCase<SweptRun>) -> bool {
+    let path = series_path(folder, &case.key);
+    let Ok(bytes) = std::fs::read(&path) else { return false };
+    let whole = case.result.series.as_ref() == Some(&journal::checksum(&bytes));
+    if !whole {
+        note_line(format_args!("{}: is damaged; its run is computed anew", path.display()));
+    }
+    whole
+}

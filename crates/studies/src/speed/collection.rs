@@ -1,0 +1,243 @@
+//! Steps of piles, collected for comparing methods: each is a simulation that stands just before the
+//! step, with the impulses that a warm start takes over.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use crate::config::{Config, SceneSource};
+use crate::error::Result;
+use crate::output::Progress;
+use crate::scene::{Deposition, NewPile, walls};
+use crate::sim::Simulation;
+use crate::solver::{Fallback, FrictionModel, Method, Ordering, SolverSettings, StopTest};
+use crate::states::States;
+use crate::world::ParameterChanges;
+
+/// How the piles get to the steps that are collected: far better solved than any claim about a pile
+/// needs, so that a collection does not favour the errors of the methods it is to compare.
+pub(super) const ADVANCE: SolverSettings = SolverSettings {
+    method: Method::Newton,
+    ordering: Ordering::Interleaved,
+    stop: StopTest::Residual,
+    tolerance: 1e-8,
+    max_sweeps: 1000,
+    warm_start: true,
+    friction_model: FrictionModel::Coulomb,
+    model_solves: 1,
+    fallback: Fallback::None,
+    islands: false,
+};
+
+/// Which steps to collect: each time of each pile, a pile for every Bond number and time step.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CollectionPlan {
+    /// Bond numbers.
+    pub bonds: Vec<f64>,
+    /// Δt, s.
+    pub time_steps_secs: Vec<f64>,
+    /// Simulated times at which the steps begin, s, rising.
+    pub times_secs: Vec<f64>,
+    /// Seeds of the initial states, dealt out to the piles in turn.
+    pub seeds: Vec<u64>,
+    /// Grains of a pile.
+    pub grains: usize,
+    /// Width of the box that the piles are made in, in diameters.
+    pub box_width_in_diameters: f64,
+    /// How they are made.
+    pub deposition: Deposition,
+    /// Whether the walls of the box stay, so that the piles are at rest.
+    pub in_a_box: bool,
+    /// How the piles get to the steps.
+    pub advance: SolverSettings,
+    /// Contacts slower than this many g·Δt do not bounce; 0 in the paper's scheme.
+    pub restitution_threshold: f64,
+}
+
+impl CollectionPlan {
+    /// 48 steps of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its end,
+    /// and rest.
+    pub(super) fn piles(restitution_threshold: f64) -> Self {
+        let rain = NewPile::default();
+        Self {
+            bonds: vec![0.0, 20.0, 50.0, 100.0],
+            time_steps_secs: vec![1e-4, 1e-3, 5e-3],
+            times_secs: vec![0.03, 0.1, 0.25, 0.6],
+            seeds: vec![rain.seed, 1, 2, 3],
+            grains: rain.grains,
+            box_width_in_diameters: rain.box_width_in_diameters,
+            deposition: rain.deposition,
+            in_a_box: false,
+            advance: ADVANCE,
+            restitution_threshold,
+        }
+    }
+
+    /// 24 of them: the first two times.
+    pub(super) fn fewer_piles(restitution_threshold: f64) -> Self {
+        Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
+    }
+
+    /// The names of its steps, in their order.
+    pub(super) fn names(&self) -> Vec<String> {
+        let of_pile =
+            |config: &Config| self.times_secs.iter().map(|&time| self.name(config, time)).collect();
+        self.configs().iter().flat_map(|config| -> Vec<String> { of_pile(config) }).collect()
+    }
+
+    fn name(&self, config: &Config, time_secs: f64) -> String {
+        let Self { grains, in_a_box, restitution_threshold, .. } = self;
+        let ParameterChanges { bond, time_step_secs, .. } = config.parameters;
+        let (bond, step) = (bond.unwrap_or_default(), time_step_secs.unwrap_or_default());
+        let place = if *in_a_box { " in a box" } else { "" };
+        format!(
+            "{grains} grains{place}, Bond {bond}, dt {step:e}, t {time_secs}, threshold {restitution_threshold}"
+        )
+    }
+
+    /// A pile for every Bond number and time step. Going on by one in both, no time step and no
+    /// Bond number meets one state alone.
+    fn configs(&self) -> Vec<Config> {
+        let mut configs = Vec::new();
+        for (row, &bond) in self.bonds.iter().enumerate() {
+            for (column, &time_step_secs) in self.time_steps_secs.iter().enumerate() {
+                let source = SceneSource {
+                    grains: Some(self.grains),
+                    box_width: Some(self.box_width_in_diameters),
+                    seed: Some(self.seeds[(row + column) % self.seeds.len()]),
+                    deposition: Some(self.deposition),
+                    ..SceneSource::default()
+                };
+                let parameters = ParameterChanges {
+                    bond: Some(bond),
+                    time_step_secs: Some(time_step_secs),
+                    restitution_threshold: Some(self.restitution_threshold),
+                    ..ParameterChanges::default()
+                };
+                configs.push(Config { source, parameters, ..Config::default() });
+            }
+        }
+        configs
+    }
+}
+
+/// Collects the steps of a plan, pile after pile, on all cores: the simulations just before them, in the order of their
+/// names; `next_problem` gives their problems. Initial states are kept in
+/// `states_folder`. The same plan gives the same steps to the last bit.
+///
+/// # Errors
+/// Where the folder cannot be written, a state does not settle, or a pile is no longer finite.
+pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Simulation>> {
+    let configs = plan.configs();
+    let states = States::of(states_folder.to_owned(), configs.iter())?;
+    let last_secs = plan.times_secs.last().copied().unwrap_or(0.0);
+    let steps_of = |time_secs: f64, config: &Config| {
+        (time_secs / config.parameters.time_step_secs.unwrap_or(f64::INFINITY)).round() as u64
+    };
+    let total = configs.iter().map(|config| steps_of(last_secs, config)).sum();
+    let progress = Progress::new("steps to collect", total);
+    let piles: Result<Vec<Vec<Simulation>>> = configs
+        .par_iter()
+        .with_max_len(1)
+        .map(|config| {
+            let mut scene = states.scene(config)?;
+            scene.solver = plan.advance;
+            if plan.in_a_box {
+                scene.boundaries = walls(plan.box_width_in_diameters);
+            }
+            let mut simulation = scene.simulation()?;
+            let mut collected = Vec::with_capacity(plan.times_secs.len());
+            for &time_secs in &plan.times_secs {
+                while simulation.observables().step < steps_of(time_secs, config) {
+                    simulation.step()?;
+                    progress.advance(1);
+                }
+                collected.push(simulation.clone());
+            }
+            Ok(collected)
+        })
+        .collect();
+    progress.finish();
+    Ok(piles?.into_iter().flatten().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Parameters;
+
+    fn small() -> CollectionPlan {
+        CollectionPlan {
+            bonds: vec![0.0, 20.0],
+            time_steps_secs: vec![1e-3, 5e-3],
+            times_secs: vec![0.01, 0.02],
+            seeds: vec![1, 2],
+            grains: 30,
+            box_width_in_diameters: 8.0,
+            ..CollectionPlan::piles(2.0)
+        }
+    }
+
+    fn steps(plan: &CollectionPlan) -> usize {
+        plan.bonds.len() * plan.time_steps_secs.len() * plan.times_secs.len()
+    }
+
+    fn bits(collected: &[Simulation]) -> Vec<u64> {
+        let of = |step: &Simulation| {
+            let grains = &step.world().grains;
+            let places = grains.positions.iter().chain(&grains.velocities);
+            let impulses = step.contacts().impulses();
+            let mut bits: Vec<u64> = places.flat_map(|v| [v.x.to_bits(), v.y.to_bits()]).collect();
+            bits.extend(impulses.iter().flat_map(|i| [i.normal.to_bits(), i.tangential.to_bits()]));
+            bits
+        };
+        collected.iter().flat_map(of).collect()
+    }
+
+    #[test]
+    fn a_collection_is_the_same_every_time_on_any_number_of_threads() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let plan = small();
+        let first = collect(&plan, folder.path()).expect("a collection");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+        let again = pool.install(|| collect(&plan, folder.path())).expect("a collection");
+        assert_eq!(first.len(), steps(&plan));
+        assert_eq!(bits(&first), bits(&again));
+        assert!(first.iter().all(|step| !step.contacts().impulses().is_empty()));
+    }
+
+    #[test]
+    fn steps_stand_at_their_time_in_their_pile() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let collected = collect(&small(), folder.path()).expect("a collection");
+        let mut names = small().names();
+        assert_eq!(names.len(), collected.len());
+        for (simulation, name) in collected.iter().zip(&names) {
+            let Parameters { bond, time_step_secs, .. } = simulation.parameters();
+            let told = format!(
+                "30 grains, Bond {bond}, dt {time_step_secs:e}, t {:.2}, threshold 2",
+                simulation.time_secs()
+            );
+            assert_eq!(*name, told);
+            assert!(simulation.world().boundaries.is_empty());
+            assert_eq!(simulation.parameters().restitution_threshold, 2.0);
+        }
+        names.dedup();
+        assert_eq!(names.len(), collected.len(), "every step has a name of its own");
+    }
+
+    #[test]
+    fn no_bond_number_and_no_time_step_meets_one_state_alone() {
+        let plan = CollectionPlan::piles(0.0);
+        assert!(steps(&plan) >= 40);
+        let configs = plan.configs();
+        for bond in &plan.bonds {
+            let seeds: std::collections::HashSet<_> = configs
+                .iter()
+                .filter(|c| c.parameters.bond == Some(*bond))
+                .map(|c| c.source.seed)
+                .collect();
+            assert!(seeds.len() > 1);
+        }
+    }
+}

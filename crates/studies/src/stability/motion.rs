@@ -1,0 +1,270 @@
+//! What moves: friction on what slides, impacts, what must not matter, and sudden changes. Each measure is an error that
+//! is 0 where the answer is right.
+
+use glam::DVec2;
+use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use super::{Trial, advance, energy_scale, unrest};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::scene::stability as scenes;
+use crate::sim::{Pull, Simulation};
+use crate::world::{Boundary, Parameters};
+
+// Friction on what slides: what it must not lift, and what it has to follow at once.
+
+/// Time to slide and to be still, in that of sliding alone.
+const WATCHED: f64 = 1.2;
+/// Time that the two discs of the blow are watched, s.
+const BLOW_SECS: f64 = 0.1;
+
+/// How far a sliding disc leaves its level, in d, or the error of the way to its stop, beyond the half of a
+/// step's way that schemes may differ by, over that way; whichever is larger.
+pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
+    let mut scene = scenes::dilatancy();
+    scene.parameters.time_step_secs = trial.level;
+    let [start, velocity] = [scene.grains[0].position, scene.grains[0].velocity];
+    let slowing = scene.parameters.friction * scene.gravity.magnitude();
+    let right = velocity.x.powi(2) / (2.0 * slowing);
+    let mut simulation = trial.start(scene)?;
+    let diameter = simulation.world().mean_diameter;
+    let mut off_level = 0f64;
+    while simulation.time_secs() < WATCHED * velocity.x / slowing {
+        simulation.step()?;
+        let height = simulation.world().grains.positions[0].y - start.y;
+        off_level = off_level.max(height.abs() / diameter);
+    }
+    let way = simulation.world().grains.positions[0].x - start.x;
+    let beyond = ((way - right).abs() - 0.5 * velocity.x * trial.level).max(0.0);
+    Ok(off_level.max(beyond / right))
+}
+
+/// How far off the two discs are along the floor, in d, for friction that is not that of the same time's
+/// pressure; or the error of their speed in the end, over what the blow takes of it; whichever is larger.
+pub(super) fn blow(trial: &Trial) -> Result<f64> {
+    let mut scene = scenes::blow();
+    scene.parameters.time_step_secs = trial.level;
+    let friction = scene.parameters.friction;
+    let mut simulation = trial.start(scene)?;
+    let mass: f64 = simulation.world().grains.masses.iter().sum();
+    let momentum = |simulation: &Simulation| {
+        let grains = &simulation.world().grains;
+        grains.masses.iter().zip(&grains.velocities).map(|(m, v)| *m * *v).sum::<DVec2>()
+    };
+    let start = momentum(&simulation);
+    let (mut off, mut furthest) = (0f64, 0f64);
+    while simulation.time_secs() < BLOW_SECS {
+        let before_secs = simulation.time_secs();
+        simulation.step()?;
+        let now = momentum(&simulation);
+        // All that the floor has pushed by now.
+        let pushed = now.y - start.y;
+        let left = (now.x - (start.x - friction * pushed)) / mass;
+        off += left * (simulation.time_secs() - before_secs);
+        furthest = furthest.max(off.abs());
+    }
+    let taken = friction * -start.y / mass;
+    let right = start.x / mass - taken;
+    let error = (momentum(&simulation).x / mass - right).abs() / taken;
+    Ok(error.max(furthest / simulation.world().mean_diameter))
+}
+
+// Impacts: bounces, rows of balls, and walls that a step can jump over.
+
+/// Phases of the step in which the wall is reached.
+const PHASES: u32 = 10;
+/// Time after a row of balls is hit, s.
+const AFTER_SECS: f64 = 0.1;
+
+/// Error of the first bounce's height, over that of the fall; with that, for ρ < 1, the speed left
+/// when all bounces are over, over that of the first impact; for ρ = 1, the relative error of the
+/// energy after ten falls.
+pub(super) fn bounce(trial: &Trial) -> Result<f64> {
+    let restitution = trial.level;
+    let scene = scenes::bounce(restitution);
+    let radius = scene.grains[0].radius;
+    let drop = scene.grains[0].position.y - radius;
+    let gravity = scene.gravity.magnitude();
+    let fall_secs = (2.0 * drop / gravity).sqrt();
+    let end_secs = if restitution < 1.0 {
+        fall_secs * ((1.0 + restitution) / (1.0 - restitution) + 1.0)
+    } else {
+        10.0 * fall_secs
+    };
+    let mut simulation = trial.start(scene)?;
+    let (mut touched, mut bounces, mut highest) = (false, 0, 0f64);
+    while simulation.time_secs() < end_secs {
+        let touches = simulation.step()?.contacts > 0;
+        bounces += u32::from(touches && !touched);
+        touched = touches;
+        if bounces == 1 {
+            highest = highest.max(simulation.world().grains.positions[0].y - radius);
+        }
+    }
+    let first = (highest / drop - restitution * restitution).abs();
+    let grains = &simulation.world().grains;
+    let speed = grains.velocities[0].length();
+    let last = if restitution < 1.0 {
+        speed / (gravity * fall_secs)
+    } else {
+        let height = grains.positions[0].y - radius;
+        ((0.5 * speed * speed + gravity * height) / (gravity * drop) - 1.0).abs()
+    };
+    Ok(first.max(last))
+}
+
+/// Relative error of the last ball's speed.
+pub(super) fn newtons_cradle(trial: &Trial) -> Result<f64> {
+    let scene = scenes::balls(trial.count());
+    let right = scene.grains[0].velocity.x;
+    let mut simulation = trial.start(scene)?;
+    advance(&mut simulation, AFTER_SECS)?;
+    let velocities = &simulation.world().grains.velocities;
+    Ok((velocities[velocities.len() - 1].x / right - 1.0).abs())
+}
+
+/// Share of phases in which the disc goes through the wall.
+pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
+    let mut through = 0;
+    for phase in 0..PHASES {
+        let scene = scenes::thin_wall(trial.level, (f64::from(phase) + 0.5) / f64::from(PHASES));
+        let wall = scenes::WALL_DISTANCE * scene.mean_diameter;
+        let mut simulation = trial.start(scene)?;
+        simulation.take_steps(((scenes::WALL_DISTANCE + 5.0) / trial.level) as u64)?;
+        through += u32::from(simulation.world().grains.positions[0].x > wall);
+    }
+    Ok(f64::from(through) / f64::from(PHASES))
+}
+
+// What must not matter: where the origin is, and in which order the contacts come.
+
+/// Rows of the heap far from the origin.
+const FAR_ROWS: usize = 4;
+/// Simulated time of its run, s.
+const FAR_SECS: f64 = 0.1;
+/// Rows of the heap that is shuffled.
+const SHUFFLED_ROWS: usize = 6;
+/// Largest component of its grains' velocities, m/s.
+const SPEED: f64 = 0.05;
+
+/// Largest difference of the ways of a grain between a run far from the origin and the same at the
+/// origin, in d.
+pub(super) fn far(trial: &Trial) -> Result<f64> {
+    let [here, there] =
+        [0.0, trial.level].map(|distance| scenes::heap_far_away(FAR_ROWS, distance));
+    let ways = |scene: Scene| -> Result<Vec<DVec2>> {
+        let mut simulation = trial.start(scene.clone())?;
+        advance(&mut simulation, FAR_SECS)?;
+        let now = simulation.world().grains.positions.iter();
+        Ok(now.zip(&scene.grains).map(|(now, grain)| *now - grain.position).collect())
+    };
+    let diameter = here.mean_diameter;
+    let (here, there) = (ways(here)?, ways(there)?);
+    let differences = here.iter().zip(&there).map(|(here, there)| here.distance(*there));
+    Ok(differences.fold(0.0, f64::max) / diameter)
+}
+
+/// Largest difference of velocities after a step between two numberings of the same grains, over the
+/// largest velocity.
+pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
+    let mut random = Pcg64::seed_from_u64(7);
+    let mut scene = scenes::heap(SHUFFLED_ROWS);
+    scene.solver.tolerance = trial.level;
+    // With friction not even the velocities of a step are unique.
+    scene.parameters.friction = 0.0;
+    for grain in &mut scene.grains {
+        let mut component = || SPEED * random.random_range(-1.0..1.0);
+        grain.velocity = DVec2::new(component(), component());
+    }
+    let mut order: Vec<usize> = (0..scene.grains.len()).collect();
+    order.shuffle(&mut random);
+    let mut shuffled = scene.clone();
+    shuffled.grains = order.iter().map(|&index| scene.grains[index].clone()).collect();
+    let [mut one, mut other] = [trial.start(scene)?, trial.start(shuffled)?];
+    one.step()?;
+    other.step()?;
+    let [one, other] = [&one, &other].map(|simulation| &simulation.world().grains.velocities);
+    let largest = one.iter().map(|velocity| velocity.length()).fold(0.0, f64::max);
+    let differences = order.iter().zip(other).map(|(&index, other)| one[index].distance(*other));
+    Ok(differences.fold(0.0, f64::max) / largest)
+}
+
+// Sudden changes: a grain taken away, another time step, and every slider at random.
+
+/// Steps before a sudden change, and after it.
+const BEFORE: u64 = 50;
+const AFTER: u64 = 30;
+/// Time step before it is switched, s.
+const SMALL_STEP_SECS: f64 = 2e-4;
+/// Rows of the heaps.
+const ROWS: usize = 4;
+/// Half the side of the box around the heap, in d.
+const BOX: f64 = 12.0;
+/// Simulated time between two changes of the sliders, s.
+const CHANGE_SECS: f64 = 0.05;
+/// Sweeps of a step while the sliders move: a window has to keep up.
+const LIVE_SWEEPS: u32 = 200;
+
+/// Largest kinetic energy after a heavy disc is taken off a column, over m g d of one of its discs.
+pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
+    let mut simulation = trial.start(scenes::lift_off(trial.level))?;
+    simulation.take_steps(BEFORE)?;
+    let last = simulation.world().grains.len() - 1;
+    simulation.remove_grain(last)?;
+    let scale = energy_scale(&simulation);
+    let mut energy = 0f64;
+    for _ in 0..AFTER {
+        energy = energy.max(simulation.step()?.kinetic_energy / scale);
+    }
+    Ok(energy)
+}
+
+/// A heap at rest whose time step grows: the longest way of any grain, in d, or the speed that is
+/// left, in √(g d), whichever is larger.
+pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
+    let mut scene = scenes::heap(ROWS);
+    scene.parameters.time_step_secs = SMALL_STEP_SECS;
+    let mut simulation = trial.start(scene.clone())?;
+    simulation.take_steps(BEFORE)?;
+    let time_step_secs = SMALL_STEP_SECS * trial.level;
+    simulation.set_parameters(Parameters { time_step_secs, ..*simulation.parameters() })?;
+    simulation.take_steps(AFTER)?;
+    Ok(unrest(&simulation, &scene))
+}
+
+/// Grains that have left their box after so many seconds with every slider moved at random, and a
+/// hand that pulls at grains.
+pub(super) fn sliders(trial: &Trial) -> Result<f64> {
+    let mut scene = scenes::heap(ROWS);
+    scene.solver.max_sweeps = LIVE_SWEEPS;
+    let half = BOX * scene.mean_diameter;
+    let wall = |normal: DVec2| Boundary::HalfSpace { point: -half * normal, normal };
+    scene.boundaries = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(wall).into();
+    let radius = scene.grains[0].radius;
+    let mut simulation = trial.start(scene)?;
+    let mut random = Pcg64::seed_from_u64(3);
+    let mut next_secs = 0.0;
+    while simulation.time_secs() < trial.level {
+        if simulation.time_secs() >= next_secs {
+            next_secs += CHANGE_SECS;
+            let before = *simulation.parameters();
+            simulation.set_parameters(Parameters {
+                bond: random.random_range(0.0..200.0),
+                time_step_secs: 10f64.powf(random.random_range(-4.0..-1.5)),
+                restitution: random.random_range(0.0..=1.0),
+                friction: random.random_range(0.0..1.0),
+                ..before
+            })?;
+            let mut place = || 2.0 * half * random.random_range(-1.0..1.0);
+            let target = DVec2::new(place(), place());
+            let grain = random.random_range(0..simulation.world().grains.len() as u32);
+            simulation.set_pull(Some(Pull { grain, target }));
+        }
+        simulation.step()?;
+    }
+    let inside = |place: &&DVec2| place.abs().max_element() < half + radius;
+    let positions = &simulation.world().grains.positions;
+    Ok((positions.len() - positions.iter().filter(inside).count()) as f64)
+}

@@ -1,0 +1,287 @@
+//! What has to stay at rest, or give way at the right moment: columns, piles, cohesive rows, and too little room. Each
+//! measure is an error that is 0 where the answer is right.
+
+use super::{Trial, advance, force_on_ground, jitter, longest_way, threshold, unrest};
+use crate::error::Result;
+use crate::scene::stability as scenes;
+use crate::scene::{Scene, cradle};
+use crate::sim::Simulation;
+use crate::world::Parameters;
+
+// Columns: what the floor carries, and how far the top sinks. A step that is not solved to its end
+// leaves a speed, so a column sinks as if its discs were soft: the fake elasticity of an
+// unconverged solver.
+
+/// Simulated time of these runs, s.
+const COLUMN_SECS: f64 = 0.1;
+/// Sweeps of a step, unless they are what is varied: few, as in a window that has to keep up.
+const FEW_SWEEPS: u32 = 100;
+/// Discs of the column whose sag is measured.
+const SAGGING_DISCS: usize = 20;
+
+/// Greatest error of the floor's force in the last quarter of the run, over the weight.
+pub(super) fn column(trial: &Trial) -> Result<f64> {
+    let mut simulation = trial.start(with_sweeps(FEW_SWEEPS, scenes::column(trial.count())))?;
+    let world = simulation.world();
+    let weight = world.grains.masses.iter().sum::<f64>() * world.gravity.magnitude();
+    advance(&mut simulation, 0.75 * COLUMN_SECS)?;
+    let mut worst = 0f64;
+    for _ in 0..simulation.parameters().steps_in(0.25 * COLUMN_SECS) {
+        simulation.step()?;
+        worst = worst.max((force_on_ground(&simulation) / weight - 1.0).abs());
+    }
+    Ok(worst)
+}
+
+/// A column whose steps get `sweeps` sweeps each (or substeps), from nothing.
+pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
+    let mut scene = scenes::column(count);
+    scene.solver.max_sweeps = sweeps;
+    scene.parameters.substeps = sweeps;
+    scene.solver.tolerance = 1e-12;
+    scene.solver.warm_start = false;
+    scene
+}
+
+/// How far the top of a column sinks, in d.
+pub(super) fn sag(trial: &Trial) -> Result<f64> {
+    sunk_in(trial, &sagging(SAGGING_DISCS, trial.count() as u32))
+}
+
+/// How far a heavy disc on a light one sinks, in d.
+pub(super) fn mass_ratio(trial: &Trial) -> Result<f64> {
+    sunk_in(trial, &with_sweeps(FEW_SWEEPS, scenes::mass_ratio(trial.level)))
+}
+
+/// How far a large disc on two small ones sinks, in d.
+pub(super) fn size_ratio(trial: &Trial) -> Result<f64> {
+    sunk_in(trial, &with_sweeps(FEW_SWEEPS, scenes::logs(trial.level)))
+}
+
+fn with_sweeps(sweeps: u32, mut scene: Scene) -> Scene {
+    scene.solver.max_sweeps = sweeps;
+    scene
+}
+
+fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
+    let mut simulation = trial.start(scene.clone())?;
+    advance(&mut simulation, COLUMN_SECS)?;
+    Ok(sunk(&simulation, scene))
+}
+
+/// How far the last grain has moved since `scene`, in d.
+pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
+    let last = scene.grains.len() - 1;
+    let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
+    before.distance(now) / scene.mean_diameter
+}
+
+// Piles that have to stand still, and some that have to give way.
+
+/// Rows of the heap that is left standing.
+const ROWS: usize = 6;
+const STANDING_SECS: f64 = 0.2;
+/// Rows of the heap that is left for very many steps.
+const SMALL_ROWS: usize = 4;
+/// The log pile of equal discs slides below μ = tan 15° = 2 − √3.
+const FRICTION_OF_LOGS: f64 = 0.267_949_192_431_122_7;
+/// What slides has gone this far, in d, when the watch ends.
+const SLID: f64 = 0.02;
+const SLIDING_SECS: f64 = 0.2;
+/// Frictions and angles are searched from a part of the right one to as many times that, with
+/// halvings down to 1 % and to 0.5 %.
+const FRICTION_RANGE: f64 = 4.0;
+const ANGLE_RANGE: f64 = 2.0;
+const PILE_HALVINGS: u32 = 8;
+
+/// The longest way that any grain goes in some time, in d.
+fn way_in(trial: &Trial, secs: f64, scene: Scene) -> Result<f64> {
+    let mut simulation = trial.start(scene.clone())?;
+    advance(&mut simulation, secs)?;
+    Ok(longest_way(&simulation, &scene))
+}
+
+fn with_time_step(trial: &Trial, mut scene: Scene) -> Scene {
+    scene.parameters.time_step_secs = trial.level;
+    scene
+}
+
+/// How far the grain of a heap that moves most goes, in d.
+pub(super) fn repose(trial: &Trial) -> Result<f64> {
+    way_in(trial, STANDING_SECS, with_time_step(trial, scenes::heap(ROWS)))
+}
+
+/// Relative error of the friction at which three piled logs slide apart.
+pub(super) fn friction_limit(trial: &Trial) -> Result<f64> {
+    least_friction(trial, &scenes::logs(1.0), FRICTION_OF_LOGS)
+}
+
+/// Relative error of the friction at which the keystone of an arch slips through.
+pub(super) fn arch(trial: &Trial) -> Result<f64> {
+    least_friction(trial, &scenes::arch(), scenes::FRICTION_OF_ARCH)
+}
+
+fn least_friction(trial: &Trial, scene: &Scene, right: f64) -> Result<f64> {
+    let range = [right / FRICTION_RANGE, right * FRICTION_RANGE];
+    let least = threshold(range, PILE_HALVINGS, |friction| {
+        let mut scene = with_time_step(trial, scene.clone());
+        scene.parameters.friction = friction;
+        Ok(!slides(trial, scene)?)
+    })?;
+    Ok((least / right - 1.0).abs())
+}
+
+/// Relative error of the steepest slope on which a heap stands.
+pub(super) fn repose_angle(trial: &Trial) -> Result<f64> {
+    let right = scenes::STEEPEST_DEGREES;
+    let steepest =
+        threshold([right / ANGLE_RANGE, right * ANGLE_RANGE], PILE_HALVINGS, |degrees| {
+            let scene = with_sweeps(FEW_SWEEPS, scenes::heap_on_slope(trial.count(), degrees));
+            slides(trial, scene)
+        })?;
+    Ok((steepest / right - 1.0).abs())
+}
+
+/// Whether any grain of a scene goes far.
+fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
+    Ok(way_in(trial, SLIDING_SECS, scene)? >= SLID)
+}
+
+/// After very many steps at rest: the longest way of any grain, in d, or the speed that is left, in
+/// √(g d), whichever is larger.
+pub(super) fn rest(trial: &Trial) -> Result<f64> {
+    let scene = scenes::heap(SMALL_ROWS);
+    let mut simulation = trial.start(scene.clone())?;
+    simulation.take_steps(trial.count() as u64)?;
+    Ok(unrest(&simulation, &scene))
+}
+
+// Very many contacts at rest, and few sweeps.
+
+/// Sweeps of a step, or iterations of a method without sweeps: what a window has time for.
+const WINDOW_SWEEPS: u32 = 40;
+/// Steps from a start without impulses. In free fall, a grain would go 0.2 d.
+const STEPS: u64 = 20;
+/// Discs in every other row of the lattice, and its rows: 3,900 contacts.
+const LATTICE: [usize; 2] = [37, 36];
+
+/// What is left of motion in a lattice, or the common residual of the last step, whichever is larger.
+pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
+    let [columns, rows] = LATTICE;
+    let scene = scenes::lattice(columns, rows, trial.level);
+    let mut simulation = trial.start_within(WINDOW_SWEEPS, scene.clone())?;
+    simulation.take_steps(STEPS)?;
+    Ok(unrest(&simulation, &scene).max(simulation.observables().residual))
+}
+
+/// What is left of motion in a heap of so many grains.
+pub(super) fn size(trial: &Trial) -> Result<f64> {
+    let scene = scenes::heap_of(trial.count());
+    let mut simulation = trial.start_within(WINDOW_SWEEPS, scene.clone())?;
+    simulation.take_steps(STEPS)?;
+    Ok(unrest(&simulation, &scene))
+}
+
+// Cohesion: what it has to hold, and when it has to let go. The static pull-off force knows no time
+// step.
+
+/// Discs of the hanging chain.
+const CHAIN: usize = 8;
+/// The watch over a chain, s: overloaded by a hundredth, it opens in a third of that.
+const CHAIN_SECS: f64 = 0.04;
+/// Time to hang still first, s, at a Bond number that holds, in units of the breaking one. Much more
+/// would make springs recoil.
+const HANG_SECS: f64 = 0.04;
+const SURE: f64 = 1.5;
+/// The breaking Bond number is searched down to 4^(1/2^8), 0.5 %.
+const CHAIN_HALVINGS: u32 = 9;
+/// Time that bridge and cantilever are watched, s: torn, they fall 30 d in it.
+const WATCH_SECS: f64 = 0.25;
+/// Grains of a row.
+const CANTILEVER: i32 = 4;
+const BRIDGE: i32 = 10;
+/// Time step of the shock, s: the paper's bond opens at it, for want of convergence.
+const SHOCK_STEP_SECS: f64 = 5e-4;
+
+/// Relative error of the Bond number at which a chain breaks.
+pub(super) fn chain(trial: &Trial) -> Result<f64> {
+    let right = scenes::breaking_bond(CHAIN);
+    let breaking = threshold([0.25 * right, 4.0 * right], CHAIN_HALVINGS, |bond| {
+        let scene = with_time_step(trial, scenes::hanging_chain(CHAIN, SURE * right));
+        let mut simulation = trial.start(scene)?;
+        advance(&mut simulation, HANG_SECS)?;
+        simulation.set_parameters(Parameters { bond, ..*simulation.parameters() })?;
+        advance(&mut simulation, CHAIN_SECS)?;
+        Ok(simulation.observables().contacts as usize == CHAIN)
+    })?;
+    Ok((breaking / right - 1.0).abs())
+}
+
+/// How far the grain of a cantilever that moves most goes, in d.
+pub(super) fn cantilever(trial: &Trial) -> Result<f64> {
+    way_in(trial, WATCH_SECS, with_time_step(trial, scenes::cantilever(CANTILEVER)))
+}
+
+/// How far the grain of a bridge that moves most goes, in d.
+pub(super) fn bridge(trial: &Trial) -> Result<f64> {
+    way_in(trial, WATCH_SECS, with_time_step(trial, scenes::bridge(BRIDGE)))
+}
+
+/// Gap between i and j of the paper's cradle after the shock, in d: solved well, it stays closed.
+pub(super) fn shock(trial: &Trial) -> Result<f64> {
+    let mut scene = cradle();
+    scene.parameters.time_step_secs = SHOCK_STEP_SECS;
+    scene.solver.tolerance = trial.level;
+    let mut simulation = trial.start(scene.clone())?;
+    advance(&mut simulation, scene.duration_secs)?;
+    let places = &simulation.world().grains.positions;
+    Ok(((places[1].x - places[0].x) / scene.mean_diameter - 1.0).abs())
+}
+
+// Too little room.
+
+const RECOVERY_SECS: f64 = 0.3;
+const SETTLING_SECS: f64 = 0.2;
+const WATCHED_STEPS: u64 = 100;
+
+/// Two discs that overlap: the share of the overlap that is left after 0.3 s, or the largest kinetic
+/// energy on the way, over m g d, whichever is larger.
+pub(super) fn overlap(trial: &Trial) -> Result<f64> {
+    let mut simulation = trial.start(scenes::overlapped(trial.level))?;
+    let scale = super::energy_scale(&simulation);
+    let mut energy = 0f64;
+    while simulation.time_secs() < RECOVERY_SECS {
+        energy = energy.max(simulation.step()?.kinetic_energy / scale);
+    }
+    let left = simulation.observables().max_overlap / trial.level;
+    Ok(left.max(energy))
+}
+
+/// Share of the steps that were not solved to their tolerance, or the mean over the last hundred of
+/// the speed that does not die out, in √(g d), whichever is larger.
+pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
+    let mut simulation = trial.start(scenes::squeeze(trial.level))?;
+    let (mut unsolved, mut speeds) = (0u64, 0.0);
+    let settling = simulation.parameters().steps_in(SETTLING_SECS);
+    for step in 0..settling + WATCHED_STEPS {
+        unsolved += u64::from(!simulation.step()?.converged);
+        if step >= settling {
+            speeds += jitter(&simulation);
+        }
+    }
+    let share = unsolved as f64 / (settling + WATCHED_STEPS) as f64;
+    Ok(share.max(speeds / WATCHED_STEPS as f64))
+}
+
+/// When walls have moved in and the grains had time to come to rest: how far the grain that is furthest
+/// from its place is from it, in d, or the speed that is left, in √(g d), whichever is larger.
+pub(super) fn moving_walls(trial: &Trial) -> Result<f64> {
+    let mut simulation = trial.start(with_time_step(trial, scenes::press()))?;
+    advance(&mut simulation, scenes::pressing_secs() + SETTLING_SECS)?;
+    let world = simulation.world();
+    let places = scenes::pressed_places();
+    let errors =
+        world.grains.positions.iter().zip(&places).map(|(now, right)| now.distance(*right));
+    let furthest = errors.fold(0.0, f64::max) / world.mean_diameter;
+    Ok(furthest.max(jitter(&simulation)))
+}

@@ -1,0 +1,199 @@
+//! Columns of dry grains that collapse and spread: how far they run and how high they end, against how slender they
+//! were.
+
+use super::experiment::{
+    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
+    SourceKind, seeded,
+};
+use super::fit::power_law;
+use super::variants::StepVariant;
+use super::watched::{WatchedRun, at_rest, centre_of_mass, loose, mean_energy, open_box, settled};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::scene::experiments::{collapse_of, half_width};
+use crate::scene::stability::{DIAMETER, GRAVITY, dry};
+use crate::sim::{Moment, OtherBody};
+use crate::statistics::mean;
+use crate::world::Grain;
+
+pub(super) const EXPERIMENT: Experiment = Experiment {
+    name: "collapse",
+    title: "Columns that collapse",
+    about: "A column of half width R₀ and height H₀ = a R₀ between two gates on a rough floor, μ = 0.5; the gates are \
+            pulled away (L. Staron, E. J. Hinch, J. Fluid Mech. 545, 1, 2005, in the plane by Contact Dynamics, as \
+            are G. Lube et al. 2005 and E. Lajeunesse et al. 2005 in channels). R∞ is how far the grains reach that \
+            are joined to the rest by contacts, mean of both sides; H∞ how high the highest lies.",
+    cases: ExperimentCases::Chosen(cases),
+    judge,
+};
+
+/// μ.
+const FRICTION: f64 = 0.5;
+/// Up to here run-out is linear in a, and the final height is that of the column where it is lower.
+const LINEAR_TO: f64 = 2.0;
+/// How long a column is watched, in √(H₀/g).
+const TIMES: f64 = 6.0;
+/// When the gates go, s.
+const RELEASE_SECS: f64 = 0.02;
+/// The floor, in diameters: grains that lie in the hollows of the discs it is made of have their lowest points there.
+const FLOOR: f64 = 0.37;
+
+fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
+    let (grains, seeds) = if quick { (260, 4) } else { (2_000, 8) };
+    let aspects: &[f64] = if quick {
+        &[0.5, 1.0, 2.0, 4.0, 8.0]
+    } else {
+        &[0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0, 6.0, 8.0]
+    };
+    seeded(aspects, seeds, |aspect, seed| {
+        let at = [("aspect", aspect), ("grains", f64::from(grains)), ("seed", seed as f64)];
+        let column = CollapsingColumn { grains: grains as usize, aspect, seed, bond: 0.0 };
+        let cost = f64::from(grains) * 4.0 * aspect.sqrt() / variant.time_step_secs;
+        ExperimentCase::new(&at, cost, move || column.run(variant))
+    })
+}
+
+/// A column to let go.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CollapsingColumn {
+    pub grains: usize,
+    /// H₀/R₀ that is aimed at.
+    pub aspect: f64,
+    pub seed: u64,
+    pub bond: f64,
+}
+
+impl CollapsingColumn {
+    /// Lets it settle between walls, pulls the gates, and measures what is left.
+    pub(super) fn run(&self, variant: StepVariant) -> Result<RunReadings> {
+        let half = half_width(self.grains, self.aspect);
+        let settled = settled(&self.between_walls(half, variant))?;
+        let mut scene = column_scene(at_rest(&settled));
+        scene.parameters.bond = self.bond;
+        let mut scene = collapse_of(scene, half, RELEASE_SECS);
+        variant.apply(&mut scene);
+        // Twice the height of the centre of mass: the surface is not even.
+        let floor = FLOOR * DIAMETER;
+        let height = 2.0 * (centre_of_mass(&settled.simulation).y - floor);
+        scene.duration_secs = RELEASE_SECS + TIMES * (height / GRAVITY).sqrt();
+        let mut run = WatchedRun::start(&scene)?;
+        run.run_until(scene.duration_secs, |_| ())?;
+        let width = half * DIAMETER;
+        let [reach, top] = reach_and_top(&run.simulation.moment());
+        Ok(run.with([
+            ("aspect", height / width),
+            ("run_out", reach / width - 1.0),
+            ("height", (top - floor) / width),
+            ("slump", run.simulation.observables().slump),
+            ("energy", mean_energy(&run.simulation)),
+        ]))
+    }
+
+    /// Its grains above the floor, loosely, between two walls.
+    fn between_walls(&self, half: f64, variant: StepVariant) -> Scene {
+        let mut grains = loose(self.grains, 2.0 * half, self.seed);
+        for grain in &mut grains {
+            grain.position.y += 0.6 * DIAMETER;
+        }
+        let mut scene = collapse_of(column_scene(grains), half, RELEASE_SECS);
+        scene.motions.clear();
+        scene.boundaries = open_box(2.0 * half);
+        variant.apply(&mut scene);
+        scene.duration_secs = 60.0;
+        scene
+    }
+}
+
+fn column_scene(grains: Vec<Grain>) -> Scene {
+    let mut scene = dry("collapse", grains);
+    scene.parameters.friction = FRICTION;
+    scene.parameters.restitution_threshold = 2.0;
+    scene
+}
+
+/// How far from the middle, and how high, the largest set of grains reaches that contacts join, m: the mean of both
+/// sides, and its highest point.
+fn reach_and_top(moment: &Moment) -> [f64; 2] {
+    let grains = &moment.grains;
+    let mut set: Vec<usize> = (0..grains.len()).collect();
+    fn root(set: &mut [usize], mut grain: usize) -> usize {
+        while set[grain] != grain {
+            set[grain] = set[set[grain]];
+            grain = set[grain];
+        }
+        grain
+    }
+    for contact in &moment.contacts {
+        if let OtherBody::Grain(other) = contact.other {
+            let ends = [contact.grain, other].map(|grain| root(&mut set, grain as usize));
+            set[ends[0]] = ends[1];
+        }
+    }
+    let roots: Vec<usize> = (0..grains.len()).map(|grain| root(&mut set, grain)).collect();
+    let mut sizes = vec![0usize; grains.len()];
+    roots.iter().for_each(|&root| sizes[root] += 1);
+    let largest = (0..grains.len()).max_by_key(|&root| sizes[root]).unwrap_or(0);
+    let (mut left, mut right, mut top) = (0.0f64, 0.0f64, 0.0f64);
+    for (grain, _) in grains.iter().zip(&roots).filter(|(_, root)| **root == largest) {
+        left = left.max(grain.radius - grain.position.x);
+        right = right.max(grain.radius + grain.position.x);
+        top = top.max(grain.radius + grain.position.y);
+    }
+    [0.5 * (left + right), top]
+}
+
+fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+    let (grains, aspects) = (all.first("grains"), all.list("aspect"));
+    let system = format!("{grains} grains, a = {aspects}, {}", all.seeds());
+    // Run-out over a of the columns of each seed that are not slender.
+    let low_factors = all.by_seed(|of_seed| {
+        let low = of_seed.such_that(|case| case.at("aspect") <= LINEAR_TO).0;
+        let ratios = low.iter().map(|case| case.reading("run_out") / case.reading("aspect"));
+        mean(&ratios.collect::<Vec<_>>()).mean
+    });
+    // Exponents, and what the law has at a = 1, of the columns of each seed that are at least so slender.
+    let power_laws = |reading: &str, least: f64| -> (Vec<f64>, Vec<f64>) {
+        let law = |of_seed: Measurements| {
+            let slender = of_seed.such_that(|case| case.at("aspect") >= least);
+            power_law(&slender.points(|case| (case.reading("aspect"), case.reading(reading))))
+        };
+        all.by_seed(law).into_iter().unzip()
+    };
+    let quantity = |name: &str, values: &[f64], band, source| {
+        PublishedQuantity::new(name, &system, values, band, (SourceKind::Memory, source))
+    };
+    let (high_exponents, high_factors) = power_laws("run_out", LINEAR_TO);
+    let (height_exponents, height_factors) = power_laws("height", 1.0);
+    vec![
+        quantity(
+            "run-out over a, a ≤ 2",
+            &low_factors,
+            [1.2, 2.5, 3.2],
+            "Staron, Hinch 2005: 2.5; Lube et al. 2005: 1.2",
+        ),
+        quantity(
+            "exponent of run-out in a, a ≥ 2",
+            &high_exponents,
+            [0.55, 0.7, 0.9],
+            "Staron, Hinch 2005: 0.7; Lajeunesse et al. 2005: 2/3",
+        ),
+        quantity(
+            "factor of run-out, a ≥ 2",
+            &high_factors,
+            [1.7, 3.25, 4.0],
+            "Staron, Hinch 2005: 3.25; Lube et al. 2005: 1.9",
+        ),
+        quantity(
+            "exponent of final height in a, a ≥ 1",
+            &height_exponents,
+            [0.25, 0.35, 0.5],
+            "Staron, Hinch 2005: 0.35; Lajeunesse et al. 2005: 1/3",
+        ),
+        quantity(
+            "factor of final height, a ≥ 1",
+            &height_factors,
+            [0.5, 0.65, 0.8],
+            "Staron, Hinch 2005: 0.65",
+        ),
+    ]
+}

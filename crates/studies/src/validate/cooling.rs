@@ -1,0 +1,168 @@
+//! A gas of discs that cools by collisions with a constant restitution e (P. K. Haff, J. Fluid Mech. 134, 401, 1983).
+//!
+//! With T = ½ m⟨v²⟩ the pressure-like temperature of the plane, each collision takes (1 − e²) T in the mean: the
+//! relative velocity along the normal has the variance 2T/m, and counted by collisions its square 4T/m, of which
+//! ¼ m (1 − e²) is lost. A disc collides ω = 2√π n d χ √(T/m) times a second (Enskog), χ = (1 − 7φ/16)/(1 − φ)²
+//! (D. Henderson 1975), and two share a collision, so that of N discs dE/dt = −N √π n d χ (1 − e²) T √(T/m), E = N T.
+//!
+//! The walls are of the same matter as the discs. A length of wall is hit n_w √(T/2πm) times a second, n_w = n (1 + 2φχ)
+//! the density at the wall, which bears the pressure; there ½ m ⟨v_n²⟩ = T, and (1 − e²) T is lost. Together, with the
+//! length L_w that centres see of the walls,
+//!
+//! > dT/dt = −2 T √(T/T₀)/τ,  2/τ = (1 − e²) √(T₀/m) (√π n d χ + L_w n_w/(√(2π) N)),
+//!
+//! and so T = T₀/(1 + t/τ)². Distributions stay near Maxwell's: at e = 0.9 the fourth cumulant is −0.03 and changes the
+//! rate by half a per cent (T. P. C. van Noije, M. H. Ernst 1998).
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec2;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use super::experiment::{
+    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
+    SourceKind, seeded,
+};
+use super::fit::cooling_law;
+use super::variants::StepVariant;
+use super::watched::{WatchedRun, wall};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::scene::stability::{DIAMETER, dry};
+use crate::statistics::slope;
+use crate::world::{Grain, Gravity, Physics};
+
+pub(super) const EXPERIMENT: Experiment = Experiment {
+    name: "cooling",
+    title: "Cooling gas",
+    about: "Discs without friction and gravity in a box, e = 0.9, solid fraction 0.1: before clusters form the \
+            temperature falls as T₀/(1 + t/τ)² (P. K. Haff, J. Fluid Mech. 134, 401, 1983). τ is that of kinetic \
+            theory in the plane (Enskog's collision rate), with what is lost at the walls, which are as inelastic as \
+            the discs.",
+    cases: ExperimentCases::Chosen(cases),
+    judge,
+};
+
+/// e.
+const RESTITUTION: f64 = 0.9;
+/// φ.
+const SOLID_FRACTION: f64 = 0.1;
+/// √(2T₀/m), m/s: a disc goes a hundredth of its diameter in 1e-3 s.
+const THERMAL_SPEED: f64 = 0.1;
+/// How long a gas is watched, in τ.
+const TIMES: f64 = 6.0;
+/// Moments at which its temperature is read.
+const MOMENTS: u32 = 120;
+
+fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
+    let (discs, seeds) = if quick { (400, 4) } else { (2_000, 10) };
+    let count = f64::from(discs);
+    let cost = count * TIMES * time_secs(count) / variant.time_step_secs;
+    seeded(&[count], seeds, |count, seed| {
+        let at = [("discs", count), ("seed", seed as f64)];
+        ExperimentCase::new(&at, cost, move || cool(discs as usize, seed, variant))
+    })
+}
+
+/// Side of the box, m.
+fn side(discs: f64) -> f64 {
+    (discs * 0.25 * PI * DIAMETER * DIAMETER / SOLID_FRACTION).sqrt()
+}
+
+/// τ, s (see the module).
+fn time_secs(discs: f64) -> f64 {
+    let phi = SOLID_FRACTION;
+    let density = discs / side(discs).powi(2);
+    let chi = (1.0 - 7.0 / 16.0 * phi) / (1.0 - phi).powi(2);
+    let of_pairs = PI.sqrt() * density * DIAMETER * chi;
+    let at_wall = density * (1.0 + 2.0 * phi * chi);
+    let of_walls = 4.0 * (side(discs) - DIAMETER) * at_wall / (TAU.sqrt() * discs);
+    let root = THERMAL_SPEED / 2f64.sqrt();
+    2.0 / ((1.0 - RESTITUTION.powi(2)) * root * (of_pairs + of_walls))
+}
+
+/// Discs evenly in a box, with the velocities of Maxwell's distribution.
+fn gas(discs: usize, seed: u64) -> Scene {
+    let side = side(discs as f64);
+    let columns = (discs as f64).sqrt().ceil();
+    let spacing = side / columns;
+    let mut random = Pcg64::seed_from_u64(seed);
+    let mut normal = || {
+        // G. E. P. Box, M. E. Muller 1958.
+        let (radius, angle) = (random.random_range(0.0..1.0f64), random.random_range(0.0..TAU));
+        (-2.0 * (1.0 - radius).ln()).sqrt() * DVec2::from_angle(angle)
+    };
+    let grain = |index: usize| {
+        let place = DVec2::new(index as f64 % columns, (index as f64 / columns).floor());
+        let position = spacing * (place + 0.5) - 0.5 * side;
+        let velocity = THERMAL_SPEED / 2f64.sqrt() * normal();
+        Grain { velocity, ..Grain::at_rest(position, 0.5 * DIAMETER) }
+    };
+    let mut scene = dry("cooling", (0..discs).map(grain).collect());
+    scene.physics = Physics { axes: 2, friction: false, rotation: false, cohesion: false };
+    scene.gravity = Gravity::Uniform { acceleration: DVec2::ZERO };
+    scene.parameters.restitution = RESTITUTION;
+    let half = 0.5 * side / DIAMETER;
+    scene.boundaries = vec![
+        wall(-half, 0.0, DVec2::X),
+        wall(half, 0.0, -DVec2::X),
+        wall(0.0, -half, DVec2::Y),
+        wall(0.0, half, -DVec2::Y),
+    ];
+    scene
+}
+
+fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
+    let mut scene = gas(discs, seed);
+    variant.apply(&mut scene);
+    let tau = time_secs(discs as f64);
+    scene.duration_secs = TIMES * tau;
+    let mut run = WatchedRun::start(&scene)?;
+    let start = run.simulation.observables().kinetic_energy;
+    let mut points = vec![(0.0, 1.0)];
+    for moment in 1..=MOMENTS {
+        run.run_until(f64::from(moment) / f64::from(MOMENTS) * scene.duration_secs, |_| ())?;
+        let simulation = &run.simulation;
+        points.push((simulation.time_secs(), simulation.observables().kinetic_energy / start));
+    }
+    let [exponent, _] = cooling_law(&points);
+    // E is that of these velocities, not of the distribution they were drawn from: τ goes with 1/√E.
+    let mass: f64 = run.simulation.world().grains.masses.iter().sum();
+    let expected = tau * THERMAL_SPEED / (2.0 * start / mass).sqrt();
+    // 1/√T = (1 + t/τ)/√T₀.
+    let roots: Vec<(f64, f64)> = points.iter().map(|(t, energy)| (*t, energy.powf(-0.5))).collect();
+    Ok(run.with([("exponent", exponent), ("time", 1.0 / slope(&roots) / expected)]))
+}
+
+fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+    let system = format!("{} discs, {} runs", all.first("discs"), all.0.len());
+    let quantity = |name: &str, reading, band, source| {
+        PublishedQuantity::new(name, &system, &all.readings(reading), band, source)
+    };
+    let haff = (SourceKind::Exact, "Haff 1983");
+    let rate = (SourceKind::Memory, "Enskog's collision rate, Henderson 1975, walls included");
+    vec![
+        quantity("exponent p of T = T₀ (1 + t/τ)^−p", "exponent", [1.85, 2.0, 2.15], haff),
+        quantity("τ over that of kinetic theory", "time", [0.9, 1.0, 1.1], rate),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::Method;
+    use crate::validate::variants::SolveBudget;
+
+    #[test]
+    fn a_gas_cools_as_haff_says_and_slower_where_it_loses_less() {
+        let budget = SolveBudget::Sweeps(10);
+        let variant = StepVariant { method: Method::Nsgs, time_step_secs: 2e-3, budget };
+        let run = || cool(225, 3, variant).expect("a gas that stays finite");
+        let time = run().reading("time");
+        assert!((time - 1.0).abs() < 0.1, "{time}");
+        assert_eq!(run().lost_grains, 0);
+        // Two runs of the same gas are the same to the last bit.
+        assert_eq!(run().reading("time").to_bits(), time.to_bits());
+    }
+}

@@ -1,0 +1,182 @@
+//! A narrow silo that is closed: what its walls carry of the weight (H. A. Janssen 1895).
+//!
+//! Between two walls at a distance W, where the pressure across is K times that along the height and friction at the
+//! walls bears all that it can, a slice of height dz has W dp = ρ_b g W dz − 2 μ_w K p dz, so that under the surface
+//!
+//! > p = λ ρ_b g (1 − e^(−z/λ)),  λ = W/(2 μ_w K),
+//!
+//! and of the weight of a filling of height H the bottom carries the share (λ/H)(1 − e^(−H/λ)).
+//!
+//! Friction bears all that it can where grains slide down the walls: the bottom is lowered slowly while it is weighed.
+
+use glam::DVec2;
+
+use super::experiment::{
+    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
+    SourceKind, seeded,
+};
+use super::variants::StepVariant;
+use super::watched::{WatchedRun, at_rest, centre_of_mass, loose, open_box, settled};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::scene::stability::{DIAMETER, GRAVITY, dry};
+use crate::sim::{OtherBody, Simulation};
+use crate::statistics::mean;
+use crate::world::{Grain, Motion, MotionCourse};
+
+pub(super) const EXPERIMENT: Experiment = Experiment {
+    name: "janssen",
+    title: "Load on the bottom of a silo",
+    about: "A closed silo 8 d wide, μ = μ_w = 0.5, filled to different heights H; its bottom is lowered by half a diameter, \
+            slowly, and weighs what it carries meanwhile. H. A. Janssen 1895: the share (λ/H)(1 − e^(−H/λ)) of the \
+            weight, λ = W/(2 μ_w K), K the pressure across over that along.",
+    cases: ExperimentCases::Chosen(cases),
+    judge,
+};
+
+/// μ, between grains and at the walls.
+const FRICTION: f64 = 0.5;
+/// W, in diameters.
+const WIDTH: f64 = 8.0;
+/// Grains that a square of the width takes, at a solid fraction of 0.82.
+const GRAINS_OF_SQUARE: f64 = 1.04 * WIDTH * WIDTH;
+/// How far the bottom is lowered, in diameters, and from which part of that on it is weighed.
+const LOWERED: f64 = 0.5;
+const WEIGHED_FROM: f64 = 0.2;
+/// How fast, in √(g d).
+const SPEED: f64 = 0.02;
+/// The heights whose loads are compared, in W.
+const HIGH: f64 = 5.0;
+const HALF_AS_HIGH: f64 = 2.5;
+
+fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
+    let seeds = if quick { 4 } else { 12 };
+    let heights: &[f64] = if quick {
+        &[1.0, HALF_AS_HIGH, HIGH]
+    } else {
+        &[0.5, 1.0, 1.5, HALF_AS_HIGH, 3.5, HIGH, 7.0, 10.0]
+    };
+    seeded(heights, seeds, |height, seed| {
+        let grains = (height * GRAINS_OF_SQUARE).round();
+        let at = [("height", height), ("grains", grains), ("seed", seed as f64)];
+        let cost = grains * (1.0 + height) / variant.time_step_secs;
+        ExperimentCase::new(&at, cost, move || weigh(grains as usize, seed, variant))
+    })
+}
+
+/// The silo around grains, with a bottom at y = 0.
+fn silo(grains: Vec<Grain>, variant: StepVariant) -> Scene {
+    let mut scene = dry("janssen", grains);
+    scene.parameters.friction = FRICTION;
+    scene.parameters.restitution_threshold = 2.0;
+    scene.boundaries = open_box(WIDTH);
+    variant.apply(&mut scene);
+    scene.duration_secs = 60.0;
+    scene
+}
+
+fn weigh(grains: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
+    let settled = settled(&silo(loose(grains, WIDTH, seed), variant))?;
+    let mut scene = silo(at_rest(&settled), variant);
+    let speed = SPEED * (GRAVITY * DIAMETER).sqrt();
+    let course = MotionCourse::Straight { direction: DVec2::NEG_Y, speed, travel: None };
+    scene.motions = vec![Motion { boundaries: vec![0], course: Some(course), ..Motion::default() }];
+    let mut run = WatchedRun::start(&scene)?;
+    let secs = LOWERED * DIAMETER / speed;
+    run.run_until(WEIGHED_FROM * secs, |_| ())?;
+    let mut loads = Vec::new();
+    run.run_until(secs, |simulation| loads.push(on_bottom(simulation)))?;
+    let mass: f64 = run.simulation.world().grains.masses.iter().sum();
+    // Twice the height of the centre of mass above the bottom: the surface is not even.
+    let height = 2.0 * (centre_of_mass(&run.simulation).y / DIAMETER + LOWERED);
+    Ok(run.with([
+        ("share", mean(&loads).mean / (mass * GRAVITY)),
+        ("height", height),
+        ("load", mean(&loads).mean),
+    ]))
+}
+
+/// What the bottom carries, N.
+fn on_bottom(simulation: &Simulation) -> f64 {
+    let contacts = simulation.moment().contacts.into_iter();
+    let of_bottom = contacts.filter(|contact| contact.other == OtherBody::Boundary(0));
+    of_bottom.map(|contact| contact.force().y).sum()
+}
+
+/// The share that the bottom carries of a filling of so many λ.
+fn share(heights: f64) -> f64 {
+    -(-heights).exp_m1() / heights
+}
+
+/// λ of shares that were measured at heights, by least squares, and the root mean square that it leaves: on a grid in
+/// ratio around the largest height, made finer twice.
+fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
+    let misfit = |length: f64| -> f64 {
+        let square = |(height, found): &(f64, f64)| (found - share(height / length)).powi(2);
+        (points.iter().map(square).sum::<f64>() / points.len() as f64).sqrt()
+    };
+    let (mut best, mut ratio) = (points.iter().map(|point| point.0).fold(0.0, f64::max), 1e3f64);
+    for _ in 0..4 {
+        let lengths = (-40..=40).map(|number| best * ratio.powf(f64::from(number) / 40.0));
+        let nearest = lengths.min_by(|one, other| misfit(*one).total_cmp(&misfit(*other)));
+        best = nearest.unwrap_or(f64::NAN);
+        ratio = ratio.powf(0.1);
+    }
+    [best, misfit(best)]
+}
+
+fn judge(all: &Measurements) -> Vec<PublishedQuantity> {
+    let system = format!("{} grains in 8 d, {}", all.list("grains"), all.seeds());
+    let (ratios, misfits): (Vec<f64>, Vec<f64>) = all
+        .by_seed(|of_seed| {
+            let points = of_seed.points(|case| (case.reading("height"), case.reading("share")));
+            let [length, misfit] = length_of(&points);
+            (WIDTH / (2.0 * FRICTION * length), misfit)
+        })
+        .into_iter()
+        .unzip();
+    let gains = all.by_seed(|of_seed| {
+        let load = |height| of_seed.with("height", height).reading("load");
+        load(HIGH) / load(HALF_AS_HIGH)
+    });
+    let quantity = |name: &str, values: &[f64], band, source| {
+        PublishedQuantity::new(name, &system, values, band, (SourceKind::Memory, source))
+    };
+    vec![
+        quantity(
+            "K of Janssen's λ = W/(2 μ_w K)",
+            &ratios,
+            [0.35, 0.7, 1.1],
+            "Janssen 1895; K of 0.4 … 1 for grains",
+        ),
+        quantity(
+            "deviation of the share from Janssen's law, r.m.s.",
+            &misfits,
+            [0.0, 0.03, 0.1],
+            "Janssen 1895",
+        ),
+        quantity(
+            "load of a filling 5 W high over that of one half as high",
+            &gains,
+            [0.8, 1.1, 1.5],
+            "Janssen 1895 with K = 0.7: 1.1; without friction 2",
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_length_of_janssen_is_found_again() {
+        for length in [0.3, 11.0, 150.0] {
+            let points: Vec<(f64, f64)> = [8.0, 20.0, 40.0]
+                .into_iter()
+                .map(|height| (height, share(height / length)))
+                .collect();
+            let [found, misfit] = length_of(&points);
+            assert!((found / length - 1.0).abs() < 0.01 && misfit < 1e-3, "{found} for {length}");
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! What goes between Python and the program: lists and tables as numpy's arrays, nested data by way of JSON, and
+//! errors as exceptions of the same sentence.
+
+use numpy::{Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+
+use slump_core::error::Error;
+use slump_data::data::{Table, Values};
+
+/// Classes of the package, which are made in Python.
+mod classes {
+    pyo3::import_exception!(slump._errors, Error);
+    pyo3::import_exception!(slump._errors, FileError);
+    pyo3::import_exception!(slump._errors, InputError);
+    pyo3::import_exception!(slump._errors, NotFiniteError);
+    pyo3::import_exception!(slump._errors, SlumpWarning);
+}
+pub(crate) use classes::{InputError, SlumpWarning};
+
+/// The exception for an error.
+pub(crate) fn exception(error: Error) -> PyErr {
+    let sentence = error.to_string();
+    match error {
+        Error::Value { .. } | Error::Options(_) => InputError::new_err(sentence),
+        Error::File { .. } => classes::FileError::new_err(sentence),
+        Error::NonFinite { .. } => classes::NotFiniteError::new_err(sentence),
+        Error::Renderer(_) | Error::Interrupted { .. } => classes::Error::new_err(sentence),
+    }
+}
+
+/// The exception for a value that is none of those allowed.
+pub(crate) fn refused(
+    field: impl Into<String>,
+    value: impl std::fmt::Display,
+    allowed: impl Into<String>,
+) -> PyErr {
+    exception(Error::value(field, value, allowed))
+}
+
+/// Rows of `N` numbers, one below the other.
+pub(crate) fn rows<const N: usize>(
+    py: Python<'_>,
+    rows: impl ExactSizeIterator<Item = [f64; N]>,
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let shape = [rows.len(), N];
+    rows.flatten().collect::<Vec<_>>().into_pyarray(py).reshape(shape)
+}
+
+/// A list of numbers or switches.
+pub(crate) fn list<T: Element>(
+    py: Python<'_>,
+    list: impl Iterator<Item = T>,
+) -> Bound<'_, PyArray1<T>> {
+    list.collect::<Vec<_>>().into_pyarray(py)
+}
+
+/// A table as a dictionary of columns.
+pub(crate) fn columns<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for column in table.columns {
+        dict.set_item(column.name, array(py, column.values)?)?;
+    }
+    Ok(dict)
+}
+
+/// The first row of a table by the names of its columns, in numbers and words of Python's own.
+pub(crate) fn first_row<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'py, PyDict>> {
+    let dict = columns(py, table)?;
+    for (name, column) in dict.copy()? {
+        dict.set_item(name, column.get_item(0)?.call_method0("item")?)?;
+    }
+    Ok(dict)
+}
+
+/// A column as an array of one type, whatever its values: a number that a row does not have is no number, a switch
+/// that it does not have is off.
+fn array(py: Python<'_>, values: Values) -> PyResult<Bound<'_, PyAny>> {
+    Ok(match values {
+        Values::Numbers(numbers) => numbers.into_pyarray(py).into_any(),
+        Values::SomeNumbers(numbers) => {
+            list(py, numbers.into_iter().map(|number| number.unwrap_or(f64::NAN))).into_any()
+        }
+        Values::Counts(counts) => list(py, counts.into_iter().map(|count| count as i64)).into_any(),
+        Values::Flags(flags) => {
+            list(py, flags.into_iter().map(|flag| flag.unwrap_or(false))).into_any()
+        }
+        Values::Words { words, codes } => {
+            let words = py.import("numpy")?.call_method1("array", (words, "U"))?;
+            words.get_item(list(py, codes.into_iter().map(i64::from)))?
+        }
+    })
+}
+
+/// The text of a dictionary. Arrays and numbers of numpy's may be in it.
+///
+/// # Errors
+/// Where something in it is no data.
+pub(crate) fn text_of(what: &str, data: &Bound<'_, PyAny>) -> PyResult<String> {
+    let py = data.py();
+    let options = PyDict::new(py);
+    options
+        .set_item("default", py.import("operator")?.call_method1("methodcaller", ("tolist",))?)?;
+    let text = py.import("json")?.call_method("dumps", (data,), Some(&options));
+    let text = text.map_err(|error| {
+        let said = error.value(py);
+        PyTypeError::new_err(format!("{what} is no data ({said}), but must be as JSON can say it"))
+    })?;
+    text.extract()
+}
+
+/// What a text says, in dictionaries, lists, numbers and words.
+///
+/// # Errors
+/// Where it is no JSON.
+pub(crate) fn parsed<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (text,))
+}
+
+/// Data of the program, in dictionaries, lists, numbers and words.
+///
+/// # Errors
+/// Where JSON cannot say it.
+pub(crate) fn data_of<'py>(py: Python<'py>, data: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(data).map_err(|error| {
+        PyRuntimeError::new_err(format!("the program's own data are no JSON: {error}"))
+    })?;
+    parsed(py, &text)
+}

@@ -1,0 +1,190 @@
+//! What a simulation begins with: a scene by its name, from a file or as a dictionary, an initial state out of arrays,
+//! or a saved run, and changes to it.
+
+use std::path::Path;
+
+use numpy::{AllowTypeChange, PyArrayLike1};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::conversion::{InputError, data_of, exception, refused, text_of};
+use crate::options::{GivenOptions, all_names};
+use crate::run::Run;
+use slump_core::error::{Error, with_allowed};
+use slump_core::scene::{Scene, Settling};
+use slump_data::config::{BaseScene, Config, SavedState};
+use slump_data::data::{RecordedGrains, Values, grains_of};
+
+/// What a scene must be that is given as a dictionary, for messages.
+const FORM: &str = "a scene as slump.scene(name) gives it";
+/// Stands for what is given in Python where the command line has a name or a file.
+const A_DICTIONARY: &str = "a dictionary";
+const A_TABLE: &str = "a table";
+
+/// A scene as a dictionary, with changes: what `slump scene` prints.
+#[pyfunction(name = "scene")]
+#[pyo3(signature = (scene=None, *, initial=None, **options))]
+pub(crate) fn scene_as_data<'py>(
+    py: Python<'py>,
+    scene: Option<&Bound<'py, PyAny>>,
+    initial: Option<&Bound<'py, PyAny>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    data_of(py, &self::scene(py, scene, initial, options)?)
+}
+
+/// The scene that is asked for. Where grains have to settle, that is done here; Ctrl-C ends it.
+///
+/// # Errors
+/// Names what is unknown or outside its range, or the file that cannot be read.
+pub(crate) fn scene(
+    py: Python<'_>,
+    scene: Option<&Bound<'_, PyAny>>,
+    initial: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Scene> {
+    let config = config_of(scene, initial, options)?;
+    if let Some(table) = initial.filter(|initial| is_data(initial)) {
+        if let Some(step) = config.source.initial_step {
+            let allowed = "left out where initial is a table, which is of one moment";
+            return Err(refused("initial-step", step, allowed));
+        }
+        return config.scene_of_discs(discs(table)?).map_err(exception);
+    }
+    let base = match scene.filter(|scene| is_data(scene)) {
+        Some(data) => BaseScene::of(described(data)?, Path::new("")),
+        None => config.base_scene(),
+    };
+    settled(py, &config, base.map_err(exception)?)
+}
+
+/// The run that goes on from the state in a file, with the changes that are asked for.
+///
+/// # Errors
+/// Names what is wrong with the file, or what is outside its range or asks for another start.
+pub(crate) fn restarted(
+    py: Python<'_>,
+    file: &Path,
+    scene: Option<&Bound<'_, PyAny>>,
+    initial: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Run> {
+    let config = config_of(scene, initial, options)?;
+    let restarted = py.detach(|| {
+        let mut state = SavedState::open(file)?;
+        config.change_state(&mut state)?;
+        Ok(Run::of(state))
+    });
+    restarted.map_err(exception)
+}
+
+/// What is asked for, as the command line has it.
+fn config_of(
+    scene: Option<&Bound<'_, PyAny>>,
+    initial: Option<&Bound<'_, PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Config> {
+    let mut given = GivenOptions::default();
+    for (name, value, data) in [("scene", scene, A_DICTIONARY), ("initial", initial, A_TABLE)] {
+        match value {
+            Some(value) if is_data(value) => given.add_text(name, data),
+            Some(value) => given.add(name, value)?,
+            None => {}
+        }
+    }
+    given.add_all(options, &all_names())?;
+    given.config()
+}
+
+/// Whether it is neither a name nor a path.
+fn is_data(given: &Bound<'_, PyAny>) -> bool {
+    !given.is_none()
+        && !given.is_instance_of::<PyString>()
+        && !given.hasattr("__fspath__").unwrap_or(false)
+}
+
+fn described(data: &Bound<'_, PyAny>) -> PyResult<Scene> {
+    serde_json::from_str(&text_of("scene", data)?).map_err(|error| {
+        // A dictionary has no lines.
+        let place = format!(" at line {} column {}", error.line(), error.column());
+        let said = error.to_string();
+        let said = with_allowed(said.strip_suffix(&place).unwrap_or(&said), FORM);
+        InputError::new_err(format!("scene: {said}"))
+    })
+}
+
+fn settled(py: Python<'_>, config: &Config, base: BaseScene) -> PyResult<Scene> {
+    let mut interrupted = None;
+    let look = |_: Settling| {
+        interrupted = Python::attach(|py| py.check_signals()).err();
+        interrupted.is_none()
+    };
+    let scene = py.detach(|| config.scene_on(base, look));
+    match interrupted {
+        Some(interrupted) => Err(interrupted),
+        None => scene.map_err(exception),
+    }
+}
+
+/// What a start is called in messages.
+const INITIAL: &str = "initial";
+
+/// The discs of a table: a dictionary of arrays, or a data frame, with the columns of the table of grains or the
+/// first of them.
+///
+/// # Errors
+/// Names the column that is missing, unknown, or no list as long as the others, or the row that is no disc.
+fn discs(table: &Bound<'_, PyAny>) -> PyResult<RecordedGrains> {
+    let named = |name: String| {
+        let values = values_of(&name, &table.get_item(&name)?)?;
+        Ok((name, values))
+    };
+    let columns = names_of(table)?.into_iter().map(named).collect::<PyResult<Vec<_>>>()?;
+    // What is told of as of a file is of no file.
+    let refuse = |error: Error| InputError::new_err(error.to_string());
+    grains_of(Path::new(INITIAL), &columns).map_err(refuse)
+}
+
+fn names_of(table: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    let listed = if table.hasattr("columns")? {
+        table.getattr("columns")
+    } else {
+        table.call_method0("keys")
+    };
+    let names = listed.and_then(|listed| listed.try_iter()?.map(|name| name?.extract()).collect());
+    names.map_err(|_| {
+        let found = table.get_type();
+        let allowed = "a file of discs, or a dictionary or data frame with x, y and radius";
+        PyTypeError::new_err(format!("{INITIAL} is {found}, but must be {allowed}"))
+    })
+}
+
+fn values_of(name: &str, column: &Bound<'_, PyAny>) -> PyResult<Values> {
+    let refuse = |allowed: &str| {
+        let found = column.get_type();
+        refused(format!("{INITIAL}[\"{name}\"]"), found, format!("{allowed}, one a disc"))
+    };
+    match name {
+        "kind" => {
+            let words: PyResult<Vec<String>> =
+                column.try_iter()?.map(|word| word?.extract()).collect();
+            let words = words.map_err(|_| refuse("a list of words"))?;
+            Ok(Values::Words { codes: (0..words.len() as u32).collect(), words })
+        }
+        "id" => {
+            let counts: PyResult<Vec<u64>> =
+                column.try_iter()?.map(|count| count?.extract()).collect();
+            counts.map(Values::Counts).map_err(|_| refuse("a list of whole numbers ≥ 0"))
+        }
+        // As long as it is, but not read, whatever it holds.
+        name if !RecordedGrains::NUMBERS.contains(&name) => {
+            Ok(Values::Flags(vec![None; column.len()?]))
+        }
+        _ => {
+            let numbers: PyResult<PyArrayLike1<'_, f64, AllowTypeChange>> = column.extract();
+            let numbers = numbers.map_err(|_| refuse("a list of numbers"))?;
+            Ok(Values::Numbers(numbers.as_array().iter().copied().collect()))
+        }
+    }
+}
