@@ -9,7 +9,7 @@ use super::plots::{PlotData, WorldCurve, draw};
 use super::theme;
 use crate::error::{Error, Result};
 use crate::render::Gpu;
-use crate::render::offscreen::{FORMAT, Target};
+use crate::render::gpu::{FORMAT, OffscreenTarget};
 
 /// Draws user interfaces into targets of one format.
 pub(super) struct Screen {
@@ -87,7 +87,7 @@ impl Screen {
 pub struct Canvas {
     gpu: Gpu,
     screen: Screen,
-    target: Option<Target>,
+    target: Option<OffscreenTarget>,
 }
 
 impl Canvas {
@@ -128,7 +128,7 @@ impl Canvas {
         }
         let target = match self.target.take() {
             Some(target) if (target.width, target.height) == (width, height) => target,
-            _ => Target::new(gpu, width, height)?,
+            _ => OffscreenTarget::new(gpu, width, height)?,
         };
         context.set_pixels_per_point(pixels_per_point);
         let points = egui::vec2(width as f32, height as f32) / pixels_per_point;

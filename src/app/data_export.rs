@@ -15,7 +15,7 @@ use crate::data::{
     formats_of,
 };
 use crate::error::{Error, Result};
-use crate::headless::told_of_data;
+use crate::headless::recording_sentence;
 use crate::live::{ControlsChange, HandEdit, WorldRecord};
 use crate::sim::{Edit, Pull, RunEnding, Simulation};
 use crate::world::Disc;
@@ -259,7 +259,7 @@ impl Writing<'_> {
 
     fn finish(self, ended: &RunEnding) -> Result<String> {
         let Some(recording) = self.recording else { return Ok(NOTHING.to_owned()) };
-        let told = told_of_data(recording.folder(), recording.frames());
+        let told = recording_sentence(recording.folder(), recording.frames());
         recording.finish()?;
         Ok(match ended {
             RunEnding::Done => told,

@@ -14,7 +14,7 @@ use crate::config::SavedState;
 use crate::error::{Error, Result};
 use crate::live::Curve;
 use crate::output::{Texts, check_writable, write_file};
-use crate::render::{Camera, Panel, Renderer, RendererChoice, Style, draw_scene, draw_worlds};
+use crate::render::{Camera, Renderer, RendererChoice, Style, WorldPanel, draw_scene, draw_worlds};
 use crate::sim::{Observables, Settings, Snapshot};
 use crate::world::Parameters;
 
@@ -54,7 +54,7 @@ impl ScenePicture {
         if let [PicturedWorld { snapshot, .. }] = &worlds[..] {
             return draw_scene(renderer, snapshot, style, camera, size[0], size[1]);
         }
-        let panels = worlds.iter().map(|PicturedWorld { snapshot, title, note }| Panel {
+        let panels = worlds.iter().map(|PicturedWorld { snapshot, title, note }| WorldPanel {
             snapshot,
             title,
             note,

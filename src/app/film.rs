@@ -12,7 +12,7 @@ use super::opening::TakenRun;
 use super::work::{Reporter, Work};
 use crate::error::Result;
 use crate::film::{Animation, Video};
-use crate::headless::KeptStates;
+use crate::headless::WaitingStates;
 use crate::output::{Texts, check_writable, counted};
 use crate::render::{Renderer, RendererChoice, Style, speed_reference};
 use crate::sim::{Simulation, Snapshot};
@@ -231,7 +231,7 @@ fn slump(snapshot: &Snapshot, slumps: bool) -> String {
 
 /// The moments that a film shows, on disk: all of them have one scale of colours, and that is known at the end.
 struct Moments {
-    kept: KeptStates,
+    kept: WaitingStates,
     style: Style,
     /// For each world, which of the states each picture shows.
     shown: Vec<Vec<usize>>,
@@ -240,7 +240,7 @@ struct Moments {
 
 impl Moments {
     fn start(folder: &Path, style: &Style) -> Result<Self> {
-        let kept = KeptStates::start(folder)?;
+        let kept = WaitingStates::start(folder)?;
         Ok(Self { kept, style: style.clone(), shown: Vec::new(), speed_reference: 0.0 })
     }
 

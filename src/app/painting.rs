@@ -7,7 +7,7 @@ use egui::{
 };
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 
-use crate::render::{Frame, Legend, Painter, Picture};
+use crate::render::{Legend, Painter, Picture, PictureArea};
 
 /// The format of the target that callbacks draw into; whoever makes an egui renderer puts it among
 /// the callback resources.
@@ -54,7 +54,7 @@ impl CallbackTrait for SceneCallback {
             screen_size_px: screen.size_in_pixels,
         };
         let viewport = info.viewport_in_pixels();
-        let frame = Frame::new(
+        let frame = PictureArea::new(
             viewport.left_px as f32,
             viewport.top_px as f32,
             viewport.width_px as f32,

@@ -1,30 +1,33 @@
-//! The command line: a file a command, and one way to say what went wrong.
+//! The command line, and one way to say what went wrong.
 
-mod chart;
-mod generate;
-mod list;
-mod problem;
-mod reproduce;
-mod run;
-mod scene;
-mod stability;
-mod sweep;
-mod validate;
+mod studies;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::config::refusal_of;
+#[cfg(feature = "window")]
+use crate::app::WindowOptions;
+use crate::config::{Config, parser_of, refusal_of, scene_to_toml, write_discs};
 use crate::error::{Error, Result};
-use crate::output::{lost_stdout, note_line, note_printed};
+use crate::headless::{HeadlessOptions, settled};
+use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
+use crate::output::{
+    Progress, check_file, lost_stdout, note_line, note_printed, print_line, print_text,
+    warn_of_steps, write_file,
+};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
+use crate::sim::Stepper;
+use crate::solver::{FrictionModel, METHODS, Method, SolverSettings, StopTest};
+use studies::{ChartCommand, ReproduceCommand, StabilityCommand, SweepCommand, ValidateCommand};
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(flatten)]
-    run: run::RunCommand,
+    run: RunCommand,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -32,27 +35,27 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Put discs into a box over a rough base, let them come to rest, and write them as CSV
-    Generate(generate::GenerateCommand),
+    Generate(GenerateCommand),
     /// List the built-in scenes and the methods
     List,
     /// Write the contact problem of one step to a file, or solve such a file alone
     Problem {
         #[command(subcommand)]
-        command: problem::ProblemCommand,
+        command: ProblemCommand,
     },
     /// Run a study: all combinations of lists and ranges of parameters, on all cores
-    Sweep(sweep::SweepCommand),
+    Sweep(SweepCommand),
     /// Make the paper's figures, and those its conclusion asks for, from simulation alone
-    Reproduce(reproduce::ReproduceCommand),
+    Reproduce(ReproduceCommand),
     /// Chart speed against accuracy of every method: of steps, of simulations, and of lean models
-    Chart(chart::ChartCommand),
+    Chart(ChartCommand),
     /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
-    Stability(stability::StabilityCommand),
+    Stability(StabilityCommand),
     /// Hold Slump against published experiments: quantity, interval, verdict and cost, for a choice of methods
-    Validate(validate::ValidateCommand),
+    Validate(ValidateCommand),
     /// Print a scene, with the changes asked for, as a scene file
     // By far the largest of them.
-    Scene(Box<scene::SceneCommand>),
+    Scene(Box<SceneCommand>),
 }
 
 /// Exit code of all that went wrong, but for a signal.
@@ -88,7 +91,7 @@ fn run(cli: Cli) -> Result<()> {
     match cli.command {
         Some(Command::Generate(command)) => command.run(),
         Some(Command::List) => {
-            list::run();
+            list();
             Ok(())
         }
         Some(Command::Problem { command }) => command.run(),
@@ -100,4 +103,238 @@ fn run(cli: Cli) -> Result<()> {
         Some(Command::Scene(command)) => command.run(),
         None => cli.run.run(),
     }
+}
+
+/// Arguments of `slump`.
+#[derive(clap::Args)]
+struct RunCommand {
+    #[command(flatten)]
+    config: Config,
+    #[command(flatten)]
+    headless: HeadlessOptions,
+    #[cfg(feature = "window")]
+    #[command(flatten)]
+    window: WindowOptions,
+}
+
+impl RunCommand {
+    fn run(&self) -> Result<()> {
+        if self.headless.headless {
+            return crate::headless::run(&self.config, &self.headless);
+        }
+        self.open_window()
+    }
+
+    #[cfg(feature = "window")]
+    fn open_window(&self) -> Result<()> {
+        crate::app::run(&self.config, &self.headless, &self.window)
+    }
+
+    #[cfg(not(feature = "window"))]
+    fn open_window(&self) -> Result<()> {
+        Err(Error::Renderer(
+            "this build has no window: build it with the feature window, or give --headless".into(),
+        ))
+    }
+}
+
+/// Prints the built-in scenes, the steppers, the methods and the models of friction.
+fn list() {
+    for group in SceneGroup::ALL {
+        print_line(format_args!("{}:", group.title()));
+        for scene in SCENES.iter().filter(|scene| scene.group == group) {
+            print_line(format_args!("  {:14} {}", scene.name, scene.summary));
+        }
+    }
+    print_line(format_args!("Steppers:"));
+    for stepper in Stepper::ALL {
+        print_line(format_args!("  {:14} {}", stepper.name(), stepper.hint()));
+        print_line(format_args!(
+            "  {:14} solves {} ({})",
+            "",
+            stepper.info().solves,
+            stepper.info().source
+        ));
+        print_line(format_args!("  {:14} reads {}", "", stepper.info().settings.join(", ")));
+    }
+    print_line(format_args!("Methods, for steppers that solve each step's problem by one:"));
+    for info in METHODS {
+        print_line(format_args!("  {:14} {}", info.name, info.summary));
+        print_line(format_args!("  {:14} solves {} ({})", "", info.solves, info.source));
+    }
+    let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
+    let takers: Vec<_> = takers.collect();
+    print_line(format_args!("Models of friction, those beside coulomb for {}:", takers.join(", ")));
+    for model in FrictionModel::ALL {
+        print_line(format_args!("  {:14} {}", model.name(), model.hint()));
+    }
+}
+
+/// `slump generate`.
+#[derive(clap::Args)]
+struct GenerateCommand {
+    /// Number of grains
+    #[arg(long, default_value_t = NewPile::default().grains)]
+    grains: usize,
+    /// Width of the box, in mean diameters
+    #[arg(long, default_value_t = NewPile::default().box_width_in_diameters, allow_negative_numbers = true)]
+    box_width: f64,
+    /// Seed of diameters and places
+    #[arg(long, default_value_t = NewPile::default().seed)]
+    seed: u64,
+    /// How the grains are put in place
+    #[arg(long, value_name = "WAY", default_value_t, value_parser = parser_of::<Deposition>())]
+    deposition: Deposition,
+    /// The file to write
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+impl GenerateCommand {
+    fn run(self) -> Result<()> {
+        let Self { grains: count, box_width: width, seed, deposition, out } = self;
+        check_file("out", &out)?;
+        let pile = NewPile { grains: count, box_width_in_diameters: width, seed, deposition };
+        let progress = Progress::new("settling", 100);
+        let settled = deposit(&pile, |Settling { time_secs, limit_secs, .. }| {
+            progress.set((100.0 * time_secs / limit_secs) as u64);
+            true
+        });
+        progress.finish();
+        let Settled { grains, kinetic_energy, mean_overlap, max_overlap } = settled?;
+        let rest = format!(
+            "At rest: kinetic energy {kinetic_energy:.1e} m g d a grain, overlap {mean_overlap:.1e} d in the \
+             mean and {max_overlap:.1e} d at most."
+        );
+        let command = format!("slump generate --grains {count} --box-width {width} --seed {seed}");
+        let comment = match deposition {
+            // The shipped state has these lines alone.
+            Deposition::Rain => format!(
+                "Discs rained into a box over a rough base and left to come to rest; metres.\n{command}"
+            ),
+            Deposition::DropAndRoll => format!(
+                "Discs dropped into a box over a rough base, each rolled to where two others hold it, and \
+                 left to come to rest; metres.\n{rest}\n{command} --deposition drop-and-roll"
+            ),
+        };
+        write_file(&out, write_discs(&grains, &comment).as_bytes())?;
+        note_line(&rest);
+        print_line(out.display());
+        Ok(())
+    }
+}
+
+/// `slump scene`.
+#[derive(clap::Args)]
+struct SceneCommand {
+    #[command(flatten)]
+    config: Config,
+}
+
+impl SceneCommand {
+    fn run(&self) -> Result<()> {
+        print_text(scene_to_toml(&settled(&self.config)?)?);
+        Ok(())
+    }
+}
+
+/// What to do with a problem.
+#[derive(clap::Subcommand)]
+enum ProblemCommand {
+    /// Run a scene up to a time and write the problem of the step that begins there
+    Dump {
+        #[command(flatten)]
+        config: Box<Config>,
+        /// Simulated time, seconds
+        #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+        at: f64,
+        /// The file to write (JSON)
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
+    /// Solve a problem file, or a text file of Siconos', and say how well and how fast
+    Solve {
+        /// The problem file
+        file: PathBuf,
+        /// The method
+        #[arg(long, value_name = "NAME", default_value = "nsgs", value_parser = parser_of::<Method>())]
+        method: Method,
+        /// Residual to reach
+        #[arg(long, value_name = "X", default_value_t = 1e-8, allow_negative_numbers = true)]
+        tolerance: f64,
+        /// Give up after this many sweeps
+        #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+        max_sweeps: u32,
+        /// Solve it this many times and give the least time
+        #[arg(long, value_name = "N", default_value_t = 1)]
+        repeat: u32,
+        /// Work on W alone, whether or not the file has bodies
+        #[arg(long)]
+        without_bodies: bool,
+        /// Write velocities and impulses to this file (JSON)
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+}
+
+impl ProblemCommand {
+    fn run(self) -> Result<()> {
+        match self {
+            Self::Dump { config, at, out } => {
+                check_file("out", &out)?;
+                let scene = settled(&config)?;
+                scene.parameters.check_steps("at", at)?;
+                warn_of_steps(scene.parameters.steps_in(at));
+                let progress = Progress::new("running", 100);
+                let file = problem_file_at(&scene, at, |time| {
+                    progress.set((100.0 * time / at) as u64);
+                });
+                progress.finish();
+                let file = file?;
+                write_file(&out, file.text().as_bytes())?;
+                print_line(format_args!("{} contacts in {}", file.nc, out.display()));
+                Ok(())
+            }
+            Self::Solve { file, method, tolerance, max_sweeps, repeat, without_bodies, out } => {
+                out.as_deref().map(|out| check_file("out", out)).transpose()?;
+                let mut problem = ProblemFile::read(&file)?;
+                if without_bodies {
+                    problem.bodies = None;
+                }
+                let stop = StopTest::Residual;
+                let settings = SolverSettings {
+                    method,
+                    stop,
+                    tolerance,
+                    max_sweeps,
+                    ..SolverSettings::default()
+                };
+                let solution = solve_file(&problem, &settings, repeat)?;
+                print_solution(&solution);
+                match out {
+                    Some(out) => write_file(&out, solution.text().as_bytes()),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+}
+
+fn print_solution(solution: &Solution) {
+    let Solution { contacts, method, sweeps, factorisations, seconds, residual, .. } = solution;
+    print_line(format_args!("contacts        {contacts}"));
+    print_line(format_args!(
+        "method          {method} on {}",
+        if solution.on_bodies { "bodies" } else { "W" }
+    ));
+    print_line(format_args!("sweeps          {sweeps}"));
+    print_line(format_args!("factorisations  {factorisations}"));
+    print_line(format_args!("seconds         {seconds:.3e}"));
+    print_line(format_args!("residual        {residual:.3e}"));
+    let converged = match (solution.converged, solution.stalled) {
+        (true, _) => "yes",
+        (false, true) => "no: stalled, more sweeps are of no use",
+        (false, false) => "no: stopped too early",
+    };
+    print_line(format_args!("converged       {converged}"));
 }

@@ -9,14 +9,14 @@ use glam::DVec2;
 use image::RgbaImage;
 use rayon::prelude::*;
 
-use super::folder::{Earlier, RunFolder};
-use super::manifest::{Ended, Manifest, Moment, PictureEntry, RunEntry};
-use super::provenance::texts_of_panel;
+use super::folder::{EarlierFiles, RunFolder};
+use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
+use super::options::texts_of_panel;
 use super::table::ObservablesTable;
-use super::telling::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
+use super::writer::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
 use crate::error::Result;
 use crate::output::{Progress, Texts, caught_signal, counted, note_line, print_line};
-use crate::render::{Camera, Figure, Renderer, RendererChoice, Style, draw_scene};
+use crate::render::{Camera, PanelGrid, Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::View;
 use crate::sim::{Observables, Snapshot};
 use crate::study::png::write_png;
@@ -33,14 +33,14 @@ const FIG3_WIDTH: u32 = 1280;
 const CRADLE_PANEL_WIDTH: u32 = 720;
 
 /// One run that has ended.
-struct Outcome {
-    run: PaperRun,
+struct FigureRun {
+    paper: PaperRun,
     snapshots: Vec<Snapshot>,
     recorded: Recorded,
 }
 
 /// Simulates the runs on all cores and draws the figures into `folder`.
-pub(super) fn draw(folder: &Path, earlier: Earlier, renderer: RendererChoice) -> Result<()> {
+pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoice) -> Result<()> {
     let mut renderer = Renderer::new(renderer)?;
     let claimed = RunFolder::claim(folder, earlier)?;
     let runs = paper_runs()?;
@@ -50,13 +50,13 @@ pub(super) fn draw(folder: &Path, earlier: Earlier, renderer: RendererChoice) ->
     }
     claimed.clear()?;
     note_line(format_args!("drawing with {}", renderer.name()));
-    let mut press = Press { folder, renderer: &mut renderer, manifest };
-    press.write_manifest()?;
-    let mut outcomes = simulate(folder, runs)?;
+    let mut writer = FigureWriter { folder, renderer: &mut renderer, manifest };
+    writer.write_manifest()?;
+    let mut runs = simulate(folder, runs)?;
 
     let mut failure = None;
-    for (entry, outcome) in press.manifest.runs.iter_mut().zip(&mut outcomes) {
-        let Outcome { run: PaperRun { scene, .. }, recorded, .. } = outcome;
+    for (entry, run) in writer.manifest.runs.iter_mut().zip(&mut runs) {
+        let FigureRun { paper: PaperRun { scene, .. }, recorded, .. } = run;
         entry.end(Ended::of(recorded), recorded);
         tell_of_unconverged_steps(scene, &recorded.tally);
         tell_of_alarms(scene, recorded.simulation.alarms());
@@ -66,21 +66,21 @@ pub(super) fn draw(folder: &Path, earlier: Earlier, renderer: RendererChoice) ->
     }
     let drawn = match failure {
         Some(failure) => Err(failure),
-        None => press.figures(&outcomes),
+        None => writer.figures(&runs),
     };
-    let written = press.write_manifest();
+    let written = writer.write_manifest();
     drawn.and(written)?;
-    let count = counted(press.manifest.pictures.len() as u64, "picture");
+    let count = counted(writer.manifest.pictures.len() as u64, "picture");
     print_line(format_args!("{count} in {}", folder.display()));
     Ok(())
 }
 
 /// Runs everything, dearest first, so that no core waits long for the last one.
-fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<Outcome>> {
+fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
     let steps = |run: &PaperRun| run.scene.duration_secs / run.scene.parameters.time_step_secs;
     let progress = Progress::new("simulating", runs.iter().map(|run| steps(run) as u64).sum());
     let said = Mutex::new(());
-    let outcomes = runs
+    let runs = runs
         .into_par_iter()
         .with_max_len(1)
         .map(|run| {
@@ -89,27 +89,27 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<Outcome>> {
             // A run that takes no step has no table.
             let path = folder.join(format!("{}.csv", run.name));
             let table = (until_secs > 0.0).then(|| ObservablesTable::start_as(path)).transpose()?;
-            let mut notes = Notes { table, snapshots: Vec::new(), progress: &progress };
-            let mut recorded = record(&run.scene, &run.times_secs, until_secs, &mut notes)?;
-            let table = notes.table.map_or(Ok(()), ObservablesTable::finish);
+            let mut recorder = FigureRecorder { table, snapshots: Vec::new(), progress: &progress };
+            let mut recorded = record(&run.scene, &run.times_secs, until_secs, &mut recorder)?;
+            let table = recorder.table.map_or(Ok(()), ObservablesTable::finish);
             recorded.failure = recorded.failure.or(table.err());
             let _one_at_a_time = said.lock();
             progress.say(&format!("{}: {:.1} s", run.name, started.elapsed().as_secs_f64()));
-            Ok(Outcome { run, snapshots: notes.snapshots, recorded })
+            Ok(FigureRun { paper: run, snapshots: recorder.snapshots, recorded })
         })
         .collect();
     progress.finish();
-    outcomes
+    runs
 }
 
-/// What is taken down of a run.
-struct Notes<'a> {
+/// Keeps what the figures need of a run.
+struct FigureRecorder<'a> {
     table: Option<ObservablesTable>,
     snapshots: Vec<Snapshot>,
     progress: &'a Progress,
 }
 
-impl Recorder for Notes<'_> {
+impl Recorder for FigureRecorder<'_> {
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>> {
         self.progress.advance(1);
         self.table.as_mut().map_or(Ok(()), |table| table.add(observables))?;
@@ -122,89 +122,89 @@ impl Recorder for Notes<'_> {
     }
 }
 
-/// Draws figures and keeps the books.
-struct Press<'a> {
+/// Draws figures and writes the manifest.
+struct FigureWriter<'a> {
     folder: &'a Path,
     renderer: &'a mut Renderer,
     manifest: Manifest,
 }
 
-impl Press<'_> {
-    fn figures(&mut self, outcomes: &[Outcome]) -> Result<()> {
-        self.fig3(outcomes)?;
-        self.fig4(outcomes)?;
-        self.fig7(outcomes)
+impl FigureWriter<'_> {
+    fn figures(&mut self, runs: &[FigureRun]) -> Result<()> {
+        self.fig3(runs)?;
+        self.fig4(runs)?;
+        self.fig7(runs)
     }
 
     fn write_manifest(&self) -> Result<()> {
         self.manifest.write(&self.folder.join("manifest.json"))
     }
 
-    fn fig3(&mut self, outcomes: &[Outcome]) -> Result<()> {
-        let Some(outcome) = of_figure(outcomes, "fig3").next() else { return Ok(()) };
-        let view = outcome.run.scene.view();
+    fn fig3(&mut self, runs: &[FigureRun]) -> Result<()> {
+        let Some(run) = of_figure(runs, "fig3").next() else { return Ok(()) };
+        let view = run.paper.scene.view();
         let style = Style::default();
-        let panel = self.panel(outcome, 0, "fig3_panel", view, FIG3_WIDTH, &style)?;
-        let mut figure = Figure::new(1, 1, vec![panel]);
+        let panel = self.panel(run, 0, "fig3_panel", view, FIG3_WIDTH, &style)?;
+        let mut figure = PanelGrid::new(1, 1, vec![panel]);
         figure.title = "Initial state shared by all piles".into();
         figure.caption = format!(
             "{} discs rained between walls over a rough base and left to come to rest. \
              Greys mark layers two diameters high. At t = 0 the walls go.",
-            outcome.run.scene.grains.len()
+            run.paper.scene.grains.len()
         );
-        self.write_figure("fig3.png", &figure.draw()?, vec![moment(outcome, 0)])
+        self.write_figure("fig3.png", &figure.draw()?, vec![moment(run, 0)])
     }
 
-    fn fig4(&mut self, outcomes: &[Outcome]) -> Result<()> {
-        let mut view = common_view(outcomes, "fig4");
+    fn fig4(&mut self, runs: &[FigureRun]) -> Result<()> {
+        let mut view = common_view(runs, "fig4");
         // The base belongs to the picture: its discs reach half a diameter below y = 0.
-        view.min.y = -0.5 * outcomes[0].run.scene.mean_diameter;
+        view.min.y = -0.5 * runs[0].paper.scene.mean_diameter;
         let mut panels = Vec::new();
         let mut titles = Vec::new();
         let mut moments = Vec::new();
         for bond in FIG4_BONDS {
             for time_step_secs in FIG4_TIME_STEPS_SECS {
-                let is_this = |outcome: &&Outcome| {
-                    let parameters = outcome.run.scene.parameters;
+                let is_this = |run: &&FigureRun| {
+                    let parameters = run.paper.scene.parameters;
                     parameters.bond == bond && parameters.time_step_secs == time_step_secs
                 };
-                let Some(outcome) = of_figure(outcomes, "fig4").find(is_this) else { continue };
+                let Some(run) = of_figure(runs, "fig4").find(is_this) else { continue };
                 // The scale is the same in all panels: one bar says it.
                 let style = Style { scale_bar: panels.is_empty(), ..Style::default() };
-                let name = outcome.run.name.clone();
-                let slump = outcome.snapshots[0].observables.slump;
+                let name = run.paper.name.clone();
+                let slump = run.snapshots[0].observables.slump;
                 titles.push(format!("Δy_{{G}} = {slump:.3}"));
-                moments.push(moment(outcome, 0));
-                panels.push(self.panel(outcome, 0, &name, view, PILE_PANEL_WIDTH, &style)?);
+                moments.push(moment(run, 0));
+                panels.push(self.panel(run, 0, &name, view, PILE_PANEL_WIDTH, &style)?);
             }
         }
-        let mut figure = Figure::new(FIG4_BONDS.len(), FIG4_TIME_STEPS_SECS.len(), panels);
+        let mut figure = PanelGrid::new(FIG4_BONDS.len(), FIG4_TIME_STEPS_SECS.len(), panels);
         figure.row_labels = FIG4_BONDS.map(|bond| format!("Bond = {bond}")).to_vec();
         figure.column_labels =
             FIG4_TIME_STEPS_SECS.map(|step| format!("Δt = {} s", power_of_ten(step))).to_vec();
         figure.panel_titles = titles;
         figure.titles_inside = true;
-        let Some(outcome) = of_figure(outcomes, "fig4").next() else { return Ok(()) };
+        let Some(run) = of_figure(runs, "fig4").next() else { return Ok(()) };
         figure.caption = format!(
             "The pile at t = {} s, from one initial state; Δy_{{G}} is the slump.",
-            outcome.run.scene.duration_secs
+            run.paper.scene.duration_secs
         );
         self.write_figure("fig4.png", &figure.draw()?, moments)
     }
 
-    fn fig7(&mut self, outcomes: &[Outcome]) -> Result<()> {
-        let view = common_view(outcomes, "fig7");
+    fn fig7(&mut self, runs: &[FigureRun]) -> Result<()> {
+        let view = common_view(runs, "fig7");
         let mut panels = Vec::new();
         let mut moments = Vec::new();
         for (row, time_secs) in FIG7_TIMES_SECS.iter().enumerate() {
-            for outcome in of_figure(outcomes, "fig7") {
+            for run in of_figure(runs, "fig7") {
                 let style = Style { scale_bar: panels.is_empty(), ..Style::default() };
-                let name = format!("{}_t{time_secs}", outcome.run.name);
-                moments.push(moment(outcome, row));
-                panels.push(self.panel(outcome, row, &name, view, CRADLE_PANEL_WIDTH, &style)?);
+                let name = format!("{}_t{time_secs}", run.paper.name);
+                moments.push(moment(run, row));
+                panels.push(self.panel(run, row, &name, view, CRADLE_PANEL_WIDTH, &style)?);
             }
         }
-        let mut figure = Figure::new(FIG7_TIMES_SECS.len(), FIG7_TIME_STEPS_SECS.len(), panels);
+        let mut figure = PanelGrid::new(FIG7_TIMES_SECS.len(), FIG7_TIME_STEPS_SECS.len(), panels);
         figure.row_labels = FIG7_TIMES_SECS.map(|time| format!("t = {time} s")).to_vec();
         figure.column_labels =
             FIG7_TIME_STEPS_SECS.map(|step| format!("Δt = {} s", power_of_ten(step))).to_vec();
@@ -218,7 +218,7 @@ impl Press<'_> {
     /// Draws one panel `width` pixels wide and as high as its view asks, and writes it by itself.
     fn panel(
         &mut self,
-        outcome: &Outcome,
+        run: &FigureRun,
         number: usize,
         name: &str,
         View { min, max }: View,
@@ -228,15 +228,20 @@ impl Press<'_> {
         let height = panel_height(min, max, width);
         // The same camera with and without the bar: panels of one figure lie alike.
         let camera: Camera = Style::default().camera(min, max, width, height);
-        let snapshot = &outcome.snapshots[number];
+        let snapshot = &run.snapshots[number];
         let image = draw_scene(self.renderer, snapshot, style, &camera, width, height)?;
-        let texts = texts_of_panel(&outcome.run.scene, snapshot)?;
-        self.write(&format!("{name}.png"), &image, vec![moment(outcome, number)], &texts)?;
+        let texts = texts_of_panel(&run.paper.scene, snapshot)?;
+        self.write(&format!("{name}.png"), &image, vec![moment(run, number)], &texts)?;
         Ok(image)
     }
 
     /// Writes a figure, all of which one command draws.
-    fn write_figure(&mut self, file: &str, image: &RgbaImage, shows: Vec<Moment>) -> Result<()> {
+    fn write_figure(
+        &mut self,
+        file: &str,
+        image: &RgbaImage,
+        shows: Vec<ShownMoment>,
+    ) -> Result<()> {
         let mut texts = Texts::default();
         texts.add("Command line", "slump --headless --frames figures");
         self.write(file, image, shows, &texts)
@@ -246,7 +251,7 @@ impl Press<'_> {
         &mut self,
         file: &str,
         image: &RgbaImage,
-        shows: Vec<Moment>,
+        shows: Vec<ShownMoment>,
         texts: &Texts,
     ) -> Result<()> {
         write_png(&self.folder.join(file), image, texts)?;
@@ -255,18 +260,18 @@ impl Press<'_> {
     }
 }
 
-fn moment(outcome: &Outcome, number: usize) -> Moment {
-    let observables = outcome.snapshots[number].observables;
-    Moment { run: outcome.run.name.clone(), observables }
+fn moment(run: &FigureRun, number: usize) -> ShownMoment {
+    let observables = run.snapshots[number].observables;
+    ShownMoment { run: run.paper.name.clone(), observables }
 }
 
-fn of_figure<'a>(outcomes: &'a [Outcome], figure: &'a str) -> impl Iterator<Item = &'a Outcome> {
-    outcomes.iter().filter(move |outcome| outcome.run.figure == figure)
+fn of_figure<'a>(runs: &'a [FigureRun], figure: &'a str) -> impl Iterator<Item = &'a FigureRun> {
+    runs.iter().filter(move |run| run.paper.figure == figure)
 }
 
 /// One view for all panels of a figure, so that they can be compared: it shows all grains of all.
-fn common_view(outcomes: &[Outcome], figure: &str) -> View {
-    let snapshots = of_figure(outcomes, figure).flat_map(|outcome| &outcome.snapshots);
+fn common_view(runs: &[FigureRun], figure: &str) -> View {
+    let snapshots = of_figure(runs, figure).flat_map(|run| &run.snapshots);
     let mut view = View { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
     for grain in snapshots.flat_map(|snapshot| &snapshot.grains) {
         view.min = view.min.min(grain.position - grain.radius);

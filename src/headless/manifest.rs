@@ -21,15 +21,11 @@ pub(super) struct Manifest {
     pub renderer: String,
     pub runs: Vec<RunEntry>,
     pub pictures: Vec<PictureEntry>,
+    /// When it was last written while the run went on, and how long that took.
     #[serde(skip)]
-    kept: Kept,
-}
-
-/// When a manifest was last written on the way, and how long that took.
-#[derive(Debug)]
-struct Kept {
-    at: Clock,
-    took: Duration,
+    written: Clock,
+    #[serde(skip)]
+    writing_took: Duration,
 }
 
 /// Pictures that are drawn within this time may miss in the manifest of a run that is killed.
@@ -139,12 +135,12 @@ pub(super) struct AlarmEntry {
 pub(super) struct PictureEntry {
     pub file: String,
     /// A moment a panel.
-    pub shows: Vec<Moment>,
+    pub shows: Vec<ShownMoment>,
 }
 
 /// One moment of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Moment {
+pub(super) struct ShownMoment {
     /// Name of the run.
     pub run: String,
     pub observables: Observables,
@@ -160,7 +156,8 @@ impl Manifest {
             renderer: renderer.to_owned(),
             runs: Vec::new(),
             pictures: Vec::new(),
-            kept: Kept { at: Clock::now(), took: Duration::ZERO },
+            written: Clock::now(),
+            writing_took: Duration::ZERO,
         }
     }
 
@@ -173,13 +170,13 @@ impl Manifest {
     /// other time to do it.
     pub(super) fn add(&mut self, picture: PictureEntry, path: &Path) -> Result<()> {
         self.pictures.push(picture);
-        if self.kept.at.elapsed() < WAIT.max(PART * self.kept.took) {
+        if self.written.elapsed() < WAIT.max(PART * self.writing_took) {
             return Ok(());
         }
         let begun = Clock::now();
         // Not worth waiting for the disk.
         self.write_and(path, false)?;
-        self.kept = Kept { at: Clock::now(), took: begun.elapsed() };
+        (self.written, self.writing_took) = (Clock::now(), begun.elapsed());
         Ok(())
     }
 

@@ -1,41 +1,32 @@
 //! Pictures without a window: the paper's figures, or frames of one scene.
 
-mod animations;
-mod begin;
-mod checkpoint;
-mod data;
 mod figures;
 mod folder;
-mod frames;
-mod kept;
 mod manifest;
 mod options;
-mod provenance;
-mod saving;
-mod studio;
+mod run;
 mod table;
-mod telling;
+mod waiting;
+mod writer;
 
-pub(crate) use begin::settled;
-#[cfg(feature = "window")]
-pub(crate) use data::told as told_of_data;
-#[cfg(feature = "window")]
-pub(crate) use kept::KeptStates;
 pub(crate) use options::HeadlessOptions;
+pub(crate) use run::settled;
+#[cfg(feature = "window")]
+pub(crate) use {waiting::WaitingStates, writer::recording_sentence};
 
 use std::path::Path;
 
-use self::folder::Earlier;
 use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::output::heed_signals;
+use folder::EarlierFiles;
 
 /// Draws the paper's snapshots into a folder, with whatever renderer there is.
 ///
 /// # Errors
 /// Where the folder cannot be written to.
 pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
-    figures::draw(folder, Earlier::Kept, HeadlessOptions::default().renderer)
+    figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
 }
 
 /// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
@@ -59,11 +50,11 @@ pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
         return Err(Error::value("overwrite", "given", "given with --frames DIR or --data DIR"));
     }
     heed_signals();
-    let earlier = if options.overwrite { Earlier::Cleared } else { Earlier::Refused };
+    let earlier = if options.overwrite { EarlierFiles::Cleared } else { EarlierFiles::Refused };
     match &options.frames {
         Some(folder) if config.is_empty() && !options.asks_for_frames() => {
             figures::draw(folder, earlier, options.renderer)
         }
-        _ => frames::draw(config, options, earlier),
+        _ => run::draw(config, options, earlier),
     }
 }

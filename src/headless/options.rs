@@ -1,12 +1,17 @@
-//! Options of pictures.
+//! Options of pictures, recordings and saved runs, and what files say of the command that makes them again.
 
 use std::path::{Path, PathBuf};
 
-use super::data::DataOptions;
-use super::saving::SavingOptions;
+use clap::ValueEnum;
+
+use crate::config::{Config, Provenance, asked_time_secs, parser_of, words_of, words_up_to};
+use crate::data::{DataSettings, FormatName};
 use crate::error::{Error, Result};
 use crate::film::{VIDEO_RATES_HZ, VIDEO_SIDES, check_ffmpeg};
+use crate::output::Texts;
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
+use crate::scene::Scene;
+use crate::sim::Snapshot;
 
 /// Width and height of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +38,7 @@ impl std::str::FromStr for PictureSize {
 
 /// What can be laid over the grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Show {
+pub(crate) enum Overlay {
     /// Contact forces as links
     Forces,
     /// A mark on each grain that turns with it
@@ -85,7 +90,7 @@ pub(crate) struct HeadlessOptions {
     pub video_speed: Option<f64>,
     /// What to lay over the grains
     #[arg(long, value_name = "WHAT", help_heading = "Pictures", value_delimiter = ',')]
-    pub show: Vec<Show>,
+    pub show: Vec<Overlay>,
     /// What the colours of the grains stand for
     #[arg(long, value_name = "BY", help_heading = "Pictures", alias = "color")]
     pub colour: Option<ColourBy>,
@@ -166,8 +171,8 @@ impl HeadlessOptions {
         let style = Style {
             colour_by: self.colour.unwrap_or_default(),
             theme: self.theme.unwrap_or_default(),
-            show_forces: self.show.contains(&Show::Forces),
-            angles: self.show.contains(&Show::Angles),
+            show_forces: self.show.contains(&Overlay::Forces),
+            angles: self.show.contains(&Overlay::Angles),
             force_reference: self.force_scale,
             ..Style::default()
         };
@@ -268,5 +273,192 @@ impl HeadlessOptions {
             return Err(Error::value("fps", fps, allowed));
         }
         Ok((0..=last as u64).map(|number| number as f64 / fps).collect())
+    }
+}
+
+/// Options of runs that are saved and gone on with.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct SavingOptions {
+    /// Go on with a saved run: simulated time, slump and the numbers of pictures go on, and settings given besides change it from there on (--initial begins a new run at t = 0 with its grains)
+    #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
+    pub restart: Option<PathBuf>,
+    /// Save the run at its end, a signal's too, unless its state is no longer finite
+    #[arg(long, value_name = "FILE", help_heading = "Saved runs", requires = "headless")]
+    pub save: Option<PathBuf>,
+    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames: the same command, given again after whatever stopped it, goes on from there (--overwrite begins anew)
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        help_heading = "Saved runs",
+        requires_all = ["headless", "frames"],
+        allow_negative_numbers = true
+    )]
+    pub checkpoint_every: Option<f64>,
+}
+
+impl SavingOptions {
+    /// Checks what can be checked before anything is read.
+    ///
+    /// # Errors
+    /// Where the time between checkpoints is none.
+    pub(super) fn validate(&self) -> Result<()> {
+        match self.checkpoint_every {
+            Some(secs) if !(secs > 0.0 && secs.is_finite()) => {
+                Err(Error::value("checkpoint-every", secs, "a finite number of seconds > 0"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Options of recordings.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct DataOptions {
+    /// Folder for a recording: all grains and contacts at the times of the pictures, for other programs
+    #[arg(long, value_name = "DIR", help_heading = "Data", requires = "headless")]
+    pub data: Option<PathBuf>,
+    /// Simulated time between its moments, seconds [default: the times of the pictures]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        help_heading = "Data",
+        requires = "headless",
+        allow_negative_numbers = true
+    )]
+    pub data_every: Option<f64>,
+    /// What it is written as [default: parquet]
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        help_heading = "Data",
+        requires = "headless",
+        value_delimiter = ',',
+        value_parser = parser_of::<FormatName>()
+    )]
+    pub data_format: Vec<FormatName>,
+}
+
+impl DataOptions {
+    /// What is asked for by these and by the scene; these go first. Nothing where neither names a folder.
+    ///
+    /// # Errors
+    /// Names what is outside its range.
+    pub(super) fn settings(&self, scene: &Scene) -> Result<Option<(PathBuf, DataSettings)>> {
+        let of_scene = scene.data.clone().unwrap_or_default();
+        let formats =
+            if self.data_format.is_empty() { of_scene.formats } else { self.data_format.clone() };
+        let every_secs = self.data_every.or(of_scene.every_secs);
+        let settings = DataSettings { folder: None, every_secs, formats };
+        settings.validate("data-every")?;
+        let folder = self.data.clone().or(of_scene.folder);
+        if folder.is_none()
+            && let Some(field) = self.without_folder()
+        {
+            return Err(Error::value(field, "given", "given with --data DIR"));
+        }
+        Ok(folder.map(|folder| (folder, settings)))
+    }
+
+    fn without_folder(&self) -> Option<&'static str> {
+        let every = self.data_every.map(|_| "data-every");
+        every.or((!self.data_format.is_empty()).then_some("data-format"))
+    }
+}
+
+/// What a panel of a figure says of itself, of a scene that is built in.
+///
+/// # Errors
+/// Where it is none.
+pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
+    let settings = scene.settings();
+    let words = Config::of_scene(&scene.name).words(&settings)?;
+    let time_secs = asked_time_secs(snapshot.observables.time_secs);
+    let frames = ["--frames".to_owned(), "frames".to_owned()];
+    let run = Provenance { scene: scene.name.clone(), settings, words };
+    Ok(run.texts(Some(time_secs), &[words_up_to(time_secs), frames.into()].concat()))
+}
+
+impl HeadlessOptions {
+    /// What a run is made of that `config` and these options ask for.
+    ///
+    /// # Errors
+    /// Where the scene is no longer there.
+    pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
+        let settings = scene.settings();
+        let words = match &self.saving.restart {
+            None => {
+                // Frames are the same however long the run goes on after them.
+                let mut config = config.clone();
+                config.source.duration = None;
+                config.words(&settings)?
+            }
+            Some(path) => {
+                let file = ["--restart".to_owned(), path.display().to_string()];
+                [&file[..], &words_of(&settings, None)].concat()
+            }
+        };
+        Ok(Provenance { scene: scene.name.clone(), settings, words })
+    }
+
+    /// What the picture at a simulated time (s) says of itself.
+    pub(super) fn texts_of_frame(&self, run: &Provenance, time_secs: f64, style: &Style) -> Texts {
+        let frames = ["--frames".to_owned(), "frames".to_owned()];
+        run.texts(
+            Some(time_secs),
+            &[words_up_to(time_secs), self.words_of_style(style), frames.into()].concat(),
+        )
+    }
+
+    /// What an animation of a run that lasts so long (s) says of itself; its command ends with `last_words`.
+    pub(super) fn texts_of_animation(
+        &self,
+        run: &Provenance,
+        duration_secs: f64,
+        style: &Style,
+        last_words: &[&str],
+    ) -> Texts {
+        let mut words = vec!["--duration".to_owned(), duration_secs.to_string()];
+        if let Some(fps) = self.fps {
+            words.extend(["--fps".to_owned(), fps.to_string()]);
+        }
+        if !self.times.is_empty() {
+            let times: Vec<_> = self.times.iter().map(f64::to_string).collect();
+            words = vec!["--times".to_owned(), times.join(",")];
+        }
+        words.extend(self.words_of_style(style));
+        if let Some(speed) = self.video_speed {
+            words.extend(["--video-speed".to_owned(), speed.to_string()]);
+        }
+        words.extend(last_words.iter().map(|&word| word.to_owned()));
+        run.texts(None, &words)
+    }
+
+    /// The options that draw alike, with the scales that the frames have.
+    fn words_of_style(&self, style: &Style) -> Vec<String> {
+        let named = |value: Option<clap::builder::PossibleValue>| {
+            value.map_or_else(String::new, |value| value.get_name().to_owned())
+        };
+        let mut words = Vec::new();
+        let mut say = |name: &str, value: String| words.extend([format!("--{name}"), value]);
+        if let Some(size) = &self.size {
+            say("size", size.clone());
+        }
+        let shown: Vec<_> = self.show.iter().map(|what| named(what.to_possible_value())).collect();
+        if !shown.is_empty() {
+            say("show", shown.join(","));
+        }
+        if let Some(colour) = self.colour {
+            say("colour", named(colour.to_possible_value()));
+        }
+        if let Some((low, high)) = style.range.filter(|_| style.colour_by.has_scale()) {
+            say("colour-scale", format!("{low},{high}"));
+        }
+        if let Some(force) = style.force_reference.filter(|_| style.show_forces) {
+            say("force-scale", force.to_string());
+        }
+        if let Some(theme) = self.theme {
+            say("theme", named(theme.to_possible_value()));
+        }
+        words
     }
 }

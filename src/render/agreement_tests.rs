@@ -25,7 +25,7 @@ fn largest_difference(a: &RgbaImage, b: &RgbaImage) -> u8 {
 
 /// Compares all renderers with the processor; a difference of 3/255 is allowed.
 fn assert_agreement(picture: &Picture, width: u32, height: u32) {
-    let expected = cpu::draw(picture, width, height);
+    let expected = primitives::draw(picture, width, height);
     for mut renderer in gpus() {
         let drawn = renderer.draw(picture, width, height).unwrap();
         let difference = largest_difference(&drawn, &expected);
@@ -105,7 +105,7 @@ fn a_renderer_draws_pictures_of_changing_size() {
         for (width, height) in [(64, 48), (65, 33), (64, 48)] {
             let picture = random_picture(9, width, height, 10);
             let drawn = renderer.draw(&picture, width, height).unwrap();
-            assert!(largest_difference(&drawn, &cpu::draw(&picture, width, height)) <= 3);
+            assert!(largest_difference(&drawn, &primitives::draw(&picture, width, height)) <= 3);
         }
     }
 }
@@ -135,7 +135,7 @@ fn links_and_discs_thinner_than_a_pixel_fade() {
         colour: Colour::BLACK,
     };
     picture.push_links(vec![across(5.5, 0.5), across(-4.5, 0.125)]);
-    let image = cpu::draw(&picture, 40, 20);
+    let image = primitives::draw(&picture, 40, 20);
     assert_eq!(image.get_pixel(20, 4).0, [0, 0, 0, 255]);
     assert_eq!(image.get_pixel(20, 14).0, [191, 191, 191, 255]);
     assert_agreement(&picture, 40, 20);

@@ -75,6 +75,11 @@ impl Camera {
     }
 }
 
+/// From the middle of a picture of `size` pixels to its corner.
+pub(super) fn half_size(size: [u32; 2]) -> DVec2 {
+    DVec2::from(size.map(f64::from)) / 2.0
+}
+
 /// The box around everything of finite size in a snapshot: grains, fixed discs, walls and the
 /// centre of attraction. None if there is nothing.
 pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {

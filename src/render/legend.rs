@@ -1,18 +1,72 @@
-//! The strip at the right of a picture: what its colours and links mean.
+//! What a picture says of itself: the scale bar, and the strip at the right that tells what colours and links mean.
 //!
-//! It is drawn on the processor whatever draws the scene, so that it is the same on every renderer.
+//! The strip is drawn on the processor whatever draws the scene, so that it is the same on every renderer.
 
-use image::RgbaImage;
+use image::{RgbaImage, imageops};
 
-use super::align::Align;
-use super::arrows::{full_length, speed_reference};
-use super::colour_scale::{ColourScale, MOST_CONTACTS, contact_colour, map_colour};
-use super::font::TextStyle;
-use super::forces::{force_reference, full_half_width_px};
-use super::numbers::{decimal, round_below, si_prefix, ticks};
-use super::text::TextBlock;
-use super::{Camera, Colour, ColourBy, LinkInstance, Palette, Picture, Style, cpu};
+use super::colour::{ColourScale, MOST_CONTACTS, contact_colour, map_colour};
+use super::numbers::{decimal, length, round_below, si_prefix, ticks};
+use super::overlays::{force_reference, full_half_width_px, full_length, speed_reference};
+use super::text::{Align, TextBlock, TextStyle};
+use super::{Camera, Colour, ColourBy, LinkInstance, Palette, Picture, Style, primitives};
 use crate::sim::Snapshot;
+
+/// Longest bar, as a part of the picture's width.
+const LONGEST: f64 = 0.2;
+
+/// Where the scale bar of a picture lies, and what it says.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ScaleBar {
+    /// Length shown, m.
+    pub length: f64,
+    /// The length as people write it.
+    pub label: String,
+    /// Left end, pixels from the middle of the picture, y up.
+    pub start: [f32; 2],
+    /// Right end.
+    pub end: [f32; 2],
+    /// Font size of the label, pixels; the label starts half of it to the right of `end`.
+    pub text_px: f32,
+}
+
+impl ScaleBar {
+    /// The bar for a picture of `width` × `height` pixels.
+    pub(crate) fn new(style: &Style, camera: &Camera, width: u32, height: u32) -> Self {
+        let length_m = round_below(LONGEST * f64::from(width) * camera.metres_per_pixel);
+        let text_px = style.text_px(width, height);
+        let left = text_px - width as f32 / 2.0;
+        let y = text_px - height as f32 / 2.0;
+        let right = left + camera.pixels(length_m);
+        Self {
+            length: length_m,
+            label: length(length_m),
+            start: [left, y],
+            end: [right, y],
+            text_px,
+        }
+    }
+
+    /// Bar and end marks, on a plate of the ground's colour that `label_width` pixels of text fit on.
+    pub(super) fn links(&self, palette: &Palette, label_width: f32) -> Vec<LinkInstance> {
+        let ([left, y], [right, _]) = (self.start, self.end);
+        let half_width = (self.text_px / 16.0).max(0.75);
+        let mark = 0.3 * self.text_px;
+        let link = |start, end, half_width, colour| LinkInstance { start, end, half_width, colour };
+        let plate = link(
+            [left, y],
+            [right + 0.5 * self.text_px + label_width, y],
+            0.75 * self.text_px,
+            palette.ground.with_alpha(0.85),
+        );
+        let ink = palette.ink;
+        vec![
+            plate,
+            link([left, y], [right, y], half_width, ink),
+            link([left, y - mark], [left, y + mark], half_width, ink),
+            link([right, y - mark], [right, y + mark], half_width, ink),
+        ]
+    }
+}
 
 /// What a legend tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,13 +146,14 @@ impl Legend {
             let part = 1.0 - (row as f64 + 0.5) / rows as f64;
             fill(strip, left, right, top + row, top + row + 1, self.faded(map_colour(part)));
         }
-        let ScaleRange { low, high, title, factor } = self.range();
+        let (title, factor) = self.scale.label();
+        let (low, high) = (self.scale.low * factor, self.scale.high * factor);
         let most = (rows / self.em(2.0)).clamp(2, 6) as usize;
-        let (values, step) = ticks(low * factor, high * factor, most);
-        let span = (high - low) * factor;
+        let (values, step) = ticks(low, high, most);
+        let span = (self.scale.high - self.scale.low) * factor;
         let mut widest = 0;
         for value in values {
-            let part = if span > 0.0 { (value - low * factor) / span } else { 0.0 };
+            let part = if span > 0.0 { (value - low) / span } else { 0.0 };
             // The middle of the end ticks stays on the bar.
             let y = bottom - 1 - (part * (rows - 1) as f64).round() as i64;
             fill(strip, right, right + self.em(0.3), y, y + 1, self.palette.ink);
@@ -106,9 +161,7 @@ impl Legend {
             widest = widest.max(i64::from(label.width()));
             label.draw(strip, right + self.em(0.4), y, Align::Start, Align::Centre);
         }
-        let title = self.upright(&title, rows).turned();
-        let x = right + self.em(0.5) + widest;
-        title.draw(strip, x, (top + bottom) / 2, Align::Start, Align::Centre);
+        self.draw_title(strip, &title, rows, right + self.em(0.5) + widest, (top + bottom) / 2);
     }
 
     /// One square for each number of contacts, the largest on top.
@@ -129,9 +182,8 @@ impl Legend {
             widest = widest.max(i64::from(label.width()));
             label.draw(strip, right + self.em(0.4), y + pitch / 2, Align::Start, Align::Centre);
         }
-        let title = self.upright(&self.range().title, count * pitch).turned();
-        let x = right + self.em(0.5) + widest;
-        title.draw(strip, x, start + count * pitch / 2, Align::Start, Align::Centre);
+        let (title, x) = (self.scale.label().0, right + self.em(0.5) + widest);
+        self.draw_title(strip, &title, count * pitch, x, start + count * pitch / 2);
     }
 
     /// The two colours of forces and the force at full width. Returns where it begins.
@@ -191,7 +243,7 @@ impl Legend {
                 link([tip, 0.0], [tip - barb, 0.6 * barb]),
                 link([tip, 0.0], [tip - barb, -0.6 * barb]),
             ]);
-            image::imageops::replace(strip, &cpu::draw(&picture, width, height), 0, y);
+            imageops::replace(strip, &primitives::draw(&picture, width, height), 0, y);
         }
         y - self.em(0.8)
     }
@@ -207,30 +259,17 @@ impl Legend {
             half_width,
             colour,
         }]);
-        let sample = cpu::draw(&picture, width, height);
-        image::imageops::replace(strip, &sample, self.em(0.2), y - i64::from(height / 2));
+        let sample = primitives::draw(&picture, width, height);
+        imageops::replace(strip, &sample, self.em(0.2), y - i64::from(height / 2));
     }
 
-    /// The title on one line, smaller if it would be longer than the bar.
-    fn upright(&self, title: &str, length: i64) -> TextBlock {
+    /// Draws the title on one line that reads upwards from the point, smaller if it would be longer than the bar.
+    fn draw_title(&self, strip: &mut RgbaImage, title: &str, length: i64, x: i64, y: i64) {
         let style = self.text();
         let shrink = (length as f32 / style.width(title).max(1.0)).min(1.0);
-        TextBlock::new(title, &TextStyle { size_px: style.size_px * shrink, ..style })
+        let style = TextStyle { size_px: style.size_px * shrink, ..style };
+        TextBlock::new(title, &style).turned().draw(strip, x, y, Align::Start, Align::Centre);
     }
-
-    fn range(&self) -> ScaleRange {
-        let (title, factor) = self.scale.label();
-        ScaleRange { low: self.scale.low, high: self.scale.high, title, factor }
-    }
-}
-
-/// A scale as the legend writes it.
-struct ScaleRange {
-    low: f64,
-    high: f64,
-    title: String,
-    /// What values are multiplied by before they are written.
-    factor: f64,
 }
 
 /// Fills a rectangle, as far as it lies in the image.
@@ -247,6 +286,25 @@ pub(super) fn fill(
     for y in clamp(top, height)..clamp(bottom, height) {
         for x in clamp(left, width)..clamp(right, width) {
             image.put_pixel(x, y, colour.to_rgba8());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn the_bar_is_round_and_fits() {
+        for metres_per_pixel in [1e-6, 3.3e-5, 1.7e-4, 0.02, 5.0] {
+            let camera = Camera { centre: DVec2::ZERO, metres_per_pixel };
+            let bar = ScaleBar::new(&Style::default(), &camera, 800, 500);
+            let pixels = bar.end[0] - bar.start[0];
+            assert!((63.0..=160.1).contains(&pixels), "{pixels} px at {metres_per_pixel} m/px");
+            let digits = bar.label.split(' ').next().unwrap().trim_end_matches('0');
+            assert!(["1", "2", "5"].contains(&digits), "{}", bar.label);
         }
     }
 }

@@ -1,36 +1,105 @@
-//! A whole picture in any render pass: the pipelines of all primitives, and the order of batches.
+//! Pictures on a GPU: one pipeline and one instance buffer a primitive, and the order of batches.
 //!
-//! A window calls [`Painter::prepare`] before its pass and [`Painter::draw`] inside it; the
-//! offscreen target does the same.
+//! A window calls [`Painter::prepare`] before its pass and [`Painter::draw`] inside it; the offscreen target does the
+//! same. Neither knows where it draws: the target need only have the format that the painter was made for. The four
+//! corners of an instance's quad come from the vertex index alone; instances travel as a vertex buffer, because
+//! OpenGL ES 3.0 has no storage buffers in vertex shaders.
 
 use std::ops::Range;
 
-use super::primitive::{Frame, FrameUniform, PrimitivePipeline};
 use super::{Batch, DiscInstance, LinkInstance, Picture};
+
+/// Where in the render target the picture lies, as all shaders read it: pixels, y down.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct PictureArea {
+    /// Middle of the picture.
+    pub centre: [f32; 2],
+    /// Half of its width and height.
+    pub half_size: [f32; 2],
+}
+
+impl PictureArea {
+    /// A picture whose upper left corner lies at (`left`, `top`). The pass's viewport must be the
+    /// same rectangle.
+    pub(crate) fn new(left: f32, top: f32, width: f32, height: f32) -> Self {
+        let half_size = [width / 2.0, height / 2.0];
+        Self { centre: [left + half_size[0], top + half_size[1]], half_size }
+    }
+}
 
 /// Draws pictures into passes whose target has one given format.
 #[derive(Debug)]
 pub(crate) struct Painter {
-    frame: FrameUniform,
-    discs: PrimitivePipeline<DiscInstance>,
-    links: PrimitivePipeline<LinkInstance>,
-    order: Vec<Span>,
+    /// The [`PictureArea`], which all shaders read.
+    area: wgpu::Buffer,
+    area_group: wgpu::BindGroup,
+    /// Of discs and of links.
+    primitives: [PrimitivePipeline; 2],
+    /// For each batch its primitive, and its bytes in that one's instance buffer.
+    order: Vec<(usize, Range<u64>)>,
 }
 
-/// A batch as a range of its primitive's instance buffer.
-#[derive(Clone, Debug)]
-enum Span {
-    Discs(Range<usize>),
-    Links(Range<usize>),
+/// Pipeline and instances of one primitive.
+#[derive(Debug)]
+struct PrimitivePipeline {
+    name: &'static str,
+    /// Bytes of one instance.
+    stride: u64,
+    pipeline: wgpu::RenderPipeline,
+    instances: wgpu::Buffer,
 }
 
 impl Painter {
-    /// A painter for targets of this format, which must not be an sRGB one.
+    /// A painter for targets of this format. The format must not be an sRGB one: colours are written, and blended, as
+    /// the file stores them.
     pub(crate) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        let frame = FrameUniform::new(device);
-        let discs = PrimitivePipeline::new(device, format, &frame);
-        let links = PrimitivePipeline::new(device, format, &frame);
-        Self { frame, discs, links, order: Vec::new() }
+        let area = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("picture area"),
+            size: size_of::<PictureArea>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("picture area"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            }],
+        });
+        let area_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("picture area"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: area.as_entire_binding() }],
+        });
+        // Fields in order, without gaps, as the shaders read them.
+        let discs = PrimitivePipeline::new::<DiscInstance>(
+            device,
+            format,
+            &layout,
+            "disc",
+            include_str!("../../shaders/disc.wgsl"),
+            &wgpu::vertex_attr_array![
+                0 => Float32x2, 1 => Float32x3, 2 => Float32x2, 3 => Float32x4, 4 => Float32x4,
+            ],
+        );
+        let links = PrimitivePipeline::new::<LinkInstance>(
+            device,
+            format,
+            &layout,
+            "link",
+            include_str!("../../shaders/link.wgsl"),
+            &wgpu::vertex_attr_array![
+                0 => Float32x2, 1 => Float32x2, 2 => Float32, 3 => Float32x4,
+            ],
+        );
+        Self { area, area_group, primitives: [discs, links], order: Vec::new() }
     }
 
     /// Sends a picture to the GPU, to be drawn in the given part of the target.
@@ -39,34 +108,105 @@ impl Painter {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         picture: &Picture,
-        frame: Frame,
+        area: PictureArea,
     ) {
-        self.frame.write(queue, frame);
-        let (mut discs, mut links) = (Vec::new(), Vec::new());
+        queue.write_buffer(&self.area, 0, bytemuck::bytes_of(&area));
+        let mut instances = [Vec::new(), Vec::new()];
         self.order.clear();
         for batch in &picture.batches {
-            self.order.push(match batch {
-                Batch::Discs(batch) => Span::Discs(append(&mut discs, batch)),
-                Batch::Links(batch) => Span::Links(append(&mut links, batch)),
-            });
+            let (primitive, bytes): (usize, &[u8]) = match batch {
+                Batch::Discs(discs) => (0, bytemuck::cast_slice(discs)),
+                Batch::Links(links) => (1, bytemuck::cast_slice(links)),
+            };
+            let start = instances[primitive].len() as u64;
+            instances[primitive].extend_from_slice(bytes);
+            self.order.push((primitive, start..start + bytes.len() as u64));
         }
-        self.discs.prepare(device, queue, &discs);
-        self.links.prepare(device, queue, &links);
+        for (primitive, bytes) in self.primitives.iter_mut().zip(&instances) {
+            let count = bytes.len() as u64 / primitive.stride;
+            if bytes.len() as u64 > primitive.instances.size() {
+                let size = count.next_power_of_two() * primitive.stride;
+                primitive.instances = instance_buffer(device, primitive.name, size);
+            }
+            queue.write_buffer(&primitive.instances, 0, bytes);
+        }
     }
 
     /// Records the drawing of the prepared picture. The ground is the pass's own clear colour.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        for span in &self.order {
-            match span {
-                Span::Discs(range) => self.discs.draw(pass, &self.frame, range.clone()),
-                Span::Links(range) => self.links.draw(pass, &self.frame, range.clone()),
-            }
+        for (primitive, bytes) in self.order.iter().filter(|(_, bytes)| !bytes.is_empty()) {
+            let PrimitivePipeline { stride, pipeline, instances, .. } =
+                &self.primitives[*primitive];
+            // The range starts in the buffer, not in the draw call: OpenGL has no first instance.
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &self.area_group, &[]);
+            pass.set_vertex_buffer(0, instances.slice(bytes.clone()));
+            pass.draw(0..4, 0..((bytes.end - bytes.start) / stride) as u32);
         }
     }
 }
 
-fn append<T: Copy>(all: &mut Vec<T>, batch: &[T]) -> Range<usize> {
-    let start = all.len();
-    all.extend_from_slice(batch);
-    start..all.len()
+impl PrimitivePipeline {
+    /// A pipeline of instances `I`; `shader` is WGSL with the entry points `vertex` and `fragment`.
+    fn new<I>(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        area_layout: &wgpu::BindGroupLayout,
+        name: &'static str,
+        shader: &str,
+        attributes: &[wgpu::VertexAttribute],
+    ) -> Self {
+        let stride = size_of::<I>() as u64;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(shader.into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(name),
+            bind_group_layouts: &[Some(area_layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(name),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[Some(wgpu::VertexBufferLayout {
+                    array_stride: stride,
+                    step_mode: wgpu::VertexStepMode::Instance,
+                    attributes: attributes,
+                })],
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                ..wgpu::PrimitiveState::default()
+            },
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format,
+                    blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { name, stride, pipeline, instances: instance_buffer(device, name, stride) }
+    }
+}
+
+fn instance_buffer(device: &wgpu::Device, name: &str, size: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(name),
+        size,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }

@@ -2,14 +2,64 @@
 
 use image::RgbaImage;
 
-use super::Picture;
-use super::cpu;
-use super::drivers::{Kind, RendererChoice};
-#[cfg(not(feature = "gpu"))]
-use super::no_gpu::Offscreen;
 #[cfg(feature = "gpu")]
-use super::offscreen::Offscreen;
+use super::gpu::Offscreen;
+use super::{Picture, primitives};
 use crate::error::{Error, Result};
+
+/// Which renderer to use.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    serde::Serialize,
+    serde::Deserialize,
+    clap::ValueEnum,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum RendererChoice {
+    /// Vulkan if there is a driver, else OpenGL, else the processor.
+    #[default]
+    Auto,
+    /// Vulkan.
+    Vulkan,
+    /// OpenGL, without a window through EGL.
+    Gl,
+    /// The processor alone.
+    Cpu,
+}
+
+/// Keeps a layer of Mesa's Vulkan from writing to stderr where there is no desktop: it asks for a
+/// Wayland display, which complains if `XDG_RUNTIME_DIR` is not set. With a desktop nothing changes.
+///
+/// # Safety
+/// Changes the environment, so it must run before the program starts its second thread.
+pub unsafe fn quieten_drivers() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: the caller states that no other thread can be reading the environment.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
+/// The kinds of GPU that can be asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum GpuKind {
+    Vulkan,
+    Gl,
+}
+
+impl GpuKind {
+    /// Its name on the command line.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Vulkan => "vulkan",
+            Self::Gl => "gl",
+        }
+    }
+}
 
 /// Largest side of a picture drawn by the processor, pixels: what most GPUs allow as well, so that
 /// a size that works here works there.
@@ -17,13 +67,29 @@ const CPU_LARGEST_SIDE_PX: u32 = 16_384;
 
 /// Draws pictures into memory. Keep it between frames: making one costs more than a frame.
 pub struct Renderer {
-    engine: Engine,
+    backend: Backend,
 }
 
-enum Engine {
+enum Backend {
     // Boxed because the other variant holds nothing.
+    #[cfg(feature = "gpu")]
     Gpu(Box<Offscreen>),
     Cpu,
+}
+
+impl Backend {
+    #[cfg(feature = "gpu")]
+    fn open(kind: GpuKind) -> Result<Self> {
+        Ok(Self::Gpu(Box::new(Offscreen::open(kind)?)))
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn open(kind: GpuKind) -> Result<Self> {
+        Err(Error::Renderer(format!(
+            "this build draws nothing by {}: build it with the feature gpu, or use --renderer cpu",
+            kind.name()
+        )))
+    }
 }
 
 impl Renderer {
@@ -32,33 +98,32 @@ impl Renderer {
     /// # Errors
     /// Says which driver is missing and which package brings it. `Auto` and `Cpu` cannot fail.
     pub fn new(choice: RendererChoice) -> Result<Self> {
-        let open = |kind| -> Result<Self> {
-            Ok(Self { engine: Engine::Gpu(Box::new(Offscreen::open(kind)?)) })
+        let backend = match choice {
+            RendererChoice::Vulkan => Backend::open(GpuKind::Vulkan)?,
+            RendererChoice::Gl => Backend::open(GpuKind::Gl)?,
+            RendererChoice::Cpu => Backend::Cpu,
+            RendererChoice::Auto => Backend::open(GpuKind::Vulkan)
+                .or_else(|_| Backend::open(GpuKind::Gl))
+                .unwrap_or(Backend::Cpu),
         };
-        let cpu = Self { engine: Engine::Cpu };
-        match choice {
-            RendererChoice::Vulkan => open(Kind::Vulkan),
-            RendererChoice::Gl => open(Kind::Gl),
-            RendererChoice::Cpu => Ok(cpu),
-            RendererChoice::Auto => {
-                Ok(open(Kind::Vulkan).or_else(|_| open(Kind::Gl)).unwrap_or(cpu))
-            }
-        }
+        Ok(Self { backend })
     }
 
     /// What draws, such as "vulkan: llvmpipe (LLVM 15.0.6, 256 bits)" or "cpu".
     pub fn name(&self) -> &str {
-        match &self.engine {
-            Engine::Gpu(offscreen) => offscreen.name(),
-            Engine::Cpu => "cpu",
+        match &self.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(offscreen) => offscreen.name(),
+            Backend::Cpu => "cpu",
         }
     }
 
     /// Largest width and height that this renderer draws, pixels.
     pub(crate) fn largest_side(&self) -> u32 {
-        match &self.engine {
-            Engine::Gpu(offscreen) => offscreen.largest_side(),
-            Engine::Cpu => CPU_LARGEST_SIDE_PX,
+        match &self.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(offscreen) => offscreen.largest_side(),
+            Backend::Cpu => CPU_LARGEST_SIDE_PX,
         }
     }
 
@@ -68,9 +133,10 @@ impl Renderer {
     /// Names `size` if it is empty or too large; otherwise says what the device reported.
     pub(crate) fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
         self.check_size(width, height)?;
-        match &mut self.engine {
-            Engine::Gpu(offscreen) => offscreen.draw(picture, width, height),
-            Engine::Cpu => Ok(cpu::draw(picture, width, height)),
+        match &mut self.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(offscreen) => offscreen.draw(picture, width, height),
+            Backend::Cpu => Ok(primitives::draw(picture, width, height)),
         }
     }
 

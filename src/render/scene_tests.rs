@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::colour_scale::{ColourScale, map_colour};
-use super::layers::scene_picture;
+use super::colour::{ColourScale, map_colour};
+use super::scene::scene_picture;
 use super::*;
 use crate::sim::{ContactView, GrainView, Observables, Snapshot, Surroundings};
 use crate::world::{Boundary, Disc, Periodic};

@@ -1,13 +1,188 @@
 //! Words on finished pictures, set on the processor so that they are the same on every renderer.
 //!
-//! A [`TextBlock`] is laid out once, as a mask of pixel coverage, and can then be measured, turned
-//! and drawn anywhere.
+//! A [`TextBlock`] is laid out once, as a mask of pixel coverage, and can then be measured, turned and drawn anywhere.
+//! DejaVu Sans Condensed is free, and has the Greek letters, superscripts and signs that physics needs. It is part of
+//! the program, so that words look the same on every machine.
 
+use std::sync::LazyLock;
+
+use ab_glyph::{Font, FontRef, Glyph, OutlinedGlyph, PxScale, PxScaleFont, ScaleFont, point};
 use image::RgbaImage;
 
-use super::align::Align;
 use super::colour::{Colour, blend_pixel};
-use super::font::TextStyle;
+
+static REGULAR: LazyLock<FontRef> =
+    LazyLock::new(|| embedded(include_bytes!("../../assets/fonts/DejaVuSansCondensed.ttf")));
+static BOLD: LazyLock<FontRef> =
+    LazyLock::new(|| embedded(include_bytes!("../../assets/fonts/DejaVuSansCondensed-Bold.ttf")));
+
+fn embedded(bytes: &'static [u8]) -> FontRef<'static> {
+    // The file is part of the program and a test sets text in it.
+    FontRef::try_from_slice(bytes).expect("an embedded font is a font")
+}
+
+/// Thickness of the strokes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Weight {
+    /// Text.
+    #[default]
+    Regular,
+    /// Titles.
+    Bold,
+}
+
+/// How text looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TextStyle {
+    /// Font size (em), pixels.
+    pub size_px: f32,
+    /// Thickness.
+    pub weight: Weight,
+    /// Colour.
+    pub colour: Colour,
+    /// How lines lie relative to each other.
+    pub lines: Align,
+}
+
+impl TextStyle {
+    /// Regular text of a size, lines flush left.
+    pub(crate) fn new(size_px: f32, colour: Colour) -> Self {
+        Self { size_px, weight: Weight::Regular, colour, lines: Align::Start }
+    }
+
+    /// The same in bold.
+    pub(crate) fn bold(self) -> Self {
+        Self { weight: Weight::Bold, ..self }
+    }
+
+    /// The same with centred lines.
+    pub(crate) fn centred(self) -> Self {
+        Self { lines: Align::Centre, ..self }
+    }
+
+    fn font(&self) -> PxScaleFont<&FontRef<'static>> {
+        let font: &FontRef = match self.weight {
+            Weight::Regular => &REGULAR,
+            Weight::Bold => &BOLD,
+        };
+        // ab_glyph scales the height from descent to ascent, not the em.
+        let per_em = font.units_per_em().map_or(1.0, |units| font.height_unscaled() / units);
+        font.as_scaled(PxScale::from(self.size_px * per_em))
+    }
+
+    /// Places the letters of one line, from x = 0 on the baseline y = 0, y down; gives them and
+    /// the width. `_{…}` sets letters below the baseline, `^{…}` above it.
+    pub(super) fn set(&self, line: &str) -> (Vec<Glyph>, f32) {
+        let mut glyphs = Vec::new();
+        let mut pen = 0.0;
+        for (text, level) in runs(line) {
+            let style = Self { size_px: self.size_px * level.size(), ..*self };
+            let font = style.font();
+            let mut before = None;
+            for letter in text.chars() {
+                let mut glyph = font.scaled_glyph(letter);
+                let id = glyph.id;
+                pen += before.map_or(0.0, |before| font.kern(before, id));
+                glyph.position = point(pen, level.drop() * self.size_px);
+                glyphs.push(glyph);
+                pen += font.h_advance(id);
+                before = Some(id);
+            }
+        }
+        (glyphs, pen)
+    }
+
+    /// The shape of a letter that [`Self::set`] placed, moved; none for a space.
+    pub(super) fn shape(&self, mut glyph: Glyph, x: f32, y: f32) -> Option<OutlinedGlyph> {
+        glyph.position += point(x, y);
+        self.font().outline_glyph(glyph)
+    }
+
+    /// Width of one line, pixels.
+    pub(crate) fn width(&self, line: &str) -> f32 {
+        self.set(line).1
+    }
+
+    /// From the top of a line to its baseline, pixels.
+    pub(super) fn ascent(&self) -> f32 {
+        self.font().ascent()
+    }
+
+    /// Distance from line to line, pixels.
+    pub(crate) fn line_height(&self) -> f32 {
+        self.font().height()
+    }
+
+    /// Whether the font has a shape for this letter.
+    #[cfg(test)]
+    fn has(&self, letter: char) -> bool {
+        // Glyph 0 is the box that stands for missing letters.
+        self.font().glyph_id(letter).0 != 0
+    }
+}
+
+/// How letters stand on the line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Script {
+    Line,
+    Below,
+    Above,
+}
+
+impl Script {
+    /// Size of the letters relative to those on the line.
+    fn size(self) -> f32 {
+        if self == Self::Line { 1.0 } else { 0.7 }
+    }
+
+    /// How far they stand below the baseline, in units of the line's font size.
+    fn drop(self) -> f32 {
+        match self {
+            Self::Line => 0.0,
+            Self::Below => 0.2,
+            Self::Above => -0.36,
+        }
+    }
+}
+
+/// Cuts a line into runs of one level. A brace that never closes is text.
+fn runs(line: &str) -> Vec<(&str, Script)> {
+    let mut found = Vec::new();
+    let mut rest = line;
+    while let Some(start) = rest.find("_{").into_iter().chain(rest.find("^{")).min() {
+        let Some(length) = rest[start + 2..].find('}') else { break };
+        let level = if rest[start..].starts_with('_') { Script::Below } else { Script::Above };
+        found.push((&rest[..start], Script::Line));
+        found.push((&rest[start + 2..start + 2 + length], level));
+        rest = &rest[start + 3 + length..];
+    }
+    found.push((rest, Script::Line));
+    found
+}
+
+/// Where a block lies relative to the point at which it is drawn, along one direction. Also how
+/// the lines of a block lie relative to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Align {
+    /// The point is at the left or top edge.
+    #[default]
+    Start,
+    /// The point is in the middle.
+    Centre,
+    /// The point is at the right or bottom edge.
+    End,
+}
+
+impl Align {
+    /// Distance from the start of something `length` long to its point.
+    pub(super) fn share(self, length: u32) -> u32 {
+        match self {
+            Self::Start => 0,
+            Self::Centre => length / 2,
+            Self::End => length,
+        }
+    }
+}
 
 /// Text laid out: a mask of pixel coverage and a colour.
 #[derive(Clone, Debug)]
@@ -136,7 +311,48 @@ impl TextBlock {
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
+
+    const NEEDED: &str =
+        "ABCXYZabcxyz0123456789 ΔδρμωΣΩτφθεπ·−–×√≤≥±≈°∞→%‖⁰¹²³⁴⁵⁶⁷⁸⁹⁻₀₁₂₃…’“”()[]/|";
+
+    #[test]
+    fn every_needed_letter_has_a_shape_in_both_weights() {
+        let regular = TextStyle::new(20.0, Colour::BLACK);
+        for style in [regular, regular.bold()] {
+            for letter in NEEDED.chars() {
+                assert!(style.has(letter), "no {letter} in {:?}", style.weight);
+                let inked = TextBlock::new(&letter.to_string(), &style).ink() > 0.0;
+                assert_eq!(inked, letter != ' ', "{letter}");
+            }
+        }
+        assert!(!regular.has('漢'), "a letter that is missing must be seen as missing");
+    }
+
+    #[test]
+    fn the_size_is_the_em() {
+        // An em dash of this font is exactly 0.9 em wide, as its condensed cut makes it.
+        let width = TextStyle::new(100.0, Colour::BLACK).width("—");
+        assert!((width - 90.0).abs() < 1.0, "{width}");
+    }
+
+    #[test]
+    fn braces_raise_and_lower() {
+        assert_eq!(
+            runs("Δy_{G} = 10^{−3} s"),
+            [
+                ("Δy", Script::Line),
+                ("G", Script::Below),
+                (" = 10", Script::Line),
+                ("−3", Script::Above),
+                (" s", Script::Line)
+            ]
+        );
+        assert_eq!(runs("a_b^c {d} _{e"), [("a_b^c {d} _{e", Script::Line)]);
+        let style = TextStyle::new(20.0, Colour::BLACK);
+        assert!(style.width("y_{G}") < style.width("yG"));
+    }
 
     #[test]
     fn wrapped_lines_keep_their_width() {

@@ -3,7 +3,6 @@
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../common/probed.rs"]
-#[allow(dead_code, reason = "tests of the window use more of it")]
 mod probed;
 #[path = "../common/tested.rs"]
 mod tested;

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::probed::{Probed, probe};
+use crate::tested::program;
 
 /// A cradle on its way, drawn by the processor.
 const CRADLE: [&str; 11] = [
@@ -21,8 +22,7 @@ const CRADLE: [&str; 11] = [
 ];
 
 fn slump(arguments: &[&str]) -> Output {
-    let mut program = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-    program.args(arguments).output().expect("the program starts")
+    Command::new(program()).args(arguments).output().expect("the program starts")
 }
 
 /// Makes a video, and tells what is in it.
@@ -132,18 +132,18 @@ fn what_makes_no_video_is_refused_before_anything_is_written() {
 fn where_there_is_no_ffmpeg_one_is_told_before_anything_is_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let frames = folder.path().join("frames");
-    let mut program = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-    program.args(CRADLE).arg("--frames").arg(&frames);
+    let mut command = Command::new(program());
+    command.args(CRADLE).arg("--frames").arg(&frames);
     let run = |program: &mut Command| program.env("PATH", "").output().expect("the program starts");
-    let output = run(program.arg("--video").arg(folder.path().join("a.mp4")));
+    let output = run(command.arg("--video").arg(folder.path().join("a.mp4")));
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
     let sentence = "must be left out where there is no ffmpeg: install it (`apt install ffmpeg`); a GIF and frames need nothing more";
     assert!(said.contains(sentence) && said.lines().count() == 1, "{said}");
     assert_eq!(names(folder.path()).len(), 0);
-    let mut program = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-    program.args(CRADLE).arg("--frames").arg(&frames).arg("--gif");
-    assert!(run(program.arg(folder.path().join("a.gif"))).status.success());
+    let mut command = Command::new(program());
+    command.args(CRADLE).arg("--frames").arg(&frames).arg("--gif");
+    assert!(run(command.arg(folder.path().join("a.gif"))).status.success());
 }
 
 #[cfg(unix)]
@@ -160,10 +160,10 @@ fn what_ffmpeg_says_last_is_told_where_it_fails() {
         std::fs::write(&script, text).expect("a script");
         std::fs::set_permissions(&script, PermissionsExt::from_mode(0o755)).expect("a script");
         let folder = tempfile::tempdir().expect("a folder");
-        let mut program = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-        program.args(CRADLE).arg("--video").arg(folder.path().join("a.mp4"));
+        let mut command = Command::new(program());
+        command.args(CRADLE).arg("--video").arg(folder.path().join("a.mp4"));
         let paths = format!("{}:/usr/bin:/bin", tools.path().display());
-        let output = program.env("PATH", paths).output().expect("the program starts");
+        let output = command.env("PATH", paths).output().expect("the program starts");
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{said}");
         assert!(said.contains("a.mp4: ffmpeg failed: no room"), "{said}");
@@ -177,12 +177,12 @@ fn a_run_that_is_stopped_has_a_whole_video_and_leaves_what_it_would_have_left_wh
     use std::os::unix::process::CommandExt;
     use std::time::{Duration, Instant};
     let run = |folder: &Path| {
-        let mut program = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-        program.args(["--headless", "--bond", "20", "--dt", "1e-3", "--duration", "0.3"]);
-        program.args(["--fps", "50", "--size", "160x100", "--renderer", "cpu"]);
-        program.args(["--checkpoint-every", "100", "--frames"]).arg(folder);
-        program.arg("--video").arg(folder.join("a.mp4"));
-        program
+        let mut command = Command::new(program());
+        command.args(["--headless", "--bond", "20", "--dt", "1e-3", "--duration", "0.3"]);
+        command.args(["--fps", "50", "--size", "160x100", "--renderer", "cpu"]);
+        command.args(["--checkpoint-every", "100", "--frames"]).arg(folder);
+        command.arg("--video").arg(folder.join("a.mp4"));
+        command
     };
     let (whole, stopped) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     assert!(run(whole.path()).output().expect("the program starts").status.success());

@@ -2,7 +2,7 @@
 
 use image::RgbaImage;
 use slump::error::Result;
-use slump::render::{ColourBy, Figure, Renderer, Style, Theme, bounds, draw_scene};
+use slump::render::{ColourBy, PanelGrid, Renderer, Style, Theme, bounds, draw_scene};
 use slump::sim::Snapshot;
 
 use crate::golden::states;
@@ -54,7 +54,7 @@ fn figure(renderer: &mut Renderer) -> Result<RgbaImage> {
         .iter()
         .map(|style| scene(renderer, &pile, style, 330, 190))
         .collect::<Result<Vec<_>>>()?;
-    let mut grid = Figure::new(2, 2, panels);
+    let mut grid = PanelGrid::new(2, 2, panels);
     grid.title = "Panels, labels and themes".to_owned();
     grid.column_labels = vec!["Δt = 10⁻⁴ s".to_owned(), "Δt = 5·10⁻³ s".to_owned()];
     grid.row_labels = vec!["Bond 0".to_owned(), "Bond −20 ≤ √μ".to_owned()];

@@ -1,29 +1,112 @@
-//! Pictures without a window: a texture to draw into and a buffer to read it back.
+//! A GPU, on Vulkan or OpenGL, and pictures that it draws into memory.
 //!
-//! Rows of the readback buffer are padded to the 256 bytes that texture copies ask for. Texture and
-//! buffer live on while the size stays the same, as it does in a sequence of frames.
+//! Each kind is asked for by itself, so that a missing driver can be named. Software drivers (Mesa's llvmpipe) count
+//! as GPUs: they draw the same pictures.
+
+use std::sync::{Arc, Mutex};
 
 use image::RgbaImage;
 
-use super::backend::Gpu;
-use super::drivers::Kind;
-use super::painter::Painter;
-use super::primitive::Frame;
+use super::painter::{Painter, PictureArea};
+use super::renderer::GpuKind;
 use super::{Colour, Picture};
 use crate::error::{Error, Result};
+
+/// An opened GPU.
+pub(crate) struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    /// GpuKind of driver and name of the device.
+    pub name: String,
+    /// Message of the first failure that no call reported directly.
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    /// Opens a GPU of either kind.
+    #[cfg(feature = "window")]
+    pub(crate) fn any() -> Result<Self> {
+        Self::open(GpuKind::Vulkan).or_else(|_| Self::open(GpuKind::Gl))
+    }
+
+    /// Opens the strongest device of one kind.
+    pub(super) fn open(kind: GpuKind) -> Result<Self> {
+        let backends = match kind {
+            GpuKind::Vulkan => wgpu::Backends::VULKAN,
+            GpuKind::Gl => wgpu::Backends::GL,
+        };
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            // Debug builds would otherwise load validation layers and let them write to stderr.
+            flags: wgpu::InstanceFlags::empty(),
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..wgpu::RequestAdapterOptions::default()
+        };
+        let adapter =
+            pollster::block_on(instance.request_adapter(&options)).map_err(|_| missing(kind))?;
+        let available = adapter.limits();
+        let limits = wgpu::Limits {
+            max_buffer_size: available.max_buffer_size,
+            ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(available)
+        };
+        let name = format!("{}: {}", kind.name(), adapter.get_info().name);
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("slump"),
+            required_limits: limits,
+            ..wgpu::DeviceDescriptor::default()
+        });
+        let (device, queue) = pollster::block_on(request)
+            .map_err(|error| Error::Renderer(format!("{name} does not open: {error}")))?;
+
+        let failure = Arc::new(Mutex::new(None));
+        let seen = Arc::clone(&failure);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if let Ok(mut first) = seen.lock() {
+                first.get_or_insert_with(|| error.to_string());
+            }
+        }));
+        Ok(Self { device, queue, name, failure })
+    }
+
+    /// Fails if anything went wrong on the device since the last call.
+    pub(crate) fn check(&self) -> Result<()> {
+        let Some(message) = self.failure.lock().ok().and_then(|mut first| first.take()) else {
+            return Ok(());
+        };
+        // Messages of wgpu run over several lines; an error is one sentence.
+        let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        Err(Error::Renderer(format!("{} failed: {message}", self.name)))
+    }
+}
+
+/// What is missing and what brings it, as one sentence.
+fn missing(kind: GpuKind) -> Error {
+    let (driver, packages) = match kind {
+        GpuKind::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
+        GpuKind::Gl => ("OpenGL (EGL)", "libegl1 and libgl1-mesa-dri"),
+    };
+    Error::Renderer(format!(
+        "no {driver} driver was found: install the Debian packages {packages}, or use \
+         --renderer cpu, which needs no driver"
+    ))
+}
 
 /// Stores the numbers that are blended; an sRGB format would convert them.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// A GPU that draws pictures into memory.
+/// A GPU that draws pictures into memory. Rows of the readback buffer are padded to the 256 bytes that texture copies
+/// ask for. Texture and buffer live on while the size stays the same, as it does in a sequence of pictures.
 pub(super) struct Offscreen {
     gpu: Gpu,
     painter: Painter,
-    target: Option<Target>,
+    target: Option<OffscreenTarget>,
 }
 
 /// What depends on the size of the picture.
-pub(crate) struct Target {
+pub(crate) struct OffscreenTarget {
     pub width: u32,
     pub height: u32,
     padded_row_bytes: u32,
@@ -34,7 +117,7 @@ pub(crate) struct Target {
 
 impl Offscreen {
     /// Opens the strongest device of one kind.
-    pub(super) fn open(kind: Kind) -> Result<Self> {
+    pub(super) fn open(kind: GpuKind) -> Result<Self> {
         let gpu = Gpu::open(kind)?;
         let painter = Painter::new(&gpu.device, FORMAT);
         gpu.check()?;
@@ -57,13 +140,10 @@ impl Offscreen {
         let gpu = &self.gpu;
         let target = match &mut self.target {
             Some(target) => target,
-            empty => {
-                let target = Target::new(gpu, width, height)?;
-                empty.insert(target)
-            }
+            empty => empty.insert(OffscreenTarget::new(gpu, width, height)?),
         };
-        let frame = Frame::new(0.0, 0.0, width as f32, height as f32);
-        self.painter.prepare(&gpu.device, &gpu.queue, picture, frame);
+        let area = PictureArea::new(0.0, 0.0, width as f32, height as f32);
+        self.painter.prepare(&gpu.device, &gpu.queue, picture, area);
 
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
@@ -96,7 +176,7 @@ fn clear_colour(colour: Colour) -> wgpu::Color {
     wgpu::Color { r, g, b, a: 1.0 }
 }
 
-impl Target {
+impl OffscreenTarget {
     pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Result<Self> {
         let padded_row_bytes = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(padded_row_bytes) * u64::from(height);
@@ -165,7 +245,7 @@ impl Target {
         {
             let mapped = self.readback.get_mapped_range(..).map_err(|error| failed(&error))?;
             let padded_rows = mapped.chunks_exact(self.padded_row_bytes as usize);
-            for (row, padded) in image.as_mut().chunks_exact_mut(row_bytes).zip(padded_rows) {
+            for (row, padded) in image.chunks_exact_mut(row_bytes).zip(padded_rows) {
                 row.copy_from_slice(&padded[..row_bytes]);
             }
         }

@@ -1,13 +1,14 @@
-//! Fixed shapes as thin dark lines; solids carry short hatching on their inside.
+//! Fixed shapes as thin dark lines, solids with short hatching on their inside, and periodic borders as dashes.
 //!
-//! Lines are clipped to the picture in f64, so that a wall that goes on for ever, or starts a
-//! million diameters away, still becomes f32 pixels without loss. Hatching keeps its place in the
-//! world, not in the picture: it moves with the camera.
+//! Lines are clipped to the picture in f64, so that a wall that goes on for ever, or starts a million diameters away,
+//! still becomes f32 pixels without loss. Hatching keeps its place in the world, not in the picture: it moves with the
+//! camera.
 
 use glam::DVec2;
 
+use super::camera::half_size;
 use super::{Camera, Colour, LinkInstance};
-use crate::world::{Boundary, Edge};
+use crate::world::{Boundary, Edge, Periodic};
 
 // All in units of the font size of the picture's labels, so that prints of any size look alike.
 
@@ -20,8 +21,14 @@ const HATCH_SPACING_EM: f64 = 0.6;
 /// How deep hatching reaches into a solid, and as far along it: strokes lean by 45°.
 const HATCH_DEPTH_EM: f64 = 0.45;
 
+/// Half the width of a dash.
+const DASH_HALF_WIDTH_EM: f64 = 0.035;
+/// Length of a dash, and of it with the gap after it.
+const DASH_EM: f64 = 0.45;
+const DASH_SPACING_EM: f64 = 0.9;
+
 /// Turns fixed shapes into links for one picture.
-struct Walls<'a> {
+struct WallLines<'a> {
     camera: &'a Camera,
     colour: Colour,
     /// Font size of the picture's labels, pixels.
@@ -31,25 +38,24 @@ struct Walls<'a> {
     links: Vec<LinkInstance>,
 }
 
-/// The links of all `boundaries` that show in a picture of `width` × `height` pixels.
+/// The links of all `boundaries` that show in a picture of `size` pixels.
 pub(super) fn boundary_links(
     boundaries: &[Boundary],
     camera: &Camera,
-    width: u32,
-    height: u32,
+    size: [u32; 2],
     text_px: f32,
     colour: Colour,
 ) -> Vec<LinkInstance> {
     let em = f64::from(text_px);
-    let reach = DVec2::new(f64::from(width), f64::from(height)) / 2.0 + em;
-    let mut walls = Walls { camera, colour, em, reach, links: Vec::new() };
+    let mut walls =
+        WallLines { camera, colour, em, reach: half_size(size) + em, links: Vec::new() };
     for edge in boundaries.iter().flat_map(Boundary::edges) {
         walls.draw(edge);
     }
     walls.links
 }
 
-impl Walls<'_> {
+impl WallLines<'_> {
     fn draw(&mut self, edge: Edge) {
         match edge {
             Edge::Endless { point, normal } => {
@@ -95,12 +101,8 @@ impl Walls<'_> {
     }
 
     fn link(&mut self, start: DVec2, end: DVec2, half_width_em: f64) {
-        self.links.push(LinkInstance {
-            start: start.as_vec2().into(),
-            end: end.as_vec2().into(),
-            half_width: (half_width_em * self.em) as f32,
-            colour: self.colour,
-        });
+        let half_width = (half_width_em * self.em) as f32;
+        self.links.push(LinkInstance::new([start, end], half_width, self.colour));
     }
 }
 
@@ -126,8 +128,37 @@ pub(super) fn clip(from: DVec2, to: DVec2, reach: DVec2) -> Option<[DVec2; 2]> {
     (enter <= leave).then(|| [from + span * enter, from + span * leave])
 }
 
+/// The dashes of the borders that show in a picture of `size` pixels.
+pub(super) fn border_links(
+    periodic: Periodic,
+    camera: &Camera,
+    size: [u32; 2],
+    text_px: f32,
+    colour: Colour,
+) -> Vec<LinkInstance> {
+    let em = f64::from(text_px);
+    let half = half_size(size);
+    let dashes = |borders: Option<[f64; 2]>, across: DVec2, along: DVec2| {
+        let at =
+            |border: f64| camera.offset_px(border * across + camera.centre * along).dot(across);
+        let shown = borders.into_iter().flatten().map(at);
+        let shown = shown.filter(move |at| at.abs() <= half.dot(across) + em);
+        let count = (half.dot(along) / (DASH_SPACING_EM * em)).ceil() as i32;
+        let steps =
+            move || (-count..=count).map(move |step| f64::from(step) * DASH_SPACING_EM * em);
+        let dash = move |at: f64, step: f64| {
+            let ends = [step - 0.5 * DASH_EM * em, step + 0.5 * DASH_EM * em];
+            let ends = ends.map(|end| at * across + end * along);
+            LinkInstance::new(ends, (DASH_HALF_WIDTH_EM * em) as f32, colour)
+        };
+        shown.flat_map(move |at| steps().map(move |step| dash(at, step))).collect::<Vec<_>>()
+    };
+    [dashes(periodic.x, DVec2::X, DVec2::Y), dashes(periodic.y, DVec2::Y, DVec2::X)].concat()
+}
+
 #[cfg(test)]
 mod tests {
+
     use super::*;
 
     const REACH: DVec2 = DVec2::new(10.0, 5.0);
@@ -147,7 +178,7 @@ mod tests {
     fn the_ground_is_hatched_below_its_surface() {
         let ground = Boundary::HalfSpace { point: DVec2::new(1e6, 0.0), normal: DVec2::Y };
         let camera = Camera { centre: DVec2::new(0.0, 0.1), metres_per_pixel: 0.01 };
-        let links = boundary_links(&[ground], &camera, 200, 100, 15.0, Colour::BLACK);
+        let links = boundary_links(&[ground], &camera, [200, 100], 15.0, Colour::BLACK);
         let (surface, hatching) = links.split_first().unwrap();
         assert!(surface.start[1] == -10.0 && surface.end[1] == -10.0);
         assert!(surface.start[0] <= -100.0 && surface.end[0] >= 100.0);
@@ -160,14 +191,8 @@ mod tests {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         let points = corners.map(DVec2::from).to_vec();
         let camera = Camera { centre: DVec2::splat(0.5), metres_per_pixel: 0.01 };
-        let links = boundary_links(
-            &[Boundary::ConvexPolygon { points }],
-            &camera,
-            200,
-            200,
-            15.0,
-            Colour::BLACK,
-        );
+        let polygon = Boundary::ConvexPolygon { points };
+        let links = boundary_links(&[polygon], &camera, [200, 200], 15.0, Colour::BLACK);
         assert!(links.len() > 20);
         for link in links {
             for point in [link.start, link.end] {

@@ -1,16 +1,144 @@
-//! How walls and fixed discs move: arrows that lie on them and go with them, along their way; arrows with two heads
-//! where a force drives them; and an arc with a head at what they turn round.
-//!
-//! An arrow says which way, not how fast: its length is that of words, so that a slow wall has one, too.
+//! What is laid over the grains: contact forces, velocities, and how walls and fixed discs move.
 
 use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::boundaries::clip;
-use super::{Camera, Colour, LinkInstance, Palette};
-use crate::sim::{MotionView, Surroundings};
+use super::camera::half_size;
+use super::numbers::round_above;
+use super::walls::clip;
+use super::{Camera, Colour, LinkInstance, Palette, Style};
+use crate::sim::{MotionView, Snapshot, Surroundings};
 use crate::world::Edge;
+
+/// Width of the widest link, in units of d.
+const FORCE_WIDTH: f64 = 0.4;
+/// Forces below this part of the reference are left out: their links would be invisible.
+const LEAST_FORCE: f64 = 0.004;
+/// The share of contacts whose links are narrower than the full width, where no reference is given.
+const REFERENCE_QUANTILE: f64 = 0.95;
+
+/// The |N| (N) that is drawn at full width: the style's own, or the 95th percentile of the
+/// snapshot, so that a single huge force does not make all others vanish. 0 without any force.
+pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
+    style.force_reference.unwrap_or_else(|| {
+        let mut forces: Vec<f64> = snapshot
+            .contacts
+            .iter()
+            .map(|contact| contact.normal_force.abs())
+            .filter(|force| *force > 0.0 && force.is_finite())
+            .collect();
+        forces.sort_by(f64::total_cmp);
+        let index = (REFERENCE_QUANTILE * forces.len() as f64) as usize;
+        forces.get(index).copied().unwrap_or(0.0)
+    })
+}
+
+/// Half the width of a link at the reference force, pixels.
+pub(super) fn full_half_width_px(mean_diameter: f64, camera: &Camera) -> f32 {
+    camera.pixels(0.5 * FORCE_WIDTH * mean_diameter)
+}
+
+/// The links of all contacts that show, the strongest on top.
+pub(super) fn force_links(
+    snapshot: &Snapshot,
+    style: &Style,
+    palette: &Palette,
+    camera: &Camera,
+    size: [u32; 2],
+) -> Vec<LinkInstance> {
+    let reference = force_reference(style, snapshot);
+    if !(reference > 0.0 && reference.is_finite()) {
+        return Vec::new();
+    }
+    let full = full_half_width_px(snapshot.surroundings.mean_diameter, camera);
+    let periodic = snapshot.surroundings.periodic;
+    let reach = half_size(size) + f64::from(full) + 1.0;
+    let mut shown: Vec<_> = snapshot
+        .contacts
+        .iter()
+        .map(|contact| (contact, (contact.normal_force.abs() / reference).min(1.0)))
+        .filter(|(_, part)| *part >= LEAST_FORCE)
+        .collect();
+    shown.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+    shown
+        .into_iter()
+        .flat_map(|(contact, part)| {
+            // One that reaches over a periodic border shows on both sides.
+            let reach = [contact.from.min(contact.to), contact.from.max(contact.to)];
+            let images = periodic.into_iter().flat_map(move |periodic| periodic.images(reach));
+            std::iter::once(DVec2::ZERO).chain(images).map(move |by| (contact, part, by))
+        })
+        .filter_map(|(contact, part, by)| {
+            let ends = [camera.offset_px(contact.from + by), camera.offset_px(contact.to + by)];
+            let colour = if contact.normal_force < 0.0 { palette.pull } else { palette.push };
+            let ends = clip(ends[0], ends[1], reach)?;
+            Some(LinkInstance::new(ends, full * part as f32, colour))
+        })
+        .collect()
+}
+
+/// Length of the velocity arrow at the reference speed, in units of d.
+const VELOCITY_LENGTH: f64 = 2.5;
+/// Arrows below this part of the reference are left out: they would be dots.
+const LEAST_VELOCITY: f64 = 0.03;
+/// Half the width of the shaft, and the length of the two barbs, in units of d.
+const VELOCITY_HALF_WIDTH: f64 = 0.05;
+const VELOCITY_BARB: f64 = 0.35;
+
+/// The speed that is drawn at full length, m/s: the style's own, or a round number above the fastest
+/// grain's; 0 where nothing moves.
+pub(crate) fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
+    if let Some(reference) = style.speed_reference {
+        return reference;
+    }
+    let speeds = snapshot.grains.iter().map(|grain| grain.velocity.length());
+    let fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+    // Below this a pile is at rest; arrows would show rounding.
+    let least = 1e-9 * snapshot.surroundings.gravity_magnitude.max(1.0);
+    if fastest > least { round_above(fastest) } else { 0.0 }
+}
+
+/// Length of the arrow at the reference speed, m.
+pub(super) fn full_length(snapshot: &Snapshot) -> f64 {
+    VELOCITY_LENGTH * snapshot.surroundings.mean_diameter
+}
+
+/// The arrows of all grains that show.
+pub(super) fn velocity_links(
+    snapshot: &Snapshot,
+    style: &Style,
+    colour: Colour,
+    camera: &Camera,
+    size: [u32; 2],
+) -> Vec<LinkInstance> {
+    let reference = speed_reference(style, snapshot);
+    if reference.is_nan() || reference <= 0.0 {
+        return Vec::new();
+    }
+    let diameter = snapshot.surroundings.mean_diameter;
+    let half_width = camera.pixels(VELOCITY_HALF_WIDTH * diameter).max(0.6);
+    let reach = half_size(size) + f64::from(half_width) + 1.0;
+    let mut links = Vec::new();
+    for grain in &snapshot.grains {
+        let part = grain.velocity / reference;
+        // A velocity that is not a number is no arrow.
+        if part.length().is_nan() || part.length() < LEAST_VELOCITY {
+            continue;
+        }
+        let shaft = part * full_length(snapshot);
+        let tip = grain.position + shaft;
+        let barb = shaft.normalize_or_zero() * VELOCITY_BARB * diameter * part.length().sqrt();
+        let barbs =
+            [DVec2::from_angle(2.6), DVec2::from_angle(-2.6)].map(|turn| tip + turn.rotate(barb));
+        for (from, to) in [(grain.position, tip), (tip, barbs[0]), (tip, barbs[1])] {
+            let ends = [camera.offset_px(from), camera.offset_px(to)];
+            let ends = clip(ends[0], ends[1], reach);
+            links.extend(ends.map(|ends| LinkInstance::new(ends, half_width, colour)));
+        }
+    }
+    links
+}
 
 // All in units of the font size of the picture's labels.
 
@@ -38,7 +166,7 @@ const LEAST_DIAMETERS_PER_SEC: f64 = 1e-9;
 const ALONG: f64 = 0.9;
 
 /// Draws the arrows of one picture.
-struct Arrows<'a> {
+struct MotionArrows<'a> {
     camera: &'a Camera,
     em: f64,
     reach: DVec2,
@@ -55,29 +183,26 @@ struct Spot {
     normal: Option<(DVec2, bool)>,
 }
 
-/// The links of all motions that show in a picture of `size` pixels.
+/// The links of all motions that show in a picture of `size` pixels: arrows that lie on what moves and go with it; arrows
+/// with two heads where a force drives it; and an arc with a head at what it turns round. An arrow says which way, not
+/// how fast: its length is that of words, so that a slow wall has one, too.
 pub(super) fn motion_links(
     surroundings: &Surroundings,
     palette: &Palette,
     camera: &Camera,
-    [width, height]: [u32; 2],
+    size: [u32; 2],
     text_px: f32,
 ) -> Vec<LinkInstance> {
     let em = f64::from(text_px);
-    let reach = DVec2::new(f64::from(width), f64::from(height)) / 2.0 + em;
+    let reach = half_size(size) + em;
     let least_speed = LEAST_DIAMETERS_PER_SEC * surroundings.mean_diameter;
-    let mut arrows = Arrows { camera, em, reach, least_speed, lines: Vec::new() };
+    let mut arrows = MotionArrows { camera, em, reach, least_speed, lines: Vec::new() };
     for motion in &surroundings.moving {
         arrows.of_motion(motion, surroundings);
     }
     let links = |half_width: f64, colour: Colour| {
         let clipped = arrows.lines.iter().filter_map(|[from, to]| clip(*from, *to, reach));
-        let link = move |[start, end]: [DVec2; 2]| LinkInstance {
-            start: start.as_vec2().into(),
-            end: end.as_vec2().into(),
-            half_width: half_width as f32,
-            colour,
-        };
+        let link = |ends| LinkInstance::new(ends, half_width as f32, colour);
         clipped.map(link).collect::<Vec<_>>()
     };
     let half_width = (HALF_WIDTH_EM * em).max(0.7);
@@ -86,7 +211,7 @@ pub(super) fn motion_links(
     all
 }
 
-impl Arrows<'_> {
+impl MotionArrows<'_> {
     fn of_motion(&mut self, motion: &MotionView, surroundings: &Surroundings) {
         let spots = self.spots(motion, surroundings);
         for (index, spot) in spots.iter().enumerate() {
@@ -205,6 +330,7 @@ impl Arrows<'_> {
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
     use crate::render::Theme;
     use crate::world::{Boundary, Disc};

@@ -1,4 +1,5 @@
-//! What takes a run down: its table, its frames, its books, and the checkpoints from which all of them go on.
+//! What a run writes: its table, pictures, animations, recording and manifest, and the checkpoints from which all of
+//! them go on.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -6,30 +7,30 @@ use std::path::Path;
 use image::RgbaImage;
 
 use super::HeadlessOptions;
-use super::animations::Animations;
-use super::checkpoint::{Checkpoints, Marks};
-use super::data::told;
-use super::kept::KeptStates;
-use super::manifest::{Ended, Manifest, Moment, PictureEntry, RunEntry};
+use super::folder::{Checkpoints, Marks};
+use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
+use super::options::PictureSize;
 use super::table::ObservablesTable;
-use super::telling::{
-    go_on, interrupted, tell_of_alarms, tell_of_picked_method, tell_of_unconverged_steps,
-};
+use super::waiting::WaitingStates;
 use crate::config::{Provenance, SavedState, asked_time_secs};
 use crate::data::Recording;
-use crate::error::{Error, Result};
-use crate::output::{Progress, Signal, Texts, caught_signal, counted, print_line};
+use crate::error::{Error, Result, legible};
+use crate::film::{Animation, Video};
+use crate::output::{Progress, Signal, caught_signal, counted, note_line, print_line};
 use crate::render::{Camera, Renderer, Style, draw_scene};
 use crate::scene::{Scene, View};
-use crate::sim::{Observables, Simulation, Snapshot, Tally};
+use crate::sim::{Alarm, AlarmKind, Observables, Simulation, Snapshot, Tally};
+use crate::solver::Method;
 use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
 /// Name of the run in the manifest.
 const RUN: &str = "run";
+/// Pictures a second of a GIF, which viewers keep up with.
+const GIF_RATE_HZ: f64 = 25.0;
 
-/// Draws snapshots and keeps the books.
-pub(super) struct Studio<'a> {
+/// Writes all that a run leaves.
+pub(super) struct RunWriter<'a> {
     options: &'a HeadlessOptions,
     scene: &'a Scene,
     progress: Progress,
@@ -37,11 +38,13 @@ pub(super) struct Studio<'a> {
     style: Style,
     camera: Camera,
     table: Option<ObservablesTable>,
-    animations: Animations,
+    gif: Option<Animation>,
+    video: Option<Video>,
     /// Colours and widths that follow the state need one scale for all frames, so those frames wait
     /// for the end of the run, unless it is given. All others are drawn as the run comes by.
-    kept: Option<KeptStates>,
-    recording: Option<Recording>,
+    waiting: Option<WaitingStates>,
+    /// What records the run as well.
+    pub recording: Option<Recording>,
     manifest: Manifest,
     provenance: Provenance,
     checkpoints: Option<Checkpoints>,
@@ -49,12 +52,14 @@ pub(super) struct Studio<'a> {
     marks: Marks,
 }
 
-impl<'a> Studio<'a> {
-    /// Opens the books of a run that goes on from `marks` to step `end`.
+impl<'a> RunWriter<'a> {
+    /// Starts the files of a run that goes on from `marks` to step `end`.
     pub(super) fn open(
         options: &'a HeadlessOptions,
         renderer: Renderer,
-        (scene, end, provenance): (&'a Scene, u64, Provenance),
+        scene: &'a Scene,
+        end: u64,
+        provenance: Provenance,
         marks: Marks,
         checkpoints: Option<Checkpoints>,
     ) -> Result<Self> {
@@ -73,16 +78,18 @@ impl<'a> Studio<'a> {
             true => ObservablesTable::start(folder),
             false => ObservablesTable::go_on(folder, marks.table),
         };
-        let studio = Self {
+        let rate_hz = options.video_rate_hz()?;
+        let film = |path: &Path| Video::start(path, rate_hz);
+        let animate = |path: &Path| Animation::start(path, GIF_RATE_HZ);
+        let mut writer = Self {
             options,
             scene,
             progress: Progress::new(&scene.name, end),
             camera: style.camera(min, max, size.width, size.height),
             table: folder.map(table).transpose()?,
-            animations: Animations::start(options, &marks.pictures, |words| {
-                options.texts_of_animation(&provenance, scene.duration_secs, &style, words)
-            })?,
-            kept: KeptStates::asked_for(options, &style, &marks, checkpoints.is_some())?,
+            gif: options.gif.as_deref().map(animate).transpose()?,
+            video: options.video.as_deref().map(film).transpose()?,
+            waiting: WaitingStates::asked_for(options, &style, &marks, checkpoints.is_some())?,
             style,
             recording: None,
             manifest,
@@ -91,20 +98,30 @@ impl<'a> Studio<'a> {
             checkpoints,
             marks,
         };
-        studio.write_manifest()?;
-        Ok(studio)
+        writer.animate_earlier_pictures()?;
+        writer.write_manifest()?;
+        Ok(writer)
     }
 
-    /// Has the run recorded as well.
-    pub(super) fn record_in(&mut self, recording: Option<Recording>) {
-        self.recording = recording;
+    /// Gives GIF and video the pictures that a run has left before it goes on.
+    fn animate_earlier_pictures(&mut self) -> Result<()> {
+        if self.gif.is_none() && self.video.is_none() {
+            return Ok(());
+        }
+        let folder = self.options.frames.as_deref().unwrap_or(Path::new(""));
+        for PictureEntry { file, .. } in &self.marks.pictures.clone() {
+            let path = folder.join(file);
+            let image = image::open(&path).map_err(|error| Error::file(&path, error))?;
+            self.animate(image.into_rgba8())?;
+        }
+        Ok(())
     }
 
     fn end_recording(&mut self) -> Result<()> {
         let Some(recording) = self.recording.take() else { return Ok(()) };
-        let told = told(recording.folder(), recording.frames());
+        let sentence = recording_sentence(recording.folder(), recording.frames());
         recording.finish()?;
-        print_line(told);
+        print_line(sentence);
         Ok(())
     }
 
@@ -114,7 +131,7 @@ impl<'a> Studio<'a> {
         self.recording.as_mut().map_or(Ok(()), Recording::flush)?;
         Ok(Marks {
             table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
-            waiting: self.kept.as_ref().map_or(Ok(0), KeptStates::mark)?,
+            waiting: self.waiting.as_ref().map_or(Ok(0), WaitingStates::mark)?,
             pictures: self.manifest.pictures.clone(),
             ..self.marks.clone()
         })
@@ -126,7 +143,7 @@ impl<'a> Studio<'a> {
         }
         let marks = self.marks()?;
         let checkpoints = self.checkpoints.as_mut();
-        checkpoints.map_or(Ok(()), |it| it.write(self.scene, (simulation, tally), marks))
+        checkpoints.map_or(Ok(()), |it| it.write(self.scene, simulation, tally, marks))
     }
 
     /// Saves the run as it has ended, for the same command and for others.
@@ -147,7 +164,7 @@ impl<'a> Studio<'a> {
         checkpoint.and(saved)
     }
 
-    /// Ends the books of a run that has ended. Each part is tried, whatever became of those before; the first
+    /// Ends the files of a run that has ended. Each part is tried, whatever became of those before; the first
     /// failure is told.
     pub(super) fn end(mut self, mut recorded: Recorded) -> Result<()> {
         self.progress.finish();
@@ -158,12 +175,12 @@ impl<'a> Studio<'a> {
         let recording = self.end_recording();
         recorded.failure = recorded.failure.or(saved.err()).or(table.err()).or(recording.err());
         self.manifest.runs[0].end(Ended::of(&recorded), &recorded);
-        let (developed, signal) = match self.develop(signal) {
+        let (drawn, signal) = match self.draw_waiting(signal) {
             Ok(signal) => (Ok(()), signal),
             Err(error) => (Err(error), signal),
         };
         let finished = self.finish();
-        recorded.failure = recorded.failure.or(developed.err()).or(finished.err());
+        recorded.failure = recorded.failure.or(drawn.err()).or(finished.err());
 
         tell_of_unconverged_steps(scene, &recorded.tally);
         tell_of_picked_method(scene, &recorded.simulation);
@@ -177,18 +194,18 @@ impl<'a> Studio<'a> {
 
     /// Draws the states that wait, those of a run that a signal ended too. A signal that comes now
     /// ends it; that or the run's is returned.
-    fn develop(&mut self, ended_by: Option<Signal>) -> Result<Option<Signal>> {
-        let Some(mut kept) = self.kept.take() else { return Ok(ended_by) };
+    fn draw_waiting(&mut self, ended_by: Option<Signal>) -> Result<Option<Signal>> {
+        let Some(mut waiting) = self.waiting.take() else { return Ok(ended_by) };
         // This may take longer than whoever asked for the end is ready to wait.
         self.write_manifest()?;
-        kept.set_scale(&mut self.style);
-        let progress = Progress::new("drawing", kept.len() as u64);
-        for index in 0..kept.len() {
+        waiting.set_scale(&mut self.style);
+        let progress = Progress::new("drawing", waiting.len() as u64);
+        for index in 0..waiting.len() {
             if let (None, Some(signal)) = (ended_by, caught_signal()) {
                 self.manifest.runs[0].ended = Ended::Interrupted;
                 return Ok(Some(signal));
             }
-            let drawn = kept.get(index).and_then(|(number, state)| self.shoot(number, &state));
+            let drawn = waiting.get(index).and_then(|(number, state)| self.draw(number, &state));
             drawn.inspect_err(|_| self.manifest.runs[0].ended = Ended::Failed)?;
             progress.advance(1);
         }
@@ -196,34 +213,33 @@ impl<'a> Studio<'a> {
         Ok(ended_by)
     }
 
-    fn shoot(&mut self, number: usize, snapshot: &Snapshot) -> Result<()> {
-        let size = self.options.size()?;
-        let image: RgbaImage = draw_scene(
-            &mut self.renderer,
-            snapshot,
-            &self.style,
-            &self.camera,
-            size.width,
-            size.height,
-        )?;
+    fn draw(&mut self, number: usize, snapshot: &Snapshot) -> Result<()> {
+        let PictureSize { width, height } = self.options.size()?;
+        let (style, camera) = (&self.style, &self.camera);
+        let image = draw_scene(&mut self.renderer, snapshot, style, camera, width, height)?;
         if let Some(folder) = &self.options.frames {
             let file = format!("frame_{number:05}.png");
-            write_png(&folder.join(&file), &image, &self.texts(snapshot))?;
-            let moment = Moment { run: RUN.to_owned(), observables: snapshot.observables };
+            let time_secs = asked_time_secs(snapshot.observables.time_secs);
+            let texts = self.options.texts_of_frame(&self.provenance, time_secs, &self.style);
+            write_png(&folder.join(&file), &image, &texts)?;
+            let moment = ShownMoment { run: RUN.to_owned(), observables: snapshot.observables };
             let entry = PictureEntry { file, shows: vec![moment] };
             self.manifest.add(entry, &folder.join("manifest.json"))?;
         }
-        let (options, scene) = (self.options, self.scene);
-        let (provenance, style) = (&self.provenance, &self.style);
-        let told = |words: &[&str]| {
-            options.texts_of_animation(provenance, scene.duration_secs, style, words)
-        };
-        self.animations.add(image, told)
+        self.animate(image)
     }
 
-    fn texts(&self, snapshot: &Snapshot) -> Texts {
-        let time_secs = asked_time_secs(snapshot.observables.time_secs);
-        self.options.texts_of_frame(&self.provenance, time_secs, &self.style)
+    /// Adds a picture to GIF and video. Each says of itself how to make it again.
+    fn animate(&mut self, image: RgbaImage) -> Result<()> {
+        let Self { options, scene, provenance, style, .. } = self;
+        let texts = |words: &[&str]| {
+            options.texts_of_animation(provenance, scene.duration_secs, style, words)
+        };
+        let video_texts = texts(&["--video", "video.mp4"]);
+        let gif_texts = texts(&["--gif", "animation.gif"]);
+        let video = self.video.as_mut().map_or(Ok(()), |video| video.add(&image, &video_texts));
+        let gif = self.gif.as_mut().map_or(Ok(()), |gif| gif.add(image, &gif_texts));
+        video.and(gif)
     }
 
     fn write_manifest(&self) -> Result<()> {
@@ -232,11 +248,12 @@ impl<'a> Studio<'a> {
     }
 
     fn finish(mut self) -> Result<()> {
-        let animations = std::mem::take(&mut self.animations).finish();
+        let video = self.video.take().map_or(Ok(false), Video::finish);
+        let gif = self.gif.take().map_or(Ok(false), Animation::finish);
         self.write_manifest()?;
         // Where the run is complete, nothing is left to go on with.
         if self.manifest.runs[0].ended == Ended::Complete
-            && let (Ok(_), Some(checkpoints)) = (&animations, self.checkpoints.take())
+            && let (Ok(_), Ok(_), Some(checkpoints)) = (&video, &gif, self.checkpoints.take())
         {
             checkpoints.remove()?;
         }
@@ -244,12 +261,14 @@ impl<'a> Studio<'a> {
             let count = counted(self.manifest.pictures.len() as u64, "picture");
             print_line(format_args!("{count} in {}", folder.display()));
         }
-        animations?.tell(self.options);
+        for (is_there, path) in [(gif?, &self.options.gif), (video?, &self.options.video)] {
+            path.iter().filter(|_| is_there).for_each(|path| print_line(path.display()));
+        }
         Ok(())
     }
 }
 
-impl Recorder for Studio<'_> {
+impl Recorder for RunWriter<'_> {
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>> {
         self.progress.set(observables.step);
         self.table.as_mut().map_or(Ok(()), |table| table.add(observables))?;
@@ -268,11 +287,67 @@ impl Recorder for Studio<'_> {
 
     fn picture(&mut self, number: usize, snapshot: Snapshot) -> Result<()> {
         self.table.as_mut().map_or(Ok(()), ObservablesTable::flush)?;
-        match &mut self.kept {
-            Some(kept) => kept.add(&self.style, number, snapshot),
-            None => self.shoot(number, &snapshot),
+        match &mut self.waiting {
+            Some(waiting) => waiting.add(&self.style, number, snapshot),
+            None => self.draw(number, &snapshot),
         }?;
         self.marks.next_picture = number + 1;
         Ok(())
+    }
+}
+
+/// Where a finished recording is, and how many frames it has, in words.
+pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
+    format!("{} of data in {}", counted(frames, "frame"), folder.display())
+}
+
+/// Whether a run goes on: until a signal comes.
+pub(super) fn go_on() -> ControlFlow<()> {
+    caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
+}
+
+/// That a signal ended the run after its last step.
+pub(super) fn interrupted(signal: Signal, last: &Observables) -> Error {
+    let (signal, exit_code) = (signal.name(), signal.exit_code());
+    Error::Interrupted { signal, exit_code, step: last.step, time_secs: last.time_secs }
+}
+
+/// Says on stderr what went wrong, and what is most likely to help. A state that is no longer finite
+/// ends the run with an error of its own.
+pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
+    for alarm in alarms.iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite) {
+        note_line(format_args!("{}: {}", scene.name, alarm.message(&scene.settings())));
+    }
+}
+
+/// Says on stderr how many steps were not solved as asked.
+pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
+    let Tally { steps, unconverged_steps, stalled_steps, largest_residual, .. } = *tally;
+    if unconverged_steps == 0 {
+        return;
+    }
+    let instead = match tally.fallback_steps {
+        0 => String::new(),
+        steps => format!(", {steps} fell back on bounds of friction, solved with a certificate"),
+    };
+    note_line(legible(&format!(
+        "{} (Bond {}, time step {} s): {unconverged_steps} of {steps} steps did not reach tolerance \
+         {:e} within {} sweeps, {stalled_steps} of them stalled (more sweeps would be of no \
+         use){instead}; largest residual {largest_residual:.1e}",
+        scene.name,
+        scene.parameters.bond,
+        scene.parameters.time_step_secs,
+        scene.solver.tolerance,
+        scene.solver.max_sweeps,
+    )));
+}
+
+/// Says on stderr which method `auto` took at last.
+fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
+    if scene.solver.method == Method::Auto {
+        let contacts = simulation.contacts_together();
+        let name = simulation.picked_method().name();
+        let of = if scene.solver.islands { " of the largest island" } else { "" };
+        note_line(format_args!("auto took {name} for {contacts} contacts{of}"));
     }
 }

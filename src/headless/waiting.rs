@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::HeadlessOptions;
-use super::checkpoint::{Marks, WAITING};
+use super::folder::{Marks, WAITING};
 use crate::error::{Error, Result};
 use crate::render::{Style, automatic_range, force_reference};
 use crate::sim::Snapshot;
@@ -15,7 +15,7 @@ use crate::sim::Snapshot;
 /// States of a run whose colours and widths follow the state: all frames need one scale, and that is
 /// known at the end. They wait in a file that has no name, so that it is gone with the process, unless the
 /// run is to go on after that.
-pub(crate) struct KeptStates {
+pub(crate) struct WaitingStates {
     path: PathBuf,
     file: File,
     /// Where in the file each state begins, and where the last one ends.
@@ -27,12 +27,12 @@ pub(crate) struct KeptStates {
 /// A state with the number of its picture.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Kept {
+struct WaitingState {
     number: usize,
     snapshot: Snapshot,
 }
 
-impl KeptStates {
+impl WaitingStates {
     /// Where states wait if the style asks for it; in a file that can `outlive` the process if that is asked
     /// for.
     ///
@@ -73,7 +73,7 @@ impl KeptStates {
         let file = File::options().read(true).write(true).create(true).truncate(false).open(path);
         let mut states = Self::of(path, file.map_err(|error| Error::file(path, error))?);
         while states.end() < length {
-            let Kept { snapshot, .. } = states.read()?;
+            let WaitingState { snapshot, .. } = states.read()?;
             states.measure(style, &snapshot);
             let end = states.file.stream_position().map_err(|error| states.refuse(error))?;
             states.places.push(end);
@@ -100,9 +100,9 @@ impl KeptStates {
     /// Adds a state that is to be drawn in that style.
     pub(crate) fn add(&mut self, style: &Style, number: usize, snapshot: Snapshot) -> Result<()> {
         self.measure(style, &snapshot);
-        let kept = rmp_serde::to_vec_named(&Kept { number, snapshot });
-        let kept = kept.map_err(|error| self.refuse(error))?;
-        let bytes = [&(kept.len() as u64).to_le_bytes()[..], &kept].concat();
+        let state = rmp_serde::to_vec_named(&WaitingState { number, snapshot });
+        let state = state.map_err(|error| self.refuse(error))?;
+        let bytes = [&(state.len() as u64).to_le_bytes()[..], &state].concat();
         self.file.write_all(&bytes).map_err(|error| self.refuse(error))?;
         self.places.push(self.end() + bytes.len() as u64);
         Ok(())
@@ -126,7 +126,7 @@ impl KeptStates {
     pub(crate) fn get(&mut self, index: usize) -> Result<(usize, Snapshot)> {
         let place = SeekFrom::Start(self.places[index]);
         self.file.seek(place).map_err(|error| self.refuse(error))?;
-        let Kept { number, snapshot } = self.read()?;
+        let WaitingState { number, snapshot } = self.read()?;
         Ok((number, snapshot))
     }
 
@@ -135,7 +135,7 @@ impl KeptStates {
     }
 
     /// The state that begins where the file is read from.
-    fn read(&self) -> Result<Kept> {
+    fn read(&self) -> Result<WaitingState> {
         let (mut file, mut length, mut bytes) = (&self.file, [0; 8], Vec::new());
         let read = file.read_exact(&mut length);
         // As much room as there are bytes, whatever a damaged file asks for.

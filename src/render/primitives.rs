@@ -1,0 +1,234 @@
+//! What a renderer draws: discs and straight strokes in pixels, in drawing order, on an opaque ground.
+//!
+//! World positions become pixels in [`super::Camera::project`], in f64 and relative to the middle of the picture, so
+//! that f32 suffices here however far from the origin the scene lies. `shaders/disc.wgsl` and `shaders/link.wgsl` draw
+//! the primitives on a GPU, and [`draw`] evaluates the same distance fields on the processor. It rounds to 8 bits
+//! after every instance as a render target does, which keeps it within 3/255 of every GPU in every channel.
+
+use glam::{DVec2, Vec2};
+use image::RgbaImage;
+
+use super::Colour;
+
+/// Primitives of one kind that are drawn together, first to last.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Batch {
+    /// Discs.
+    Discs(Vec<DiscInstance>),
+    /// Links.
+    Links(Vec<LinkInstance>),
+}
+
+/// All that a renderer needs. Later batches cover earlier ones.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Picture {
+    /// Colour of the ground; its opacity is ignored.
+    pub background: Colour,
+    /// What lies on it.
+    pub batches: Vec<Batch>,
+}
+
+impl Picture {
+    /// A picture with nothing on its ground.
+    pub(crate) fn new(background: Colour) -> Self {
+        Self { background: background.with_alpha(1.0), batches: Vec::new() }
+    }
+
+    /// Lays discs on top; an empty list leaves no batch.
+    pub(crate) fn push_discs(&mut self, discs: Vec<DiscInstance>) {
+        if !discs.is_empty() {
+            self.batches.push(Batch::Discs(discs));
+        }
+    }
+
+    /// Lays links on top; an empty list leaves no batch.
+    pub(crate) fn push_links(&mut self, links: Vec<LinkInstance>) {
+        if !links.is_empty() {
+            self.batches.push(Batch::Links(links));
+        }
+    }
+}
+
+/// A disc thinner than a pixel is drawn one pixel wide and fainter instead.
+const LEAST_RADIUS_PX: f32 = 0.5;
+
+/// One disc. Lengths in pixels; positions relative to the middle of the picture, y up.
+#[repr(C)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DiscInstance {
+    /// Centre.
+    pub centre: [f32; 2],
+    /// Radius, outline included.
+    pub radius: f32,
+    /// Width of the outline, which lies inside the radius; 0 for none.
+    pub outline_width: f32,
+    /// Half the width of the mark from the centre to the outline; 0 for none.
+    pub mark_half_width: f32,
+    /// Cosine and sine of the angle that the mark shows.
+    pub direction: [f32; 2],
+    /// Colour inside.
+    pub fill: Colour,
+    /// Colour of outline and mark.
+    pub outline: Colour,
+}
+
+impl DiscInstance {
+    /// A disc of one colour.
+    pub(crate) fn plain(centre: [f32; 2], radius: f32, colour: Colour) -> Self {
+        Self {
+            centre,
+            radius,
+            outline_width: 0.0,
+            mark_half_width: 0.0,
+            direction: [1.0, 0.0],
+            fill: colour,
+            outline: colour,
+        }
+    }
+}
+
+impl Shade for DiscInstance {
+    fn bounds(&self) -> [Vec2; 2] {
+        let centre = Vec2::from(self.centre);
+        let reach = Vec2::splat(self.radius.max(LEAST_RADIUS_PX) + 0.5);
+        [centre - reach, centre + reach]
+    }
+
+    fn shade(&self, point: Vec2) -> [f32; 4] {
+        let offset = point - Vec2::from(self.centre);
+        let distance = offset.length();
+
+        let radius = self.radius.max(LEAST_RADIUS_PX);
+        let faint = (self.radius / LEAST_RADIUS_PX).min(1.0);
+        let whole = coverage(distance - radius) * faint * faint;
+        let inner_radius = self.radius - self.outline_width;
+        let inner = coverage(distance - inner_radius).min(whole);
+
+        let outline = self.outline.premultiplied();
+        let mut inside = self.fill.premultiplied();
+        if self.mark_half_width > 0.0 {
+            let direction = Vec2::from(self.direction);
+            let along = offset.dot(direction).clamp(0.0, inner_radius.max(0.0));
+            let half_width = self.mark_half_width.max(LEAST_RADIUS_PX);
+            let thin = (self.mark_half_width / LEAST_RADIUS_PX).min(1.0);
+            let marked = coverage((offset - along * direction).length() - half_width) * thin;
+            inside = mix(inside, outline, marked);
+        }
+        let ring = scale_colour(outline, whole - inner);
+        let core = scale_colour(inside, inner);
+        std::array::from_fn(|channel| core[channel] + ring[channel])
+    }
+}
+
+/// A link thinner than a pixel is drawn one pixel wide and fainter instead.
+const LEAST_HALF_WIDTH_PX: f32 = 0.5;
+
+/// One link. Lengths in pixels; positions relative to the middle of the picture, y up.
+#[repr(C)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LinkInstance {
+    /// One end, in the middle of its round cap.
+    pub start: [f32; 2],
+    /// The other end.
+    pub end: [f32; 2],
+    /// Half the width.
+    pub half_width: f32,
+    /// Colour.
+    pub colour: Colour,
+}
+
+impl LinkInstance {
+    /// A link between two points.
+    pub(super) fn new(ends: [DVec2; 2], half_width: f32, colour: Colour) -> Self {
+        let [start, end] = ends.map(|end| end.as_vec2().into());
+        Self { start, end, half_width, colour }
+    }
+}
+
+impl Shade for LinkInstance {
+    fn bounds(&self) -> [Vec2; 2] {
+        let (start, end) = (Vec2::from(self.start), Vec2::from(self.end));
+        let reach = Vec2::splat(self.half_width.max(LEAST_HALF_WIDTH_PX) + 0.5);
+        [start.min(end) - reach, start.max(end) + reach]
+    }
+
+    fn shade(&self, point: Vec2) -> [f32; 4] {
+        let start = Vec2::from(self.start);
+        let offset = point - start;
+        let span = Vec2::from(self.end) - start;
+        let squared = span.length_squared();
+        let part = if squared > 0.0 { (offset.dot(span) / squared).clamp(0.0, 1.0) } else { 0.0 };
+        let distance = (offset - span * part).length();
+
+        let half_width = self.half_width.max(LEAST_HALF_WIDTH_PX);
+        let faint = (self.half_width / LEAST_HALF_WIDTH_PX).min(1.0);
+        scale_colour(self.colour.premultiplied(), coverage(distance - half_width) * faint)
+    }
+}
+
+/// A primitive as a distance field in the plane of the picture, pixels, y up.
+trait Shade {
+    /// Corners of a box outside which the primitive has no effect on pixel middles.
+    fn bounds(&self) -> [Vec2; 2];
+    /// Premultiplied colour, times the covered part, of the pixel with this middle.
+    fn shade(&self, point: Vec2) -> [f32; 4];
+}
+
+/// Covered part of a pixel whose middle is `distance` px outside an edge.
+fn coverage(distance: f32) -> f32 {
+    (0.5 - distance).clamp(0.0, 1.0)
+}
+
+fn scale_colour(colour: [f32; 4], factor: f32) -> [f32; 4] {
+    colour.map(|channel| channel * factor)
+}
+
+fn mix(from: [f32; 4], to: [f32; 4], part: f32) -> [f32; 4] {
+    std::array::from_fn(|channel| from[channel] * (1.0 - part) + to[channel] * part)
+}
+
+/// Draws a picture of `width` × `height` pixels.
+pub(super) fn draw(picture: &Picture, width: u32, height: u32) -> RgbaImage {
+    let ground = picture.background.with_alpha(1.0).to_rgba8();
+    let mut image = RgbaImage::from_pixel(width, height, ground);
+    for batch in &picture.batches {
+        match batch {
+            Batch::Discs(discs) => discs.iter().for_each(|disc| draw_one(&mut image, disc)),
+            Batch::Links(links) => links.iter().for_each(|link| draw_one(&mut image, link)),
+        }
+    }
+    image
+}
+
+/// Lays the shaded colour over the pixels of the bounding box.
+fn draw_one(image: &mut RgbaImage, primitive: &impl Shade) {
+    let (width, height) = image.dimensions();
+    let middle = Vec2::new(width as f32, height as f32) / 2.0;
+    let [low, high] = primitive.bounds();
+    // Casts from float to integer saturate, so a box outside the picture becomes an empty range.
+    let columns = (low.x + middle.x) as u32..((high.x + middle.x).ceil() as u32).min(width);
+    let rows = (middle.y - high.y) as u32..((middle.y - low.y).ceil() as u32).min(height);
+    let stride = 4 * width as usize;
+    let pixels: &mut [u8] = image;
+    for row in rows {
+        let y = middle.y - (row as f32 + 0.5);
+        let line = &mut pixels[row as usize * stride..][..stride];
+        for column in columns.clone() {
+            let colour = primitive.shade(Vec2::new(column as f32 + 0.5 - middle.x, y));
+            if colour[3] > 0.0 {
+                let start = 4 * column as usize;
+                blend(&mut line[start..start + 4], colour);
+            }
+        }
+    }
+}
+
+fn blend(pixel: &mut [u8], colour: [f32; 4]) {
+    let [red, green, blue, alpha] = colour.map(|channel| (channel * 255.0 + 0.5) as u32);
+    let through = 255 - alpha;
+    for (under, over) in pixel.iter_mut().zip([red, green, blue, alpha]) {
+        *under = (over + (u32::from(*under) * through + 127) / 255).min(255) as u8;
+    }
+}
