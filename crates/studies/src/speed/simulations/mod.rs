@@ -8,6 +8,8 @@
 //! one solved ten times tighter than the other, differ by the *floor*, and no error below it means
 //! anything. The law `range` is another model of the same pile, and is held against references of its own.
 
+mod report;
+
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -64,9 +66,9 @@ fn section(bench: &Bench, plan: &SimulationPlan) -> Result<ChartSection> {
     let simulated = run_all(plan, &states, &runner, &references)?;
     let name = format!("chart-simulation{}", plan.label);
     Ok(ChartSection {
-        sheet: sheet(bench, plan, &simulated, &references),
-        report: report(plan, &simulated, &references),
-        tables: vec![(format!("{name}-points"), table(plan, &simulated))],
+        sheet: report::sheet(bench, plan, &simulated, &references),
+        report: report::report(plan, &simulated, &references),
+        tables: vec![(format!("{name}-points"), report::table(plan, &simulated))],
         name,
     })
 }
@@ -497,192 +499,5 @@ fn summed_up<'a>(
     }
 }
 
-/// Draws a point for each variant, budget and Δt: against the same Δt, and against the finest one.
-fn sheet(
-    bench: &Bench,
-    plan: &SimulationPlan,
-    simulated: &[SimulatedPoint],
-    references: &References,
-) -> Sheet {
-    let good = || simulated.iter().filter(|point| point.failed.is_none()).map(|point| point.speed);
-    let slowest = 0.7 * good().fold(f64::INFINITY, f64::min).min(1.0);
-    let fastest = 1.5 * good().fold(0.0, f64::max).max(10.0 * slowest);
-    let finest = format!("Δt = {:e} s", plan.finest_secs);
-    let panels = [("the same Δt", Some(references.floor(plan))), (finest.as_str(), None)];
-    let mut charts: Vec<Chart> = panels
-        .into_iter()
-        .enumerate()
-        .map(|(panel, (against, floor))| {
-            let chart = Chart::new(
-                format!("Error of the slump against {against}"),
-                Axis::log("simulated seconds per second", slowest, fastest),
-                Axis::log("mean error of Δy_G", LEAST_ERROR, 1.0),
-            );
-            with_errors(chart, plan, simulated, panel, floor)
-        })
-        .collect();
-    let legend = Chart::legend_of(&mut charts, 0.42);
-    charts.push(legend);
-    let steps = listed(&plan.time_steps_secs, |step| format!("{step:e} s"));
-    let (piles, grains) = (plan.piles.len(), plan.made_as.grains);
-    let caption = bench.caption(&[
-        &format!(
-            "A point for each method, effort and Δt (the larger the dot, the larger: {steps}); means over {piles} piles of {grains} grains."
-        ),
-        &format!(
-            "References by {}. Slump after {} s. On the lower edge: the reference itself.",
-            plan.reference.name, plan.duration_secs
-        ),
-    ]);
-    Sheet { size: (1800, 900), charts, caption }.high_enough()
-}
-
-/// Adds the points with their Pareto front, and how far two references are from each other.
-fn with_errors(
-    mut chart: Chart,
-    plan: &SimulationPlan,
-    simulated: &[SimulatedPoint],
-    panel: usize,
-    floor: Option<f64>,
-) -> Chart {
-    if let Some(floor) = floor {
-        let line = points([chart.x.from, chart.x.to].map(|x| (x, floor.max(LEAST_ERROR))));
-        let name = "two references\nfrom each other";
-        chart.layers.push(Layer::curve(name, line, GREY, Look::Dashes(2)));
-    }
-    // Below the floor no error is better than another.
-    let least = floor.unwrap_or(0.0).max(LEAST_ERROR);
-    let good = || simulated.iter().filter(|point| point.failed.is_none());
-    let honest: Vec<_> =
-        good().map(|point| (point.speed, point.errors[panel].max(least))).collect();
-    let front = pareto_front(&honest).into_iter().map(|index| honest[index]);
-    chart.layers.push(Layer::curve("Pareto front", points(front), INK, Look::Line(1)));
-    for (number, variant) in plan.variants.iter().enumerate() {
-        let is_its = |point: &&SimulatedPoint| point.variant.variant == number;
-        let count = simulated.iter().filter(is_its).count();
-        let name = match count - good().filter(is_its).count() {
-            0 => variant.name.clone(),
-            failed => format!("{}\n{failed} of {count} failed", variant.name),
-        };
-        for (size, time_step_secs) in plan.time_steps_secs.iter().enumerate() {
-            let here = good().filter(is_its).filter(|one| one.time_step_secs == *time_step_secs);
-            let places = points(here.map(|one| (one.speed, one.errors[panel].max(LEAST_ERROR))));
-            let make = if size == 0 { Layer::curve } else { Layer::quiet };
-            let dots = variant.dots(4 + 2 * size as u32);
-            chart.layers.push(make(name.clone(), places, variant.colour(), dots));
-        }
-    }
-    chart
-}
-
-/// The report's lines.
-fn report(plan: &SimulationPlan, simulated: &[SimulatedPoint], references: &References) -> String {
-    let [tight, tighter] = plan.tolerances;
-    let [unsolved, steps] = references.unsolved();
-    let mut lines = vec![
-        format!(
-            "References are by {}. Two at the same Δt, solved to residuals of {tight:e} and {tighter:e}, differ by \
-             {:.4} in the mean: no smaller error means anything. {unsolved} of their {steps} steps were not solved as \
-             asked. Runs that take more than {} s a simulated second are given up as too slow. Every time is the least \
-             of {}.",
-            plan.reference.name,
-            references.floor(plan),
-            plan.limit_secs,
-            if plan.repeats == 1 { "1 run".into() } else { format!("{} runs", plan.repeats) }
-        ),
-        "\n| method | Δt, s | effort | simulated s per s | error, same Δt | error, finest Δt | verdicts agreed |\n|---|---|---|---|---|---|---|".into(),
-    ];
-    for point in simulated {
-        let (name, budget) = (&plan.variants[point.variant.variant].name, &point.variant.budget);
-        let numbers = match point.failed {
-            Some(why) => format!("{why} | | | |"),
-            None => format!(
-                "{:.2} | {:.4} | {:.4} | {:.0} % |",
-                point.speed,
-                point.errors[0],
-                point.errors[1],
-                100.0 * point.verdicts
-            ),
-        };
-        lines.push(format!("| {name} | {:e} | {budget} | {numbers}", point.time_step_secs));
-    }
-    lines.join("\n")
-}
-
-/// Every point as CSV.
-fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> String {
-    let mut text = String::from(
-        "method,time_step_secs,effort,failed,simulated_secs_per_sec,error_same_step,error_finest_step,\
-         verdicts_agreed,mean_overlap,unconverged_steps,steps\n",
-    );
-    for point in simulated {
-        let runs = &point.runs;
-        let overlap = mean(&runs.iter().map(|run| run.mean_overlap).collect::<Vec<_>>()).mean;
-        let sum = |number: fn(&TimedRun) -> u64| runs.iter().map(number).sum::<u64>();
-        let numbers = match point.failed {
-            Some(why) => format!("{why},,,,,,,"),
-            None => format!(
-                ",{},{},{},{},{overlap},{},{}",
-                point.speed,
-                point.errors[0],
-                point.errors[1],
-                point.verdicts,
-                sum(|run| run.unconverged_steps),
-                sum(|run| run.steps)
-            ),
-        };
-        let (name, budget) = (&plan.variants[point.variant.variant].name, &point.variant.budget);
-        text.push_str(&format!("{name},{:e},{budget},{numbers}\n", point.time_step_secs));
-    }
-    text
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// References to each pile and tolerance whose slumps tell them apart.
-    fn made_up(plan: &SimulationPlan) -> References {
-        let reference = |case: ReferenceCase| {
-            let ReferenceCase { time_step_secs, pile, tolerance, .. } = case;
-            let run = TimedRun {
-                ending: TimedEnding::Done,
-                least_secs: 2.0,
-                simulated_secs: 1.0,
-                steps: 10,
-                unconverged_steps: tolerance as u64,
-                slump: pile as f64 + 0.01 * tolerance as f64 + time_step_secs,
-                mean_overlap: 1e-4,
-            };
-            (case, run)
-        };
-        References(References::cases(plan).into_iter().map(reference).collect())
-    }
-
-    #[test]
-    fn every_plan_has_its_references_once() {
-        for plan in [
-            SimulationPlan::of_paper(true),
-            SimulationPlan::of_paper(false),
-            SimulationPlan::of_large(true),
-            SimulationPlan::of_large(false),
-        ] {
-            let references = made_up(&plan);
-            for (number, (case, _)) in references.0.iter().enumerate() {
-                let before = &references.0[..number];
-                assert!(before.iter().all(|(other, _)| other != case), "none is wanted twice");
-            }
-            for &law in &plan.laws {
-                for &time_step_secs in plan.time_steps_secs.iter().chain([&plan.finest_secs]) {
-                    for pile in 0..plan.piles.len() {
-                        let case = ReferenceCase { law, time_step_secs, pile, tolerance: 0 };
-                        assert_eq!(references.slump(case), pile as f64 + time_step_secs);
-                    }
-                }
-            }
-            assert!((references.floor(&plan) - 0.01).abs() < 1e-12);
-            let [unsolved, steps] = references.unsolved();
-            assert!(unsolved > 0 && unsolved < steps);
-        }
-    }
-}
+mod tests;

@@ -1,0 +1,147 @@
+//! How simulations are drawn and told.
+
+use super::*;
+
+/// Draws a point for each variant, budget and Δt: against the same Δt, and against the finest one.
+pub(super) fn sheet(
+    bench: &Bench,
+    plan: &SimulationPlan,
+    simulated: &[SimulatedPoint],
+    references: &References,
+) -> Sheet {
+    let good = || simulated.iter().filter(|point| point.failed.is_none()).map(|point| point.speed);
+    let slowest = 0.7 * good().fold(f64::INFINITY, f64::min).min(1.0);
+    let fastest = 1.5 * good().fold(0.0, f64::max).max(10.0 * slowest);
+    let finest = format!("Δt = {:e} s", plan.finest_secs);
+    let panels = [("the same Δt", Some(references.floor(plan))), (finest.as_str(), None)];
+    let mut charts: Vec<Chart> = panels
+        .into_iter()
+        .enumerate()
+        .map(|(panel, (against, floor))| {
+            let chart = Chart::new(
+                format!("Error of the slump against {against}"),
+                Axis::log("simulated seconds per second", slowest, fastest),
+                Axis::log("mean error of Δy_G", LEAST_ERROR, 1.0),
+            );
+            with_errors(chart, plan, simulated, panel, floor)
+        })
+        .collect();
+    let legend = Chart::legend_of(&mut charts, 0.42);
+    charts.push(legend);
+    let steps = listed(&plan.time_steps_secs, |step| format!("{step:e} s"));
+    let (piles, grains) = (plan.piles.len(), plan.made_as.grains);
+    let caption = bench.caption(&[
+        &format!(
+            "A point for each method, effort and Δt (the larger the dot, the larger: {steps}); means over {piles} piles of {grains} grains."
+        ),
+        &format!(
+            "References by {}. Slump after {} s. On the lower edge: the reference itself.",
+            plan.reference.name, plan.duration_secs
+        ),
+    ]);
+    Sheet { size: (1800, 900), charts, caption }.high_enough()
+}
+
+/// Adds the points with their Pareto front, and how far two references are from each other.
+fn with_errors(
+    mut chart: Chart,
+    plan: &SimulationPlan,
+    simulated: &[SimulatedPoint],
+    panel: usize,
+    floor: Option<f64>,
+) -> Chart {
+    if let Some(floor) = floor {
+        let line = points([chart.x.from, chart.x.to].map(|x| (x, floor.max(LEAST_ERROR))));
+        let name = "two references\nfrom each other";
+        chart.layers.push(Layer::curve(name, line, GREY, Look::Dashes(2)));
+    }
+    // Below the floor no error is better than another.
+    let least = floor.unwrap_or(0.0).max(LEAST_ERROR);
+    let good = || simulated.iter().filter(|point| point.failed.is_none());
+    let honest: Vec<_> =
+        good().map(|point| (point.speed, point.errors[panel].max(least))).collect();
+    let front = pareto_front(&honest).into_iter().map(|index| honest[index]);
+    chart.layers.push(Layer::curve("Pareto front", points(front), INK, Look::Line(1)));
+    for (number, variant) in plan.variants.iter().enumerate() {
+        let is_its = |point: &&SimulatedPoint| point.variant.variant == number;
+        let count = simulated.iter().filter(is_its).count();
+        let name = match count - good().filter(is_its).count() {
+            0 => variant.name.clone(),
+            failed => format!("{}\n{failed} of {count} failed", variant.name),
+        };
+        for (size, time_step_secs) in plan.time_steps_secs.iter().enumerate() {
+            let here = good().filter(is_its).filter(|one| one.time_step_secs == *time_step_secs);
+            let places = points(here.map(|one| (one.speed, one.errors[panel].max(LEAST_ERROR))));
+            let make = if size == 0 { Layer::curve } else { Layer::quiet };
+            let dots = variant.dots(4 + 2 * size as u32);
+            chart.layers.push(make(name.clone(), places, variant.colour(), dots));
+        }
+    }
+    chart
+}
+
+/// The report's lines.
+pub(super) fn report(
+    plan: &SimulationPlan,
+    simulated: &[SimulatedPoint],
+    references: &References,
+) -> String {
+    let [tight, tighter] = plan.tolerances;
+    let [unsolved, steps] = references.unsolved();
+    let mut lines = vec![
+        format!(
+            "References are by {}. Two at the same Δt, solved to residuals of {tight:e} and {tighter:e}, differ by \
+             {:.4} in the mean: no smaller error means anything. {unsolved} of their {steps} steps were not solved as \
+             asked. Runs that take more than {} s a simulated second are given up as too slow. Every time is the least \
+             of {}.",
+            plan.reference.name,
+            references.floor(plan),
+            plan.limit_secs,
+            if plan.repeats == 1 { "1 run".into() } else { format!("{} runs", plan.repeats) }
+        ),
+        "\n| method | Δt, s | effort | simulated s per s | error, same Δt | error, finest Δt | verdicts agreed |\n|---|---|---|---|---|---|---|".into(),
+    ];
+    for point in simulated {
+        let (name, budget) = (&plan.variants[point.variant.variant].name, &point.variant.budget);
+        let numbers = match point.failed {
+            Some(why) => format!("{why} | | | |"),
+            None => format!(
+                "{:.2} | {:.4} | {:.4} | {:.0} % |",
+                point.speed,
+                point.errors[0],
+                point.errors[1],
+                100.0 * point.verdicts
+            ),
+        };
+        lines.push(format!("| {name} | {:e} | {budget} | {numbers}", point.time_step_secs));
+    }
+    lines.join("\n")
+}
+
+/// Every point as CSV.
+pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> String {
+    let mut text = String::from(
+        "method,time_step_secs,effort,failed,simulated_secs_per_sec,error_same_step,error_finest_step,\
+         verdicts_agreed,mean_overlap,unconverged_steps,steps\n",
+    );
+    for point in simulated {
+        let runs = &point.runs;
+        let overlap = mean(&runs.iter().map(|run| run.mean_overlap).collect::<Vec<_>>()).mean;
+        let sum = |number: fn(&TimedRun) -> u64| runs.iter().map(number).sum::<u64>();
+        let numbers = match point.failed {
+            Some(why) => format!("{why},,,,,,,"),
+            None => format!(
+                ",{},{},{},{},{overlap},{},{}",
+                point.speed,
+                point.errors[0],
+                point.errors[1],
+                point.verdicts,
+                sum(|run| run.unconverged_steps),
+                sum(|run| run.steps)
+            ),
+        };
+        let (name, budget) = (&plan.variants[point.variant.variant].name, &point.variant.budget);
+        text.push_str(&format!("{name},{:e},{budget},{numbers}\n", point.time_step_secs));
+    }
+    text
+}
