@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use slump::app::{AppState, Canvas, Preferences, SOFTWARE_FRAME_INTERVAL, theme, ui};
 use slump::config::Config;
-use slump::live::{Command, Frame, Live, LiveOptions, Pace, Start};
+use slump::live::{Command, Live, LiveFrame, LiveOptions, LiveStart, Pace};
 use slump::sim::{Simulation, Tally};
 use slump::solver::{Fallback, Method, SolverSettings, StopTest};
 
@@ -43,7 +43,7 @@ impl Window {
     fn open(simulation: Simulation) -> Self {
         let live = Live::spawn(LiveOptions::default()).expect("a thread");
         let preferences =
-            Preferences { full_speed: true, other_piles: false, ..Preferences::default() };
+            Preferences { full_speed: true, ensemble: false, ..Preferences::default() };
         let mut state = AppState::new(live, Config::default(), preferences);
         state.live.send(load(simulation));
         state.live.send(Command::SetPace(Pace::Max));
@@ -79,7 +79,7 @@ impl Window {
                 std::thread::sleep(Duration::from_millis(57));
                 let start = Instant::now();
                 let told = self.state.live.send(Command::Pause);
-                let stands = |frame: &Frame| frame.acknowledged >= told && !frame.playing;
+                let stands = |frame: &LiveFrame| frame.acknowledged >= told && !frame.playing;
                 while !stands(self.state.live.latest()) {
                     std::thread::sleep(Duration::from_micros(100));
                 }
@@ -105,7 +105,7 @@ fn load(simulation: Simulation) -> Command {
     Command::Load(Box::new(move |_| {
         let view = [glam::DVec2::new(-0.1, 0.0), glam::DVec2::new(0.1, 0.06)];
         let (name, held_by, tally) = ("bench".to_owned(), Vec::new(), Tally::default());
-        Ok(Start {
+        Ok(LiveStart {
             name,
             simulation,
             tally,
@@ -114,7 +114,7 @@ fn load(simulation: Simulation) -> Command {
             view,
             slumps: true,
             worlds: Vec::new(),
-            record: None,
+            history: None,
         })
     }))
 }
@@ -151,12 +151,12 @@ fn beside_other_piles() {
         let beside = turn % 2 == 1;
         let live = Live::spawn(LiveOptions::default()).expect("a thread");
         let preferences =
-            Preferences { full_speed: true, other_piles: beside, ..Preferences::default() };
+            Preferences { full_speed: true, ensemble: beside, ..Preferences::default() };
         let mut state = AppState::new(live, Config::default(), preferences);
-        state.other_piles.keep_in(cache.path().join(turn.to_string()));
+        state.ensemble.keep_in(cache.path().join(turn.to_string()));
         let context = egui::Context::default();
         theme::install(&context);
-        while state.frame.worlds.is_empty() || beside && state.other_piles.threads() == 0 {
+        while state.frame.worlds.is_empty() || beside && state.ensemble.threads() == 0 {
             let _ = context.run_ui(egui::RawInput::default(), |root| ui(root, &mut state));
         }
         std::thread::sleep(Duration::from_millis(300));

@@ -95,9 +95,6 @@ fn array(py: Python<'_>, values: Values) -> PyResult<Bound<'_, PyAny>> {
 }
 
 /// The text of a dictionary. Arrays and numbers of numpy's may be in it.
-///
-/// # Errors
-/// Where something in it is no data.
 pub(crate) fn text_of(what: &str, data: &Bound<'_, PyAny>) -> PyResult<String> {
     let py = data.py();
     let options = PyDict::new(py);
@@ -112,17 +109,11 @@ pub(crate) fn text_of(what: &str, data: &Bound<'_, PyAny>) -> PyResult<String> {
 }
 
 /// What a text says, in dictionaries, lists, numbers and words.
-///
-/// # Errors
-/// Where it is no JSON.
 pub(crate) fn parsed<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (text,))
 }
 
 /// Data of the program, in dictionaries, lists, numbers and words.
-///
-/// # Errors
-/// Where JSON cannot say it.
 pub(crate) fn data_of<'py>(py: Python<'py>, data: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(data).map_err(|error| {
         PyRuntimeError::new_err(format!("the program's own data are no JSON: {error}"))

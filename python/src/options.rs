@@ -18,9 +18,6 @@ pub(crate) struct GivenOptions(Vec<(String, String)>);
 
 impl GivenOptions {
     /// Adds keyword arguments, of which only those in `allowed` may be given.
-    ///
-    /// # Errors
-    /// Where there is another, or a value that is none of an option's.
     pub(crate) fn add_all(
         &mut self,
         keywords: Option<&Bound<'_, PyDict>>,
@@ -39,9 +36,6 @@ impl GivenOptions {
     }
 
     /// Adds one more, unless its value is none.
-    ///
-    /// # Errors
-    /// Where its value is none of an option's.
     pub(crate) fn add(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         if !value.is_none() {
             self.0.push((name.replace('_', "-"), text_of(name, value)?));
@@ -55,9 +49,6 @@ impl GivenOptions {
     }
 
     /// What the command line makes of them.
-    ///
-    /// # Errors
-    /// In its own sentence.
     pub(crate) fn config(&self) -> PyResult<Config> {
         let pairs = self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         Config::of_options(pairs).map_err(exception)

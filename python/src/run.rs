@@ -32,9 +32,6 @@ pub(crate) struct Run {
 
 impl Run {
     /// A run at its start.
-    ///
-    /// # Errors
-    /// Names the first field outside its range.
     pub(crate) fn start(scene: Scene) -> Result<Self> {
         let simulation = scene.simulation()?;
         Ok(Self::of(SavedState::new(scene, simulation, Tally::default())))
@@ -49,9 +46,6 @@ impl Run {
     }
 
     /// Saves it as it is now.
-    ///
-    /// # Errors
-    /// Where it is no longer finite, so that it could not go on, or the file cannot be written.
     pub(crate) fn save(&self, path: &Path) -> Result<()> {
         let gone = |kind| self.simulation.alarms().iter().any(|alarm| alarm.kind == kind);
         if gone(AlarmKind::NotFinite) {
@@ -73,9 +67,6 @@ impl Run {
     }
 
     /// Records it from its present state on.
-    ///
-    /// # Errors
-    /// Names what is outside its range, or what is wrong with the folder.
     pub(crate) fn record(
         &mut self,
         folder: &Path,
@@ -94,9 +85,6 @@ impl Run {
     }
 
     /// Ends its recording, if there is one.
-    ///
-    /// # Errors
-    /// Where something could not be written.
     pub(crate) fn end_recording(&mut self) -> Result<()> {
         self.recording.take().map_or(Ok(()), Recording::finish)
     }

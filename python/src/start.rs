@@ -35,9 +35,6 @@ pub(crate) fn scene_as_data<'py>(
 }
 
 /// The scene that is asked for. Where grains have to settle, that is done here; Ctrl-C ends it.
-///
-/// # Errors
-/// Names what is unknown or outside its range, or the file that cannot be read.
 pub(crate) fn scene(
     py: Python<'_>,
     scene: Option<&Bound<'_, PyAny>>,
@@ -60,9 +57,6 @@ pub(crate) fn scene(
 }
 
 /// The run that goes on from the state in a file, with the changes that are asked for.
-///
-/// # Errors
-/// Names what is wrong with the file, or what is outside its range or asks for another start.
 pub(crate) fn restarted(
     py: Python<'_>,
     file: &Path,
@@ -132,9 +126,6 @@ const INITIAL: &str = "initial";
 
 /// The discs of a table: a dictionary of arrays, or a data frame, with the columns of the table of grains or the
 /// first of them.
-///
-/// # Errors
-/// Names the column that is missing, unknown, or no list as long as the others, or the row that is no disc.
 fn discs(table: &Bound<'_, PyAny>) -> PyResult<RecordedGrains> {
     let named = |name: String| {
         let values = values_of(&name, &table.get_item(&name)?)?;

@@ -25,9 +25,6 @@ pub(crate) fn remember_this_process() {
 }
 
 /// Does work that may be shared out to threads.
-///
-/// # Errors
-/// Where a forked process cannot start them.
 pub(crate) fn shared_out<T: Send>(
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, ThreadPoolBuildError> {
@@ -50,9 +47,6 @@ pub(crate) fn shared_out<T: Send>(
 }
 
 /// Takes so many steps, and calls `callback` with the simulation after each `every` of them.
-///
-/// # Errors
-/// What a step or the callback fails with, or that Ctrl-C was pressed. All steps until then were taken.
 pub(crate) fn take_steps(
     simulation: &Bound<'_, Simulation>,
     steps: u64,

@@ -1,11 +1,87 @@
-//! A user interface drawn into memory: pictures of plots, and measurements without a window.
+//! egui on a graphics device: the window's screen, and a canvas without one, for pictures of plots and measurements.
 
+use egui::{ClippedPrimitive, TexturesDelta};
+use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use image::RgbaImage;
 
-use super::graphics::Screen;
+use super::painting::{TargetFormat, fill};
+use super::plots::{PlotData, WorldCurve, draw};
+use super::theme;
 use crate::error::{Error, Result};
 use crate::render::Gpu;
 use crate::render::offscreen::{FORMAT, Target};
+
+/// Draws user interfaces into targets of one format.
+pub(super) struct Screen {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    renderer: Renderer,
+}
+
+impl Screen {
+    /// A screen for targets of this format.
+    pub(super) fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        format: wgpu::TextureFormat,
+    ) -> Self {
+        // Nothing here has gradients that would show steps.
+        let mut renderer = Renderer::new(
+            device,
+            format,
+            RendererOptions { dithering: false, ..RendererOptions::default() },
+        );
+        renderer.callback_resources.insert(TargetFormat(format));
+        Self { device: device.clone(), queue: queue.clone(), renderer }
+    }
+
+    /// Sends new and changed textures to the device: before the pass that needs them.
+    pub(super) fn update_textures(&mut self, delta: &TexturesDelta) {
+        for (id, changes) in &delta.set {
+            for change in changes {
+                self.renderer.update_texture(&self.device, &self.queue, *id, change);
+            }
+        }
+    }
+
+    /// Frees textures: after the pass that needed them last.
+    pub(super) fn free_textures(&mut self, delta: &TexturesDelta) {
+        for id in &delta.free {
+            self.renderer.free_texture(id);
+        }
+    }
+
+    /// Records the pass. Returns what is to be submitted before it.
+    pub(super) fn paint(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        size: [u32; 2],
+        pixels_per_point: f32,
+        primitives: &[ClippedPrimitive],
+    ) -> Vec<wgpu::CommandBuffer> {
+        let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
+        let commands =
+            self.renderer.update_buffers(&self.device, &self.queue, encoder, primitives, &screen);
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("window"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        self.renderer.render(&mut pass.forget_lifetime(), primitives, &screen);
+        commands
+    }
+}
 
 /// A graphics device without a window.
 pub struct Canvas {
@@ -87,4 +163,53 @@ impl Canvas {
         gpu.check()?;
         Ok(image)
     }
+}
+
+/// Pixels of a picture a point: words stay readable in print.
+const PIXELS_PER_POINT: f32 = 2.0;
+/// Passes until the axes have settled to the width of their labels.
+const PASSES: usize = 4;
+
+impl Canvas {
+    /// Draws a picture of plots, with light ink on a `dark` ground.
+    ///
+    /// # Errors
+    /// What the device reports.
+    pub(super) fn print(
+        &mut self,
+        data: &PlotData,
+        size: [u32; 2],
+        dark: bool,
+    ) -> Result<RgbaImage> {
+        let context = egui::Context::default();
+        theme::install(&context);
+        context.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
+        let contents = |ui: &mut egui::Ui| {
+            let ground = ui.visuals().extreme_bg_color;
+            fill(ui, ui.max_rect(), ground);
+            let frame = egui::Frame::new().inner_margin(12.0);
+            egui::CentralPanel::default_margins().frame(frame).show(ui, |ui| {
+                legend(ui, data);
+                draw(ui, data);
+            });
+        };
+        let mut image = None;
+        for pass in 1..=PASSES {
+            image = self.draw(&context, size, PIXELS_PER_POINT, pass == PASSES, contents)?;
+        }
+        Ok(image.unwrap_or_default())
+    }
+}
+
+/// What the colours mean, where there is more than one.
+fn legend(ui: &mut egui::Ui, data: &PlotData) {
+    if data.worlds.len() < 2 {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        for WorldCurve { name, colour, .. } in &data.worlds {
+            ui.label(egui::RichText::new("■").color(*colour));
+            ui.label(name);
+        }
+    });
 }

@@ -5,15 +5,79 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 
-use super::taken::{Opened, TakenRun};
-use super::work::{Telling, Work};
+use serde::{Deserialize, Serialize};
+
+use super::opening::{Opened, TakenRun};
+use super::work::{Reporter, Work};
 use crate::config::run_facts;
-use crate::data::{DataSettings, Recording, RecordingFolder, RunFacts, Times, formats_of};
+use crate::data::{
+    DEFAULT_FORMAT, DataSettings, FormatName, Recording, RecordingFolder, RunFacts, Times,
+    formats_of,
+};
 use crate::error::{Error, Result};
 use crate::headless::told_of_data;
-use crate::live::{Change, HandMade, Replay};
+use crate::live::{ControlsChange, HandEdit, WorldRecord};
 use crate::sim::{Edit, Pull, RunEnding, Simulation};
 use crate::world::Disc;
+
+/// What outlives the window.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct DataChoices {
+    /// The folder of the recording; below that of all files, unless it says otherwise.
+    pub folder: PathBuf,
+    /// Simulated time between two frames, s.
+    pub every_secs: f64,
+    /// A frame after each step, whatever `every_secs` says.
+    pub each_step: bool,
+    /// The files that are written.
+    pub formats: Vec<FormatName>,
+}
+
+impl Default for DataChoices {
+    fn default() -> Self {
+        Self {
+            folder: PathBuf::from("data"),
+            every_secs: 0.01,
+            each_step: false,
+            formats: vec![DEFAULT_FORMAT],
+        }
+    }
+}
+
+impl DataChoices {
+    /// As recordings are asked for.
+    pub(crate) fn settings(&self) -> DataSettings {
+        let every_secs = (!self.each_step).then_some(self.every_secs);
+        DataSettings { folder: None, every_secs, formats: self.formats.clone() }
+    }
+
+    /// Whether files of a format are wanted.
+    pub(crate) fn has(&self, format: FormatName) -> bool {
+        self.formats.contains(&format)
+    }
+
+    /// Wants files of a format, or wants them no more.
+    pub(crate) fn set(&mut self, format: FormatName, is_wanted: bool) {
+        self.formats.retain(|other| *other != format);
+        self.formats.extend(is_wanted.then_some(format));
+    }
+}
+
+/// What the panel about data is busy with.
+#[derive(Default)]
+pub(crate) struct DataPanel {
+    /// First and last simulated time of what is exported, s; all that is recorded where there are none.
+    pub stretch: Option<[f64; 2]>,
+    /// Whether an earlier recording in the folder is to be removed.
+    pub overwrite: bool,
+    /// The export that is going on.
+    pub export: Option<Work>,
+    /// What became of the last one, and whether it failed.
+    pub told: Option<(String, bool)>,
+    /// The file of a saved run, as it is typed.
+    pub saved_run: String,
+}
 
 /// What is to be written.
 pub(crate) struct DataOrder {
@@ -30,16 +94,16 @@ pub(crate) struct DataOrder {
 impl DataOrder {
     /// Starts an export of a run that is on its way.
     pub(crate) fn start(self, context: &egui::Context, run: Receiver<TakenRun>) -> Work {
-        Work::start(context, move |telling| write(&self, &run, telling))
+        Work::start(context, move |reporter| write(&self, &run, reporter))
     }
 
     /// The simulated times of a run that are asked for, s.
     ///
     /// # Errors
     /// Where none of them is recorded.
-    fn stretch_of(&self, replay: &Replay) -> Result<[f64; 2]> {
+    fn stretch_of(&self, record: &WorldRecord) -> Result<[f64; 2]> {
         let Some([from, to]) = self.stretch else { return Ok([f64::NEG_INFINITY, f64::INFINITY]) };
-        let (first, last) = (replay.start().time_secs(), replay.end_secs());
+        let (first, last) = (record.start().time_secs(), record.end_secs());
         let recorded = format!("within what is recorded, {first} s to {last} s");
         if !(first..=last).contains(&from) {
             return Err(Error::value("from", from, recorded));
@@ -58,26 +122,26 @@ impl DataOrder {
     }
 }
 
-fn write(order: &DataOrder, run: &Receiver<TakenRun>, telling: &Telling) -> Result<String> {
+fn write(order: &DataOrder, run: &Receiver<TakenRun>, reporter: &Reporter) -> Result<String> {
     order.settings.validate("data-every")?;
-    let Some(run) = telling.wait_for(run)? else { return Ok(NOTHING.to_owned()) };
-    let replay = &run.taken.replay;
-    let stretch = order.stretch_of(replay)?;
+    let Some(run) = reporter.wait_for(run)? else { return Ok(NOTHING.to_owned()) };
+    let record = &run.world.record;
+    let stretch = order.stretch_of(record)?;
     let claim = RecordingFolder::of(&order.folder, order.overwrite)?;
-    let (first_secs, last_secs) = (replay.start().time_secs(), stretch[1].min(replay.end_secs()));
+    let (first_secs, last_secs) = (record.start().time_secs(), stretch[1].min(record.end_secs()));
     let mut writing = Writing {
         order,
         opened: &run.opened,
-        replay,
+        record,
         until_secs: last_secs,
         claim: Some(claim),
         recording: None,
     };
     let mut begun_at = None;
-    let ended = replay.run(stretch, |simulation, is_within| {
+    let ended = record.replay(stretch, |simulation, is_within| {
         let from = *begun_at.get_or_insert(simulation.time_secs().max(first_secs));
         let part = (simulation.time_secs() - from) / (last_secs - from).max(f64::MIN_POSITIVE);
-        if telling.tell(part).is_break() {
+        if reporter.tell(part).is_break() {
             return Ok(ControlFlow::Break(()));
         }
         if is_within {
@@ -89,7 +153,7 @@ fn write(order: &DataOrder, run: &Receiver<TakenRun>, telling: &Telling) -> Resu
 }
 
 /// Which grains were pulled by the mouse in which steps.
-fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&Change]) -> Vec<String> {
+fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -> Vec<String> {
     let mut told = Vec::new();
     let mut since = first_step;
     for change in changes {
@@ -108,8 +172,8 @@ fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&Change]) -> Vec<St
 }
 
 /// What the mouse added, removed and drew, and after which steps.
-fn edits(all: &[HandMade]) -> Vec<String> {
-    let told = all.iter().filter_map(|HandMade { after_step, edit }| {
+fn edits(all: &[HandEdit]) -> Vec<String> {
+    let told = all.iter().filter_map(|HandEdit { after_step, edit }| {
         let told = match edit {
             Edit::Add(Disc { position, radius }) => {
                 format!("a grain of radius {radius} m added at {}, {} m", position.x, position.y)
@@ -132,7 +196,7 @@ const NOTHING: &str = "Stopped before the first frame";
 struct Writing<'a> {
     order: &'a DataOrder,
     opened: &'a Opened,
-    replay: &'a Replay,
+    record: &'a WorldRecord,
     until_secs: f64,
     /// The folder, until the recording has it.
     claim: Option<RecordingFolder>,
@@ -147,7 +211,7 @@ impl Writing<'_> {
         }
         let Some(recording) = &mut self.recording else { return Ok(()) };
         // No step led to the moment that all began with.
-        if simulation.observables().step > self.replay.start().observables().step {
+        if simulation.observables().step > self.record.start().observables().step {
             recording.add_step(simulation.observables())?;
         }
         match self.order.settings.every_secs {
@@ -171,14 +235,14 @@ impl Writing<'_> {
         let mut scene = self.opened.scene.clone();
         scene.set_settings(*simulation.settings());
         let step = simulation.observables().step;
-        let changes: Vec<_> = self.replay.changes(step, self.until_secs).collect();
+        let changes: Vec<_> = self.record.changes(step, self.until_secs).collect();
         let settings = changes
             .iter()
             .map(|change| (change.after_step, change.time_secs, change.controls.settings));
         let mut about = run_facts(&scene, &settings.collect::<Vec<_>>())?;
         let mut tell = |name: &str, said: String| about.facts.push((name.to_owned(), said));
         tell("exported", format!("from the window, from step {step} to {} s", self.until_secs));
-        let start = self.replay.start().observables();
+        let start = self.record.start().observables();
         if start.step > 0 {
             tell("restarted_from", format!("step {}, {} s", start.step, start.time_secs));
         }
@@ -186,7 +250,7 @@ impl Writing<'_> {
         if !pulls.is_empty() {
             tell("pulled_by_hand", pulls.join(", "));
         }
-        let edits = edits(self.replay.edits());
+        let edits = edits(self.record.edits());
         if !edits.is_empty() {
             tell("changed_by_hand", edits.join(", "));
         }

@@ -4,40 +4,34 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use crate::error::{Error, Result};
 use image::RgbaImage;
 
+use super::canvas::Canvas;
+use super::opening::TakenRun;
+use super::setting_control::written;
+use super::state::AppState;
 use crate::config::SavedState;
+use crate::error::{Error, Result};
 use crate::live::Curve;
 use crate::output::{Texts, check_writable, write_file};
 use crate::render::{Camera, Panel, Renderer, RendererChoice, Style, draw_scene, draw_worlds};
 use crate::sim::{Observables, Settings, Snapshot};
-use crate::study::png::write_png;
 use crate::world::Parameters;
 
-use super::number::written;
-use super::plot_picture::{PlotPicture, PlotPrinter};
-use super::session::{SESSION_ENDING, SessionOrder, write_session};
-use super::taken::TakenRun;
-
-/// A file to be written.
-pub(crate) enum Export {
-    /// A picture of the worlds.
-    Scene(Box<ScenePicture>),
-    /// The observables of all worlds as a table, and beside it what they are of.
-    Curves(Vec<Curve>, Texts),
-    /// A picture of the plots.
-    Plots(Box<PlotPicture>, Texts),
-    /// A run that is on its way, to be gone on with.
-    State(Receiver<TakenRun>),
-    /// All worlds with their record, and the window.
-    Session(Box<SessionOrder>),
+/// A world of a picture.
+pub(crate) struct PicturedWorld {
+    /// The moment.
+    pub snapshot: Arc<Snapshot>,
+    /// What tells it from the others.
+    pub title: String,
+    /// What stands below it.
+    pub note: String,
 }
 
 /// A picture of the worlds, as they are seen side by side.
 pub(crate) struct ScenePicture {
-    /// Moment, title and note of each.
-    pub worlds: Vec<(Arc<Snapshot>, String, String)>,
+    /// The worlds.
+    pub worlds: Vec<PicturedWorld>,
     /// How many stand in a row.
     pub columns: usize,
     /// How they are drawn.
@@ -57,11 +51,15 @@ impl ScenePicture {
     /// Where the renderer cannot draw so large a picture, or fails.
     pub(super) fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
         let Self { worlds, columns, style, camera, size, .. } = self;
-        if let [(snapshot, ..)] = &worlds[..] {
+        if let [PicturedWorld { snapshot, .. }] = &worlds[..] {
             return draw_scene(renderer, snapshot, style, camera, size[0], size[1]);
         }
-        let panel = |(snapshot, title, note)| Panel { snapshot, title, note };
-        let panels: Vec<_> = worlds.iter().map(|(a, b, c)| panel((a, b, c))).collect();
+        let panels = worlds.iter().map(|PicturedWorld { snapshot, title, note }| Panel {
+            snapshot,
+            title,
+            note,
+        });
+        let panels: Vec<_> = panels.collect();
         draw_worlds(renderer, &panels, style, camera, *columns, *size)
     }
 }
@@ -82,57 +80,54 @@ pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String
     format!("slump-{name}-{which}-{time_secs:.4}s")
 }
 
-impl Export {
-    fn ending(&self) -> &'static str {
-        match self {
-            Self::Curves(..) => "csv",
-            Self::Scene(_) | Self::Plots(..) => "png",
-            Self::State(_) => STATE_ENDING,
-            Self::Session(_) => SESSION_ENDING,
+/// What pictures are drawn with, opened by the first that needs it: opening a device takes longer than a picture.
+#[derive(Default)]
+pub(crate) struct Printers {
+    renderer: Option<Renderer>,
+    canvas: Option<Canvas>,
+}
+
+impl Printers {
+    /// Draws scenes.
+    ///
+    /// # Errors
+    /// Where the system has no device that draws.
+    pub(super) fn renderer(&mut self) -> Result<&mut Renderer> {
+        match &mut self.renderer {
+            Some(renderer) => Ok(renderer),
+            none => Ok(none.insert(Renderer::new(RendererChoice::Auto)?)),
+        }
+    }
+
+    /// Draws plots.
+    ///
+    /// # Errors
+    /// Where the system has no device that draws.
+    pub(super) fn canvas(&mut self) -> Result<&mut Canvas> {
+        match &mut self.canvas {
+            Some(canvas) => Ok(canvas),
+            none => Ok(none.insert(Canvas::new()?)),
         }
     }
 }
 
-/// Hands exports to their thread, which starts with the first one.
+/// Writes a file into a folder and says which.
+type WriteJob = Box<dyn FnOnce(&Path, &mut Printers) -> Result<PathBuf> + Send>;
+
+/// Hands files to the thread that writes them, which starts with the first one.
 #[derive(Default)]
 pub(crate) struct Exporter {
-    thread: Option<(Sender<Job>, Receiver<Result<PathBuf>>)>,
+    thread: Option<(Sender<Order>, Receiver<Result<PathBuf>>)>,
     pending: usize,
 }
 
-struct Job {
-    export: Export,
+struct Order {
+    job: WriteJob,
     folder: PathBuf,
-    stem: String,
     context: egui::Context,
 }
 
 impl Exporter {
-    /// Writes a file into `folder`; its name begins with `stem` and is that of no other file.
-    pub(crate) fn submit(
-        &mut self,
-        context: &egui::Context,
-        export: Export,
-        folder: &Path,
-        stem: &str,
-    ) {
-        let (jobs, _) = self.thread.get_or_insert_with(|| {
-            let (jobs, inbox) = channel::<Job>();
-            let (outbox, outcomes) = channel();
-            std::thread::spawn(move || work(&inbox, &outbox));
-            (jobs, outcomes)
-        });
-        let job = Job {
-            export,
-            folder: folder.to_owned(),
-            stem: stem.to_owned(),
-            context: context.clone(),
-        };
-        if jobs.send(job).is_ok() {
-            self.pending += 1;
-        }
-    }
-
     /// Whether a file is being written.
     pub(crate) fn is_busy(&self) -> bool {
         self.pending > 0
@@ -147,65 +142,56 @@ impl Exporter {
     }
 }
 
-fn work(inbox: &Receiver<Job>, outbox: &Sender<Result<PathBuf>>) {
-    let mut renderer = None;
-    let mut printer = None;
-    while let Ok(job) = inbox.recv() {
-        let outcome = write(&job, &mut renderer, &mut printer);
+impl AppState {
+    /// Has a file written into the folder of the preferences, after those that are being written.
+    pub(super) fn export(
+        &mut self,
+        context: &egui::Context,
+        job: impl FnOnce(&Path, &mut Printers) -> Result<PathBuf> + Send + 'static,
+    ) {
+        let Exporter { thread, pending } = &mut self.exports.files;
+        let (orders, _) = thread.get_or_insert_with(|| {
+            let (orders, inbox) = channel();
+            let (outbox, outcomes) = channel();
+            std::thread::spawn(move || work(&inbox, &outbox));
+            (orders, outcomes)
+        });
+        let (folder, context) = (self.preferences.folder.clone(), context.clone());
+        *pending += usize::from(orders.send(Order { job: Box::new(job), folder, context }).is_ok());
+    }
+}
+
+fn work(inbox: &Receiver<Order>, outbox: &Sender<Result<PathBuf>>) {
+    let mut printers = Printers::default();
+    while let Ok(Order { job, folder, context }) = inbox.recv() {
+        let outcome = check_writable("folder", &folder).and_then(|()| job(&folder, &mut printers));
         if outbox.send(outcome).is_err() {
             return;
         }
-        job.context.request_repaint();
+        context.request_repaint();
     }
 }
 
-fn write(
-    job: &Job,
-    renderer: &mut Option<Renderer>,
-    printer: &mut Option<PlotPrinter>,
-) -> Result<PathBuf> {
-    check_writable("folder", &job.folder)?;
-    let path = free_path(&job.folder, &job.stem, job.export.ending());
-    match &job.export {
-        Export::Scene(picture) => {
-            let renderer = match renderer {
-                Some(renderer) => renderer,
-                none => none.insert(Renderer::new(RendererChoice::Auto)?),
-            };
-            write_png(&path, &picture.draw(renderer)?, &picture.texts)?;
-        }
-        Export::Curves(curves, texts) => {
-            // Beside the table: lines of another kind in it would be data to those who read it.
-            write_file(&path.with_extension("csv.txt"), texts.lines().as_bytes())?;
-            write_curves(&path, curves)?;
-        }
-        Export::Plots(picture, texts) => {
-            let printer = match printer {
-                Some(printer) => printer,
-                none => none.insert(PlotPrinter::new()?),
-            };
-            let image = printer.print(picture)?;
-            write_png(&path, &image, texts)?;
-        }
-        Export::State(run) => return write_state(&job.folder, run),
-        Export::Session(order) => write_session(&path, order)?,
-    }
-    Ok(path)
+/// Writes the observables of all worlds as a table, and beside it what they are of: lines of another kind in it would be
+/// data to those who read it.
+pub(super) fn write_table(path: &Path, curves: &[Curve], texts: &Texts) -> Result<()> {
+    write_file(&path.with_extension("csv.txt"), texts.lines().as_bytes())?;
+    write_curves(path, curves)
 }
 
-/// A run, by the moment that it has when it is handed out: it may go on meanwhile.
-fn write_state(folder: &Path, run: &Receiver<TakenRun>) -> Result<PathBuf> {
+/// Writes a run that is on its way, by the moment that it has when it is handed out: it may go on meanwhile.
+pub(super) fn write_state(folder: &Path, run: &Receiver<TakenRun>) -> Result<PathBuf> {
     let run = run.recv();
-    let TakenRun { opened, taken } =
+    let TakenRun { opened, world } =
         run.map_err(|_| Error::value("run", "closed", "open when its state is saved"))?;
-    if taken.failure.is_some() {
+    if world.failure.is_some() {
         let allowed = "an earlier one: drag the timeline back";
         return Err(Error::value("state", "no longer finite", allowed));
     }
-    let settings = [*taken.simulation.settings()];
-    let stem = stem(&opened.scene.name, &settings, taken.simulation.time_secs());
+    let settings = [*world.simulation.settings()];
+    let stem = stem(&opened.scene.name, &settings, world.simulation.time_secs());
     let path = free_path(folder, &stem, STATE_ENDING);
-    SavedState::new(opened.scene.clone(), taken.simulation, taken.tally).save(&path)?;
+    SavedState::new(opened.scene.clone(), world.simulation, world.tally).save(&path)?;
     Ok(path)
 }
 

@@ -1,13 +1,16 @@
-//! Plots against simulated time, for the window and for pictures of them.
+//! Plots against simulated time, and of any quantity against any other, for the window and for pictures of them.
 
-use egui::{Color32, Label, RichText, Ui};
+use std::sync::Arc;
+
+use egui::{Color32, ComboBox, Label, RichText, Ui};
 use egui_plot::{
-    AxisHints, FilledArea, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints,
-    PlotUi, VLine,
+    AxisHints, FilledArea, GridInput, GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot,
+    PlotPoints, PlotUi, Points, VLine,
 };
+use serde::{Deserialize, Serialize};
 
-use super::chosen_plot::ChosenPlot;
-use super::world_curve::WorldCurve;
+use super::ensemble::Band;
+use crate::data::Observed;
 use crate::live::Curve;
 use crate::render::numbers::{decimal, si_prefix, ticks};
 use crate::sim::{Beside, Observables, Quantity};
@@ -125,8 +128,8 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
         .include_x(data.until_secs)
         .include_y(least)
         .include_y(most)
-        .x_grid_spacer(|grid| round_marks(grid, 4, 0.0))
-        .y_grid_spacer(move |grid| round_marks(grid, 4, if log { 1.0 } else { 0.0 }))
+        .x_grid_spacer(|grid| round_marks(grid, false))
+        .y_grid_spacer(move |grid| round_marks(grid, log))
         .custom_x_axes(vec![axis(AxisHints::new_x(), false, " s")])
         .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log, "")])
         .label_formatter(move |position| hover_text(position, log))
@@ -222,14 +225,12 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
     (title, factor)
 }
 
-/// Marks at round numbers, at most `most` of them and at least `least_step` apart.
-fn round_marks(grid: GridInput, most: usize, least_step: f64) -> Vec<GridMark> {
-    let (low, high) = grid.bounds;
-    let (values, step) = ticks(low, high, most);
-    let step_size = step.max(least_step);
-    let on_grid = |value: &f64| step == step_size || (value / step_size).fract() == 0.0;
-    let marks = values.into_iter().filter(on_grid);
-    marks.map(|value| GridMark { value, step_size }).collect()
+/// Four marks at the most, at round numbers, or at whole powers of ten.
+fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
+    let (values, step) = ticks(grid.bounds.0, grid.bounds.1, 4);
+    let step_size = if log { step.max(1.0) } else { step };
+    let is_mark = |value: &f64| step == step_size || value.fract() == 0.0;
+    values.into_iter().filter(is_mark).map(|value| GridMark { value, step_size }).collect()
 }
 
 /// Labels of the marks: numbers, or the powers of ten that numbers stand for.
@@ -273,4 +274,143 @@ fn points(curve: &Curve, value: impl Fn(&Observables) -> f64) -> PlotPoints<'sta
         points.extend(if low[0] <= high[0] { [low, high] } else { [high, low] });
     }
     points.into()
+}
+
+/// What is plotted of a world.
+#[derive(Clone, Debug)]
+pub(crate) struct WorldCurve {
+    /// What tells it from the others.
+    pub name: String,
+    /// Its colour.
+    pub colour: Color32,
+    /// Its rows.
+    pub curve: Curve,
+    /// What other piles slump with its settings.
+    pub others: Option<Arc<Band>>,
+}
+
+/// Points of a curve at the most.
+const MOST_POINTS: usize = 2_000;
+
+/// What is plotted against what.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ChosenPlot {
+    /// Whether it shows.
+    pub on: bool,
+    /// Names of the quantities along the axes, as tables call them: x and y.
+    pub axes: [String; 2],
+    /// Whether equal distances along an axis are equal factors.
+    pub logarithmic: [bool; 2],
+}
+
+impl Default for ChosenPlot {
+    fn default() -> Self {
+        let axes = ["slump", "kinetic_energy"].map(str::to_owned);
+        Self { on: false, axes, logarithmic: [false; 2] }
+    }
+}
+
+impl ChosenPlot {
+    /// The two boxes and switches that choose.
+    pub(super) fn choose(&mut self, ui: &mut Ui) {
+        for (axis, name) in [(1, "y"), (0, "x")] {
+            let shown = ComboBox::from_id_salt(("axis", axis)).width(118.0);
+            let chosen = &mut self.axes[axis];
+            let list = shown.selected_text(chosen.replace('_', " ")).show_ui(ui, |ui| {
+                for observed in Observed::all() {
+                    let title = observed.title();
+                    let entry = ui.selectable_label(*chosen == observed.name(), title);
+                    if entry.on_hover_text(observed.about()).clicked() {
+                        *chosen = observed.name().to_owned();
+                    }
+                }
+            });
+            let label = format!("Quantity along {name}");
+            list.response
+                .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &label));
+            ui.toggle_value(&mut self.logarithmic[axis], format!("log {name}"))
+                .on_hover_text("Equal distances are equal factors; values up to 0 do not show.");
+        }
+    }
+
+    /// Its title; nothing where it is of what there is not.
+    pub(super) fn title(&self) -> Option<String> {
+        let [x, y] = self.axes.each_ref().map(|name| Observed::named(name));
+        Some(format!("{} against {}", y?.title(), x?.title()))
+    }
+
+    /// The places of rows, as the plot has them.
+    fn points<'a>(&self, rows: impl Iterator<Item = &'a Observables>) -> Vec<[f64; 2]> {
+        let [Some(x), Some(y)] = self.axes.each_ref().map(|name| Observed::named(name)) else {
+            return Vec::new();
+        };
+        let place = |row: &Observables| {
+            let place = [self.scaled(0, x.of(row)?), self.scaled(1, y.of(row)?)];
+            place.iter().all(|at| at.is_finite()).then_some(place)
+        };
+        rows.filter_map(place).collect()
+    }
+
+    fn scaled(&self, axis: usize, value: f64) -> f64 {
+        if self.logarithmic[axis] { value.log10() } else { value }
+    }
+
+    /// Draws it; the moment that is shown has a dot.
+    pub(super) fn draw(&self, ui: &mut Ui, worlds: &[WorldCurve], now_secs: f64) {
+        let [log_x, log_y] = self.logarithmic;
+        Plot::new(("chosen", &self.axes, self.logarithmic))
+            .height((ui.available_height() - 2.0).max(40.0))
+            .width(ui.available_width() - 10.0)
+            .allow_scroll(false)
+            .show_background(false)
+            .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
+            .x_grid_spacer(move |grid| round_marks(grid, log_x))
+            .y_grid_spacer(move |grid| round_marks(grid, log_y))
+            .custom_x_axes(vec![axis(AxisHints::new_x(), log_x, "")])
+            .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log_y, "")])
+            .show(ui, |plot| {
+                for WorldCurve { name, colour, curve, .. } in worlds {
+                    let stride = curve.len().div_ceil(MOST_POINTS).max(1);
+                    let points = self.points(curve.rows().step_by(stride));
+                    plot.line(Line::new(name.clone(), points).color(*colour).width(1.4));
+                    let until_now = |row: &&Observables| row.time_secs <= now_secs;
+                    let now = curve.rows().take_while(until_now).last();
+                    let place = self.points(now.into_iter());
+                    let dot = Points::new(name.clone(), PlotPoints::from(place));
+                    plot.points(dot.shape(MarkerShape::Circle).radius(4.0).color(*colour));
+                }
+            });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_goes_through_the_rows_and_leaves_out_what_has_no_logarithm() {
+        let row = |(slump, kinetic_energy)| Observables {
+            slump,
+            kinetic_energy,
+            ..Observables::default()
+        };
+        let rows = [(0.0, 1.0), (0.1, 10.0), (0.2, 0.0)].map(row);
+        let mut plot = ChosenPlot::default();
+        assert_eq!(plot.points(rows.iter()), [[0.0, 1.0], [0.1, 10.0], [0.2, 0.0]]);
+        plot.logarithmic = [false, true];
+        assert_eq!(plot.points(rows.iter()), [[0.0, 0.0], [0.1, 1.0]]);
+        assert_eq!(plot.title().unwrap(), "kinetic energy (J) against slump");
+        // What only some laws have is not there under others.
+        plot.axes[1] = "bond_energy".into();
+        assert!(plot.points(rows.iter()).is_empty());
+        plot.axes[1] = "of another version".into();
+        assert!(plot.points(rows.iter()).is_empty() && plot.title().is_none());
+    }
+
+    #[test]
+    fn every_quantity_that_steps_measure_can_be_chosen() {
+        let row = Observables::default().with_further_columns();
+        assert!(Observed::all().all(|observed| observed.of(&row).is_some()));
+    }
 }

@@ -1,11 +1,15 @@
-//! What the window remembers between starts, beside egui's own memory of the layout.
+//! What the window remembers between starts, and the file that keeps it.
+//!
+//! A file that cannot be read, be it of another version, counts as none: nobody should have to
+//! repair it. What cannot be written is not kept, and nothing else is lost.
 
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use super::chosen_plot::ChosenPlot;
-use super::data_choices::DataChoices;
+use super::data_export::DataChoices;
+use super::plots::ChosenPlot;
 use super::tour::Tour;
 use crate::config::Config;
 use crate::error::Result;
@@ -27,7 +31,8 @@ pub struct Preferences {
     /// Whether the run before shows behind the present one.
     pub ghost: bool,
     /// Whether idle cores compute the mean over other piles.
-    pub other_piles: bool,
+    #[serde(rename = "other_piles")]
+    pub ensemble: bool,
     /// Whether the plots are open.
     pub plots: bool,
     /// The quantities that are plotted, by their names.
@@ -69,7 +74,7 @@ impl Default for Preferences {
             style: Style::default(),
             sidebar: true,
             ghost: true,
-            other_piles: true,
+            ensemble: true,
             plots: true,
             quantities: QUANTITIES.iter().map(|quantity| quantity.name.to_owned()).collect(),
             chosen_plot: ChosenPlot::default(),
@@ -123,5 +128,122 @@ impl Preferences {
     /// The pace that the preferences ask for.
     pub(crate) fn pace(&self) -> Pace {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
+    }
+}
+
+/// What is kept.
+#[derive(Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct StoredWindow {
+    /// The user's choices.
+    pub preferences: Preferences,
+    /// Which panels are open, and how large.
+    pub layout: egui::Memory,
+}
+
+/// The program's folder in the one of the user that a variable of the environment names, or that lies in their home.
+pub(super) fn user_folder(variable: &str, in_home: &str) -> Option<PathBuf> {
+    let named = std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
+    let home = || std::env::home_dir().map(|home| home.join(in_home));
+    Some(named.or_else(home)?.join("slump"))
+}
+
+/// Where the file lies: in the user's configuration folder.
+fn path() -> Option<PathBuf> {
+    Some(user_folder("XDG_CONFIG_HOME", ".config")?.join("window.ron"))
+}
+
+/// Reads what was kept.
+pub(super) fn load() -> StoredWindow {
+    let text = path().and_then(|path| std::fs::read_to_string(path).ok());
+    text.and_then(|text| ron::from_str(&text).ok()).unwrap_or_default()
+}
+
+/// Forgets what was kept.
+pub(super) fn forget() {
+    if let Some(path) = path() {
+        let _ = std::fs::remove_file(path);
+    }
+}
+
+/// Least time between two looks at what has changed: a window that is killed loses no more than that.
+const INTERVAL: Duration = Duration::from_secs(2);
+
+/// Keeps what changes while the window is open.
+pub(super) struct Keeper {
+    looked: Instant,
+    kept: Preferences,
+    text: String,
+}
+
+impl Keeper {
+    /// With what was loaded.
+    pub(super) fn new(kept: Preferences) -> Self {
+        Self { looked: Instant::now(), kept, text: String::new() }
+    }
+
+    /// Keeps what has changed, if it is time to look. Otherwise, where something has, how long until then.
+    pub(super) fn look(
+        &mut self,
+        preferences: &Preferences,
+        context: &egui::Context,
+    ) -> Option<Duration> {
+        let left = INTERVAL.saturating_sub(self.looked.elapsed());
+        if !left.is_zero() {
+            return (*preferences != self.kept).then_some(left);
+        }
+        self.keep(preferences, context);
+        None
+    }
+
+    /// Keeps what has changed.
+    pub(super) fn keep(&mut self, preferences: &Preferences, context: &egui::Context) {
+        self.looked = Instant::now();
+        self.kept.clone_from(preferences);
+        let layout = context.memory(Clone::clone);
+        let Ok(text) = ron::to_string(&StoredWindow { preferences: preferences.clone(), layout })
+        else {
+            return;
+        };
+        if text != self.text {
+            save(&text);
+            self.text = text;
+        }
+    }
+}
+
+fn save(text: &str) {
+    let Some(path) = path() else { return };
+    if let Some(folder) = path.parent() {
+        let _ = std::fs::create_dir_all(folder);
+    }
+    // Written beside and moved, so that a crash leaves the old file or the new one.
+    let fresh = path.with_extension("new");
+    if std::fs::write(&fresh, text).is_ok() {
+        let _ = std::fs::rename(fresh, path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_reads_back() {
+        // A context that has drawn something, so that there is a layout to be kept.
+        let context = egui::Context::default();
+        for _ in 0..2 {
+            let _ = context.run_ui(egui::RawInput::default(), |ui| {
+                egui::Panel::left("side").show(ui, |ui| ui.collapsing("more", |ui| ui.label("x")));
+                egui::ScrollArea::vertical().show(ui, |ui| ui.label("y"));
+            });
+        }
+        let mut stored = StoredWindow::default();
+        stored.preferences.speed = 0.5;
+        stored.preferences.scene.source.grains = Some(40);
+        stored.layout = context.memory(Clone::clone);
+        let text = ron::to_string(&stored).unwrap();
+        let back: StoredWindow = ron::from_str(&text).unwrap();
+        assert_eq!(back.preferences, stored.preferences);
     }
 }

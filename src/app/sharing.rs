@@ -1,15 +1,253 @@
-//! The link of what is shown: asked of the solver's thread, and copied when it has come.
+//! How a run is told to others: by a command line, by what files say of themselves, and by a link.
+//!
+//! A link is a line of text that opens a run again: where its scene comes from, and for each world its settings,
+//! what was changed on the way, and how many steps it has taken.
+//!
+//! > slump://run?scene=pile&bond=20&from=120&bond=5&to=300
+//!
+//! Names are those of the command line. `from` begins settings that are in force after that step, `to` ends a
+//! world with the step that it has come to; what follows is the next world. What is left out is as the scene
+//! says, or as before.
 
-use std::sync::mpsc::TryRecvError;
+use std::sync::mpsc::{Receiver, TryRecvError};
 
 use egui::Context;
 
-use super::link::{Link, Linking, link_of};
-use super::loader::loader_of_link;
+use super::opening::TakenRun;
 use super::state::AppState;
-use super::taken::TakenRun;
-use crate::error::Result;
-use crate::live::{Command, Taken};
+use crate::config::{
+    Config, Provenance, SceneSource, asked_time_secs, joined, words_of, words_up_to,
+};
+use crate::error::{Error, Result};
+use crate::live::{ControlsChange, WorldHistory, WorldPlan};
+use crate::output::Texts;
+use crate::sim::Settings;
+
+/// What is said of a run that no command line makes.
+const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \
+                       of the moment that is shown, and make another run";
+
+impl AppState {
+    /// The command line that computes the selected world from its start with the present settings, without a
+    /// window and to the last digit; none where its scene is no longer there. Changes on the way and hands that
+    /// pulled are not in it.
+    pub fn command_line(&self) -> Option<String> {
+        let run = self.provenance(self.selected, self.config.clone())?;
+        let command = ["slump".to_owned(), "--headless".to_owned()];
+        Some(joined(&[&command[..], &run.words].concat()))
+    }
+
+    /// What a world is made of; nothing where its scene is no longer there.
+    fn provenance(&self, world: usize, config: Config) -> Option<Provenance> {
+        let settings = self.wanted.get(world)?.settings;
+        let scene = self.frame.start.as_ref()?.name.clone();
+        Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
+    }
+
+    /// What a file says of itself that shows these worlds; of a moment, or of all their steps.
+    pub(crate) fn texts_of(&self, worlds: &[usize], is_of_a_moment: bool) -> Texts {
+        if let [world] = *worlds {
+            return self.texts_of_world(world, is_of_a_moment);
+        }
+        let mut texts = Texts::default();
+        for &world in worlds {
+            for (keyword, text) in self.texts_of_world(world, is_of_a_moment).iter().skip(1) {
+                texts.add(format!("World {}: {keyword}", world + 1), text);
+            }
+        }
+        texts
+    }
+
+    fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
+        // How long it was to run says nothing of what it has come to.
+        let mut config = self.config.clone();
+        config.source.duration = None;
+        let run = self.provenance(world, config);
+        let (Some(run), Some(shown)) = (run, self.frame.worlds.get(world)) else {
+            return Texts::default();
+        };
+        let time_secs = asked_time_secs(shown.snapshot.observables.time_secs);
+        let mut texts = if is_of_a_moment {
+            run.texts(Some(time_secs), &words_up_to(time_secs))
+        } else {
+            let duration_secs = asked_time_secs(shown.recorded_secs);
+            run.texts(None, &["--duration".to_owned(), duration_secs.to_string()])
+        };
+        if !shown.is_even {
+            texts.add("Changes", CHANGED);
+        }
+        if shown.recorded_from_secs > 0.0 {
+            let from_secs = shown.recorded_from_secs;
+            texts
+                .add("Begun", format!("from a saved run at t = {from_secs} s, not from the start"));
+        }
+        texts
+    }
+}
+
+/// What links begin with.
+pub(crate) const LINK_START: &str = "slump://";
+const HEAD: &str = "slump://run?";
+/// What a link must be, for messages.
+const FORM: &str = "a line that Copy link gave: slump://run?…&to=STEP";
+/// More of a link is no help in a message.
+const MOST_SHOWN: usize = 60;
+
+/// A run, by what was asked of it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RunLink {
+    /// Where the scene comes from.
+    pub source: SceneSource,
+    worlds: Vec<LinkedWorld>,
+}
+
+/// A world of it.
+#[derive(Clone, Debug, PartialEq)]
+struct LinkedWorld {
+    /// What is asked for after each of these steps, the first of which is 0.
+    changes: Vec<(u64, Config)>,
+    steps: u64,
+}
+
+/// Worlds whose runs are on their way, to be made a link of.
+pub(super) struct PendingLink {
+    /// Where they come.
+    pub waiting: Vec<Receiver<TakenRun>>,
+    /// Those that have come, in that order.
+    pub come: Vec<TakenRun>,
+}
+
+/// Words of a command line as parts of a link.
+fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String]) {
+    for pair in words.chunks_exact(2) {
+        query.append_pair(pair[0].trim_start_matches('-'), &pair[1]);
+    }
+}
+
+/// The link of a run that began with what `config` asks for, by what its worlds have come to. Grains that the
+/// mouse has pulled are not in it.
+///
+/// # Errors
+/// Where the run went on from a file, or its scene is no longer there.
+pub(crate) fn link_of(config: &Config, worlds: &[WorldHistory]) -> Result<String> {
+    let unchanged = Config { source: config.source.clone(), ..Config::default() };
+    let base = unchanged.without_settling()?.settings();
+    let mut query = form_urlencoded::Serializer::new(HEAD.to_owned());
+    append(&mut query, &unchanged.words(&base)?);
+    for world in worlds {
+        if world.record.start().observables().step > 0 {
+            let allowed = "one that began with a scene; a saved session tells of this one";
+            return Err(Error::value("run", "one that goes on from a saved run", allowed));
+        }
+        let now = &world.simulation;
+        let steps = now.observables().step;
+        let mut before = base;
+        let made = world.record.changes(0, now.time_secs());
+        let made = made
+            .map(|ControlsChange { after_step, controls, .. }| (*after_step, controls.settings));
+        for (after, settings) in made.chain([(steps, *now.settings())]) {
+            let words = words_of(&settings, Some(&before));
+            if after > 0 && !words.is_empty() {
+                query.append_pair("from", &after.to_string());
+            }
+            append(&mut query, &words);
+            before = settings;
+        }
+        query.append_pair("to", &steps.to_string());
+    }
+    Ok(query.finish())
+}
+
+impl RunLink {
+    /// Reads a link.
+    ///
+    /// # Errors
+    /// Says what of it is none.
+    pub(crate) fn read(text: &str) -> Result<Self> {
+        let text = text.trim();
+        let refuse = || Error::value("link", shortened(text), FORM);
+        let query = text.strip_prefix(HEAD).ok_or_else(refuse)?;
+        let mut link = Self { source: SceneSource::default(), worlds: Vec::new() };
+        let (mut after, mut options) = (0, Vec::new());
+        let mut changes = Vec::new();
+        for (name, value) in form_urlencoded::parse(query.as_bytes()).into_owned() {
+            let is_step = matches!(&*name, "from" | "to");
+            if !is_step {
+                options.push((name, value));
+                continue;
+            }
+            let step: u64 = value.parse().map_err(|_| {
+                Error::value(format!("link: {name}"), &value, "the number of a step")
+            })?;
+            if step < after {
+                let allowed = format!("no step before {after}, which comes before it");
+                return Err(Error::value(format!("link: {name}"), step, allowed));
+            }
+            let config =
+                Config::of_options(options.iter().map(|(name, value)| (&**name, &**value)))?;
+            options.clear();
+            let is_first = link.worlds.is_empty() && changes.is_empty();
+            let Config { source, .. } = &config;
+            if is_first {
+                link.source = source.clone();
+            } else if *source != SceneSource::default() {
+                let allowed = "said once, before the first step";
+                return Err(Error::value("link: the origin of the scene", "said twice", allowed));
+            }
+            changes.push((after, Config { source: SceneSource::default(), ..config }));
+            after = step;
+            if name == "to" {
+                link.worlds
+                    .push(LinkedWorld { changes: std::mem::take(&mut changes), steps: step });
+                after = 0;
+            }
+        }
+        if link.worlds.is_empty() || !options.is_empty() || !changes.is_empty() {
+            return Err(refuse());
+        }
+        Ok(link)
+    }
+
+    /// What asks for the scene.
+    pub(crate) fn config(&self) -> Config {
+        Config { source: self.source.clone(), ..Config::default() }
+    }
+
+    /// Checks what can be checked before a pile is made.
+    ///
+    /// # Errors
+    /// Names the first setting that is refused, or says that the scene is not there.
+    pub(crate) fn check(&self) -> Result<()> {
+        let base = self.config().without_settling()?.settings();
+        let mut settings = self.plans(&base).into_iter().flat_map(|plan| {
+            let changed = plan.changes.into_iter().map(|(_, settings)| settings);
+            std::iter::once(plan.settings).chain(changed)
+        });
+        settings.try_for_each(|settings| settings.validate())
+    }
+
+    /// How its worlds come about, from the settings that the scene has.
+    pub(crate) fn plans(&self, base: &Settings) -> Vec<WorldPlan> {
+        let plan = |world: &LinkedWorld| {
+            let mut settings = *base;
+            let mut changes = world.changes.iter().map(|(after, config)| {
+                config.change_settings(&mut settings);
+                (*after, settings)
+            });
+            let (_, first) = changes.next().unwrap_or((0, *base));
+            WorldPlan { settings: first, changes: changes.collect(), steps: world.steps }
+        };
+        self.worlds.iter().map(plan).collect()
+    }
+}
+
+fn shortened(text: &str) -> String {
+    let mut shown: String = text.chars().take(MOST_SHOWN).collect();
+    if shown.len() < text.len() {
+        shown.push('…');
+    }
+    shown
+}
 
 /// What is said of a link that does not say all.
 const PULLED: &str = "The link is copied; something was pulled by hand, added or removed, or a wall drawn, which it does not \
@@ -19,13 +257,13 @@ impl AppState {
     /// Has the link of the present moment of all worlds copied.
     pub fn copy_link(&mut self) {
         let worlds = 0..self.frame.worlds.len();
-        let waiting = worlds.map(|world| TakenRun::ask(&mut self.live, world, &self.last_opened));
-        self.linking = Some(Linking { waiting: waiting.collect(), come: Vec::new() });
+        let waiting = worlds.map(|world| self.take_run_of(world));
+        self.exports.link = Some(PendingLink { waiting: waiting.collect(), come: Vec::new() });
     }
 
     /// Copies the link once all worlds have come.
     pub(super) fn follow_link(&mut self, context: &Context) {
-        let Some(linking) = &mut self.linking else { return };
+        let Some(linking) = &mut self.exports.link else { return };
         while let Some(next) = linking.waiting.get(linking.come.len()) {
             match next.try_recv() {
                 Ok(run) => linking.come.push(run),
@@ -34,7 +272,7 @@ impl AppState {
             }
         }
         let runs = std::mem::take(&mut linking.come);
-        self.linking = None;
+        self.exports.link = None;
         match linked(runs) {
             Ok((text, is_pulled)) => {
                 context.copy_text(text);
@@ -55,25 +293,59 @@ impl AppState {
     /// # Errors
     /// Where it is none.
     pub fn open_link(&mut self, text: &str) -> Result<()> {
-        let link = Link::read(text)?;
+        let link = RunLink::read(text)?;
         self.load_link(link);
         Ok(())
-    }
-
-    /// Opens what a link tells of.
-    pub(super) fn load_link(&mut self, link: Link) {
-        self.leave_tour();
-        self.live.send(Command::Load(loader_of_link(link, self.last_opened.clone())));
     }
 }
 
 /// The link of worlds, and whether a hand has pulled in any of them.
 fn linked(runs: Vec<TakenRun>) -> Result<(String, bool)> {
     let config = runs.first().map(|run| run.opened.config.clone()).unwrap_or_default();
-    let worlds: Vec<Taken> = runs.into_iter().map(|run| run.taken).collect();
+    let worlds: Vec<WorldHistory> = runs.into_iter().map(|run| run.world).collect();
     let is_pulled = worlds.iter().any(|world| {
-        let mut made = world.replay.changes(0, world.simulation.time_secs());
-        made.any(|change| change.controls.pull.is_some()) || !world.replay.edits().is_empty()
+        let mut made = world.record.changes(0, world.simulation.time_secs());
+        made.any(|change| change.controls.pull.is_some()) || !world.record.edits().is_empty()
     });
     Ok((link_of(&config, &worlds)?, is_pulled))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_says_worlds_changes_and_steps() {
+        let text = "slump://run?scene=pile&bond=20&from=120&bond=5&to=300&dt=0.005&to=60";
+        let link = RunLink::read(&format!("  {text}\n")).expect("a link");
+        assert_eq!(link.config(), Config::of_scene("pile"));
+        let base = Settings::default();
+        let [first, second] = &link.plans(&base)[..] else { panic!("two worlds") };
+        assert_eq!(first.settings, base.with_bond(20.0));
+        assert_eq!((&first.changes[..], first.steps), (&[(120, base.with_bond(5.0))][..], 300));
+        assert_eq!(
+            *second,
+            WorldPlan { settings: base.over(5e-3), changes: Vec::new(), steps: 60 }
+        );
+    }
+
+    #[test]
+    fn what_is_no_link_is_refused_in_a_sentence() {
+        for (text, said) in [
+            (
+                "http://example.org",
+                "link is http://example.org, but must be a line that Copy link gave",
+            ),
+            ("slump://run?scene=pile", "but must be a line"),
+            ("slump://run?scene=pile&to=3&bond=5", "but must be a line"),
+            ("slump://run?scene=pile&to=-3", "link: to is -3, but must be the number of a step"),
+            ("slump://run?from=9&to=3", "link: to is 3, but must be no step before 9"),
+            ("slump://run?scene=pile&to=3&scene=drum&to=4", "said once"),
+            ("slump://run?glue=3&to=3", "--glue"),
+            ("slump://run?bond=much&to=3", "--bond is much"),
+        ] {
+            let refusal = RunLink::read(text).expect_err("no link").to_string();
+            assert!(refusal.contains(said), "{text}: {refusal}");
+        }
+    }
 }

@@ -1,31 +1,28 @@
 //! Everything that the user interface reads and changes. Knows neither window nor GPU.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
+use std::time::Instant;
 
 use egui::Rect;
 
 use super::camera::SceneCamera;
-use super::data_desk::DataDesk;
+use super::data_export::DataPanel;
+use super::ensemble::Ensemble;
 use super::export::{Exporter, STATE_ENDING};
-use super::film_file::FilmFormat;
-use super::held::{GrainRef, Grip};
-use super::link::Linking;
-use super::loader::loader;
-use super::notice::Notice;
-use super::other_piles::OtherPiles;
+use super::film::FilmFormat;
+use super::opening::LastOpened;
+use super::painting::LegendCache;
+use super::panels::distributions::Distributions;
+use super::panels::speed::StepRace;
+use super::panels::{Grabbing, GrainRef};
 use super::preferences::Preferences;
-use super::scene_legend::LegendCache;
 use super::session::{Arrangement, SESSION_ENDING};
-use super::spread::Spread;
-use super::step_race::StepRace;
-use super::taken::{LastOpened, TakenRun};
-use super::validation::Validation;
+use super::sharing::PendingLink;
 use super::work::Work;
 use crate::config::Config;
-use crate::live::{Command, Controls, Frame, Live, WorldFrame};
+use crate::live::{Command, Controls, Live, LiveFrame, WorldFrame};
 use crate::sim::Settings;
 
 /// The state of the user interface.
@@ -33,62 +30,74 @@ pub struct AppState {
     /// The solver's thread.
     pub live: Live,
     /// Its newest frame.
-    pub frame: Frame,
+    pub frame: LiveFrame,
     /// What the controls show, one entry a world: ahead of the frame by what is on its way.
     pub(crate) wanted: Vec<Controls>,
     /// The world that the controls are about.
     pub(crate) selected: usize,
     /// What was loaded last.
     pub(crate) config: Config,
+    /// What is being opened, and what was.
+    pub(super) opening: OpeningState,
     /// What outlives the window.
     pub preferences: Preferences,
     /// Which part of the scene shows.
     pub camera: SceneCamera,
-    /// The grain whose contacts are listed.
-    pub pinned: Option<GrainRef>,
-    /// The grain at the end of the mouse's spring.
-    pub grabbed: Option<GrainRef>,
-    /// The wall that the mouse draws.
-    pub(crate) grip: Option<Grip>,
+    /// What the mouse has chosen and holds.
+    pub mouse: Grabbing,
     /// Whether the tour is being taken.
     pub touring: bool,
-    /// The panel that is to be opened, where a station asks for one.
-    pub(crate) opened_panel: Option<&'static str>,
-    /// Whether the help overlay shows.
-    pub(crate) help: bool,
-    /// Writes files without keeping the window waiting.
-    pub(crate) exporter: Exporter,
-    /// What is being done about data and saved runs.
-    pub(crate) data: DataDesk,
-    /// The video or the animation that is being made.
-    pub(crate) film: Option<(FilmFormat, Work)>,
-    /// What was found of published experiments.
-    pub(super) validation: Validation,
-    /// The file of another such report, as it is typed.
-    pub(crate) report: String,
+    /// What shows beside the run.
+    pub(crate) shown: Shown,
+    /// What is being written.
+    pub(crate) exports: Exports,
     /// What the present settings make of other piles.
-    pub other_piles: OtherPiles,
+    pub ensemble: Ensemble,
     /// How forces and the like are distributed.
-    pub(crate) spread: Spread,
-    /// Whether the view goes with the pinned grain.
-    pub(crate) follows: bool,
+    pub(crate) distributions: Distributions,
     /// How methods solve the step that was shown.
     pub(crate) race: Option<StepRace>,
     /// Where controls lie, points: for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
-    /// Set where the window is to open its graphics device anew.
-    pub(crate) restart_graphics: bool,
-    pub(super) legend: LegendCache,
-    pub(super) last_opened: LastOpened,
-    /// Links that are to be copied.
-    pub(super) linking: Option<Linking>,
-    /// How the panels lay when a session was saved.
-    pub(super) layout: Option<egui::Memory>,
-    /// The window of a session that is being opened.
-    pub(super) arriving: Option<Receiver<Arrangement>>,
-    notice: Option<Notice>,
-    seen_start: u64,
+}
+
+/// What is being opened, and what was.
+#[derive(Default)]
+pub(super) struct OpeningState {
+    /// What was opened last.
+    pub last: LastOpened,
+    /// The window of a session that is being opened, …
+    pub arriving: Option<Receiver<Arrangement>>,
+    /// … and how its panels lay.
+    pub layout: Option<egui::Memory>,
+    seen_loads: u64,
     seen_refusal: Option<Arc<str>>,
+}
+
+/// What shows beside the run.
+#[derive(Default)]
+pub(crate) struct Shown {
+    /// The panel that is to be opened, where a station asks for one.
+    pub panel: Option<&'static str>,
+    /// Whether the help overlay shows.
+    pub help: bool,
+    /// Set where the window is to open its graphics device anew.
+    pub restart_graphics: bool,
+    pub(super) legend: LegendCache,
+    notice: Option<Notice>,
+}
+
+/// What is being written. None of it keeps the window waiting.
+#[derive(Default)]
+pub(crate) struct Exports {
+    /// Writes files one after another.
+    pub files: Exporter,
+    /// What is being done about data and saved runs.
+    pub data: DataPanel,
+    /// The video or the animation that is being made.
+    pub film: Option<(FilmFormat, Work)>,
+    /// A link that is to be copied.
+    pub(super) link: Option<PendingLink>,
 }
 
 impl AppState {
@@ -103,37 +112,21 @@ impl AppState {
     pub(crate) fn idle(live: Live, preferences: Preferences) -> Self {
         let mut state = Self {
             live,
-            frame: Frame::default(),
+            frame: LiveFrame::default(),
             wanted: Vec::new(),
             selected: 0,
             config: Config::default(),
+            opening: OpeningState::default(),
             preferences,
             camera: SceneCamera::default(),
-            pinned: None,
-            grabbed: None,
-            grip: None,
+            mouse: Grabbing::default(),
             touring: false,
-            opened_panel: None,
-            help: false,
-            exporter: Exporter::default(),
-            data: DataDesk::default(),
-            film: None,
-            validation: Validation::of_last_run(),
-            report: String::new(),
-            other_piles: OtherPiles::new(),
+            shown: Shown::default(),
+            exports: Exports::default(),
+            ensemble: Ensemble::new(),
+            distributions: Distributions::default(),
             race: None,
-            spread: Spread::default(),
-            follows: false,
             controls: BTreeMap::new(),
-            restart_graphics: false,
-            legend: LegendCache::default(),
-            last_opened: LastOpened::default(),
-            linking: None,
-            layout: None,
-            arriving: None,
-            notice: None,
-            seen_start: 0,
-            seen_refusal: None,
         };
         // A window that was closed on the tour and is opened for something else has the user's own choices.
         state.preferences.put_tour_away();
@@ -141,51 +134,21 @@ impl AppState {
         state
     }
 
-    /// Opens a scene.
-    pub fn load(&mut self, config: Config) {
-        self.leave_tour();
-        self.config = config.clone();
-        self.live.send(Command::Load(loader(config, self.last_opened.clone())));
-    }
-
     /// Whether a file or a recording is being written.
     pub fn is_writing(&self) -> bool {
-        self.exporter.is_busy() || self.data.export.is_some() || self.film.is_some()
-    }
-
-    /// Asks for the run of the selected world.
-    pub(crate) fn take_run(&mut self) -> Receiver<TakenRun> {
-        self.take_run_of(self.selected)
-    }
-
-    /// Asks for the run of a world.
-    pub(crate) fn take_run_of(&mut self, world: usize) -> Receiver<TakenRun> {
-        TakenRun::ask(&mut self.live, world, &self.last_opened)
+        let Exports { files, data, film, .. } = &self.exports;
+        files.is_busy() || data.export.is_some() || film.is_some()
     }
 
     /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
     pub(crate) fn refresh(&mut self) {
         self.frame = self.live.latest().clone();
-        let start = self.frame.start.as_ref().map_or(0, |start| start.number);
-        if start != self.seen_start {
-            self.seen_start = start;
-            self.camera.frame_scene();
-            self.pinned = None;
-            self.data.stretch = None;
-            self.race = None;
-            if let Some(opened) = self.last_opened.get() {
-                self.config.clone_from(&opened.config);
-            }
-            let arrangement = self.arriving.as_ref().and_then(|window| window.try_recv().ok());
-            if let Some(arrangement) = arrangement {
-                self.arrange(arrangement);
-            }
-        }
+        self.follow_loads();
         // The same words again are another refusal.
         let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
-        if address(&self.frame.refusal) != address(&self.seen_refusal) {
-            self.seen_refusal.clone_from(&self.frame.refusal);
-            if let Some(refusal) = self.seen_refusal.clone() {
+        if address(&self.frame.refusal) != address(&self.opening.seen_refusal) {
+            self.opening.seen_refusal.clone_from(&self.frame.refusal);
+            if let Some(refusal) = self.frame.refusal.clone() {
                 self.warn(refusal.to_string());
             }
         }
@@ -198,39 +161,55 @@ impl AppState {
         }
         let worlds = self.frame.worlds.len();
         self.selected = self.selected.min(worlds.saturating_sub(1));
-        self.pinned = self.pinned.filter(|pinned| self.exists(*pinned));
-        self.grabbed = self.grabbed.filter(|grabbed| self.exists(*grabbed));
+        self.mouse.pinned = self.mouse.pinned.filter(|pinned| self.exists(*pinned));
+        self.mouse.grabbed = self.mouse.grabbed.filter(|grabbed| self.exists(*grabbed));
         self.note_exports();
     }
 
-    fn note_exports(&mut self) {
-        match self.exporter.take_outcome() {
-            Some(Ok(path)) => {
-                // Where the program was started is not where its user looks.
-                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
-                self.say(format!("Saved {}", whole.display()), false);
-                self.note_saved_run(&path);
-            }
-            Some(Err(error)) => self.say(error.to_string(), true),
-            None => {}
+    /// Begins anew with a start that was not there before.
+    fn follow_loads(&mut self) {
+        if self.frame.loads == self.opening.seen_loads {
+            return;
         }
-        if let Some((text, failure)) = self.film.as_ref().and_then(|film| film.1.take_outcome()) {
-            self.film = None;
-            self.say(text, failure);
+        self.opening.seen_loads = self.frame.loads;
+        self.camera.frame_scene();
+        self.mouse.pinned = None;
+        self.exports.data.stretch = None;
+        self.race = None;
+        if let Some(opened) = self.opening.last.get() {
+            self.config.clone_from(&opened.config);
         }
-        let outcome = self.data.export.as_ref().and_then(Work::take_outcome);
-        if let Some((text, failure)) = outcome {
-            self.data.export = None;
-            self.data.told = Some((text.clone(), failure));
-            self.say(text, failure);
+        let arriving = self.opening.arriving.as_ref();
+        if let Some(arrangement) = arriving.and_then(|window| window.try_recv().ok()) {
+            self.arrange(arrangement);
         }
     }
 
-    /// A run that was just saved is the one that is likely to be opened.
-    fn note_saved_run(&mut self, path: &Path) {
-        let is = |ending: &str| path.extension().is_some_and(|found| found == ending);
-        if is(STATE_ENDING) || is(SESSION_ENDING) {
-            self.data.saved_run = path.display().to_string();
+    fn note_exports(&mut self) {
+        match self.exports.files.take_outcome() {
+            Some(Ok(path)) => {
+                // Where the program was started is not where its user looks.
+                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+                self.tell(format!("Saved {}", whole.display()));
+                // A run that was just saved is the one that is likely to be opened.
+                let is = |ending: &str| path.extension().is_some_and(|found| found == ending);
+                if is(STATE_ENDING) || is(SESSION_ENDING) {
+                    self.exports.data.saved_run = path.display().to_string();
+                }
+            }
+            Some(Err(error)) => self.warn(error.to_string()),
+            None => {}
+        }
+        let film = self.exports.film.as_ref().and_then(|(_, work)| work.take_outcome());
+        if let Some((text, failure)) = film {
+            self.exports.film = None;
+            self.say(text, failure);
+        }
+        let data = self.exports.data.export.as_ref().and_then(Work::take_outcome);
+        if let Some((text, failure)) = data {
+            self.exports.data.export = None;
+            self.exports.data.told = Some((text.clone(), failure));
+            self.say(text, failure);
         }
     }
 
@@ -273,19 +252,19 @@ impl AppState {
     }
 
     fn say(&mut self, text: String, failure: bool) {
-        self.notice = Some(Notice::new(text, failure));
+        self.shown.notice = Some(Notice::new(text, failure));
     }
 
     /// What the status bar has to say, and for how long yet, s.
     pub fn notice(&self) -> Option<(&Notice, f32)> {
-        let notice = self.notice.as_ref()?;
+        let notice = self.shown.notice.as_ref()?;
         Some((notice, notice.left_secs()?))
     }
 
     /// Forgets what lives in an egui context: it is about to be replaced.
     pub(crate) fn forget_context(&mut self) {
-        self.legend.forget();
-        self.other_piles.stop();
+        self.shown.legend.forget();
+        self.ensemble.stop();
     }
 
     /// Notes where a control lies.
@@ -296,5 +275,63 @@ impl AppState {
                 self.controls.insert(name.to_owned(), rect);
             }
         }
+    }
+}
+
+impl AppState {
+    /// Releases, plays or pauses.
+    pub(crate) fn toggle_play(&mut self) {
+        let command = if self.frame.playing { Command::Pause } else { Command::Play };
+        self.live.send(command);
+    }
+
+    /// Takes one step and pauses.
+    pub fn step(&mut self) {
+        self.live.send(Command::Step);
+    }
+
+    /// Goes one step back in the recording.
+    pub(crate) fn step_back(&mut self) {
+        let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
+        let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
+        self.live.send(Command::Seek(time_secs.max(0.0)));
+    }
+
+    /// Back to the start, with the present settings.
+    pub(crate) fn reset(&mut self) {
+        self.live.send(Command::Reset);
+    }
+
+    /// Back to the run that the present one has taken the place of last.
+    pub(crate) fn undo(&mut self) {
+        if let Some(last) = self.frame.past.last() {
+            self.live.send(Command::Return(last.number));
+        }
+    }
+}
+
+/// How long a notice stays, s.
+const NOTICE_SECS: f32 = 8.0;
+
+/// A sentence for the status bar.
+#[derive(Clone, Debug)]
+pub struct Notice {
+    /// The sentence.
+    pub text: String,
+    /// Whether it tells of a failure.
+    pub(crate) failure: bool,
+    since: Instant,
+}
+
+impl Notice {
+    /// One that begins now.
+    pub(super) fn new(text: String, failure: bool) -> Self {
+        Self { text, failure, since: Instant::now() }
+    }
+
+    /// For how long it stays yet, s.
+    pub(super) fn left_secs(&self) -> Option<f32> {
+        let left = NOTICE_SECS - self.since.elapsed().as_secs_f32();
+        (left > 0.0).then_some(left)
     }
 }

@@ -1,11 +1,15 @@
-//! The layout of the window, as a function of the state alone.
+//! The layout of the window as a function of the state alone, and the keys that act wherever the mouse is.
 
-use egui::{CentralPanel, CollapsingHeader, Frame, Margin, Panel, RichText, ScrollArea, Ui};
+use egui::{
+    CentralPanel, CollapsingHeader, Context, Event, Frame, Key, KeyboardShortcut, Margin,
+    Modifiers, Panel, RichText, ScrollArea, Ui,
+};
 
-use super::fill::fill;
-use super::panels::{SECTIONS, Section, help, plots, scene, status, tour, transport};
+use super::painting::fill;
+use super::panels::{SECTIONS, Section, help, plots, scene, see, status, transport};
+use super::sharing::LINK_START;
 use super::state::AppState;
-use super::{drop, hint, keys};
+use super::{budget, opening, tour};
 use crate::config::Config;
 
 /// Width of the sidebar, points.
@@ -22,9 +26,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     if context.options(|options| options.theme_preference) != state.preferences.theme {
         context.set_theme(state.preferences.theme);
     }
-    state.follow_other_piles(&context);
-    drop::take_files(&context, state);
-    keys::act(&context, state);
+    state.follow_ensemble(&context);
+    opening::take_dropped_files(&context, state);
+    act_on_keys(&context, state);
 
     fill(ui, ui.max_rect(), ui.visuals().panel_fill);
     let tight = Frame::new().inner_margin(Margin::symmetric(8, 4));
@@ -70,12 +74,12 @@ fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
         // Other scenes say under their name what there is to watch.
         let is_pile = state.frame.start.as_ref().is_some_and(|it| it.name == Config::DEFAULT_SCENE);
         let world = state.world().filter(|_| is_pile);
-        if let Some(hint) = world.map(|world| hint::what_to_try(&world.controls.settings)) {
+        if let Some(hint) = world.map(|world| budget::what_to_try(&world.controls.settings)) {
             ui.label(RichText::new(hint).small().weak());
         }
         tour::resume_button(ui, state);
     }
-    let asked = state.opened_panel.take();
+    let asked = state.shown.panel.take();
     ui.add_space(2.0);
     for Section { id, title, open, show } in SECTIONS {
         let Some(title) = title(state) else { continue };
@@ -104,4 +108,73 @@ fn waiting(ui: &mut Ui, state: &AppState) {
                 });
             });
         });
+}
+
+/// Acts on the keys of this frame.
+fn act_on_keys(context: &Context, state: &mut AppState) {
+    let escape = context.input(|input| input.key_pressed(Key::Escape));
+    if escape {
+        state.shown.help = false;
+    }
+    // A focused field or slider has a use of its own for letters and arrows.
+    if context.egui_wants_keyboard_input() {
+        return;
+    }
+    let restart = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::G);
+    state.shown.restart_graphics |= context.input_mut(|input| input.consume_shortcut(&restart));
+    let quit = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
+    if context.input_mut(|input| input.consume_shortcut(&quit)) {
+        context.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+    let undo = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+    if context.input_mut(|input| input.consume_shortcut(&undo)) {
+        state.undo();
+    }
+    let save = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
+    if context.input_mut(|input| input.consume_shortcut(&save)) {
+        state.save_session(context);
+    }
+    take_link(context, state);
+    let pressed = |key: Key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    // While a start is made there is nothing to play; what was there waits for how that ends.
+    let is_ready = state.frame.loading.is_none();
+    let asked = [Key::Space, Key::ArrowRight, Key::ArrowLeft, Key::R].map(pressed);
+    if let (true, [space, right, left, reset]) = (is_ready, asked) {
+        if space {
+            state.toggle_play();
+        }
+        if right {
+            state.step();
+        }
+        if left {
+            state.step_back();
+        }
+        if reset {
+            state.reset();
+        }
+    }
+    if pressed(Key::F) {
+        state.camera.frame_scene();
+    }
+    if pressed(Key::S) {
+        see::save_picture(context, state);
+    }
+    if pressed(Key::H) {
+        state.shown.help = !state.shown.help;
+    }
+}
+
+/// Opens a link that is pasted where no field takes it.
+fn take_link(context: &Context, state: &mut AppState) {
+    let pasted = context.input(|input| {
+        input.events.iter().rev().find_map(|event| match event {
+            Event::Paste(text) => Some(text.clone()),
+            _ => None,
+        })
+    });
+    if let Some(text) = pasted.filter(|text| text.trim_start().starts_with(LINK_START))
+        && let Err(refusal) = state.open_link(&text)
+    {
+        state.warn(refusal.to_string());
+    }
 }

@@ -7,7 +7,9 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::taken::TakenRun;
+use egui::Ui;
+
+use super::opening::TakenRun;
 use crate::error::{Error, Result};
 
 /// Least time between two looks at what the window says, and between two frames that show how far it is.
@@ -17,21 +19,21 @@ const WHOLE: f64 = 1000.0;
 
 /// Work that is going on.
 pub(crate) struct Work {
-    shared: Arc<Shared>,
+    shared: Arc<WorkState>,
     outcome: Receiver<Result<String>>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// What window and thread tell each other.
 #[derive(Default)]
-struct Shared {
+struct WorkState {
     done: AtomicU32,
     is_cancelled: AtomicBool,
 }
 
 /// The thread's side of it.
-pub(crate) struct Telling {
-    shared: Arc<Shared>,
+pub(crate) struct Reporter {
+    shared: Arc<WorkState>,
     context: egui::Context,
     shown: std::cell::Cell<Instant>,
 }
@@ -40,29 +42,45 @@ impl Work {
     /// Starts it. What it returns is said in the window.
     pub(crate) fn start(
         context: &egui::Context,
-        work: impl FnOnce(&Telling) -> Result<String> + Send + 'static,
+        work: impl FnOnce(&Reporter) -> Result<String> + Send + 'static,
     ) -> Self {
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(WorkState::default());
         let (outbox, outcome) = channel();
         let (context, of_thread) = (context.clone(), Arc::clone(&shared));
         let thread = std::thread::spawn(move || {
             let shown = std::cell::Cell::new(Instant::now());
-            let telling = Telling { shared: of_thread, context, shown };
+            let reporter = Reporter { shared: of_thread, context, shown };
             // The window may have closed.
-            let _ = outbox.send(work(&telling));
-            telling.context.request_repaint();
+            let _ = outbox.send(work(&reporter));
+            reporter.context.request_repaint();
         });
         Self { shared, outcome, thread: Some(thread) }
     }
 
     /// How far it has come, 0 … 1.
-    pub(crate) fn part(&self) -> f32 {
+    fn part(&self) -> f32 {
         self.shared.done.load(Ordering::Relaxed) as f32 / WHOLE as f32
     }
 
     /// Ends it where it next looks.
-    pub(crate) fn cancel(&self) {
+    fn cancel(&self) {
         self.shared.is_cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Shows how far it is by that `name`, and the button that stops it.
+    pub(super) fn show(&self, ui: &mut Ui, name: &str, stop: &str, hint: &str) {
+        ui.horizontal(|ui| {
+            // Not where the button was that started it: a second click there is none on this one.
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button(stop).on_hover_text(hint).clicked() {
+                    self.cancel();
+                }
+                let bar = ui.add(egui::ProgressBar::new(self.part()).desired_height(14.0));
+                bar.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name)
+                });
+            });
+        });
     }
 
     /// What became of it, and whether it failed, once it has ended.
@@ -86,7 +104,7 @@ impl Drop for Work {
     }
 }
 
-impl Telling {
+impl Reporter {
     /// Says which part is done, and asks whether to go on.
     pub(crate) fn tell(&self, part: f64) -> ControlFlow<()> {
         self.shared.done.store((WHOLE * part.clamp(0.0, 1.0)) as u32, Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! The loop of the solver's thread.
+//! The loop of the solver's thread: what it is at, and what commands make of that.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -8,75 +8,123 @@ use std::time::{Duration, Instant};
 use triple_buffer::Input;
 
 use super::clock::Clock;
-use super::frame::message;
-use super::past::Past;
-use super::worlds::Worlds;
-use super::{Command, Frame, LiveOptions, Pace, Progress, Record, Start, StartInfo};
-use crate::sim::Surroundings;
+use super::{
+    Command, LiveFrame, LiveOptions, LiveStart, Loader, LoadingProgress, Pace, RunHistory,
+    WorldFrame,
+};
+use crate::error::Error;
+use crate::sim::{Settings, Surroundings};
 
 /// A frame that nobody fetched yet is renewed after so many frame intervals: making one costs time,
 /// and an old one shows late what happens.
 const UNFETCHED_INTERVALS: u32 = 3;
-pub(super) struct Engine {
-    pub(super) inbox: Receiver<(u64, Command)>,
-    /// Commands that wait for the end of a loading or a seek.
-    pub(super) waiting: VecDeque<(u64, Command)>,
-    pub(super) output: Input<Frame>,
-    pub(super) options: LiveOptions,
-    pub(super) start: Option<Start>,
-    pub(super) info: Option<Arc<StartInfo>>,
-    pub(super) held: Option<Arc<Surroundings>>,
-    pub(super) worlds: Worlds,
-    pub(super) past: Past,
-    pub(super) clock: Clock,
-    pub(super) playing: bool,
-    pub(super) seeking: bool,
-    /// The simulated time up to which stored moments are shown in place of the present one, s.
-    pub(super) film: Option<f64>,
-    /// Where this play pauses, s.
-    pub(super) stop_at_secs: Option<f64>,
-    pub(super) loading: Option<Progress>,
-    pub(super) refusal: Option<Arc<str>>,
-    pub(super) acknowledged: u64,
-    pub(super) frames: u64,
-    pub(super) loads: u64,
-    pub(super) published: Instant,
+/// Least time between two frames that tell of the progress of a loading.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
+
+/// What the thread is at.
+#[derive(Clone, Debug)]
+enum Mode {
+    /// Time stands still.
+    Paused,
+    /// Time passes: steps are computed as they are due.
+    Computing,
+    /// Time passes within the record: stored moments are shown up to this simulated time, s, and nothing is computed, so
+    /// that a slow run is shown fluently. The worlds stay where they are meanwhile.
+    Showing { until_secs: f64 },
+    /// A recorded moment is computed, after which time passes or stands still.
+    Seeking { then_plays: bool },
+    /// A start is made.
+    Loading(LoadingProgress),
+}
+
+impl Mode {
+    fn of_play(plays: bool) -> Self {
+        if plays { Self::Computing } else { Self::Paused }
+    }
+
+    fn plays(&self) -> bool {
+        matches!(self, Self::Computing | Self::Showing { .. } | Self::Seeking { then_plays: true })
+    }
+
+    fn seeks(&self) -> bool {
+        matches!(self, Self::Seeking { .. })
+    }
+}
+
+/// Where frames go.
+struct Outbox {
+    frames: Input<LiveFrame>,
+    wake: Box<dyn Fn() + Send>,
+    interval: Duration,
+    count: u64,
+    sent: Instant,
     /// Whether the newest state is one that no frame shows.
-    pub(super) unpublished: bool,
+    is_behind: bool,
     /// Whether the next step is to be shown as soon as it is taken.
-    pub(super) urgent: bool,
-    pub(super) quit: bool,
+    is_urgent: bool,
+}
+
+impl Outbox {
+    /// How long the next frame is to wait.
+    fn wait(&self) -> Duration {
+        let intervals = if self.frames.consumed() { 1 } else { UNFETCHED_INTERVALS };
+        (intervals * self.interval).saturating_sub(self.sent.elapsed())
+    }
+}
+
+pub(super) struct Engine {
+    inbox: Receiver<(u64, Command)>,
+    /// Commands that wait for the end of a loading or a seek.
+    waiting: VecDeque<(u64, Command)>,
+    outbox: Outbox,
+    start: Option<Arc<LiveStart>>,
+    /// What is around the grains at the start, with the shapes that hold them.
+    held: Option<Arc<Surroundings>>,
+    history: RunHistory,
+    mode: Mode,
+    clock: Clock,
+    /// Where this play pauses, s.
+    stop_at_secs: Option<f64>,
+    refusal: Option<Arc<str>>,
+    acknowledged: u64,
+    loads: u64,
+    quit: bool,
+}
+
+/// An error as frames carry it.
+fn message(error: Error) -> Arc<str> {
+    error.to_string().into()
 }
 
 impl Engine {
     pub(super) fn new(
         inbox: Receiver<(u64, Command)>,
-        output: Input<Frame>,
+        frames: Input<LiveFrame>,
         options: LiveOptions,
     ) -> Self {
+        let LiveOptions { wake, frame_interval: interval, recording_bytes } = options;
+        let sent = Instant::now();
         Self {
             inbox,
             waiting: VecDeque::new(),
-            output,
-            options,
+            outbox: Outbox {
+                frames,
+                wake,
+                interval,
+                count: 0,
+                sent,
+                is_behind: false,
+                is_urgent: false,
+            },
             start: None,
-            info: None,
             held: None,
-            worlds: Worlds::default(),
-            past: Past::default(),
+            history: RunHistory::new(recording_bytes),
+            mode: Mode::Paused,
             clock: Clock::new(),
-            playing: false,
-            seeking: false,
-            film: None,
             stop_at_secs: None,
-            loading: None,
             refusal: None,
             acknowledged: 0,
-            frames: 0,
             loads: 0,
-            published: Instant::now(),
-            unpublished: false,
-            urgent: false,
             quit: false,
         }
     }
@@ -86,18 +134,15 @@ impl Engine {
             if !self.receive() {
                 return;
             }
-            if self.seeking {
-                self.advance_seek();
-            } else if self.playing && self.film.is_some() {
-                if self.wait_for_frame().is_zero() {
-                    self.advance_film();
-                }
-            } else if self.playing && self.wait_for_step().is_zero() {
-                self.tick();
-                self.stop_when_done();
+            match self.mode {
+                Mode::Seeking { .. } => self.advance_seek(),
+                Mode::Showing { .. } => self.advance_show(),
+                Mode::Computing => self.advance_run(),
+                Mode::Paused | Mode::Loading(_) => {}
             }
-            if self.unpublished && (self.urgent || self.wait_for_frame().is_zero()) {
-                self.urgent = false;
+            let is_due = self.outbox.is_urgent || self.outbox.wait().is_zero();
+            if self.outbox.is_behind && is_due {
+                self.outbox.is_urgent = false;
                 self.publish();
             }
         }
@@ -108,7 +153,7 @@ impl Engine {
     fn receive(&mut self) -> bool {
         let mut commanded = false;
         loop {
-            if !self.seeking
+            if !self.mode.seeks()
                 && let Some((number, command)) = self.waiting.pop_front()
             {
                 self.handle(number, command);
@@ -121,7 +166,7 @@ impl Engine {
                 Some(wait) => self.inbox.recv_timeout(wait),
             };
             match received {
-                Ok((number, command)) if self.seeking && command.waits_for_seek() => {
+                Ok((number, command)) if self.mode.seeks() && command.waits_for_seek() => {
                     self.waiting.push_back((number, command));
                 }
                 Ok((number, command)) => self.handle(number, command),
@@ -130,10 +175,10 @@ impl Engine {
             }
             commanded = true;
         }
-        if commanded && !self.seeking {
+        if commanded && !self.mode.seeks() {
             // What was changed shows in the step that comes next, if that comes at once.
-            self.urgent = self.playing && self.wait_for_step().is_zero();
-            if !self.urgent {
+            self.outbox.is_urgent = self.mode.plays() && self.wait_for_step().is_zero();
+            if !self.outbox.is_urgent {
                 self.publish();
             }
         }
@@ -142,158 +187,282 @@ impl Engine {
 
     /// How long nothing is to be done; none where only a command changes that.
     fn wait(&mut self) -> Option<Duration> {
-        if self.seeking {
+        if self.mode.seeks() {
             return Some(Duration::ZERO);
         }
-        let frame = self.unpublished.then(|| self.wait_for_frame());
-        let step = self.playing.then(|| self.wait_for_step());
+        let frame = self.outbox.is_behind.then(|| self.outbox.wait());
+        let step = self.mode.plays().then(|| self.wait_for_step());
         frame.into_iter().chain(step).min()
     }
 
     fn wait_for_step(&mut self) -> Duration {
-        match self.film {
-            Some(_) => self.wait_for_frame(),
-            None => self.clock.wait(self.worlds.time_secs()),
+        match self.mode {
+            Mode::Showing { .. } => self.outbox.wait(),
+            _ => self.clock.wait(self.history.present.time_secs()),
         }
     }
 
-    fn wait_for_frame(&self) -> Duration {
-        let fetched = self.output.consumed();
-        let intervals = if fetched { 1 } else { UNFETCHED_INTERVALS };
-        (intervals * self.options.frame_interval).saturating_sub(self.published.elapsed())
-    }
-
     fn handle(&mut self, number: u64, command: Command) {
-        if self.film.is_some() && command.is_about_the_moment() {
-            self.leave_film();
+        if let Mode::Showing { until_secs } = self.mode
+            && command.is_about_the_moment()
+        {
+            self.seek(until_secs, true);
             self.waiting.push_front((number, command));
             return;
         }
         match command {
             Command::Load(loader) => self.load(loader),
-            Command::CancelLoading => {}
-            Command::Compare(variants) => self.restart(&variants),
+            Command::Compare(all) => self.restart(&all),
+            Command::Reset => self.restart(&self.history.present.settings()),
+            Command::Return(number) => {
+                if self.history.go_back(number) {
+                    self.mode = Mode::Paused;
+                }
+            }
             Command::Change(world, settings) => {
-                if let Some(track) = self.worlds.tracks.get_mut(world) {
-                    self.refusal = track.simulation.change(settings).err().map(message);
+                if let Some(world) = self.history.present.worlds.get_mut(world) {
+                    self.refusal = world.simulation.change(settings).err().map(message);
                 }
             }
             Command::SetPull(world, pull) => {
-                if let Some(track) = self.worlds.tracks.get_mut(world) {
-                    track.simulation.set_pull(pull);
+                if let Some(world) = self.history.present.worlds.get_mut(world) {
+                    world.simulation.set_pull(pull);
                 }
             }
-            Command::Edit(world, edit) => self.edit(world, edit),
-            Command::Play => self.play(),
-            Command::Pause => {
-                self.playing = false;
-                self.leave_film();
+            Command::Edit(world, edit) => {
+                if world < self.history.present.worlds.len() {
+                    self.refusal = self.history.edit(world, edit).err().map(message);
+                }
             }
+            Command::Play => self.play(),
+            Command::Pause => self.pause(),
             Command::Step => {
-                self.playing = false;
+                self.mode = Mode::Paused;
                 self.tick();
             }
-            Command::Reset => {
-                let variants = self.worlds.variants();
-                self.restart(&variants);
-            }
-            Command::Return(number) => {
-                if let Some(mut worlds) = self.past.take(number) {
-                    worlds.keep_within(self.options.recording_bytes);
-                    self.put_in_place(worlds);
-                }
-            }
-            Command::Seek(time_secs) => {
-                self.playing = false;
-                self.seek(time_secs);
-            }
-            Command::SetPace(pace) => {
-                self.clock.pace = pace;
-                self.restart_clock();
-                if pace == Pace::Max {
-                    self.leave_film();
-                }
-            }
-            Command::Quit => self.quit = true,
-            Command::Name(..) | Command::Take(..) | Command::TakeAll(..) => self.hand_out(command),
-        }
-        self.acknowledged = number;
-        self.unpublished = true;
-    }
-
-    /// Names what there is, or hands it out; nothing of it changes.
-    fn hand_out(&mut self, command: Command) {
-        match command {
-            Command::Name(None, name) => self.worlds.name = name,
-            Command::Name(Some(number), name) => self.past.name(number, name),
+            Command::Seek(time_secs) => self.seek(time_secs, false),
+            Command::SetPace(pace) => self.set_pace(pace),
+            Command::Name(number, name) => self.history.name(number, name),
             Command::Take(world, taker) => {
-                if let Some(track) = self.worlds.tracks.get(world) {
-                    taker(track.taken());
+                if let Some(world) = self.history.present.worlds.get(world) {
+                    taker(world.handed_out());
                 }
             }
             Command::TakeAll(taker) => {
                 if let Some(start) = &self.start {
-                    let record = Some(Record::of(&self.worlds, &self.past));
-                    taker(Start { record, ..start.clone() });
+                    let history = Some(self.history.thinned());
+                    taker(LiveStart { history, ..LiveStart::clone(start) });
                 }
             }
-            _ => {}
+            Command::CancelLoading => {}
+            Command::Quit => self.quit = true,
+        }
+        self.acknowledged = number;
+        self.outbox.is_behind = true;
+    }
+
+    fn set_pace(&mut self, pace: Pace) {
+        self.clock.pace = pace;
+        match self.mode {
+            Mode::Showing { until_secs } => {
+                self.clock.start(until_secs);
+                if pace == Pace::Max {
+                    self.seek(until_secs, true);
+                }
+            }
+            _ => self.clock.start(self.history.present.time_secs()),
         }
     }
 
     fn play(&mut self) {
-        if self.worlds.tracks.is_empty() || self.worlds.has_failed() || self.film.is_some() {
+        let run = &self.history.present;
+        let is_shown = matches!(self.mode, Mode::Showing { .. });
+        if run.worlds.is_empty() || run.has_failed() || is_shown {
             return;
         }
-        let duration = self.start.as_ref().map_or(f64::INFINITY, |start| start.duration_secs);
-        let before_end = self.worlds.time_secs() + 0.5 * self.worlds.time_step_secs() < duration;
-        self.stop_at_secs = before_end.then_some(duration);
-        self.playing = true;
-        self.restart_clock();
-        self.begin_film();
+        let now_secs = run.time_secs();
+        let duration_secs = self.start.as_ref().map_or(f64::INFINITY, |start| start.duration_secs);
+        let is_before_end = now_secs + 0.5 * run.time_step_secs() < duration_secs;
+        self.stop_at_secs = is_before_end.then_some(duration_secs);
+        self.clock.start(now_secs);
+        let is_slow = matches!(self.clock.pace, Pace::RealTime(_));
+        self.mode = if is_slow && run.is_stored() && run.replays() {
+            Mode::Showing { until_secs: now_secs }
+        } else {
+            Mode::Computing
+        };
     }
 
-    fn tick(&mut self) {
-        if self.worlds.branch() {
-            self.past.keep(self.worlds.clone(), self.options.recording_bytes);
-            self.worlds.name.clear();
+    /// Stops time. A stored moment that is shown is computed: others are to go on from it.
+    fn pause(&mut self) {
+        match self.mode {
+            Mode::Showing { until_secs } => self.seek(until_secs, false),
+            Mode::Seeking { .. } => self.mode = Mode::Seeking { then_plays: false },
+            _ => self.mode = Mode::Paused,
         }
-        let (steps, all_well) = self.worlds.tick();
-        self.clock.count(steps, self.worlds.time_secs());
-        self.playing &= all_well;
-        self.unpublished = true;
     }
 
-    fn stop_when_done(&mut self) {
-        let end_secs = self.worlds.time_secs() + 0.5 * self.worlds.time_step_secs();
-        self.playing &= self.stop_at_secs.is_none_or(|stop| end_secs < stop);
-        if !self.playing {
-            self.publish();
+    /// Goes on to the stored moment that is due. Where the stored ones end, the worlds are put at the end of the record,
+    /// of which a keyframe is kept.
+    fn advance_show(&mut self) {
+        if !self.outbox.wait().is_zero() {
+            return;
         }
+        let due_secs = self.clock.time_secs();
+        let end_secs = self.history.present.recorded_secs();
+        let stop_secs = self.stop_at_secs.filter(|&stop| stop < end_secs);
+        if due_secs < stop_secs.unwrap_or(end_secs) {
+            self.mode = Mode::Showing { until_secs: due_secs };
+            self.clock.count(0, due_secs);
+            self.outbox.is_behind = true;
+            return;
+        }
+        // A run that has been at its end stops there.
+        let half_step_secs = 0.5 * self.history.present.time_step_secs();
+        let goes_on = self.stop_at_secs.is_none_or(|stop| end_secs + half_step_secs < stop);
+        self.seek(stop_secs.unwrap_or(end_secs), goes_on);
+    }
+
+    /// Starts on the way to a recorded moment.
+    fn seek(&mut self, secs: f64, then_plays: bool) {
+        self.mode = Mode::Seeking { then_plays };
+        self.history.present.seek(secs);
     }
 
     fn advance_seek(&mut self) {
-        if self.worlds.advance_seek() {
-            self.seeking = false;
+        if self.history.present.advance_seek() {
+            self.mode = Mode::of_play(self.mode.plays());
             self.publish();
         }
     }
-}
 
-impl Command {
-    /// Whether it changes a state that a seek is still computing.
-    fn waits_for_seek(&self) -> bool {
-        matches!(
-            self,
-            Self::Change(..)
-                | Self::SetPull(..)
-                | Self::Edit(..)
-                | Self::Play
-                | Self::Step
-                | Self::Reset
-                | Self::Return(..)
-                | Self::Take(..)
-                | Self::TakeAll(..)
-        )
+    fn tick(&mut self) {
+        self.history.keep_before_tick();
+        let (steps, all_well) = self.history.present.tick();
+        self.clock.count(steps, self.history.present.time_secs());
+        if !all_well {
+            self.mode = Mode::Paused;
+        }
+        self.outbox.is_behind = true;
+    }
+
+    /// Takes the step that is due, and stops where the run is to.
+    fn advance_run(&mut self) {
+        if !self.wait_for_step().is_zero() {
+            return;
+        }
+        self.tick();
+        let run = &self.history.present;
+        let end_secs = run.time_secs() + 0.5 * run.time_step_secs();
+        if self.stop_at_secs.is_some_and(|stop| end_secs >= stop) {
+            self.mode = Mode::Paused;
+        }
+        if !self.mode.plays() {
+            self.publish();
+        }
+    }
+
+    /// Replaces everything by what `loader` makes, unless that fails or is given up.
+    fn load(&mut self, loader: Loader) {
+        self.pause();
+        self.refusal = None;
+        let before = std::mem::replace(&mut self.mode, Mode::Loading(LoadingProgress::default()));
+        self.publish();
+        let mut cancelled = false;
+        let made = loader(&mut |progress| {
+            self.mode = Mode::Loading(progress);
+            if self.outbox.sent.elapsed() >= PROGRESS_INTERVAL {
+                self.publish();
+            }
+            cancelled |= self.is_interrupted();
+            !cancelled
+        });
+        self.mode = before;
+        match made {
+            Ok(start) => self.begin(start),
+            Err(_) if cancelled => {}
+            Err(error) => self.refusal = Some(message(error)),
+        }
+    }
+
+    /// Whether a command came that makes the present loading pointless. The others wait.
+    fn is_interrupted(&mut self) -> bool {
+        let mut interrupted = false;
+        while let Ok((number, command)) = self.inbox.try_recv() {
+            interrupted |=
+                matches!(command, Command::CancelLoading | Command::Load(_) | Command::Quit);
+            self.waiting.push_back((number, command));
+        }
+        interrupted
+    }
+
+    fn begin(&mut self, mut start: LiveStart) {
+        self.loads += 1;
+        let mut surroundings = Surroundings::clone(&start.simulation.snapshot().surroundings);
+        surroundings.boundaries.extend_from_slice(&start.held_by);
+        self.held = Some(Arc::new(surroundings));
+        let mut worlds = std::mem::take(&mut start.worlds);
+        if worlds.is_empty() {
+            worlds.push(*start.settings());
+        }
+        let history = start.history.take();
+        self.start = Some(Arc::new(start));
+        self.history.clear();
+        match history {
+            Some(history) => {
+                self.history.take_up(history);
+                self.mode = Mode::Paused;
+            }
+            None => self.restart(&worlds),
+        }
+    }
+
+    /// Puts worlds at the start, one for each of these settings.
+    fn restart(&mut self, all: &[Settings]) {
+        if let Some(start) = &self.start
+            && !all.is_empty()
+        {
+            self.history.restart(start, all);
+            self.mode = Mode::Paused;
+        }
+    }
+
+    /// Hands out the newest state, and wakes whoever waits for it.
+    fn publish(&mut self) {
+        let shown_secs = match self.mode {
+            Mode::Showing { until_secs } => Some(until_secs),
+            _ => None,
+        };
+        let run = &self.history.present;
+        let worlds = run.worlds.iter().map(|world| {
+            let moment = shown_secs.and_then(|secs| world.stored.at(secs));
+            WorldFrame::of(world, moment, self.held.as_ref())
+        });
+        let loading = match &self.mode {
+            Mode::Loading(progress) => Some(progress.clone()),
+            _ => None,
+        };
+        self.outbox.count += 1;
+        self.outbox.frames.write(LiveFrame {
+            number: self.outbox.count,
+            acknowledged: self.acknowledged,
+            loads: self.loads,
+            start: self.start.clone(),
+            worlds: worlds.collect(),
+            name: run.name.clone(),
+            past: self.history.told(),
+            playing: self.mode.plays(),
+            replaying: run.replays(),
+            branching: run.branches(),
+            seeking: self.mode.seeks(),
+            stored: shown_secs.is_some(),
+            loading,
+            refusal: self.refusal.clone(),
+            real_time_factor: self.clock.real_time_factor,
+            steps_per_sec: self.clock.steps_per_sec,
+        });
+        self.outbox.sent = Instant::now();
+        self.outbox.is_behind = false;
+        (self.outbox.wake)();
     }
 }

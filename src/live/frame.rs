@@ -4,21 +4,23 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Controls, Curve, PastRun, Progress};
-use crate::error::Error;
-use crate::sim::{AlarmKind, FractureWork, Settings, Snapshot, SweepElasticity};
+use super::stored_moments::StoredMoment;
+use super::{Controls, Curve, LiveStart, LoadingProgress, PastRun, WorldHistory};
+use crate::sim::{Alarm, AlarmKind, FractureWork, Snapshot, Surroundings, SweepElasticity};
 use crate::solver::Method;
-use crate::world::Physics;
+use crate::world::Gravity;
 
 /// The newest moment of a live run.
 #[derive(Clone, Debug, Default)]
-pub struct Frame {
+pub struct LiveFrame {
     /// Counts frames.
     pub number: u64,
     /// The last command that this frame knows of.
     pub acknowledged: u64,
+    /// Counts loads.
+    pub loads: u64,
     /// What the run started from; none before the first load.
-    pub start: Option<Arc<StartInfo>>,
+    pub start: Option<Arc<LiveStart>>,
     /// The worlds, one unless they are compared.
     pub worlds: Vec<WorldFrame>,
     /// What the user calls the present run; empty where nothing.
@@ -36,34 +38,13 @@ pub struct Frame {
     /// Whether a recorded moment is being computed.
     pub seeking: bool,
     /// A start that is being made.
-    pub loading: Option<Progress>,
+    pub loading: Option<LoadingProgress>,
     /// Why the last start could not be made.
     pub refusal: Option<Arc<str>>,
     /// Simulated time per time on the wall, lately.
     pub real_time_factor: f64,
     /// Steps of all worlds together, lately, 1/s.
     pub steps_per_sec: f64,
-}
-
-/// What does not change after a load.
-#[derive(Clone, Debug)]
-pub struct StartInfo {
-    /// Counts loads.
-    pub number: u64,
-    /// Name of the scene.
-    pub name: String,
-    /// Where the run pauses once, s.
-    pub duration_secs: f64,
-    /// Whether shapes hold the start until it is released.
-    pub held: bool,
-    /// Lower left and upper right corner of what pictures show, m.
-    pub view: [DVec2; 2],
-    /// Whether it is one of a heap on level ground, of which slump tells.
-    pub slumps: bool,
-    /// The physics that the scene computes.
-    pub physics: Physics,
-    /// The settings that the scene states.
-    pub settings: Settings,
 }
 
 /// One world at one moment.
@@ -118,7 +99,7 @@ pub struct WorldAlarm {
     pub is_earlier: bool,
 }
 
-impl Frame {
+impl LiveFrame {
     /// Simulated time of the first world, s.
     pub fn time_secs(&self) -> f64 {
         self.worlds.first().map_or(0.0, |world| world.snapshot.observables.time_secs)
@@ -136,11 +117,71 @@ impl Frame {
 
     /// Whether the scene is held and has not been released.
     pub fn held(&self) -> bool {
-        self.at_start() && self.start.as_ref().is_some_and(|start| start.held)
+        self.at_start() && self.start.as_ref().is_some_and(|start| !start.held_by.is_empty())
     }
 }
 
-/// An error as frames carry it.
-pub(super) fn message(error: Error) -> Arc<str> {
-    error.to_string().into()
+impl WorldFrame {
+    /// The present moment of a world, or one that is stored of it; before the first step in the `held` surroundings.
+    pub(super) fn of(
+        world: &WorldHistory,
+        stored: Option<&StoredMoment>,
+        held: Option<&Arc<Surroundings>>,
+    ) -> Self {
+        let simulation = &world.simulation;
+        let tally = stored.map_or(world.tally, |moment| moment.tally);
+        let gravity = stored.map_or(simulation.world().gravity, |moment| moment.gravity);
+        let controls = stored.and_then(|moment| {
+            world.record.controls_after(moment.snapshot.observables.step).copied()
+        });
+        let present = || {
+            let mut snapshot: Snapshot = simulation.snapshot();
+            if let Some(held) = held.filter(|_| snapshot.observables.step == 0) {
+                snapshot.surroundings = Arc::clone(held);
+            }
+            Arc::new(snapshot)
+        };
+        let snapshot = stored.map_or_else(present, |moment| Arc::clone(&moment.snapshot));
+        let sweeps = f64::from(snapshot.observables.sweeps);
+        Self {
+            snapshot,
+            controls: controls.unwrap_or_else(|| Controls::of(simulation)),
+            gravity: match gravity {
+                Gravity::Uniform { acceleration } => Some(acceleration),
+                Gravity::Attraction { .. } => None,
+            },
+            curve: world.curve.clone(),
+            is_even: world.record.is_all_with(simulation.settings()),
+            recorded_from_secs: world.record.start().time_secs(),
+            recorded_secs: world.record.end_secs(),
+            unconverged_steps: tally.unconverged_steps,
+            fallback_steps: tally.fallback_steps,
+            step_ms: 1e3 * world.step_secs,
+            substeps: simulation.substeps(),
+            picked_method: simulation.picked_method(),
+            critical_time_step_secs: simulation.critical_time_step_secs(),
+            contact_time_secs: simulation.contact_time_secs(),
+            sweep_elasticity: simulation.sweep_elasticity(sweeps),
+            fracture_work: simulation.fracture_work(),
+            alarms: alarms(world),
+            failure: world.failure.clone(),
+        }
+    }
+}
+
+/// The alarms of a world, but for the one that ends it: that is a failure. Each advises on the settings that it was
+/// raised under.
+fn alarms(world: &WorldHistory) -> Vec<WorldAlarm> {
+    let simulation = &world.simulation;
+    let at_start = Alarm::of_start(simulation.observables());
+    let alarms = simulation.alarms().iter().copied().chain(at_start);
+    let told = alarms.filter(|alarm| alarm.kind != AlarmKind::NotFinite).map(|alarm| {
+        let now = *simulation.settings();
+        let then = world.record.settings_of_step(alarm.step).unwrap_or(now);
+        let text = alarm.message(&then);
+        let is_earlier = then != now;
+        let text = if is_earlier { format!("under earlier settings: {text}") } else { text };
+        WorldAlarm { kind: alarm.kind, text: text.into(), is_earlier }
+    });
+    told.collect()
 }

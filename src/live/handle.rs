@@ -1,21 +1,43 @@
 //! The side of a live run that a window holds.
 
 use std::sync::mpsc::{Sender, channel};
+use std::time::Duration;
 
 use triple_buffer::{Output, triple_buffer};
 
 use super::engine::Engine;
-use super::{Command, Frame, LiveOptions};
+use super::{Command, LiveFrame};
 use crate::error::{Error, Result};
 
 /// Stack of the solver's thread, bytes: reading a session takes frames of half a megabyte, one for each level of what it
 /// holds, and came to more than the two megabytes that a thread has by itself. What is not used takes no memory.
 const STACK_BYTES: usize = 32 << 20;
 
+/// What the solver's thread is to do for its window.
+pub struct LiveOptions {
+    /// Called on the solver's thread after each new frame.
+    pub wake: Box<dyn Fn() + Send>,
+    /// Least time between two frames while the run goes on.
+    pub frame_interval: Duration,
+    /// Memory for keyframes, of all worlds together.
+    pub recording_bytes: usize,
+}
+
+impl Default for LiveOptions {
+    /// Nobody to wake, 60 frames a second, 256 MiB.
+    fn default() -> Self {
+        Self {
+            wake: Box::new(|| {}),
+            frame_interval: Duration::from_micros(16_600),
+            recording_bytes: 256 << 20,
+        }
+    }
+}
+
 /// A run on a thread of its own. Dropped, it ends after the step that it is computing.
 pub struct Live {
     commands: Sender<(u64, Command)>,
-    frames: Output<Frame>,
+    frames: Output<LiveFrame>,
     sent: u64,
 }
 
@@ -26,7 +48,7 @@ impl Live {
     /// Where the system refuses a thread.
     pub fn spawn(options: LiveOptions) -> Result<Self> {
         let (commands, inbox) = channel();
-        let (output, frames) = triple_buffer(&Frame::default());
+        let (output, frames) = triple_buffer(&LiveFrame::default());
         let engine = Engine::new(inbox, output, options);
         std::thread::Builder::new()
             .name("solver".into())
@@ -36,7 +58,7 @@ impl Live {
         Ok(Self { commands, frames, sent: 0 })
     }
 
-    /// Sends a command and returns its number, which [`Frame::acknowledged`] reaches once the
+    /// Sends a command and returns its number, which [`LiveFrame::acknowledged`] reaches once the
     /// command has been carried out (loading and seeking: once they have begun).
     pub fn send(&mut self, command: Command) -> u64 {
         self.sent += 1;
@@ -51,7 +73,7 @@ impl Live {
     }
 
     /// The newest frame. Never waits.
-    pub fn latest(&mut self) -> &Frame {
+    pub fn latest(&mut self) -> &LiveFrame {
         self.frames.read()
     }
 

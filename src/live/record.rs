@@ -1,128 +1,350 @@
-//! All that a live run has come to: to be gone on with at another time, or computed anew from what was done.
+//! What is recorded of a world so that any of its moments can be computed again, bit for bit.
+//!
+//! A simulation is a function of its state and its settings, and a clone goes on as the original
+//! would. So a record is some clones, the keyframes, and every change of the settings; a moment
+//! is the keyframe before it and the steps from there. Where memory runs out, every second keyframe
+//! goes: the whole run stays within reach, at the price of more steps to get anywhere.
 
-use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
-use super::past::Past;
-use super::track::Track;
-use super::worlds::Worlds;
-use super::{LiveOptions, Progress};
 use crate::error::{Error, Result};
-use crate::sim::{Settings, Simulation, Tally};
+use crate::sim::{Edit, Pull, RunEnding, Settings, Simulation, Tally};
 
-/// Keyframes of the worlds in a record that is handed out, and of each run before: what is between them is computed
-/// again where it is wanted.
-const KEYFRAME_BYTES: usize = 8 << 20;
-const PAST_KEYFRAME_BYTES: usize = 1 << 20;
-/// Rows of each of their curves at the most; a row is some 500 bytes in a file.
-const ROWS: usize = 4096;
-const PAST_ROWS: usize = 512;
-/// Steps of each world between two words of progress.
-const STEPS_AT_ONCE: u64 = 8;
+/// All that can be changed between two steps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Controls {
+    /// How the next step is taken.
+    pub settings: Settings,
+    /// Spring on a grain.
+    pub pull: Option<Pull>,
+}
 
-/// What all worlds have come to, with the way there, and the runs before.
+impl Controls {
+    /// Those of a simulation's next step.
+    pub(super) fn of(simulation: &Simulation) -> Self {
+        Self { settings: *simulation.settings(), pull: simulation.pull() }
+    }
+}
+
+/// A moment from which on other controls are in force.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ControlsChange {
+    /// The step before the first that they are in force for.
+    pub after_step: u64,
+    /// Simulated time of that step, s.
+    pub time_secs: f64,
+    /// What is in force up to the next change.
+    pub controls: Controls,
+}
+
+/// What a hand did between two steps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HandEdit {
+    /// The step before.
+    pub after_step: u64,
+    /// What was done.
+    pub edit: Edit,
+}
+
+/// Steps between keyframes at first.
+const FIRST_SPACING: u64 = 32;
+
+/// The recorded part of a world's run. A clone shares its keyframes, so it is cheap to hand out: whoever wants the
+/// moments between them steps by itself.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Record {
-    worlds: Worlds,
-    /// The oldest first.
-    past: Vec<Worlds>,
+pub struct WorldRecord {
+    keyframes: Vec<Keyframe>,
+    changes: Vec<ControlsChange>,
+    /// In their order; a simulation knows how many of them it has seen.
+    edits: Vec<HandEdit>,
+    spacing: u64,
+    budget_bytes: usize,
+    end_step: u64,
+    end_secs: f64,
 }
 
-/// How a world comes about from a start.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
-    /// Those of its first step.
-    pub settings: Settings,
-    /// Each with the number of the step after which it is made, in their order.
-    pub changes: Vec<(u64, Settings)>,
-    /// How many steps it takes.
-    pub steps: u64,
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keyframe {
+    simulation: Arc<Simulation>,
+    tally: Tally,
 }
 
-impl Record {
-    /// That of these worlds, with fewer keyframes than they have. A run before whose state is no longer finite is
-    /// left out.
-    pub(super) fn of(worlds: &Worlds, past: &Past) -> Self {
-        let thinned = |worlds: &Worlds, bytes, rows| {
-            let mut worlds = worlds.clone();
-            worlds.keep_within(bytes);
-            worlds.tracks.iter_mut().for_each(|track| {
-                // The hand is not there when the run goes on from here.
-                track.simulation.set_pull(None);
-                track.curve.thin_to(rows);
-            });
-            worlds
-        };
-        let kept = past.runs().filter(|run| !run.has_failed());
+impl Keyframe {
+    fn step(&self) -> u64 {
+        self.simulation.observables().step
+    }
+}
+
+impl WorldRecord {
+    /// A recording that starts with this state, with the sums of steps before it, and keeps about
+    /// `budget_bytes` of keyframes.
+    pub(super) fn new(start: &Simulation, tally: Tally, budget_bytes: usize) -> Self {
         Self {
-            worlds: thinned(worlds, KEYFRAME_BYTES, ROWS),
-            past: kept.map(|run| thinned(run, PAST_KEYFRAME_BYTES, PAST_ROWS)).collect(),
+            keyframes: vec![Keyframe { simulation: Arc::new(start.clone()), tally }],
+            changes: Vec::new(),
+            edits: Vec::new(),
+            spacing: FIRST_SPACING,
+            budget_bytes,
+            end_step: start.observables().step,
+            end_secs: start.time_secs(),
         }
     }
 
-    /// That of worlds which are computed here, side by side, from a state and the sums over the steps before it. `tell` hears how far it has come, and ends it by
-    /// returning false.
+    /// Simulated time of the last recorded step, s.
+    pub fn end_secs(&self) -> f64 {
+        self.end_secs
+    }
+
+    /// The state that it starts with.
+    pub fn start(&self) -> &Simulation {
+        // A recording is made with its first keyframe, and thinning keeps that.
+        &self.keyframes[0].simulation
+    }
+
+    /// Notes a state that is about to take a step. What was recorded after it is forgotten.
+    pub(super) fn before_step(&mut self, simulation: &Simulation, tally: &Tally) {
+        let step = simulation.observables().step;
+        self.cut(step, self.edits_of(simulation));
+        let controls = Controls::of(simulation);
+        if self.changes.last().is_none_or(|last| last.controls != controls) {
+            let time_secs = simulation.time_secs();
+            self.changes.push(ControlsChange { after_step: step, time_secs, controls });
+        }
+        if step >= self.last_keyframe() + self.spacing {
+            self.keep(simulation, tally);
+        }
+    }
+
+    /// The step of the last keyframe.
+    fn last_keyframe(&self) -> u64 {
+        self.keyframes.last().map_or(0, Keyframe::step)
+    }
+
+    /// Keeps a state as a keyframe.
+    fn keep(&mut self, simulation: &Simulation, tally: &Tally) {
+        let simulation = Arc::new(simulation.clone());
+        self.keyframes.push(Keyframe { simulation, tally: *tally });
+        if !self.is_within_budget() {
+            self.thin();
+        }
+    }
+
+    /// Forgets what came after a step, before which a hand had done so much.
+    fn cut(&mut self, step: u64, edits: usize) {
+        if self.end_step > step {
+            let begun_with = self.start().edits();
+            let is_before = |keyframe: &Keyframe| {
+                keyframe.step() <= step && keyframe.simulation.edits() - begun_with <= edits
+            };
+            self.keyframes.retain(is_before);
+            self.changes.retain(|change| change.after_step < step);
+            self.end_step = step;
+        }
+        self.edits.truncate(edits);
+    }
+
+    /// Notes that a hand has just changed a state. What was recorded after it is forgotten.
+    pub(super) fn edited(&mut self, simulation: &Simulation, edit: Edit) {
+        let after_step = simulation.observables().step;
+        self.cut(after_step, self.edits_of(simulation).saturating_sub(1));
+        self.end_secs = simulation.time_secs();
+        self.edits.push(HandEdit { after_step, edit });
+    }
+
+    /// How much of that a recorded state has seen.
+    fn edits_of(&self, simulation: &Simulation) -> usize {
+        simulation.edits().saturating_sub(self.start().edits())
+    }
+
+    /// What a hand has done to the world.
+    pub fn edits(&self) -> &[HandEdit] {
+        &self.edits
+    }
+
+    /// Keeps the state at the end of what is recorded, so that it need not be computed again.
+    pub(super) fn keep_end(&mut self, simulation: &Simulation, tally: &Tally) {
+        let step = simulation.observables().step;
+        if step == self.end_step && self.last_keyframe() < step {
+            self.keep(simulation, tally);
+        }
+    }
+
+    /// Notes a state that has just taken a step.
+    pub(super) fn after_step(&mut self, simulation: &Simulation) {
+        self.end_step = simulation.observables().step;
+        self.end_secs = simulation.time_secs();
+    }
+
+    fn thin(&mut self) {
+        self.spacing *= 2;
+        let mut index = 0;
+        self.keyframes.retain(|_| {
+            index += 1;
+            index % 2 == 1
+        });
+    }
+
+    fn is_within_budget(&self) -> bool {
+        let newest = &self.keyframes[self.keyframes.len() - 1].simulation;
+        self.keyframes.len() < 3 || self.keyframes.len() * memory_bytes(newest) <= self.budget_bytes
+    }
+
+    /// Keeps about that many bytes of keyframes from now on.
+    pub(super) fn keep_within(&mut self, budget_bytes: usize) {
+        self.budget_bytes = budget_bytes;
+        while !self.is_within_budget() {
+            self.thin();
+        }
+    }
+
+    /// Whether one that was read holds together: it begins, goes on in time, and ends after all of it.
+    pub(super) fn is_sound(&self) -> bool {
+        let rise = |pair: &[Keyframe]| pair[0].step() < pair[1].step();
+        let last = self.keyframes.last().map(Keyframe::step);
+        let changes = self.changes.windows(2);
+        last.is_some_and(|last| last <= self.end_step)
+            && self.spacing > 0
+            && self.keyframes.windows(2).all(rise)
+            && self.edits.is_sorted_by_key(|made| made.after_step)
+            && changes.into_iter().all(|pair| pair[0].after_step < pair[1].after_step)
+    }
+
+    /// Whether anything is recorded.
+    pub(super) fn has_steps(&self) -> bool {
+        self.end_step > self.start().observables().step
+    }
+
+    /// Whether every recorded step was taken with these settings, and pulled by no hand.
+    pub(super) fn is_all_with(&self, settings: &Settings) -> bool {
+        let all_along = Controls { settings: *settings, pull: None };
+        self.edits.is_empty() && self.changes.iter().all(|change| change.controls == all_along)
+    }
+
+    /// Whether the next step of a simulation is a recorded one. A hand that is there now and was not then, or
+    /// another one, makes a difference; one that is not there does not, as it went when that moment was sought.
+    pub(super) fn replays(&self, simulation: &Simulation) -> bool {
+        let step = simulation.observables().step;
+        let same = |recorded: &Controls| {
+            let now = Controls::of(simulation);
+            now.settings == recorded.settings && (now.pull.is_none() || now.pull == recorded.pull)
+        };
+        self.is_before_end(simulation) && self.controls_after(step).is_some_and(same)
+    }
+
+    /// Whether more is recorded than what led to a state.
+    pub(super) fn is_before_end(&self, simulation: &Simulation) -> bool {
+        simulation.observables().step < self.end_step
+    }
+
+    /// The keyframe at or before a simulated time, and the sums over the steps up to it.
+    pub(super) fn keyframe_before(&self, time_secs: f64) -> (&Simulation, Tally) {
+        let after = |keyframe: &Keyframe| keyframe.simulation.time_secs() <= time_secs;
+        let index = self.keyframes.partition_point(after).saturating_sub(1);
+        let keyframe = &self.keyframes[index];
+        (&keyframe.simulation, keyframe.tally)
+    }
+
+    /// Whether a recorded state is the one nearest to a simulated time, or after it, or the last.
+    pub(super) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
+        let step = simulation.observables().step;
+        let controls = self.controls_after(step).copied();
+        let settings = controls.unwrap_or_else(|| Controls::of(simulation)).settings;
+        self.is_at(step, simulation.time_secs(), settings.parameters.time_step_secs, goal_secs)
+    }
+
+    fn is_at(&self, step: u64, time_secs: f64, time_step_secs: f64, goal_secs: f64) -> bool {
+        time_secs + 0.5 * time_step_secs >= goal_secs || step >= self.end_step
+    }
+
+    /// Gives a recorded state the controls with which its next step was recorded, and does what a hand did before it.
+    pub(super) fn restore_controls(&self, simulation: &mut Simulation) {
+        let step = simulation.observables().step;
+        let made = self.edits.iter().skip(self.edits_of(simulation));
+        for made in made.take_while(|made| made.after_step <= step) {
+            // They were accepted when they were recorded.
+            let _ = simulation.edit(&made.edit);
+        }
+        if let Some(Controls { settings, pull }) = self.controls_after(step).copied() {
+            // They were accepted when they were recorded.
+            let _ = simulation.change(settings);
+            simulation.set_pull(pull);
+        }
+    }
+
+    /// The settings that a recorded step was taken with.
+    pub(super) fn settings_of_step(&self, step: u64) -> Option<Settings> {
+        Some(self.controls_after(step.checked_sub(1)?)?.settings)
+    }
+
+    /// The controls of the step that follows `step`; none before anything was recorded.
+    pub(super) fn controls_after(&self, step: u64) -> Option<&Controls> {
+        let count = self.changes.partition_point(|change| change.after_step <= step);
+        count.checked_sub(1).map(|index| &self.changes[index].controls)
+    }
+
+    /// The changes from a step on that steps up to a simulated time were taken with.
+    pub fn changes(
+        &self,
+        from_step: u64,
+        until_secs: f64,
+    ) -> impl Iterator<Item = &ControlsChange> {
+        self.changes.iter().filter(move |change| {
+            let ControlsChange { after_step, time_secs, controls } = **change;
+            let time_step_secs = controls.settings.parameters.time_step_secs;
+            after_step >= from_step
+                && !self.is_at(after_step, time_secs, time_step_secs, until_secs)
+        })
+    }
+
+    /// Computes the moments nearest to two simulated times, and all between them, bit for bit as they were.
+    /// `each` is called with every state on the way, in the order of time, and whether it is one of those; its
+    /// settings are those of the step that led there. It can end this.
     ///
     /// # Errors
-    /// Names the first setting that is refused, or says that it was given up.
-    pub fn computed(
-        from: (&Simulation, Tally),
-        plans: &[Plan],
-        tell: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Self> {
-        let bytes = LiveOptions::default().recording_bytes / plans.len().max(1);
-        let mut ways = Vec::with_capacity(plans.len());
-        for plan in plans {
-            from.0.clone().change(plan.settings)?;
-            ways.push((Track::new(from, &plan.settings, bytes), plan));
+    /// What `each` fails with.
+    pub fn replay(
+        &self,
+        [from_secs, until_secs]: [f64; 2],
+        mut each: impl FnMut(&Simulation, bool) -> Result<ControlFlow<()>>,
+    ) -> Result<RunEnding> {
+        let is_before = |keyframe: &Keyframe| !self.has_come_to(&keyframe.simulation, from_secs);
+        let index = self.keyframes.partition_point(is_before).saturating_sub(1);
+        let mut simulation = Simulation::clone(&self.keyframes[index].simulation);
+        if simulation.observables().step == 0 {
+            // No step led to the start: it has the settings of the first.
+            self.restore_controls(&mut simulation);
         }
-        let all = plans.iter().map(|plan| plan.steps).fold(0, u64::saturating_add);
         loop {
-            let goes_on = ways.par_iter_mut().map(|(track, plan)| advance(track, plan));
-            let goes_on = goes_on.try_reduce(|| false, |one, other| Ok(one || other))?;
-            let taken = ways.iter().map(|(track, _)| track.simulation.observables().step);
-            let taken: u64 = taken.sum();
-            let part = taken as f32 / all.max(1) as f32;
-            let text = format!("Computing what the link tells of: {taken} of {all} steps");
-            if !goes_on {
-                break;
+            let is_within = self.has_come_to(&simulation, from_secs);
+            if each(&simulation, is_within)?.is_break() {
+                return Ok(RunEnding::Stopped);
             }
-            if !tell(Progress { part, text, preview: None }) {
-                return Err(Error::value("link", "given up", "computed to its end"));
+            if self.has_come_to(&simulation, until_secs) {
+                return Ok(RunEnding::Done);
+            }
+            self.restore_controls(&mut simulation);
+            match simulation.step() {
+                Ok(_) => {}
+                Err(failure @ Error::NonFinite { .. }) => return Ok(RunEnding::NotFinite(failure)),
+                Err(error) => return Err(error),
             }
         }
-        let tracks = ways.into_iter().map(|(track, _)| track).collect();
-        Ok(Self { worlds: Worlds { tracks, name: String::new() }, past: Vec::new() })
-    }
-
-    /// Whether one that was read holds together.
-    pub fn is_sound(&self) -> bool {
-        let all = std::iter::once(&self.worlds).chain(&self.past);
-        let sound = |track: &Track| track.recording.is_sound();
-        all.into_iter().all(|worlds| !worlds.tracks.is_empty() && worlds.tracks.iter().all(sound))
-    }
-
-    /// Why one of its worlds cannot go on.
-    pub fn failure(&self) -> Option<&str> {
-        self.worlds.tracks.iter().find_map(|track| track.failure.as_deref())
-    }
-
-    pub(super) fn into_parts(self) -> (Worlds, Vec<Worlds>) {
-        (self.worlds, self.past)
     }
 }
 
-/// Takes some steps of a plan, with its changes. Whether there are more.
-fn advance(track: &mut Track, plan: &Plan) -> Result<bool> {
-    for _ in 0..STEPS_AT_ONCE {
-        let step = track.simulation.observables().step;
-        if let Some((_, settings)) = plan.changes.iter().find(|(after, _)| *after == step) {
-            track.simulation.change(*settings)?;
-        }
-        if step >= plan.steps || !track.step() {
-            return Ok(false);
-        }
-    }
-    Ok(true)
+/// About how much memory a clone of a simulation takes.
+fn memory_bytes(simulation: &Simulation) -> usize {
+    // Measured on piles of 138 to 10,000 grains: the lists of grains, bodies and candidates come to
+    // some 500 bytes a grain, rows and impulses to some 250 a contact, fixed shapes to some 100.
+    let world = simulation.world();
+    let fixed = world.fixed_discs.len() + world.boundaries.len();
+    4096 + 500 * world.grains.len() + 250 * simulation.contacts().contacts().len() + 100 * fixed
 }

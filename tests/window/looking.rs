@@ -38,7 +38,7 @@ fn histograms_count_the_moment_that_is_shown() {
 #[test]
 fn the_view_goes_with_a_grain_that_is_followed() {
     let mut robot = Robot::open(pile());
-    robot.state_mut().pinned = Some(GrainRef { world: 0, grain: 100 });
+    robot.state_mut().mouse.pinned = Some(GrainRef { world: 0, grain: 100 });
     robot.harness.step();
     robot.click("Follow");
     for _ in 0..10 {

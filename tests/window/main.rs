@@ -28,7 +28,6 @@ mod saved;
 mod sessions;
 mod speed;
 mod tour;
-mod validation;
 mod videos;
 
 #[path = "../common/probed.rs"]

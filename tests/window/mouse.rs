@@ -35,7 +35,7 @@ fn a_click_pins_a_grain_and_another_lets_it_go() {
         robot.harness.hover_at(at);
         robot.button(at, true);
         robot.button(at, false);
-        assert_eq!(robot.state().pinned, expected);
+        assert_eq!(robot.state().mouse.pinned, expected);
         robot.harness.step();
         let listed = robot.harness.query_by_label("Unpin").is_some();
         assert_eq!(listed, expected.is_some());
@@ -60,7 +60,7 @@ fn a_dragged_grain_follows_the_mouse_and_stays_when_let_go() {
     robot.button(to, false);
     robot.settle();
     assert_eq!(robot.world().controls.pull, None);
-    assert!(robot.state().grabbed.is_none());
+    assert!(robot.state().mouse.grabbed.is_none());
 }
 
 #[test]

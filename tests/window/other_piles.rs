@@ -29,8 +29,8 @@ fn small_pile() -> Config {
 
 fn open(cache: &Path) -> Robot {
     let mut robot = Robot::open(small_pile());
-    robot.state_mut().other_piles.keep_in(cache.to_owned());
-    robot.state_mut().preferences.other_piles = true;
+    robot.state_mut().ensemble.keep_in(cache.to_owned());
+    robot.state_mut().preferences.ensemble = true;
     robot
 }
 
@@ -38,7 +38,7 @@ fn open(cache: &Path) -> Robot {
 fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
     let begun = Instant::now();
     loop {
-        let told = robot.state().other_piles.mean_at(world, time_secs);
+        let told = robot.state().ensemble.mean_at(world, time_secs);
         if let Some(told) = told.filter(|&(.., count)| count == 8) {
             return told;
         }
@@ -100,7 +100,7 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     other.parameters.bond = 0.0;
     robot.state_mut().change(0, other);
     robot.settle();
-    let told = robot.state().other_piles.mean_at(0, 0.1);
+    let told = robot.state().ensemble.mean_at(0, 0.1);
     assert_eq!(told, None, "the settings of the run changed on its way");
     robot.key(egui::Key::R);
     assert_near(mean(&mut robot, 0, 0.1), headless(&other));
@@ -129,24 +129,24 @@ fn a_run_that_was_pulled_or_changed_on_its_way_has_none() {
     robot.click("Step");
     robot.state_mut().live.send(Command::SetPull(0, None));
     robot.settle();
-    assert_eq!(robot.state().other_piles.mean_at(0, 0.1), None);
-    assert!(robot.state().other_piles.threads() > 0);
+    assert_eq!(robot.state().ensemble.mean_at(0, 0.1), None);
+    assert!(robot.state().ensemble.threads() > 0);
 }
 
 #[test]
 fn switched_off_there_is_no_thread() {
     let cache = tempfile::tempdir().expect("a folder");
     let mut robot = open(cache.path());
-    robot.until("a thread", |state| state.other_piles.threads() > 0);
+    robot.until("a thread", |state| state.ensemble.threads() > 0);
     robot.click("other piles");
-    assert_eq!(robot.state().other_piles.threads(), 0);
-    assert_eq!(robot.state().other_piles.mean_at(0, 0.0), None);
+    assert_eq!(robot.state().ensemble.threads(), 0);
+    assert_eq!(robot.state().ensemble.mean_at(0, 0.0), None);
     // A scene that is no pile has none either.
     robot.click("other piles");
-    robot.until("a thread", |state| state.other_piles.threads() > 0);
+    robot.until("a thread", |state| state.ensemble.threads() > 0);
     robot.state_mut().load(Config::of_scene("cradle"));
     robot.settle();
     robot.harness.step();
-    assert_eq!(robot.state().other_piles.threads(), 0);
+    assert_eq!(robot.state().ensemble.threads(), 0);
     assert!(robot.harness.query_by_label("other piles").is_none());
 }

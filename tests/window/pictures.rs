@@ -80,6 +80,6 @@ fn the_panels_of_a_physicist() {
     for section in ["Physics", "Run", "See", "Solver"] {
         robot.click(section);
     }
-    robot.state_mut().pinned = Some(GrainRef { world: 0, grain: 70 });
+    robot.state_mut().mouse.pinned = Some(GrainRef { world: 0, grain: 70 });
     check(&mut robot, "window-panels");
 }

@@ -1,6 +1,6 @@
 //! The recording gives back what was computed, bit for bit.
 
-use slump::live::{Command, Live, LiveOptions, Pace, Start};
+use slump::live::{Command, Live, LiveOptions, LiveStart, Pace};
 use slump::sim::{Pull, Tally};
 use slump::sim::{Settings, Stepper};
 
@@ -146,7 +146,7 @@ fn little_memory_is_enough_to_get_anywhere() {
     let options = LiveOptions { recording_bytes: 300_000, ..LiveOptions::default() };
     let mut live = Live::spawn(options).unwrap();
     live.send(Command::Load(Box::new(move |_| {
-        Ok(Start {
+        Ok(LiveStart {
             name: "pile".into(),
             simulation,
             tally: Tally::default(),
@@ -155,7 +155,7 @@ fn little_memory_is_enough_to_get_anywhere() {
             view: [glam::DVec2::ZERO, glam::DVec2::ONE],
             slumps: true,
             worlds: Vec::new(),
-            record: None,
+            history: None,
         })
     })));
     for _ in 0..200 {

@@ -35,7 +35,7 @@ impl Robot {
     ) -> Self {
         let live = Live::spawn(LiveOptions::default()).unwrap();
         // What other piles do is seen by those tests that ask for them.
-        let preferences = Preferences { other_piles: false, ..preferences };
+        let preferences = Preferences { ensemble: false, ..preferences };
         let state = AppState::new(live, config, preferences);
         let window = Harness::builder()
             .with_size(Vec2::new(1000.0, 700.0))

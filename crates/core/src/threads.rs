@@ -69,7 +69,8 @@ pub(crate) fn rouse() {
 }
 
 /// Does what there is to do, until there was nothing for a while. A thread that comes here while it waits for another
-/// leaves again in time, whatever that waits for.
+/// leaves again in time, whatever that waits for. Where there is one thread, as in a browser, whose programs have no such
+/// clock, it is never called.
 fn stay_awake() {
     if IS_AWAKE.replace(true) {
         return;

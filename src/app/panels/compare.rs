@@ -3,9 +3,8 @@
 use egui::{Button, RichText, Ui};
 
 use super::physics::PAPER_TIME_STEPS;
-use crate::app::effort::FIGURES;
-use crate::app::method_box::method_box;
-use crate::app::number::written;
+use crate::app::budget::FIGURES;
+use crate::app::setting_control::{method_box, written};
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::live::{Command, Controls};
@@ -225,9 +224,9 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
         worlds.iter().any(|one| one.settings.get(name) != worlds[0].settings.get(name))
     };
     let names = || Settings::about().map(|about| about.name).filter(any_differs);
-    let telling: Vec<&str> = names().filter(|name| !FOLLOWING.contains(name)).collect();
-    let told: Vec<&str> = match (telling.is_empty(), names().next()) {
-        (false, _) => telling,
+    let reporter: Vec<&str> = names().filter(|name| !FOLLOWING.contains(name)).collect();
+    let told: Vec<&str> = match (reporter.is_empty(), names().next()) {
+        (false, _) => reporter,
         (true, Some(_)) => names().collect(),
         (true, None) => vec!["bond", "dt"],
     };

@@ -16,9 +16,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
     ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, state));
     ui.separator();
-    ui.add_enabled_ui(is_ready && state.data.export.is_none(), |ui| order(ui, state));
+    ui.add_enabled_ui(is_ready && state.exports.data.export.is_none(), |ui| order(ui, state));
     export(ui, state, is_ready);
-    if let Some((told, is_failure)) = &state.data.told {
+    if let Some((told, is_failure)) = &state.exports.data.told {
         let dark = ui.visuals().dark_mode;
         let colour = if *is_failure { theme::warning(dark) } else { theme::good(dark) };
         ui.label(RichText::new(told).small().color(colour));
@@ -47,17 +47,17 @@ fn saved_runs(ui: &mut Ui, state: &mut AppState) {
         let hint = "A file that Save state, Save session, --save or --checkpoint-every wrote. It can be dropped on the window, too.";
         let label = ui.label("Saved").on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let is_named = !state.data.saved_run.trim().is_empty();
+            let is_named = !state.exports.data.saved_run.trim().is_empty();
             let open = ui.add_enabled(is_named, Button::new("Open"));
             let open = open.on_hover_text("Go on with that run or session, in place of the present one.");
-            let edit = TextEdit::singleline(&mut state.data.saved_run)
+            let edit = TextEdit::singleline(&mut state.exports.data.saved_run)
                 .desired_width(f32::INFINITY)
                 .hint_text("file.slump, file.session");
             let typed = ui.add(edit).labelled_by(label.id);
             let is_entered =
                 typed.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if is_named && (open.clicked() || is_entered) {
-                let path = state.data.saved_run.trim().to_owned();
+                let path = state.exports.data.saved_run.trim().to_owned();
                 state.load_saved(path.as_ref());
             }
         });
@@ -100,7 +100,7 @@ fn order(ui: &mut Ui, state: &mut AppState) {
         let hint = "The recording's own folder, below Folder unless it begins with /.";
         let label = ui.label("Into").on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.checkbox(&mut state.data.overwrite, "Overwrite")
+            ui.checkbox(&mut state.exports.data.overwrite, "Overwrite")
                 .on_hover_text("Remove an earlier recording that is there, as --overwrite does.");
             let mut folder = choices.folder.display().to_string();
             let edit = TextEdit::singleline(&mut folder).desired_width(f32::INFINITY);
@@ -126,15 +126,15 @@ fn stretch(ui: &mut Ui, state: &mut AppState) {
     let Some(world) = state.world() else { return };
     let (first, last) = (world.recorded_from_secs, world.recorded_secs);
     let now = world.snapshot.observables.time_secs;
-    let mut is_all = state.data.stretch.is_none();
+    let mut is_all = state.exports.data.stretch.is_none();
     ui.horizontal(|ui| {
         let hint = "From the start of the run to the last step that was taken.";
         if ui.checkbox(&mut is_all, "The whole recording").on_hover_text(hint).changed() {
-            state.data.stretch = (!is_all).then_some([first, last]);
+            state.exports.data.stretch = (!is_all).then_some([first, last]);
         }
         ui.label(RichText::new(format!("{first:.4} … {last:.4} s")).small().weak());
     });
-    let Some(stretch) = &mut state.data.stretch else { return };
+    let Some(stretch) = &mut state.exports.data.stretch else { return };
     egui::Grid::new("stretch").num_columns(3).spacing([8.0, 3.0]).show(ui, |ui| {
         for (secs, name) in stretch.iter_mut().zip(["From", "To"]) {
             let label = ui.label(name);
@@ -154,15 +154,11 @@ fn stretch(ui: &mut Ui, state: &mut AppState) {
 
 /// The button that starts an export, or how far it is.
 fn export(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
-    let Some(export) = &state.data.export else {
+    let Some(export) = &state.exports.data.export else {
         start(ui, state, is_ready);
         return;
     };
-    super::work_bar::show(
-        ui,
-        export,
-        ["Exporting data", "Stop export", "Frames that are written stay."],
-    );
+    export.show(ui, "Exporting data", "Stop export", "Frames that are written stay.");
 }
 
 fn start(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
@@ -177,11 +173,11 @@ fn start(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
     }
     let order = DataOrder {
         folder: state.preferences.folder.join(&state.preferences.data.folder),
-        overwrite: std::mem::take(&mut state.data.overwrite),
+        overwrite: std::mem::take(&mut state.exports.data.overwrite),
         settings: state.preferences.data.settings(),
-        stretch: state.data.stretch,
+        stretch: state.exports.data.stretch,
     };
     let run = state.take_run();
-    state.data.told = None;
-    state.data.export = Some(order.start(ui.ctx(), run));
+    state.exports.data.told = None;
+    state.exports.data.export = Some(order.start(ui.ctx(), run));
 }

@@ -1,7 +1,6 @@
 //! Panel: the pinned grain and its contacts.
 
-use egui::ScrollArea;
-use egui::{RichText, Ui};
+use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::state::AppState;
 use crate::live::WorldFrame;
@@ -10,20 +9,21 @@ use crate::sim::Snapshot;
 
 /// Its heading, where a grain is pinned.
 pub(super) fn title(state: &AppState) -> Option<String> {
-    state.pinned.map(|_| "Grain".into())
+    state.mouse.pinned.map(|_| "Grain".into())
 }
 
 /// Shows the panel; nothing without a pinned grain.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    let Some(pinned) = state.pinned else { return };
+    let Some(pinned) = state.mouse.pinned else { return };
     let Some(world) = state.frame.worlds.get(pinned.world) else { return };
     describe(ui, world, pinned.grain);
     ui.add_space(4.0);
     contacts(ui, world, pinned.grain);
     ui.horizontal(|ui| {
-        ui.checkbox(&mut state.follows, "Follow").on_hover_text("The view goes with the grain.");
+        ui.checkbox(&mut state.mouse.follows, "Follow")
+            .on_hover_text("The view goes with the grain.");
         if ui.button("Unpin").clicked() {
-            state.pinned = None;
+            state.mouse.pinned = None;
         }
     });
 }

@@ -2,7 +2,7 @@
 
 use egui::{Align2, RichText, Ui};
 
-use crate::app::state::AppState;
+use crate::app::state::{AppState, Shown};
 
 const KEYS: [(&str, &str); 12] = [
     ("space", "release, pause, play on"),
@@ -36,10 +36,10 @@ const FRAME: f32 = 70.0;
 
 /// Shows the overlay where it is wanted.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    if !state.help {
+    if !state.shown.help {
         return;
     }
-    let AppState { help, restart_graphics: restart, .. } = state;
+    let Shown { help, restart_graphics: restart, .. } = &mut state.shown;
     egui::Window::new("Help")
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .collapsible(false)

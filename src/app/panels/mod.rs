@@ -2,34 +2,27 @@
 
 #![deny(dead_code, reason = "a panel that nothing shows would not be missed")]
 
-mod by_hand;
 pub(super) mod compare;
 mod data;
+pub(super) mod distributions;
+mod grabbing;
 mod grain;
-mod gravity;
-mod hand;
 pub(super) mod help;
-mod making;
-mod past;
 mod physics;
-pub(super) mod picture;
-mod place;
 pub(super) mod plots;
 mod run;
 pub(super) mod scene;
-mod see;
+pub(super) mod see;
 mod solver;
-mod speed;
-mod spread;
+pub(super) mod speed;
 pub(super) mod status;
-pub(super) mod tour;
 pub(super) mod transport;
-mod validate;
-mod work_bar;
 
 use egui::Ui;
 
 use super::state::AppState;
+
+pub use grabbing::{Grabbing, GrainRef};
 
 /// A panel of the sidebar, below a heading that opens and closes it.
 pub(super) struct Section {
@@ -45,18 +38,28 @@ pub(super) struct Section {
 
 /// The sidebar, from top to bottom.
 pub(super) const SECTIONS: &[Section] = &[
-    Section { id: "physics", title: title_of_physics, open: true, show: physics::show },
+    Section {
+        id: "physics",
+        title: |state| Some(of_one_world("Physics", state)),
+        open: true,
+        show: physics::show,
+    },
     Section { id: "grain", title: grain::title, open: true, show: grain::show },
     Section { id: "run", title: |_| Some("Run".into()), open: true, show: run::show },
-    Section { id: "hand", title: |_| Some("By hand".into()), open: false, show: by_hand::show },
+    Section { id: "hand", title: |_| Some("By hand".into()), open: false, show: grabbing::show },
     Section { id: "see", title: |_| Some("See".into()), open: false, show: see::show },
     Section {
         id: "spread",
         title: |_| Some("Distributions".into()),
         open: false,
-        show: spread::show,
+        show: distributions::show,
     },
-    Section { id: "data", title: title_of_data, open: false, show: data::show },
+    Section {
+        id: "data",
+        title: |state| Some(of_one_world("Data", state)),
+        open: false,
+        show: data::show,
+    },
     Section { id: "compare", title: |_| Some("Compare".into()), open: false, show: compare::show },
     Section { id: "solver", title: |_| Some("Solver".into()), open: false, show: solver::show },
     Section {
@@ -65,21 +68,7 @@ pub(super) const SECTIONS: &[Section] = &[
         open: false,
         show: speed::show,
     },
-    Section {
-        id: "validate",
-        title: |_| Some("Validation".into()),
-        open: false,
-        show: validate::show,
-    },
 ];
-
-fn title_of_physics(state: &AppState) -> Option<String> {
-    Some(of_one_world("Physics", state))
-}
-
-fn title_of_data(state: &AppState) -> Option<String> {
-    Some(of_one_world("Data", state))
-}
 
 /// The title of a panel that is about the selected world.
 fn of_one_world(title: &str, state: &AppState) -> String {

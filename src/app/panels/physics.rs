@@ -3,9 +3,8 @@
 use egui::{RichText, Ui};
 use glam::DVec2;
 
-use crate::app::setting_control;
 use crate::app::state::AppState;
-use crate::app::theme;
+use crate::app::{setting_control, theme};
 use crate::contact::range::escape_speed;
 use crate::render::numbers::si_prefix;
 use crate::setting::{About, Group, Needs};
@@ -26,11 +25,13 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let mut places = Vec::new();
     stepper_switch(ui, &mut settings);
     let gravity = state.world().and_then(|world| world.gravity);
-    let gravity = gravity.filter(|_| start.physics.axes == 2);
-    let has = (start.physics, gravity.is_some_and(|gravity| gravity != DVec2::ZERO));
-    let shown = Parameters::ABOUT.iter().filter(|about| is_shown(about, &before, has));
+    let gravity = gravity.filter(|_| start.physics().axes == 2);
+    let has_direction = gravity.is_some_and(|gravity| gravity != DVec2::ZERO);
+    let physics = start.physics();
+    let is_shown = |about: &&About| is_shown(about, &before, physics, has_direction);
+    let shown = Parameters::ABOUT.iter().filter(is_shown);
     for about in shown {
-        let rect = setting_control::show(ui, about, &mut settings, &start.settings);
+        let rect = setting_control::show(ui, about, &mut settings, start.settings());
         places.extend(about.control.map(|control| control.symbol).zip(rect));
         if about.name == "dt" {
             time_step_buttons(ui, &mut settings.parameters.time_step_secs);
@@ -47,7 +48,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
 }
 
 /// Whether a parameter means anything to the stepper and the scene.
-fn is_shown(about: &About, settings: &Settings, (physics, has_direction): (Physics, bool)) -> bool {
+fn is_shown(about: &About, settings: &Settings, physics: Physics, has_direction: bool) -> bool {
     let has = match about.needs {
         Needs::Nothing => true,
         Needs::Friction => physics.friction,

@@ -2,14 +2,13 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::export::Export;
-use crate::app::plot_picture::PlotPicture;
-use crate::app::plots::{PlotData, draw};
+use crate::app::export::{free_path, write_table};
+use crate::app::plots::{PlotData, WorldCurve, draw};
 use crate::app::state::AppState;
 use crate::app::theme;
-use crate::app::world_curve::WorldCurve;
 use crate::live::Command;
 use crate::sim::{Observables, QUANTITIES, Quantity};
+use crate::study::png::write_png;
 
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
@@ -29,10 +28,10 @@ fn data(ui: &Ui, state: &AppState) -> PlotData {
                 name: super::compare::title(state, index),
                 colour: theme::world_colour(index, dark),
                 curve: world.curve.clone(),
-                others: state.other_piles.told(index).map(|told| told.band),
+                others: state.ensemble.summary(index).map(|summary| summary.band),
             })
             .collect(),
-        ghosts: super::past::ghost(state).map_or_else(Vec::new, |run| {
+        ghosts: super::run::ghost(state).map_or_else(Vec::new, |run| {
             run.worlds.iter().map(|world| world.curve.clone()).collect()
         }),
         quantities: QUANTITIES.iter().filter(|quantity| is_shown(state, quantity)).collect(),
@@ -94,21 +93,29 @@ fn switches(ui: &mut Ui, state: &mut AppState) {
 
 /// From the right: what saves the plots, how they were thinned, and in the room that is left the other piles.
 fn files(ui: &mut Ui, state: &mut AppState) {
-    let stem = format!("{}-curves", super::picture::file_stem(state));
-    let folder = state.preferences.folder.clone();
+    let stem = format!("{}-curves", super::see::file_stem(state));
     let all: Vec<usize> = (0..state.frame.worlds.len()).collect();
     if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
         let data = data(ui, state);
         let size = state.preferences.picture_size;
-        let picture = PlotPicture { data, size, dark: ui.visuals().dark_mode };
-        let export = Export::Plots(Box::new(picture), state.texts_of(&all, false));
-        state.exporter.submit(ui.ctx(), export, &folder, &stem);
+        let (dark, texts) = (ui.visuals().dark_mode, state.texts_of(&all, false));
+        let stem = stem.clone();
+        state.export(ui.ctx(), move |folder, printers| {
+            let path = free_path(folder, &stem, "png");
+            write_png(&path, &printers.canvas()?.print(&data, size, dark)?, &texts)?;
+            Ok(path)
+        });
     }
     let hint = "Save all observables of all worlds; a text beside the table says what they are of.";
     if ui.button("CSV").on_hover_text(hint).clicked() {
-        let curves = state.frame.worlds.iter().map(|world| world.curve.clone()).collect();
-        let export = Export::Curves(curves, state.texts_of(&all, false));
-        state.exporter.submit(ui.ctx(), export, &folder, &stem);
+        let worlds = state.frame.worlds.iter();
+        let curves: Vec<_> = worlds.map(|world| world.curve.clone()).collect();
+        let texts = state.texts_of(&all, false);
+        state.export(ui.ctx(), move |folder, _| {
+            let path = free_path(folder, &stem, "csv");
+            write_table(&path, &curves, &texts)?;
+            Ok(path)
+        });
     }
     if state.frame.worlds.iter().any(|world| world.curve.stride() > 1) {
         let stride = state.frame.worlds.iter().map(|world| world.curve.stride()).max();
@@ -120,16 +127,18 @@ fn files(ui: &mut Ui, state: &mut AppState) {
 
 /// The switch of the other piles, and what they say beside the selected world.
 fn others(ui: &mut Ui, state: &mut AppState) {
-    if !state.has_other_piles() {
+    if !state.ensemble.is_possible() {
         return;
     }
     ui.separator();
-    let mut shown = state.preferences.other_piles;
-    let hint = state.about_other_piles();
+    let mut shown = state.preferences.ensemble;
+    let hint = state.about_ensemble();
     let switch = ui.toggle_value(&mut shown, "other piles").on_hover_text(&hint);
     state.note_control("other piles", switch.rect);
-    state.preferences.other_piles = shown;
-    if let Some(text) = state.beside_other_piles(state.selected) {
+    state.preferences.ensemble = shown;
+    let said = state.said_of_ensemble(state.selected);
+    if let (Some(said), Some(world)) = (said, state.world()) {
+        let text = format!("Δy {:.3}; {said}", world.snapshot.observables.slump);
         ui.add(egui::Label::new(text).truncate()).on_hover_text(hint);
     }
 }

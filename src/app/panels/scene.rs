@@ -1,13 +1,11 @@
-//! The middle of the window: the worlds, and what the mouse does to them.
+//! The middle of the window: the worlds and what the mouse does to them, or a new pile in the making.
 
-use egui::{Align2, FontId, Rect, Sense, Stroke, Ui};
+use egui::{Align2, FontId, Rect, Sense, Stroke, Ui, Vec2};
 use glam::DVec2;
 
-use super::place::Place;
-use super::{gravity, making, past};
-use crate::app::fill::fill;
-use crate::app::held::GrainRef;
-use crate::app::scene_callback::scene_callback;
+use super::grabbing::{GrainRef, WorldCell};
+use super::run;
+use crate::app::painting::{fill, scene_callback};
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::render::{
@@ -36,7 +34,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         let size = rect.size() * pixels_per_point;
         [size.x.round().max(1.0) as u32, size.y.round().max(1.0) as u32]
     };
-    if making::show(ui, state, area, &style, pixels(area)) || state.frame.worlds.is_empty() {
+    if show_making(ui, state, area, &style, pixels(area)) || state.frame.worlds.is_empty() {
         return;
     }
     let [width, height] = pixels(area);
@@ -51,7 +49,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         let camera =
             state.camera.camera(view(state), &bare, pixels(scenes), f64::from(pixels_per_point));
         let legend = Legend::of(&world.snapshot, &style, &camera, style.text_px(width, height));
-        state.legend.paint(ui, legend_area, legend, pixels(legend_area));
+        state.shown.legend.paint(ui, legend_area, legend, pixels(legend_area));
     }
     drop(response);
 }
@@ -119,17 +117,17 @@ fn world(
     follow(state, index);
     let response = ui.interact(cell, ui.scope_id().with(("world", index)), Sense::click_and_drag());
     let frame = state.frame.worlds[index].clone();
-    let place = Place { index, cell, camera, pixels_per_point, frame: &frame };
+    let place = WorldCell { index, cell, camera, pixels_per_point, frame: &frame };
     place.mouse(ui, state, &response);
 
     // The mouse may have moved the camera.
     let camera = state.camera.camera(view(state), style, size, pixels_per_point);
-    let place = Place { camera, ..place };
+    let place = WorldCell { camera, ..place };
     let picture = scene_picture(&frame.snapshot, style, &camera, size[0], size[1]);
     ui.painter().with_clip_rect(cell).add(scene_callback(index, cell, picture));
     place.ghost(ui, state);
     place.words(ui, state, style, size);
-    gravity::paint(ui, state, index, cell);
+    paint_gravity(ui, state, index, cell);
     place.marks(ui, state, &response);
     if index == state.selected {
         state.note_control("scene", cell);
@@ -138,24 +136,24 @@ fn world(
 
 /// Has the view go with the pinned grain, where that is asked for.
 fn follow(state: &mut AppState, world: usize) {
-    let pinned = state.pinned.filter(|pinned| state.follows && pinned.world == world);
+    let pinned = state.mouse.pinned.filter(|pinned| state.mouse.follows && pinned.world == world);
     if let Some(GrainRef { world, grain }) = pinned {
         let place = state.frame.worlds[world].snapshot.grains[grain].position;
         state.camera.look_at(place);
     }
 }
 
-impl Place<'_> {
+impl WorldCell<'_> {
     /// The same world of the run before, where that had one.
     fn ghost(&self, ui: &Ui, state: &AppState) {
-        let Some(run) = past::ghost(state) else { return };
+        let Some(run) = run::ghost(state) else { return };
         if run.worlds.len() != state.frame.worlds.len() {
             return;
         }
         let Some(world) = run.worlds.get(self.index) else { return };
         let metre = self.to_screen(DVec2::X) - self.to_screen(DVec2::ZERO);
         let to_screen = |position| self.to_screen(position);
-        past::paint(ui, world, self.cell, to_screen, f64::from(metre.x));
+        run::paint_ghost(ui, world, self.cell, to_screen, f64::from(metre.x));
     }
 
     /// Title and label of the scale bar.
@@ -195,5 +193,70 @@ impl Place<'_> {
             };
             painter.rect_stroke(self.cell, 0.0, stroke, egui::StrokeKind::Inside);
         }
+    }
+}
+
+/// Shows it in place of the worlds, in so many pixels. Whether there is anything to see.
+fn show_making(
+    ui: &Ui,
+    state: &mut AppState,
+    area: Rect,
+    style: &Style,
+    [width, height]: [u32; 2],
+) -> bool {
+    let preview = state.frame.loading.as_ref().and_then(|it| it.preview.clone());
+    let Some(preview) = preview else { return false };
+    let [lower, upper] = preview.view;
+    // Forces and velocities are those of the run alone, and the scale changes as grains come down.
+    let style = Style { show_forces: false, show_velocities: false, ..style.clone() };
+    let style = Style { legend: false, scale_bar: false, ..style };
+    let camera = style.camera(lower, upper, width, height);
+    let picture = scene_picture(&preview.snapshot, &style, &camera, width, height);
+    ui.painter().with_clip_rect(area).add(scene_callback(0, area, picture));
+    state.note_control("pile in the making", area);
+    true
+}
+
+/// Length of the arrow, points.
+const LENGTH: f32 = 34.0;
+/// Its distance from the upper right corner, points.
+const MARGIN: f32 = 30.0;
+/// Gravity that is closer to straight down than this, as a part of itself, needs no arrow.
+const STRAIGHT: f64 = 1e-9;
+
+/// Draws the arrow of a world, where it is asked for, or gravity is not straight down.
+fn paint_gravity(ui: &Ui, state: &AppState, world: usize, cell: Rect) {
+    let gravity = state.frame.worlds.get(world).and_then(|world| world.gravity);
+    let Some(gravity) = gravity.filter(|&gravity| state.preferences.gravity || is_tilted(gravity))
+    else {
+        return;
+    };
+    if gravity == DVec2::ZERO {
+        return;
+    }
+    let along = gravity.normalize();
+    let along = Vec2::new(along.x as f32, -along.y as f32);
+    let middle = cell.right_top() + Vec2::new(-MARGIN, MARGIN);
+    let ink = ui.visuals().text_color();
+    let stroke = Stroke::new(1.8, ink);
+    let painter = ui.painter().with_clip_rect(cell);
+    painter.arrow(middle - 0.5 * LENGTH * along, LENGTH * along, stroke);
+    // Beside the arrow, wherever that points.
+    let aside = middle + 12.0 * Vec2::new(along.y, -along.x);
+    painter.text(aside, Align2::CENTER_CENTER, "g", FontId::proportional(13.0), ink);
+}
+
+fn is_tilted(gravity: DVec2) -> bool {
+    gravity.y > 0.0 || gravity.x.abs() > STRAIGHT * gravity.length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gravity_straight_down_goes_without_saying() {
+        assert!(!is_tilted(DVec2::new(0.0, -9.8)) && !is_tilted(DVec2::ZERO));
+        assert!(is_tilted(DVec2::new(0.1, -9.8)) && is_tilted(DVec2::new(0.0, 9.8)));
     }
 }

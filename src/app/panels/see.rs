@@ -1,13 +1,17 @@
-//! Panel: how the scene is drawn, and pictures of it.
+//! Panel: how the scene is drawn, and pictures and films of it.
 
 use egui::{ComboBox, RichText, ThemePreference, Ui};
+use glam::DVec2;
 
-use crate::app::film_file::FilmFormat;
+use super::scene::{columns, shared_style, view};
+use crate::app::export::{PicturedWorld, ScenePicture, free_path, stem};
+use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::error::Result;
 use crate::film::{VIDEO_RATES_HZ, check_ffmpeg};
-use crate::render::ColourBy;
+use crate::render::{ColourBy, Style, panel_size};
+use crate::study::png::write_png;
 
 /// What grains can be coloured by, as the panel calls it.
 const COLOURS: [(ColourBy, &str); 5] = [
@@ -81,12 +85,12 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
         ui.label(RichText::new("px").weak());
         let save = ui.button("Save PNG").on_hover_text("What is seen here, with all worlds that are compared (S). The file says which command makes it.");
         if save.clicked() {
-            super::picture::save_picture(ui.ctx(), state);
+            super::see::save_picture(ui.ctx(), state);
         }
     });
     films(ui, state);
     folder(ui, state);
-    if state.is_writing() && state.film.is_none() {
+    if state.is_writing() && state.exports.film.is_none() {
         ui.horizontal(|ui| {
             ui.spinner();
             ui.label(RichText::new("saving").color(theme::accent(ui.visuals().dark_mode)));
@@ -96,11 +100,10 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
 
 /// The record as a video or an animation.
 fn films(ui: &mut Ui, state: &mut AppState) {
-    if let Some((format, work)) = &state.film {
+    if let Some((format, work)) = &state.exports.film {
         let name = format.name();
         let hint = format!("No {name} is left; what was computed stays in the window.");
-        let words = [&format!("Making a {name}"), &format!("Stop {name}"), &hint];
-        return super::work_bar::show(ui, work, words.map(String::as_str));
+        return work.show(ui, &format!("Making a {name}"), &format!("Stop {name}"), &hint);
     }
     ui.horizontal(|ui| {
         let hint = "Pictures in a second of a video or a GIF, which has at most 50.";
@@ -117,7 +120,7 @@ fn films(ui: &mut Ui, state: &mut AppState) {
         save_video(ui, state);
         let hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and larger files.";
         if save_button(ui, state, "Save GIF", Ok(())).on_hover_text(hint).clicked() {
-            super::picture::save_film(ui.ctx(), state, FilmFormat::Gif);
+            super::see::save_film(ui.ctx(), state, FilmFormat::Gif);
         }
     });
 }
@@ -126,7 +129,7 @@ fn save_video(ui: &mut Ui, state: &mut AppState) {
     let hint = "What was recorded of all worlds, or the stretch that Data names, as MP4. The run may go on meanwhile.";
     let save = save_button(ui, state, "Save video", check_ffmpeg("given")).on_hover_text(hint);
     if save.clicked() {
-        super::picture::save_film(ui.ctx(), state, FilmFormat::Video);
+        super::see::save_film(ui.ctx(), state, FilmFormat::Video);
     }
 }
 
@@ -159,4 +162,81 @@ pub(super) fn folder(ui: &mut Ui, state: &mut AppState) {
             state.preferences.folder = folder.into();
         }
     });
+}
+
+/// Saves the worlds as they are seen, in the size of the preferences.
+pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
+    if state.frame.worlds.is_empty() {
+        return;
+    }
+    let style = shared_style(state, context.theme() == egui::Theme::Dark);
+    let picture = scene_picture(state, style, state.preferences.picture_size, true);
+    let stem = file_stem(state);
+    state.export(context, move |folder, printers| {
+        let path = free_path(folder, &stem, "png");
+        write_png(&path, &picture.draw(printers.renderer()?)?, &picture.texts)?;
+        Ok(path)
+    });
+}
+
+/// Saves what was recorded of the worlds as moving pictures, or the stretch of it that data would be exported of.
+pub(crate) fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) {
+    if state.frame.worlds.is_empty() || state.exports.film.is_some() {
+        return;
+    }
+    // Its scales are those of all its pictures.
+    let style = super::scene::own_style(state, context.theme() == egui::Theme::Dark);
+    let size = format.size(state.preferences.picture_size);
+    let order = FilmOrder {
+        format,
+        picture: scene_picture(state, style, size, false),
+        slumps: state.slumps(),
+        rate_hz: format.nearest_rate_hz(state.preferences.video_rate_hz),
+        speed: state.preferences.video_speed,
+        stretch: state.exports.data.stretch,
+        folder: state.preferences.folder.clone(),
+        stem: file_stem(state),
+    };
+    let runs = (0..state.frame.worlds.len()).map(|world| state.take_run_of(world)).collect();
+    state.exports.film = Some((format, order.start(context, runs)));
+}
+
+/// What is seen of the worlds, of which there is one at least.
+fn scene_picture(
+    state: &AppState,
+    style: Style,
+    size: [u32; 2],
+    is_of_a_moment: bool,
+) -> ScenePicture {
+    let count = state.frame.worlds.len();
+    let window = state.controls.get("scene").map_or(DVec2::splat(500.0), |rect| {
+        DVec2::new(f64::from(rect.width()), f64::from(rect.height()))
+    });
+    let (of_one, size_of_one) = if count == 1 {
+        (style.clone(), size)
+    } else {
+        (Style { legend: false, ..style.clone() }, panel_size(&style, size, count, columns(count)))
+    };
+    let camera = state.camera.for_picture(view(state), &of_one, size_of_one, window);
+    let worlds = state.frame.worlds.iter().enumerate().map(|(index, world)| {
+        let title = super::compare::numbered(state, index);
+        PicturedWorld { snapshot: world.snapshot.clone(), title, note: note(state, index) }
+    });
+    let worlds = worlds.collect();
+    let all: Vec<usize> = (0..count).collect();
+    let texts = state.texts_of(&all, is_of_a_moment);
+    ScenePicture { worlds, columns: columns(count), style, camera, size, texts }
+}
+
+/// What came of a world, and below it what came of others: slump, where that tells anything.
+fn note(state: &AppState, index: usize) -> String {
+    let others = state.others_in_short(index).map_or_else(String::new, |text| format!("\n{text}"));
+    super::compare::slump(state, index) + &others
+}
+
+/// How the names of saved files begin.
+pub(crate) fn file_stem(state: &AppState) -> String {
+    let name = state.frame.start.as_ref().map_or("scene", |start| start.name.as_str());
+    let settings: Vec<_> = state.frame.worlds.iter().map(|world| world.controls.settings).collect();
+    stem(name, &settings, state.frame.time_secs())
 }

@@ -2,11 +2,10 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::effort::{CERTIFIED, EFFORTS, Effort, offer};
-use crate::app::method_box::method_box;
-use crate::app::setting_control;
+use crate::app::budget::{BUDGETS, Budget, CERTIFIED, offer};
+use crate::app::setting_control::method_box;
 use crate::app::state::AppState;
-use crate::app::theme;
+use crate::app::{setting_control, theme};
 use crate::live::WorldFrame;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
@@ -24,7 +23,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     if before.stepper.uses_method() {
         if let Some(world) = state.world() {
             let snapshot = &world.snapshot;
-            effort_buttons(ui, &mut settings.solver, &snapshot.surroundings);
+            budget_buttons(ui, &mut settings.solver, &snapshot.surroundings);
             let (grains, last) = (snapshot.grains.len(), &snapshot.observables);
             let is_to_be_had = CERTIFIED.is_to_be_had(&snapshot.surroundings);
             let offered = offer(&before.solver, grains, last, world.step_ms);
@@ -32,16 +31,16 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
                 ui.label(RichText::new(offered).small().weak());
             }
         }
-        method_controls(ui, &mut settings, &start.settings);
+        method_controls(ui, &mut settings, start.settings());
     }
     if before.stepper.reads("warm-start") {
-        setting_control::show(ui, about("warm-start"), &mut settings, &start.settings);
+        setting_control::show(ui, about("warm-start"), &mut settings, start.settings());
     }
-    if before.stepper.reads("friction-model") && start.physics.friction {
-        friction_controls(ui, &mut settings, &start.settings);
+    if before.stepper.reads("friction-model") && start.physics().friction {
+        friction_controls(ui, &mut settings, start.settings());
     }
     if before.stepper.uses_method() {
-        remedy_boxes(ui, &mut settings, &start.settings);
+        remedy_boxes(ui, &mut settings, start.settings());
     }
     let robust = ui.button("Robust").on_hover_text(
         "Newton to 1e-8, overlap pushed out, shocks in sequence, no bounce below 2 g Δt, fast grains \
@@ -114,10 +113,10 @@ fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
 }
 
 /// Care and speed, one click away.
-fn effort_buttons(ui: &mut Ui, solver: &mut SolverSettings, surroundings: &Surroundings) {
+fn budget_buttons(ui: &mut Ui, solver: &mut SolverSettings, surroundings: &Surroundings) {
     ui.horizontal(|ui| {
-        for effort in EFFORTS {
-            let Effort { name, hint, .. } = effort;
+        for effort in BUDGETS {
+            let Budget { name, hint, .. } = effort;
             let settings = effort.among(surroundings);
             let button = egui::Button::selectable(*solver == settings, name);
             let added = ui.add_enabled(effort.is_to_be_had(surroundings), button);

@@ -1,81 +1,167 @@
-//! Panel: how long methods take to solve a step how well: the step that is shown, where that has been measured, or
-//! those that `slump chart` measured.
+//! Panel: how long methods take to solve the step that is shown how well. Each solves it to one tolerance after the other,
+//! on a thread of its own.
 
-use std::sync::OnceLock;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Instant;
 
 use egui::{Color32, RichText, Ui};
-use egui_plot::{GridMark, Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points};
-use serde::Deserialize;
+use egui_plot::{GridMark, Line, LineStyle, MarkerShape, PlotPoints, Points};
 
+use crate::app::opening::TakenRun;
 use crate::app::plots::still_plot;
 use crate::app::state::AppState;
-use crate::app::step_race::StepRace;
 use crate::app::theme;
+use crate::sim::{Settings, Simulation};
+use crate::solver::{Fallback, METHODS, Method, SolverSettings, StopTest};
 
-/// What `slump chart` wrote as `chart-window.csv`.
-const CHART: &str = include_str!("../../../assets/charts/chart-window.csv");
+/// Tolerances of the residual, from loose to tight.
+const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
+/// A method that takes longer for a step, s, has no tighter one.
+const LIMIT_SECS: f64 = 0.25;
+/// Times a step is taken, of which the shortest counts.
+const REPEATS: usize = 3;
+const MOST_SWEEPS: u32 = 20_000;
+
+/// What a method came to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RaceCurve {
+    /// Its name.
+    pub method: &'static str,
+    /// Time of the step (ms) and its residual, from loose to tight.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A race on one step.
+pub(crate) struct StepRace {
+    /// The step that they solve: simulated time, s.
+    pub time_secs: f64,
+    /// Those that have come to their end.
+    pub curves: Vec<RaceCurve>,
+    /// Whether all have.
+    pub is_over: bool,
+    news: Receiver<RaceCurve>,
+    is_cancelled: Arc<AtomicBool>,
+}
+
+impl StepRace {
+    /// Begins with the step that follows the moment of a run that is on its way.
+    pub(crate) fn start(run: Receiver<TakenRun>, time_secs: f64, context: egui::Context) -> Self {
+        let (sender, news) = channel();
+        let is_cancelled = Arc::new(AtomicBool::new(false));
+        let cancelled = Arc::clone(&is_cancelled);
+        std::thread::spawn(move || {
+            if let Ok(TakenRun { world, .. }) = run.recv() {
+                race(&world.simulation, &sender, &cancelled, &context);
+            }
+            drop(sender);
+            context.request_repaint();
+        });
+        Self { time_secs, curves: Vec::new(), is_over: false, news, is_cancelled }
+    }
+
+    /// Takes in what has come.
+    pub(crate) fn look(&mut self) {
+        loop {
+            match self.news.try_recv() {
+                Ok(curve) => self.curves.push(curve),
+                Err(std::sync::mpsc::TryRecvError::Empty) => return,
+                Err(std::sync::mpsc::TryRecvError::Disconnected) => {
+                    self.is_over = true;
+                    return;
+                }
+            }
+        }
+    }
+}
+
+impl Drop for StepRace {
+    fn drop(&mut self) {
+        self.is_cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+fn race(
+    simulation: &Simulation,
+    news: &Sender<RaceCurve>,
+    is_cancelled: &AtomicBool,
+    context: &egui::Context,
+) {
+    for info in &METHODS {
+        let mut points = Vec::new();
+        for tolerance in TOLERANCES {
+            let point = timed(simulation, info.method, tolerance, is_cancelled);
+            let Some([ms, residual]) = point else { break };
+            // A method that comes no further has nothing more to show.
+            if points.last().is_none_or(|&[_, before]: &[f64; 2]| residual < before) {
+                points.push([ms, residual]);
+            }
+            if ms > 1e3 * LIMIT_SECS {
+                break;
+            }
+        }
+        if is_cancelled.load(Ordering::Relaxed) {
+            return;
+        }
+        if !points.is_empty() && news.send(RaceCurve { method: info.name, points }).is_err() {
+            return;
+        }
+        context.request_repaint();
+    }
+}
+
+/// The least time of the step, ms, and its residual; nothing where it cannot be taken so.
+fn timed(
+    simulation: &Simulation,
+    method: Method,
+    tolerance: f64,
+    is_cancelled: &AtomicBool,
+) -> Option<[f64; 2]> {
+    let before = *simulation.settings();
+    let solver = SolverSettings {
+        stop: StopTest::Residual,
+        tolerance,
+        max_sweeps: MOST_SWEEPS,
+        fallback: Fallback::None,
+        ..before.solver.by(method)
+    };
+    let mut least = [f64::INFINITY, f64::NAN];
+    for _ in 0..REPEATS {
+        if is_cancelled.load(Ordering::Relaxed) {
+            return None;
+        }
+        let mut copy = simulation.clone();
+        copy.change(Settings { solver, ..before }).ok()?;
+        let begun = Instant::now();
+        let residual = copy.step().ok()?.residual;
+        let ms = 1e3 * begun.elapsed().as_secs_f64();
+        least = [least[0].min(ms), residual];
+        if ms > 1e3 * LIMIT_SECS {
+            break;
+        }
+    }
+    (least[1] > 0.0 && least[1].is_finite()).then_some(least)
+}
+
 /// Height of the plot, points.
 const HEIGHT: f32 = 230.0;
 /// Colours before dashes tell curves apart.
 const COLOURS: usize = 6;
 
-/// A point of the table.
-#[derive(Deserialize)]
-struct Row {
-    method: String,
-    residual: f64,
-    ms_per_step: f64,
-}
-
-/// The curve of a method: log₁₀ of ms a step and of the residual.
-struct Curve {
-    method: String,
-    points: Vec<PlotPoint>,
-}
-
-/// The shipped chart: its caption, and its curves. What is no row of the table is left out.
-fn chart() -> &'static (String, Vec<Curve>) {
-    static PARSED: OnceLock<(String, Vec<Curve>)> = OnceLock::new();
-    PARSED.get_or_init(|| {
-        let caption = CHART.lines().next().unwrap_or_default().trim_start_matches("# ");
-        let mut reader =
-            csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(CHART.as_bytes());
-        let mut curves: Vec<Curve> = Vec::new();
-        for Row { method, residual, ms_per_step } in reader.deserialize().flatten() {
-            let point = PlotPoint::new(ms_per_step.log10(), residual.log10());
-            match curves.last_mut() {
-                Some(curve) if curve.method == method => curve.points.push(point),
-                _ => curves.push(Curve { method, points: vec![point] }),
-            }
-        }
-        (caption.to_owned(), curves)
-    })
-}
-
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     measure(ui, state);
-    let (caption, shipped) = chart();
-    let Some(race) = &state.race else {
-        let names: Vec<&str> = shipped.iter().map(|curve| curve.method.as_str()).collect();
-        let curves: Vec<_> = shipped.iter().map(|curve| curve.points.clone()).collect();
-        draw(ui, &curves, None);
-        legend(ui, &names);
-        ui.label(RichText::new(format!("Not of this scene: {caption}")).small().weak());
-        return readings(ui, state);
-    };
-    let names: Vec<&str> = race.curves.iter().map(|curve| curve.method).collect();
-    let point = |&[ms, residual]: &[f64; 2]| PlotPoint::new(ms.log10(), residual.log10());
-    let curves = race.curves.iter().map(|curve| curve.points.iter().map(point).collect());
-    let curves: Vec<Vec<PlotPoint>> = curves.collect();
-    draw(ui, &curves, now(state, race));
-    legend(ui, &names);
-    let how = if race.is_over { "measured here" } else { "being measured" };
-    let text = format!(
-        "The step that follows t = {:.4} s, {how}; ◆ is the present method.",
-        race.time_secs
-    );
-    ui.label(RichText::new(text).small().weak());
+    if let Some(race) = &state.race {
+        draw(ui, &race.curves, now(state, race));
+        legend(ui, &race.curves);
+        let how = if race.is_over { "measured here" } else { "being measured" };
+        let text = format!(
+            "The step that follows t = {:.4} s, {how}; ◆ is the present method.",
+            race.time_secs
+        );
+        ui.label(RichText::new(text).small().weak());
+    }
     readings(ui, state);
 }
 
@@ -112,7 +198,7 @@ fn now(state: &AppState, race: &StepRace) -> Option<[f64; 2]> {
     told.then(|| [world.step_ms.log10(), row.residual.log10()])
 }
 
-fn draw(ui: &mut Ui, curves: &[Vec<PlotPoint>], now: Option<[f64; 2]>) {
+fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
     let dark = ui.visuals().dark_mode;
     ui.label(RichText::new("residual against ms a step").small());
     still_plot(ui, "speed and accuracy", HEIGHT)
@@ -121,9 +207,10 @@ fn draw(ui: &mut Ui, curves: &[Vec<PlotPoint>], now: Option<[f64; 2]>) {
         .x_axis_formatter(|mark, _| power_of_ten(mark.value))
         .y_axis_formatter(|mark, _| power_of_ten(mark.value))
         .show(ui, |plot| {
-            for (index, points) in curves.iter().enumerate() {
+            for (index, curve) in curves.iter().enumerate() {
                 let (colour, style) = look(index, dark);
-                let places: PlotPoints<'_> = points.iter().map(|at| [at.x, at.y]).collect();
+                let points = curve.points.iter().map(|point| point.map(f64::log10));
+                let places: PlotPoints<'_> = points.collect();
                 plot.line(Line::new("", places).color(colour).style(style).width(1.6));
             }
             if let Some(place) = now {
@@ -145,15 +232,15 @@ fn look(index: usize, dark: bool) -> (Color32, LineStyle) {
 }
 
 /// What colours and strokes mean, below the chart, of which it hides nothing.
-fn legend(ui: &mut Ui, names: &[&str]) {
+fn legend(ui: &mut Ui, curves: &[RaceCurve]) {
     let dark = ui.visuals().dark_mode;
     ui.horizontal_wrapped(|ui| {
-        for (index, name) in names.iter().enumerate() {
+        for (index, curve) in curves.iter().enumerate() {
             let (colour, _) = look(index, dark);
             let stroke = ["━", "╍", "┉"][(index / COLOURS).min(2)];
             ui.spacing_mut().item_spacing.x = 3.0;
             ui.label(RichText::new(stroke).color(colour));
-            ui.label(RichText::new(*name).small());
+            ui.label(RichText::new(curve.method).small());
             ui.add_space(6.0);
         }
     });
@@ -190,17 +277,21 @@ fn power_of_ten(exponent: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::METHODS;
+    use crate::scene::built_in;
 
     #[test]
-    fn the_shipped_chart_is_of_methods_that_there_are() {
-        let (caption, curves) = chart();
-        assert!(caption.contains("slump chart"), "{caption}");
-        assert!(curves.iter().any(|curve| curve.method == "newton"));
-        for Curve { method, points } in curves {
-            let name = method.split(' ').next().unwrap_or_default();
-            assert!(METHODS.iter().any(|info| info.name == name), "{method}");
-            assert!(points.windows(2).all(|pair| pair[1].y < pair[0].y), "{method} falls");
-        }
+    fn tighter_tolerances_come_to_smaller_residuals() {
+        let mut scene = built_in("pile").unwrap();
+        // So that the step has a solution.
+        scene.parameters.restitution_threshold = 2.0;
+        let mut simulation = scene.simulation().unwrap();
+        simulation.take_steps(20).unwrap();
+        let never = AtomicBool::new(false);
+        let residual =
+            |tolerance| timed(&simulation, Method::Newton, tolerance, &never).unwrap()[1];
+        let (loose, tight) = (residual(1e-2), residual(1e-6));
+        assert!(loose <= 1e-2 && tight <= 1e-6 && tight < loose, "{loose} and {tight}");
+        assert_eq!(simulation.observables().step, 20, "the run itself takes no step");
+        assert_eq!(timed(&simulation, Method::Newton, 1e-2, &AtomicBool::new(true)), None);
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::{Align, Label, Layout, RichText, Ui};
 
-use crate::app::effort::FAST;
+use crate::app::budget::FAST;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::live::{WorldAlarm, WorldFrame};
@@ -64,9 +64,9 @@ fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
 }
 
 fn messages(ui: &mut Ui, state: &mut AppState) {
-    let help = ui.selectable_label(state.help, "Help (H)");
+    let help = ui.selectable_label(state.shown.help, "Help (H)");
     if help.clicked() {
-        state.help = !state.help;
+        state.shown.help = !state.shown.help;
     }
     let mut plots = state.preferences.plots;
     let toggle = ui.toggle_value(&mut plots, "Plots").on_hover_text("Show or hide the plots");

@@ -20,7 +20,7 @@ pub(super) struct StateFile {
 }
 
 #[derive(Serialize)]
-struct State<'a> {
+struct ExportedState<'a> {
     scene: Option<&'a str>,
     playing: bool,
     step: u64,
@@ -32,7 +32,8 @@ struct State<'a> {
     /// Grains of the selected world.
     grains: usize,
     /// Other piles of the selected world that have come to their end.
-    other_piles: usize,
+    #[serde(rename = "other_piles")]
+    ensemble: usize,
     /// Threads that compute them.
     other_threads: usize,
     /// The station of the tour, from 1; 0 where it is not being taken.
@@ -61,7 +62,7 @@ impl StateFile {
         let last = world.map(|world| world.snapshot.observables).unwrap_or_default();
         let scale = window.scale_factor() as f32;
         let size = window.inner_size();
-        let record = State {
+        let record = ExportedState {
             scene: state.frame.start.as_ref().map(|start| start.name.as_str()),
             playing: state.frame.playing,
             step: last.step,
@@ -70,8 +71,8 @@ impl StateFile {
             parameters: world.map(|world| world.controls.settings.parameters),
             worlds: state.frame.worlds.len(),
             grains: world.map_or(0, |world| world.snapshot.grains.len()),
-            other_piles: state.other_piles.told(state.selected).map_or(0, |told| told.band.count),
-            other_threads: state.other_piles.threads(),
+            ensemble: state.ensemble.summary(state.selected).map_or(0, |it| it.band.count),
+            other_threads: state.ensemble.threads(),
             station: if state.touring { state.preferences.tour.at + 1 } else { 0 },
             steps_per_sec: state.frame.steps_per_sec,
             devices,

@@ -12,9 +12,8 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
-use super::options::WindowOptions;
+use super::preferences::{Keeper, forget, load};
 use super::state::AppState;
-use super::storage::{self, Keeper};
 use super::theme;
 use super::ui::ui;
 use crate::config::Config;
@@ -23,8 +22,9 @@ use crate::headless::HeadlessOptions;
 use crate::live::{Live, LiveOptions};
 use crate::render::RendererChoice;
 use export_state::StateFile;
-use start::{First, attributes, no_display};
-use surface::{Drawn, Surface};
+pub(crate) use start::WindowOptions;
+use start::{attributes, first, no_display};
+use surface::{Drawn, WindowSurface};
 
 /// Least time between two frames that only the run asks for. A software rasteriser takes processor
 /// time that the solver needs; the eye follows a pile at 25 frames a second.
@@ -34,12 +34,9 @@ pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
 /// A device that is lost this many times in a row does not come back.
 const MOST_LOSSES: u32 = 3;
 
-/// What other threads send to the window.
+/// What other threads send to the window: there is a new frame of the run, or a file was written.
 #[derive(Debug)]
-enum Message {
-    /// There is a new frame of the run, or a file was written.
-    Repaint,
-}
+struct Repaint;
 
 /// Opens the window and returns when it is closed.
 ///
@@ -52,23 +49,23 @@ pub(crate) fn run(
     options: &WindowOptions,
 ) -> Result<()> {
     if options.reset_ui {
-        storage::forget();
+        forget();
     }
-    let mut stored = storage::load();
+    let mut stored = load();
     stored.preferences.follow(pictures)?;
-    let first =
-        First::of(config, pictures.saving.restart.as_deref(), options, &stored.preferences)?;
+    let restart = pictures.saving.restart.as_deref();
+    let open_first = first(config, restart, options, &stored.preferences)?;
     let events =
-        EventLoop::<Message>::with_user_event().build().map_err(|error| no_display(&error))?;
+        EventLoop::<Repaint>::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();
     let wake = proxy.clone();
     let live = Live::spawn(LiveOptions {
         // The loop is gone only when the window is.
-        wake: Box::new(move || drop(wake.send_event(Message::Repaint))),
+        wake: Box::new(move || drop(wake.send_event(Repaint))),
         ..LiveOptions::default()
     })?;
     let mut state = AppState::idle(live, stored.preferences.clone());
-    first.open(&mut state);
+    open_first(&mut state);
     let mut app = App {
         context: context(&proxy, stored.layout),
         proxy,
@@ -88,7 +85,7 @@ pub(crate) fn run(
 }
 
 /// A context with the project's look, which wakes the loop when another thread asks for a frame.
-fn context(proxy: &EventLoopProxy<Message>, layout: egui::Memory) -> egui::Context {
+fn context(proxy: &EventLoopProxy<Repaint>, layout: egui::Memory) -> egui::Context {
     let context = egui::Context::default();
     context.memory_mut(|memory| *memory = layout);
     theme::install(&context);
@@ -97,7 +94,7 @@ fn context(proxy: &EventLoopProxy<Message>, layout: egui::Memory) -> egui::Conte
     context.set_request_repaint_callback(move |info| {
         // Requests of the window's own thread come back as the delay of its pass.
         if info.delay.is_zero() && std::thread::current().id() != window_thread {
-            drop(wake.send_event(Message::Repaint));
+            drop(wake.send_event(Repaint));
         }
     });
     context
@@ -105,7 +102,7 @@ fn context(proxy: &EventLoopProxy<Message>, layout: egui::Memory) -> egui::Conte
 
 struct App {
     context: egui::Context,
-    proxy: EventLoopProxy<Message>,
+    proxy: EventLoopProxy<Repaint>,
     state: AppState,
     open: Option<Open>,
     failure: Option<Error>,
@@ -122,7 +119,7 @@ struct App {
 struct Open {
     window: Arc<Window>,
     input: egui_winit::State,
-    surface: Surface,
+    surface: WindowSurface,
 }
 
 impl App {
@@ -130,13 +127,13 @@ impl App {
         let attributes = attributes(events, self.state.preferences.window_points);
         let window =
             Arc::new(events.create_window(attributes).map_err(|error| no_display(&error))?);
-        let surface = Surface::new(events, &window, self.renderer)?;
+        let surface = WindowSurface::new(events, &window, self.renderer)?;
         let input = self.input(&window, &surface);
         window.request_redraw();
         Ok(Open { window, input, surface })
     }
 
-    fn input(&self, window: &Window, surface: &Surface) -> egui_winit::State {
+    fn input(&self, window: &Window, surface: &WindowSurface) -> egui_winit::State {
         egui_winit::State::new(
             self.context.clone(),
             egui::ViewportId::ROOT,
@@ -168,7 +165,7 @@ impl App {
         let memory = self.context.memory(Clone::clone);
         self.context = context(&self.proxy, memory);
         self.state.forget_context();
-        match Surface::new(events, &window, self.renderer) {
+        match WindowSurface::new(events, &window, self.renderer) {
             Ok(surface) => {
                 let input = self.input(&window, &surface);
                 window.request_redraw();
@@ -202,7 +199,7 @@ impl App {
         if let Some(file) = &mut self.state_file {
             file.write(&self.state, window, self.devices);
         }
-        if std::mem::take(&mut self.state.restart_graphics) {
+        if std::mem::take(&mut self.state.shown.restart_graphics) {
             surface.destroy_device();
             window.request_redraw();
             return;
@@ -229,7 +226,7 @@ impl App {
     }
 }
 
-impl ApplicationHandler<Message> for App {
+impl ApplicationHandler<Repaint> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if self.open.is_some() {
             return;
@@ -243,15 +240,11 @@ impl ApplicationHandler<Message> for App {
         }
     }
 
-    fn user_event(&mut self, _events: &ActiveEventLoop, message: Message) {
-        match message {
-            Message::Repaint => {
-                let software = self.open.as_ref().is_some_and(|open| open.surface.is_software());
-                let interval = if software { SOFTWARE_FRAME_INTERVAL } else { FRAME_INTERVAL };
-                let at = self.drawn + interval;
-                self.next_repaint = Some(self.next_repaint.map_or(at, |planned| planned.min(at)));
-            }
-        }
+    fn user_event(&mut self, _events: &ActiveEventLoop, _repaint: Repaint) {
+        let software = self.open.as_ref().is_some_and(|open| open.surface.is_software());
+        let interval = if software { SOFTWARE_FRAME_INTERVAL } else { FRAME_INTERVAL };
+        let at = self.drawn + interval;
+        self.next_repaint = Some(self.next_repaint.map_or(at, |planned| planned.min(at)));
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _window: WindowId, event: WindowEvent) {

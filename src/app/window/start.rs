@@ -1,92 +1,90 @@
 //! What has to be settled before a window opens.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use winit::dpi::LogicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::monitor::MonitorHandle;
 use winit::window::{Window, WindowAttributes};
 
-use crate::app::link::Link;
-use crate::app::options::WindowOptions;
 use crate::app::preferences::Preferences;
 use crate::app::session::Session;
+use crate::app::sharing::RunLink;
 use crate::app::state::AppState;
 use crate::config::{Config, SavedState};
 use crate::error::{Error, Result};
+
+/// Options of the window. The scene, its physics and its solver are in [`crate::config::Config`].
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+pub(crate) struct WindowOptions {
+    /// Forget the window's layout, theme and last scene
+    #[arg(long, help_heading = "Window")]
+    pub reset_ui: bool,
+    /// Open a session that the window saved: worlds, record and arrangement
+    #[arg(long, value_name = "FILE", help_heading = "Window", conflicts_with_all = ["headless", "restart", "open"])]
+    pub session: Option<PathBuf>,
+    /// Open the line that Copy link gave, slump://run?…
+    #[arg(long, value_name = "LINK", help_heading = "Window", conflicts_with_all = ["headless", "restart"])]
+    pub open: Option<String>,
+    /// Keep writing the state of window and run to this file, as JSON: for tests
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub export_state: Option<PathBuf>,
+}
 
 /// Size of a new window, points.
 const SIZE: [f64; 2] = [1280.0, 800.0];
 const LEAST_SIZE: [f64; 2] = [640.0, 480.0];
 
-/// What is opened first.
-pub(super) enum First {
-    /// The station of the tour that was open last.
-    Tour(usize),
-    Scene(Box<Config>),
-    /// A saved run that is to go on.
-    Run(Box<SavedState>),
-    /// What a link tells of.
-    Link(Box<Link>),
-    Session(Box<Session>),
-}
+/// Opens what a window begins with.
+pub(super) type Opener = Box<dyn FnOnce(&mut AppState)>;
 
-impl First {
-    /// What the command line asks for; else the tour, until it is left, or the last scene, or the default one
-    /// where that is gone.
-    ///
-    /// # Errors
-    /// Names the first field of the command line or the saved run that is outside its range, or the file that
-    /// cannot be read.
-    pub(super) fn of(
-        asked: &Config,
-        restart: Option<&Path>,
-        options: &WindowOptions,
-        preferences: &Preferences,
-    ) -> Result<Self> {
-        let others = [options.session.is_some(), options.open.is_some()];
-        if others.contains(&true) && !asked.is_empty() {
-            let field = if others[0] { "session" } else { "open" };
-            let allowed = "left out where a scene or a setting is given: it has its own";
-            return Err(Error::value(field, "given", allowed));
-        }
-        if let Some(path) = &options.session {
-            return Ok(Self::Session(Box::new(Session::open(path)?)));
-        }
-        if let Some(text) = &options.open {
-            let link = Link::read(text)?;
-            link.check()?;
-            return Ok(Self::Link(Box::new(link)));
-        }
-        if let Some(path) = restart {
-            let mut saved = SavedState::open(path)?;
-            asked.change_state(&mut saved)?;
-            return Ok(Self::Run(Box::new(saved)));
-        }
-        // A pile is made on the solver's thread; everything else of a scene is checked before a window
-        // opens.
-        if !asked.is_empty() {
-            asked.without_settling()?;
-            return Ok(Self::Scene(Box::new(asked.clone())));
-        }
-        if preferences.tour.on {
-            return Ok(Self::Tour(preferences.tour.at));
-        }
-        let last = &preferences.scene;
-        let is_there = last.without_settling().is_ok();
-        Ok(Self::Scene(Box::new(if is_there { last.clone() } else { Config::default() })))
+/// What the command line asks for; else the tour, until it is left, or the last scene, or the default one
+/// where that is gone.
+///
+/// # Errors
+/// Names the first field of the command line or the saved run that is outside its range, or the file that
+/// cannot be read.
+pub(super) fn first(
+    asked: &Config,
+    restart: Option<&Path>,
+    options: &WindowOptions,
+    preferences: &Preferences,
+) -> Result<Opener> {
+    let others = [options.session.is_some(), options.open.is_some()];
+    if others.contains(&true) && !asked.is_empty() {
+        let field = if others[0] { "session" } else { "open" };
+        let allowed = "left out where a scene or a setting is given: it has its own";
+        return Err(Error::value(field, "given", allowed));
     }
-
-    /// Opens it.
-    pub(super) fn open(self, state: &mut AppState) {
-        match self {
-            Self::Tour(at) => state.visit(at),
-            Self::Scene(config) => state.load(*config),
-            Self::Run(saved) => state.load_run(*saved),
-            Self::Link(link) => state.load_link(*link),
-            Self::Session(session) => state.load_session(move || Ok(*session)),
-        }
+    if let Some(path) = &options.session {
+        let session = Session::open(path)?;
+        return Ok(Box::new(move |state| state.load_session(move || Ok(session))));
     }
+    if let Some(text) = &options.open {
+        let link = RunLink::read(text)?;
+        link.check()?;
+        return Ok(Box::new(move |state| state.load_link(link)));
+    }
+    if let Some(path) = restart {
+        let mut saved = SavedState::open(path)?;
+        asked.change_state(&mut saved)?;
+        return Ok(Box::new(move |state| state.load_run(saved)));
+    }
+    if asked.is_empty() && preferences.tour.on {
+        let at = preferences.tour.at;
+        return Ok(Box::new(move |state| state.visit(at)));
+    }
+    // A pile is made on the solver's thread; everything else of a scene is checked before a window
+    // opens.
+    let config = if !asked.is_empty() {
+        asked.without_settling()?;
+        asked.clone()
+    } else if preferences.scene.without_settling().is_ok() {
+        preferences.scene.clone()
+    } else {
+        Config::default()
+    };
+    Ok(Box::new(move |state| state.load(config)))
 }
 
 /// What a window is like, of that size (points) if it has been open before, and no larger than the screen.

@@ -8,7 +8,7 @@ use winit::dpi::PhysicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
-use crate::app::graphics::Screen;
+use crate::app::canvas::Screen;
 use crate::error::{Error, Result};
 use crate::render::RendererChoice;
 
@@ -28,7 +28,7 @@ pub(super) enum Drawn {
 }
 
 /// The surface and the device that draws on it.
-pub(super) struct Surface {
+pub(super) struct WindowSurface {
     // Before the window, so that it is dropped first.
     surface: wgpu::Surface<'static>,
     instance: wgpu::Instance,
@@ -41,7 +41,7 @@ pub(super) struct Surface {
     textures: egui::TexturesDelta,
 }
 
-impl Surface {
+impl WindowSurface {
     /// Opens the strongest device that can draw on the window: on Vulkan, or else on OpenGL, or on the
     /// one that is asked for.
     ///

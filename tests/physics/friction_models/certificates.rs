@@ -57,7 +57,7 @@ fn every_step_of_a_pile_that_slumps_is_certified() {
     }
 }
 
-/// Σ m (σ(w + 2z) + g|v| + λv) from world data, as `solver::problem::duality` states it, and Σ m (v^free)².
+/// Σ m (σ(w + 2z) + g|v| + λv) from world data, as `solver::problem::residual` states it, and Σ m (v^free)².
 fn gap_of_world(
     simulation: &Simulation,
     pile: &Scene,

@@ -2,7 +2,7 @@
 //!
 //! In a step each has one rigid velocity: the mean of its course over Δt, or in its last step what is left of its
 //! way over Δt. One that a force drives begins with the speed that it has, and its step says with which it goes on
-//! (`solver::problem::driven`). The contacts see it where they touch (`solver::problem::surfaces`), and with the grains the body is
+//! (`solver::problem::walls`). The contacts see it where they touch, and with the grains the body is
 //! carried by it.
 
 use glam::DVec2;
@@ -185,7 +185,7 @@ impl Walls {
     }
 
     /// Has the walls that a force drives go on as a step has found. Gives the work of the forces and of the damping, J:
-    /// Δt (F − cV) ½(V + V⁻), in which ΔtF = V_free/r − MV⁻ and cΔt = 1/r − M (`solver::problem::driven`).
+    /// Δt (F − cV) ½(V + V⁻), in which ΔtF = V_free/r − MV⁻ and cΔt = 1/r − M (`solver::problem::walls`).
     pub(crate) fn take_driven(&mut self, world: &mut World, driven: &[DrivenWall]) -> f64 {
         let mut work = 0.0;
         for found in driven {

@@ -12,7 +12,7 @@
 //! so that λ_n changes v_n by λ_n, and λ_t changes v_t by λ_t (1 + 2) = 3 λ_t: m_n/m_t = 3, with
 //! rotation held still 1. Against a fixed body g_i = 1.
 //!
-//! **Between borders that shear** (`world::shearing`) the image of j that is nearest to i goes with v_j + (w, 0),
+//! **Between borders that shear** (`world::periodic`) the image of j that is nearest to i goes with v_j + (w, 0),
 //! and what the laws ask for is the velocity relative to that image:
 //!
 //! > v_n = n·(v_i − v_j) − n_x w,  v_t = t·(v_i − v_j) + n_y w − s_i − s_j.

@@ -63,11 +63,11 @@ pub struct MethodInfo {
     pub source: &'static str,
     /// In which order it takes the contacts.
     pub order: MethodOrder,
-    /// Whether it solves the models of friction beside Coulomb's law.
+    /// True where it solves the models of friction beside Coulomb's law.
     pub takes_models: bool,
-    /// Whether it solves for walls that a force drives.
+    /// True where it solves for walls that a force drives.
     pub takes_drives: bool,
-    /// Whether it solves for grains whose images slide.
+    /// True where it solves for grains whose images slide.
     pub takes_shear: bool,
 }
 

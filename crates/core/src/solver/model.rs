@@ -13,7 +13,7 @@ use crate::world::{FrictionCone, Parameters, Periodic, Physics};
 pub trait Model: Copy + 'static {
     /// How bodies move.
     type Kinematics: Kinematics;
-    /// Whether contacts carry tangential impulses.
+    /// True where contacts carry tangential impulses.
     const FRICTION: bool;
 }
 
@@ -31,11 +31,11 @@ impl<K: Kinematics, const FRICTION: bool> Model for StepModel<K, FRICTION> {
 pub struct ModelParts {
     /// 1 or 2.
     pub axes: u8,
-    /// Whether borders shear.
+    /// True where borders shear.
     pub sheared: bool,
-    /// Whether contacts carry tangential impulses.
+    /// True where contacts carry tangential impulses.
     pub friction: bool,
-    /// Whether grains turn; without friction nothing turns them.
+    /// True where grains turn; without friction nothing turns them.
     pub rotation: bool,
 }
 

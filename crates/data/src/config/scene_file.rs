@@ -27,9 +27,6 @@ pub fn read_scene(path: &Path) -> Result<Scene> {
 
 /// The same but for the settling: a new pile is given as well, and the scene has its grains
 /// where they start from. Quick.
-///
-/// # Errors
-/// As [`read_scene`].
 pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     let text = std::fs::read_to_string(path).map_err(|error| Error::unread(path, error, FORM))?;
     let scene = toml::from_str(&text).map_err(|error| {
@@ -41,9 +38,6 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
 }
 
 /// A scene with its grains, or with those that a new pile starts from; files that it names lie in `folder`.
-///
-/// # Errors
-/// As [`read_scene`].
 pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<NewPile>)> {
     let mut new_pile = None;
     if let Some(source) = scene.source.take() {

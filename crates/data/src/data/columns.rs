@@ -58,7 +58,7 @@ pub(super) const FIXED: usize = 1;
 /// Of one that went through a wall or left the world.
 pub(super) const LOST: usize = 2;
 
-struct GrainRow {
+struct GrainTableRow {
     step: u64,
     time_secs: f64,
     id: u64,
@@ -66,7 +66,7 @@ struct GrainRow {
     state: GrainState,
 }
 
-const GRAIN_COLUMNS: &[ColumnSpec<GrainRow>] = &[
+const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
     ColumnSpec::count("id", "number of the disc; fixed discs follow the grains", |row| row.id),
@@ -103,8 +103,9 @@ pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     let moving = moment.grains.iter().map(|state| (if state.lost { LOST } else { GRAIN }, *state));
     let fixed = moment.surroundings.fixed_discs.iter().map(|disc| (FIXED, at_rest(disc)));
     let rows = moving.chain(fixed).zip(0..);
-    let rows: Vec<GrainRow> =
-        rows.map(|((kind, state), id)| GrainRow { step, time_secs, id, kind, state }).collect();
+    let rows: Vec<GrainTableRow> = rows
+        .map(|((kind, state), id)| GrainTableRow { step, time_secs, id, kind, state })
+        .collect();
     with_measures(Table::new("grains", GRAIN_COLUMNS, &rows, &[]), measures)
 }
 
@@ -142,7 +143,7 @@ const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 const STATUSES: &[&str] =
     &[ContactStatus::Open.word(), ContactStatus::Stick.word(), ContactStatus::Slip.word()];
 
-struct ContactRow {
+struct ContactTableRow {
     step: u64,
     time_secs: f64,
     other_id: u64,
@@ -153,7 +154,7 @@ struct ContactRow {
     state: ContactState,
 }
 
-const CONTACT_COLUMNS: &[ColumnSpec<ContactRow>] = &[
+const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
     ColumnSpec::count("id_i", "grain i", |row| row.state.grain.into()),
@@ -220,9 +221,9 @@ pub(super) fn contacts(moment: &Moment) -> Table {
             OtherBody::FixedDisc(number) => (1, grains + u64::from(number), 0),
             OtherBody::Boundary(number) => (2, discs + u64::from(number), 1 + number),
         };
-        ContactRow { step, time_secs, other_id, kind, name, has_bonds, state: *state }
+        ContactTableRow { step, time_secs, other_id, kind, name, has_bonds, state: *state }
     };
-    let rows: Vec<ContactRow> = moment.contacts.iter().map(row).collect();
+    let rows: Vec<ContactTableRow> = moment.contacts.iter().map(row).collect();
     Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &names)
 }
 

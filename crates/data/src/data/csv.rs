@@ -23,9 +23,6 @@ pub(super) struct Csv {
 
 impl Csv {
     /// Starts, or goes on with what is there.
-    ///
-    /// # Errors
-    /// Where the folder cannot be made.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
@@ -98,9 +95,6 @@ impl TextTable {
     }
 
     /// Adds rows.
-    ///
-    /// # Errors
-    /// Names the file and what the system says.
     pub(super) fn add(&mut self, table: &Table) -> Result<()> {
         let mut rows = std::mem::take(&mut self.rows);
         rows.clear();
@@ -123,18 +117,12 @@ impl TextTable {
     }
 
     /// Has all rows on the disk, and the head at least.
-    ///
-    /// # Errors
-    /// Names the file and what the system says.
     pub(super) fn finish(&mut self) -> Result<()> {
         self.begun()?.sync();
         Ok(())
     }
 
     /// Drops the rows after a step, or all, and a half row at the end.
-    ///
-    /// # Errors
-    /// Where the file is not such a table.
     pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
         self.file = None;
         let file = match File::open(&self.path) {

@@ -66,41 +66,26 @@ impl Frame {
 /// folder that has none of its files, or, with [`Format::roll_back`] as the next call, in one that has.
 pub(super) trait Format: Send {
     /// Takes the next frame. Its memory must not grow with the number of frames.
-    ///
-    /// # Errors
-    /// Where it cannot be written.
     fn add(&mut self, frame: &Frame) -> Result<()>;
 
     /// Takes what some steps measured, the first after the last of those before.
-    ///
-    /// # Errors
-    /// Where they cannot be written.
     fn add_steps(&mut self, _steps: &[Observables]) -> Result<()> {
         Ok(())
     }
 
     /// Has everything that was taken where readers find it. Called after a frame, or after several
     /// where the run is faster than the disk.
-    ///
-    /// # Errors
-    /// Where it cannot be written.
     fn flush(&mut self) -> Result<()> {
         Ok(())
     }
 
     /// Ends the recording.
-    ///
-    /// # Errors
-    /// Where it cannot be written.
     fn finish(&mut self) -> Result<()> {
         self.flush()
     }
 
     /// Drops what steps after `step` measured, and all frames after that of the step `last_frame`, or all that
     /// there are, so that the run can go on from `step`.
-    ///
-    /// # Errors
-    /// Where a file is not what this format wrote, or cannot be written.
     fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()>;
 }
 

@@ -72,9 +72,6 @@ struct GrowingDump {
 
 impl Lammps {
     /// Starts, or goes on with what is there.
-    ///
-    /// # Errors
-    /// Where the folder cannot be made.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
@@ -127,9 +124,6 @@ impl GrowingDump {
 }
 
 /// Length of the frames of a dump of ours up to a step, bytes, or of none; none where there is no file.
-///
-/// # Errors
-/// Where it cannot be read, or a step is none.
 fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     let file = match File::open(path) {
         Ok(file) => file,

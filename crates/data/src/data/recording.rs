@@ -250,9 +250,6 @@ struct FormatsWriter {
 
 impl FormatsWriter {
     /// Starts in a folder that has no recording, or goes on with the one that is there.
-    ///
-    /// # Errors
-    /// Where a format cannot be written there.
     fn start(folder: &Path, formats: &[FormatName], facts: &RunFacts) -> Result<Self> {
         let formats = formats.iter().map(|format| start_format(*format, folder, facts));
         let formats = formats.collect::<Result<_>>()?;
@@ -261,9 +258,6 @@ impl FormatsWriter {
     }
 
     /// Drops what was recorded after a step, and frames that not every format has.
-    ///
-    /// # Errors
-    /// Where a file is not what this wrote.
     fn roll_back(&mut self, step: u64) -> Result<KeptRows> {
         let kept = self.index.roll_back(Some(step))?;
         let mut formats = self.formats.iter_mut();
@@ -273,9 +267,6 @@ impl FormatsWriter {
 
     /// Writes what comes until no more can come. What fails ends the recording; what was written before
     /// stays.
-    ///
-    /// # Errors
-    /// The first that there is.
     fn run(mut self, messages: &Receiver<RecordingMessage>) -> Result<()> {
         let taken = self.take_all(messages);
         // Where a frame could not be taken, those before it are whole.

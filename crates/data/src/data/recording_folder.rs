@@ -73,9 +73,6 @@ impl RecordingFolder {
     }
 
     /// Removes an earlier recording, where that was asked for.
-    ///
-    /// # Errors
-    /// Names the file that cannot be removed.
     pub(super) fn clear(&self) -> Result<()> {
         if !self.overwrite {
             return Ok(());
@@ -102,9 +99,6 @@ fn files_of_a_recording(folder: &Path) -> Result<Vec<PathBuf>> {
 
 /// The plain files of a folder whose names are a recording's, sorted, with what a kill left of such; none
 /// where there is no folder. Links and pipes are nobody's leftovers.
-///
-/// # Errors
-/// Where the folder cannot be read.
 pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>> {
     let refuse = |error| Error::file(folder, error);
     let entries = match std::fs::read_dir(folder) {
@@ -131,17 +125,11 @@ fn is_left(path: &Path) -> bool {
 }
 
 /// Removes a file.
-///
-/// # Errors
-/// Names the file and what the system says.
 pub(super) fn remove(path: &Path) -> Result<()> {
     std::fs::remove_file(path).map_err(|error| Error::file(path, error))
 }
 
 /// Makes a folder where it is not there.
-///
-/// # Errors
-/// Names the folder and what the system says.
 pub(super) fn make_folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path)
         .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))
@@ -159,9 +147,6 @@ fn part_number(name: &str) -> Option<u64> {
 }
 
 /// The parts in a table's folder with their numbers, by which they are sorted.
-///
-/// # Errors
-/// Where the folder cannot be read.
 pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
     let paths = files_named(folder, |name| part_number(name).is_some())?;
     let number = |path: &Path| path.file_name().and_then(|name| part_number(name.to_str()?));
@@ -173,9 +158,6 @@ pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
 }
 
 /// Writes the manifest of a recording.
-///
-/// # Errors
-/// Names the file and what the system says.
 pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFacts) -> Result<()> {
     let path = folder.join(MANIFEST);
     let facts = run.facts.iter().map(|(name, said)| (name.clone(), Value::from(said.as_str())));
@@ -197,9 +179,6 @@ pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFac
 }
 
 /// Refuses to go on with a recording in other formats.
-///
-/// # Errors
-/// Names the formats that it has.
 pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()> {
     let path = folder.join(MANIFEST);
     // Without one there is no recording yet.

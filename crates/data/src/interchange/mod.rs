@@ -9,12 +9,10 @@
 //! problems are read as well (`siconos`).
 
 mod bodies;
-mod of_simulation;
 mod siconos;
 mod solution;
 
-pub use bodies::BodyForm;
-pub use of_simulation::{problem_file_at, problem_file_of};
+pub use bodies::{BodyForm, problem_file_at, problem_file_of};
 pub use solution::{Solution, solve_file};
 
 use std::path::Path;

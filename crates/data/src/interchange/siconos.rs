@@ -14,9 +14,6 @@ const SPARSE: usize = 2;
 const COMPRESSED_COLUMNS: usize = 2;
 
 /// Reads the text of such a file, without checking the problem in it.
-///
-/// # Errors
-/// Names what was looked for and not found.
 pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     let mut lines = text.lines();
     let mut number = |what: &str| first_word::<usize>(&mut lines, what);

@@ -115,8 +115,6 @@ struct Destination {
 }
 
 impl Destination {
-    /// # Errors
-    /// Where links go in a circle.
     fn of(path: &Path) -> Result<Self> {
         let mut path_there = path.to_owned();
         for _ in 0..MOST_LINKS {

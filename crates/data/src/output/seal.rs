@@ -63,9 +63,6 @@ impl Seal {
     }
 
     /// The same of what is at hand; `path` is for messages.
-    ///
-    /// # Errors
-    /// As [`Seal::open`].
     pub(crate) fn read<T: DeserializeOwned>(
         &self,
         mut file: impl BufRead,

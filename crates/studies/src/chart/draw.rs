@@ -98,12 +98,11 @@ fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>)
         let Layer::Curve { name, colour, look, .. } = layer else { continue };
         let colour = rgb(*colour);
         let (stroke, dot) = strokes(*look, colour);
-        let dashes = if matches!(look, Look::Dashes(_)) {
-            vec![10..18, 24..32, 38..46]
-        } else {
-            vec![10..46]
+        let dashes: &[(i32, i32)] = match look {
+            Look::Dashes(_) => &[(10, 18), (24, 32), (38, 46)],
+            _ => &[(10, 46)],
         };
-        for Range { start, end } in dashes.into_iter().filter(|_| stroke > 0) {
+        for &(start, end) in dashes.iter().filter(|_| stroke > 0) {
             let dash = PathElement::new(vec![(start, y), (end, y)], colour.stroke_width(stroke));
             area.draw(&dash).map_err(failed)?;
         }

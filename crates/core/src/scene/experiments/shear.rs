@@ -98,7 +98,7 @@ const SHEAR_RATE: f64 = 10.0;
 /// 224 grains that go with the shear at the start.
 ///
 /// Shear without walls: a cell whose borders are one and the same line each, and whose upper border slides along the
-/// lower one (`world::shearing`).
+/// lower one (`world::periodic`).
 ///
 /// Nothing but the shear rate γ̇ has a time in it, as long as grains are rigid and do not cohere. So the same grains at
 /// another rate take the same way in other times, and stresses grow with γ̇² (R. A. Bagnold, *Experiments on a

@@ -67,7 +67,7 @@ pub const STEEPEST_DEGREES: f64 = 30.0;
 
 /// The heap of `rows` rows on a base that falls to the right at `degrees`.
 ///
-/// The heap of `heap` on a slope. It stands up to an inclination of exactly 30°, whatever its size and
+/// The heap of [`heap`] on a slope. It stands up to an inclination of exactly 30°, whatever its size and
 /// for every friction below √3.
 ///
 /// Up to 30° every disc can rest on the two below it without friction. Their forces f₁ (up the slope of

@@ -310,7 +310,7 @@ const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 /// with ρ times that: with any share between 0 and 1 of the speed that it should have, half of it in
 /// the mean. The normal is that of the beginning, so what would pass by at a slant may be held up by
 /// nothing. And a fast grain looks for all that lies within its way. Cutting the step into pieces
-/// (`max_travel`) has none of these faults.
+/// ([`pieces`]) has none of these faults.
 pub(in crate::sim) fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let by_gravity = 2.0 * world.gravity.magnitude() * time_step_secs * time_step_secs;

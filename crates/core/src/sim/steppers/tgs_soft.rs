@@ -250,7 +250,7 @@ impl Softness {
     }
 }
 
-/// Walls that a force drives, among soft contacts: bodies of one speed V each (`solver::problem::driven`).
+/// Walls that a force drives, among soft contacts: bodies of one speed V each (`solver::problem::walls`).
 ///
 /// In a substep such a wall goes with V_free = r (M V⁻ + hF), r = 1/(M + ch), and an impulse λ of one of its contacts
 /// changes it by −r m_i (b_n λ_n + b_t λ_t) at once: the next contact of the sweep finds it as it goes then. With

@@ -10,14 +10,11 @@
 //! W is kept as 2×2 blocks in compressed sparse rows, each contact's own block apart. The state is
 //! (p, P_t), so that cohesion is a part of the free velocity and costs nothing: u = W (p, P_t) + q',
 //! q' = q − W (c₀, 0).
-
 //!
 //! Gauss–Seidel on W (M. Jean, 1999) solves one contact after the other, each exactly with the impulses that the ones
-//! before it left.
-//!
-//! Methods see W that treat all impulses as one vector: s = P/√m_n with m_n = 1/W_nn, so that
-//! A is W between √m_n and √m_n. Where W_nt ≠ 0 a contact's own block of A has entries off its
-//! diagonal; no method on this trait asks for them to be zero.
+//! before it left. For methods that treat all impulses as one vector s = P/√m_n with m_n = 1/W_nn, so that A is W
+//! between √m_n and √m_n. Where W_nt ≠ 0 a contact's own block of A has entries off its diagonal; no method on
+//! that trait asks for them to be zero.
 
 mod local;
 mod matrix;
@@ -43,14 +40,14 @@ const TEST_INTERVAL: u32 = 16;
 /// What one contact does to another.
 #[derive(Clone, Copy, Debug)]
 struct DelassusBlock {
-    pub block: [[f64; 2]; 2],
-    pub contact: u32,
+    block: [[f64; 2]; 2],
+    contact: u32,
 }
 
 /// A contact as its update reads it.
 #[derive(Clone, Copy, Debug)]
 struct DelassusRow {
-    pub local: LocalBlock,
+    local: LocalBlock,
     /// q', m/s.
     free: [f64; 2],
     /// Its neighbours are those from here to the next contact's.

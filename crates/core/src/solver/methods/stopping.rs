@@ -21,11 +21,11 @@ pub struct SolveReport {
     pub sweeps: u32,
     /// Matrices factorised.
     pub factorisations: u32,
-    /// Whether the stopping test was met.
+    /// True where the stopping test was met.
     pub converged: bool,
-    /// Whether a solve that did not converge had stalled, rather than being stopped too early.
+    /// True where a solve that did not converge had stalled, rather than being stopped too early.
     pub stalled: bool,
-    /// Whether a solve that did not converge was ended under bounds of friction instead.
+    /// True where a solve that did not converge was ended under bounds of friction instead.
     pub fell_back: bool,
 }
 

@@ -39,9 +39,6 @@ pub(in crate::data) enum Decoded {
 
 impl ParquetFile {
     /// Opens a file.
-    ///
-    /// # Errors
-    /// Where it cannot be read, or is no Parquet.
     pub(in crate::data) fn open(path: &Path) -> Result<Self> {
         let file = File::open(path).map_err(|error| Error::unread(path, error, FORM))?;
         let reader = SerializedFileReader::new(file)
@@ -67,9 +64,6 @@ impl ParquetFile {
     }
 
     /// The column of that name.
-    ///
-    /// # Errors
-    /// Where it is damaged, or of a kind that is none of numbers, words, and true or false.
     pub(in crate::data) fn column(&self, name: &str) -> Result<Option<Decoded>> {
         let Some(index) = self.names().iter().position(|there| there == name) else {
             return Ok(None);
@@ -98,9 +92,6 @@ impl ParquetFile {
     }
 
     /// Reads the rows into a table that has none, which has all the columns of the file.
-    ///
-    /// # Errors
-    /// Where a column is missing or of another kind, as a file of another version may have it.
     pub(in crate::data) fn read_into(&self, table: &mut Table) -> Result<()> {
         for column in &mut table.columns {
             let refuse = || {

@@ -40,9 +40,6 @@ pub(super) struct Parquet {
 
 impl Parquet {
     /// Starts, or goes on with what is there.
-    ///
-    /// # Errors
-    /// Where a folder cannot be made.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let start = |table| GrowingParts::start(folder, facts, table);
         let of_frames = empty_tables_of_frames().into_iter().map(start).collect::<Result<_>>()?;
@@ -88,9 +85,6 @@ struct GrowingParts {
 
 impl GrowingParts {
     /// Starts with no part. `rows` has none.
-    ///
-    /// # Errors
-    /// Where the folder cannot be made, or what is said of the recording is no metadata.
     fn start(folder: &Path, facts: &RunFacts, rows: Table) -> Result<Self> {
         let folder = folder.join(rows.name);
         make_folder(&folder)?;
@@ -99,9 +93,6 @@ impl GrowingParts {
     }
 
     /// Adds rows, which are not parted.
-    ///
-    /// # Errors
-    /// Where a part that is full cannot be written.
     fn add(&mut self, rows: &Table) -> Result<()> {
         self.rows.append(rows);
         self.has_news |= !rows.is_empty();
@@ -134,9 +125,6 @@ impl GrowingParts {
     }
 
     /// Drops the rows after a step, or all.
-    ///
-    /// # Errors
-    /// Where a part is not what this wrote.
     fn roll_back(&mut self, step: Option<u64>) -> Result<()> {
         self.rows.truncate(0);
         (self.number, self.has_news, self.has_file) = (0, false, false);
@@ -171,9 +159,6 @@ struct Encoder {
 
 impl Encoder {
     /// For tables with the columns of `table`.
-    ///
-    /// # Errors
-    /// Where a name is none in Parquet.
     fn new(facts: &RunFacts, table: &Table) -> ParquetResult<Self> {
         let fields = table.columns.iter().map(|column| field(column).map(Arc::new));
         let fields = fields.collect::<ParquetResult<_>>()?;
@@ -188,9 +173,6 @@ impl Encoder {
     }
 
     /// The bytes of a file.
-    ///
-    /// # Errors
-    /// What the writer says.
     fn encode(&self, table: &Table) -> ParquetResult<Vec<u8>> {
         let properties = WriterProperties::builder()
             .set_created_by(concat!("slump ", env!("CARGO_PKG_VERSION")).to_owned())

@@ -30,9 +30,6 @@ pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
 }
 
 /// Reads the moment of a step, or the last one.
-///
-/// # Errors
-/// Where the file cannot be read, or a line is none.
 pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     let open = || File::open(path).map_err(|error| Error::unread(path, error, FORM));
     CsvFile { path, wanted: step, open }.read()

@@ -201,9 +201,6 @@ fn has_needed(names: &[String]) -> bool {
 }
 
 /// Refuses a file that lacks a column.
-///
-/// # Errors
-/// Says which columns it has.
 fn check_names(path: &Path, names: &[String]) -> Result<()> {
     if has_needed(names) {
         return Ok(());
@@ -232,9 +229,6 @@ fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
 }
 
 /// The discs that rows are, if they are some. `place` says a row's file, and where it is there: `line 3`.
-///
-/// # Errors
-/// Names the first row that is none, and what of it.
 fn discs_of_rows(
     path: &Path,
     rows: Vec<DiscRow>,

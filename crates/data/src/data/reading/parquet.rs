@@ -10,9 +10,6 @@ use crate::error::{Error, Result};
 const MOST_ROWS: u64 = 1 << 32;
 
 /// Reads the moment of a step, or the last one, from the parts of a table, in their order.
-///
-/// # Errors
-/// Where a part cannot be read, or a row is none.
 pub(super) fn read_parts(
     path: &Path,
     parts: &[(u64, PathBuf)],

@@ -9,16 +9,14 @@
 //! measured of the whole pile is there too, as `pile_NAME`.
 
 mod poly_data;
-mod series;
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
 use self::poly_data::{PolyData, VtkCells};
-use self::series::PvdSeries;
 use super::format::{Format, Frame, RunFacts};
 use super::recording_folder::{files_named, make_folder, remove};
 use super::table::{Column, Table, Values};
@@ -48,6 +46,17 @@ const VECTORS: [(&str, [&str; 2]); 3] =
 /// What stands where a law knows no such thing as a flag.
 const NEITHER: i8 = -1;
 
+/// Bytes of a slot: a part of a page, so that none lies in two, and enough for any time and name.
+const SLOT: usize = 128;
+/// Bytes ahead of the first slot.
+const HEAD: usize = 256;
+/// Slots of a file that begins.
+const FIRST_SLOTS: usize = 32;
+
+const OPENING: &str = "<?xml version=\"1.0\"?>\n\
+     <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+const CLOSING: &str = "</Collection>\n</VTKFile>\n";
+
 /// Writes series of files.
 pub(super) struct Vtk {
     folder: PathBuf,
@@ -58,9 +67,6 @@ pub(super) struct Vtk {
 
 impl Vtk {
     /// Starts, or goes on with what is there.
-    ///
-    /// # Errors
-    /// Where the folder cannot be made.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
@@ -170,9 +176,6 @@ fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
 }
 
 /// Step and time, s, of the frame that a file has.
-///
-/// # Errors
-/// Where it cannot be read, or is none of these files.
 fn moment_of(path: &Path) -> Result<(u64, f64)> {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LONGEST_HEAD).read_to_end(&mut head));
@@ -283,6 +286,82 @@ fn add(file: &mut PolyData, Column { name, values, .. }: &Column) {
         Values::Words { words, codes } => {
             file.add_column(name, codes.iter().map(|&code| code as i32));
             file.add_words(&format!("{name}_words"), words.iter());
+        }
+    }
+}
+
+/// A `.pvd` file: which file shows which time, for ParaView.
+///
+/// It grows by a frame at a time and must be whole whenever somebody reads it or the program is killed.
+/// So the entries stand in slots of one length ahead of the closing tags, and what slots are free is blank:
+/// a new entry is one write within one page of memory, which no kill cuts. Where none is free the file is
+/// written anew with twice as many, which comes to a constant time a frame.
+struct PvdSeries {
+    path: PathBuf,
+    file: File,
+    /// Entries.
+    count: usize,
+    slots: usize,
+}
+
+impl PvdSeries {
+    /// A series of files of the folder that it lies in, each with its time, s.
+    fn of(path: PathBuf, files: &[(f64, String)]) -> Result<Self> {
+        let entries: Vec<u8> =
+            files.iter().flat_map(|(time_secs, name)| entry(*time_secs, name)).collect();
+        Self::write_anew(path, &entries, (2 * files.len()).max(FIRST_SLOTS))
+    }
+
+    /// Adds the file of a time, s, which lies in the series' folder.
+    fn add(&mut self, time_secs: f64, file: &str) -> Result<()> {
+        if self.count == self.slots {
+            let text = std::fs::read(&self.path).map_err(|error| Error::file(&self.path, error))?;
+            let entries = text.get(HEAD..HEAD + self.count * SLOT).unwrap_or_default();
+            *self = Self::write_anew(self.path.clone(), entries, 2 * self.slots)?;
+        }
+        let place = HEAD + self.count * SLOT;
+        let written = self.file.seek(SeekFrom::Start(place as u64));
+        let written = written.and_then(|_| self.file.write_all(&entry(time_secs, file)));
+        written.map_err(|error| Error::file(&self.path, error))?;
+        self.count += 1;
+        Ok(())
+    }
+
+    fn write_anew(path: PathBuf, entries: &[u8], slots: usize) -> Result<Self> {
+        let mut file = PendingFile::start(&path)?;
+        file.write(&padded(OPENING, HEAD))?;
+        file.write(entries)?;
+        let count = entries.len() / SLOT;
+        file.write(&padded("", SLOT).repeat(slots - count))?;
+        file.write(CLOSING.as_bytes())?;
+        file.finish(false)?;
+        let file = File::options().write(true).open(&path);
+        let file = file.map_err(|error| Error::file(&path, error))?;
+        Ok(Self { path, file, count, slots })
+    }
+}
+
+/// A slot that is taken.
+fn entry(time_secs: f64, file: &str) -> Vec<u8> {
+    padded(&format!("<DataSet timestep=\"{time_secs:?}\" file=\"{file}\"/>"), SLOT)
+}
+
+/// A line of that many bytes.
+fn padded(text: &str, length: usize) -> Vec<u8> {
+    let mut line = format!("{:1$}", text, length - 1).into_bytes();
+    line.push(b'\n');
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_time_and_name_fit_into_a_slot() {
+        for time_secs in [-f64::MIN_POSITIVE, f64::MAX, 1.0 / 3.0, -1.234_567_890_123_456_7e-300] {
+            let slot = entry(time_secs, &format!("contacts_{}.vtp", u64::MAX));
+            assert_eq!(slot.len(), SLOT, "{}", String::from_utf8_lossy(&slot));
         }
     }
 }

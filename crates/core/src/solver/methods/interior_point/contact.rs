@@ -1,7 +1,7 @@
 //! What the interior point knows of one contact, and its part in a Newton step.
 //!
 //! A model of friction allows impulses p = (σ, λ) with G p + h ≥ 0 (rows of G: (1, 0) for σ ≥ 0 and
-//! (κ, ±1) for the two sides of friction, κ = μ where the bound grows with σ and 0 where it is held). With
+//! (κ, ±1) for the two sides of friction, κ = μ where the bound grows with σ and 0 where it lags). With
 //! slacks x = G p + h and multipliers y, the solution has
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
@@ -31,9 +31,9 @@ pub(super) trait Shape {
     const FIRST: usize;
     /// See [`Shape::FIRST`].
     const END: usize;
-    /// Whether the two slacks of friction stand for the impulses.
+    /// True where the two slacks of friction stand for the impulses.
     const CONE: bool;
-    /// Whether the sides of friction push only along the tangent though the bound grows with σ: Coulomb's
+    /// True where the sides of friction push only along the tangent though the bound grows with σ: Coulomb's
     /// law, which is no convex problem.
     const LEANS: bool = false;
     /// ε, over the compliance of a contact of free bodies: below, rounding in the factorisation eats what is
@@ -50,7 +50,7 @@ impl Shape for HalfLine {
     const CONE: bool = false;
 }
 
-/// 0 ≤ σ, |λ| ≤ g with g held: `tresca`.
+/// 0 ≤ σ, |λ| ≤ g with a lagged g: `tresca`.
 pub(super) enum Strip {}
 
 impl Shape for Strip {
@@ -59,7 +59,7 @@ impl Shape for Strip {
     const CONE: bool = false;
 }
 
-/// |λ| ≤ μσ, what is added to v_n held: `associated` and `desaxce`.
+/// |λ| ≤ μσ, what is added to v_n lags: `associated` and `desaxce`.
 pub(super) enum Cone {}
 
 impl Shape for Cone {
@@ -89,7 +89,7 @@ pub(super) struct PathContact {
     pub slack: [f64; PAIRS],
     /// y, m/s.
     pub multiplier: [f64; PAIRS],
-    /// What is held of the bound g, m/s.
+    /// The lagged bound g, m/s.
     pub bound: f64,
     /// What is added to v_n, m/s.
     pub opening: f64,
@@ -278,7 +278,7 @@ impl PathContact {
     /// (σ − w, λ − v m_t/m_n).
     ///
     /// σ and its multiplier u are to differ by the trial σ − u, which with σu = τ is a quadratic equation.
-    /// Within held bounds the smaller slack x and the larger, 2g − x, are to have τ/x − τ/(2g − x) for the
+    /// Within lagged bounds the smaller slack x and the larger, 2g − x, are to have τ/x − τ/(2g − x) for the
     /// velocity; the second term is left out, which again leaves a quadratic equation. On the cone the
     /// slacks of the nearest point and their multipliers are moved off 0 in the same way.
     pub(super) fn centre<S: Shape>(

@@ -278,7 +278,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.keep(natural_map::<M>(self.problem));
     }
 
-    /// Whether the impulses are of a size that a solution may have. On a path that leads nowhere they grow, and
+    /// True where the impulses are of a size that a solution may have. On a path that leads nowhere they grow, and
     /// all changes become small beside them.
     fn is_bounded(&self) -> bool {
         let contacts = &self.workspace.contacts;
@@ -304,15 +304,15 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
     /// Begins at the point of the path that is nearest to where the natural map leads.
     fn start(&mut self, starts_before: u32) {
         let Self { problem, workspace, numbers, .. } = self;
-        let holds_opening = problem.friction.model != FrictionModel::Tresca && S::CONE;
+        let opening_lags = problem.friction.model != FrictionModel::Tresca && S::CONE;
         let contacts = &mut workspace.contacts;
         contacts.clear();
         let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
         let (mut squares, mut number) = (0.0, 0);
         problem.for_each_velocity(&problem.bodies.now, |row, [normal, tangential]| {
-            let held = problem.friction.now.get(number).copied().unwrap_or(0.0);
+            let lagged = problem.friction.now.get(number).copied().unwrap_or(0.0);
             number += 1;
-            let (bound, extra) = if holds_opening { (0.0, held) } else { (held, 0.0) };
+            let (bound, extra) = if opening_lags { (0.0, lagged) } else { (lagged, 0.0) };
             let opening = row.restitution_velocity + extra;
             let trial = [
                 row.shifted_impulse - normal - opening,

@@ -225,7 +225,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         self.report
     }
 
-    /// Whether as many sweeps and factorisations were made as the settings allow.
+    /// True where as many sweeps and factorisations were made as the settings allow.
     pub(super) fn is_spent(&self) -> bool {
         self.report.sweeps + self.report.factorisations >= self.settings.max_sweeps
     }

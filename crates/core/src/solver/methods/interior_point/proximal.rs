@@ -56,14 +56,14 @@ pub(super) struct ProximalContact {
     pub velocity: [f64; 2],
     /// What a whole step adds to it, m/s.
     pub change: [f64; 2],
-    /// What is held of the bound g, m/s.
+    /// The lagged bound g, m/s.
     pub bound: f64,
 }
 
 /// A piece of Π, on which J is the same.
 #[derive(Clone, Copy)]
 pub(super) enum ProjectionPiece {
-    /// Whether σ, and whether λ, follow the trial.
+    /// True where σ, and where λ, follows the trial.
     Free([bool; 2]),
     /// An edge of the cone, by the sign of λ.
     Edge(f64),

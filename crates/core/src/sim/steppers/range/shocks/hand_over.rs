@@ -29,7 +29,7 @@ impl Shocks {
     /// it to end the step with no overlap at all, v_n would have to be above 0 for it and could not be for
     /// others that hold it: v = 0 would no longer obey every contact, and a cluster in which many were struck
     /// is then often not solved. So v_n ≥ 0 is all that is asked for, and what is left of an overlap,
-    /// t v_n⁺ at the most, is pushed out (`range::separation`).
+    /// t v_n⁺ at the most, is pushed out (`range::separate`).
     ///
     /// **Gaps below the touch are none** after a shock as before it. Slacks of the size of rounding between
     /// grains that touch make a contact open or shut by less than a step is solved to.

@@ -10,7 +10,7 @@
 //! The step then goes on from v⁺ and bounces no more.
 //!
 //! **A pair that meets within the step** bounces in it, with the whole speed u that it has when it
-//! meets, along the normal that it has then (`contact::meeting`). Slowed down to what closes its gap, and
+//! meets, along the normal that it has then (`contact::approach`). Slowed down to what closes its gap, and
 //! left to the next step to bounce, it would have the restitution φρ, φ being the part of the step that
 //! the gap takes: any number from 0 to ρ. An impulse at the moment t moves a grain for what is left of
 //! the step,
@@ -188,7 +188,7 @@ struct ShockBody {
     /// What gravity gives it in the step, m/s.
     gain: [f64; 3],
     /// Whether it rests against something or is bonded, and so does not fall freely.
-    is_held: bool,
+    is_supported: bool,
     /// What the step's last velocity tells too little of its way, m: −½aΔt² of one that falls freely, and
     /// −Σ tλ of the impulses that the step has for pairs that met.
     rest_of_way: DVec2,
@@ -270,7 +270,7 @@ impl ShockBody {
             struck_in_step: false,
             struck_in_pass: false,
             gain: std::array::from_fn(|axis| free[axis] - before[axis]),
-            is_held: false,
+            is_supported: false,
             rest_of_way: DVec2::ZERO,
             root: 0,
             cluster: (NEVER, 0),
@@ -300,7 +300,8 @@ impl Shocks {
             for grain in std::iter::once(i).chain(j) {
                 let [x, y, _] = bodies[grain].gain;
                 let rests = touches && speed.abs() <= RESTS_BELOW * x.hypot(y);
-                bodies[grain].is_held |= rests || is_cohesive && inputs.is_bonded(problem, number);
+                bodies[grain].is_supported |=
+                    rests || is_cohesive && inputs.is_bonded(problem, number);
             }
             // The step proper stops what comes to a wall that gives way (see the module).
             let touches = touches && !problem.gives_way(number);
@@ -318,7 +319,7 @@ impl Shocks {
                 gained: 0.0,
             });
         });
-        for body in bodies.iter_mut().filter(|body| !body.is_held) {
+        for body in bodies.iter_mut().filter(|body| !body.is_supported) {
             let fallen = along_axes::<K>(&K::from_coordinates(body.gain));
             body.rest_of_way = -0.5 * inputs.numbers.time_step_secs * fallen;
         }

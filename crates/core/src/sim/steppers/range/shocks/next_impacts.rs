@@ -41,7 +41,7 @@ impl Shocks {
     ) -> f64 {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
-        if j.is_some() || self.bodies[i].is_held || pair.touch == Touch::Met {
+        if j.is_some() || self.bodies[i].is_supported || pair.touch == Touch::Met {
             return 0.0;
         }
         pair.normal.dot(self.fall::<K>(i)) / numbers.time_step_secs

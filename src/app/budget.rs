@@ -1,0 +1,247 @@
+//! The budget of the solver: how well steps are solved at first, what else is one click away, and what to try.
+
+use crate::config::Config;
+use crate::scene::Scene;
+use crate::sim::{Observables, Settings, Stepper, Surroundings};
+use crate::solver::{Fallback, FrictionModel, Method, SolverChanges, SolverSettings};
+use crate::study::PILE_SOLVER;
+use crate::world::{FrictionCone, Periodic};
+
+/// Piles of more grains begin with sweeps that are counted, so that they move before one's eyes.
+const MOST_SOLVED_GRAINS: usize = 2_000;
+
+/// A way to solve steps that has a name.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Budget {
+    /// On its button.
+    pub name: &'static str,
+    /// What it costs, in time and in accuracy.
+    pub hint: &'static str,
+    /// What it is.
+    pub settings: SolverSettings,
+    /// Whether another method would not keep what its name says.
+    pub is_of_its_method: bool,
+}
+
+impl Budget {
+    /// What it is where borders shear or a force drives a wall: by the method next to its own that knows of them.
+    pub(super) fn among(&self, surroundings: &Surroundings) -> SolverSettings {
+        let info = self.settings.method.info();
+        let shears = surroundings.periodic.is_some_and(Periodic::is_sheared);
+        let is_driven = surroundings.moving.iter().any(|motion| motion.is_driven);
+        if (shears && !info.takes_shear) || (is_driven && !info.takes_drives) {
+            return self.settings.by(Method::Nsgs);
+        }
+        self.settings
+    }
+
+    /// Whether it keeps what its name says there.
+    pub(super) fn is_to_be_had(&self, surroundings: &Surroundings) -> bool {
+        !self.is_of_its_method || self.among(surroundings).method == self.settings.method
+    }
+}
+
+/// So well that tighter solutions tell no other mean (`RESULTS.md`, speed against accuracy).
+pub(super) const TRUSTED: Budget = Budget {
+    name: "Trusted",
+    hint: "Each step to a residual of 1e-6: what is tighter has changed no mean of piles so far. At 138 grains \
+           faster than Figures.",
+    settings: SolverSettings {
+        fallback: Fallback::OfMethod,
+        ..SolverSettings::to_residual(Method::Auto, 1e-6, 500)
+    },
+    is_of_its_method: false,
+};
+
+/// Forty sweeps, by all cores.
+pub(super) const FAST: Budget = Budget {
+    name: "Fast",
+    hint: "40 sweeps a step, solved or not, for large piles: slump is off by about 0.11 in the mean, as much as \
+           by Δt itself. A step of 10,000 grains takes some 10 ms.",
+    settings: SolverSettings {
+        fallback: Fallback::None,
+        ..SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40)
+    },
+    is_of_its_method: false,
+};
+
+/// As the paper's figures are drawn.
+pub(super) const FIGURES: Budget = Budget {
+    name: "Figures",
+    hint: "Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are computed: the same \
+           to the last digit. Two to five times as slow as Trusted.",
+    settings: PILE_SOLVER,
+    is_of_its_method: false,
+};
+
+/// Solved at any size, of another law.
+pub(super) const CERTIFIED: Budget = Budget {
+    name: "Certified",
+    hint: "Each step to 1e-8 with a certificate, at any size, under friction bounded by the step before (tresca) \
+           instead of Coulomb's law: slumps of 138 grains are not told apart.",
+    settings: SolverSettings {
+        friction_model: FrictionModel::Tresca,
+        fallback: Fallback::None,
+        ..SolverSettings::to_residual(Method::InteriorPoint, 1e-8, 500)
+    },
+    is_of_its_method: true,
+};
+
+/// All of them.
+pub(super) const BUDGETS: [Budget; 4] = [FAST, TRUSTED, FIGURES, CERTIFIED];
+
+/// What is offered where the sweeps of a step of a large pile leave it unsolved, with the time that it takes here, told
+/// by that of forty sweeps: 25 times these at 2,000 grains that begin to slump, 51 times at 10,000 (`RESULTS.md`, steps
+/// by size); where they are at rest it is less, and a dense pile of 10,000 has taken twice as long.
+pub(super) fn offer(
+    solver: &SolverSettings,
+    grains: usize,
+    last: &Observables,
+    step_ms: f64,
+) -> Option<String> {
+    let is_swept = matches!(solver.method, Method::Nsgs | Method::NsgsParallel);
+    let is_left_so = last.sweeps > 0 && !last.converged && last.fell_back != Some(true);
+    if grains <= MOST_SOLVED_GRAINS || !is_swept || !is_left_so || step_ms <= 0.0 {
+        return None;
+    }
+    let growth = (51.0f64 / 25.0).ln() / 5f64.ln();
+    let forty = step_ms * 40.0 / f64::from(last.sweeps);
+    let secs = 1e-3 * forty * 25.0 * (grains as f64 / 2_000.0).powf(growth);
+    let Observables { sweeps, residual, .. } = last;
+    Some(format!(
+        "{sweeps} sweeps leave a residual of {residual:.0e}. Certified solves each step, in some {secs:.2} s."
+    ))
+}
+
+/// What a pile of that many grains begins with.
+pub(super) fn for_grains(grains: usize) -> Budget {
+    if grains <= MOST_SOLVED_GRAINS { TRUSTED } else { FAST }
+}
+
+/// What a scene begins with whose user says nothing of how well its steps are to be solved: a pile what suits its
+/// size, every other what it says itself. Whoever watches must not take the impulses of an unsolved
+/// step for those of a law, so such a step is then solved under bounds of friction, but where a force drives a wall,
+/// of which that solution knows nothing.
+pub(super) fn complete(scene: &mut Scene, asked: &SolverChanges) {
+    let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
+    let is_pile = scene.name == Config::DEFAULT_SCENE;
+    if is_pile && scene.solver == SolverSettings::default() {
+        scene.solver = for_grains(scene.grains.len()).settings;
+    } else if !is_driven && asked.fallback.is_none() && scene.solver.fallback == Fallback::OfMethod
+    {
+        scene.solver.fallback = Fallback::Tresca;
+    }
+}
+
+/// Up to this Bond a larger Δt makes a pile hold better in the shifted cone (`RESULTS.md`, Fig. 5a); beyond it need not.
+const WEAK: f64 = 50.0;
+
+/// What to try, and what to watch.
+pub(super) fn what_to_try(settings: &Settings) -> &'static str {
+    let parameters = &settings.parameters;
+    if parameters.bond == 0.0 {
+        return "At Bond 0 nothing sticks, and Δt is next to nothing to the pile: set a Bond, release, and see.";
+    }
+    match settings.stepper {
+        Stepper::Moreau if parameters.bond <= WEAK => {
+            "A larger Δt makes these grains stick better: set Δt and Bond, release, and see whether the pile holds."
+        }
+        Stepper::Moreau if parameters.cone == FrictionCone::Shifted => {
+            "So strong a pile hardly gains from a larger Δt; where steps are left unsolved, as in the paper, it even loses."
+        }
+        Stepper::Moreau => {
+            "In this cone a larger Δt makes strong piles stick better, too: set Δt, release, and see."
+        }
+        Stepper::Range => {
+            "Under this law Bond means the same at every Δt: set both, release, and see whether it does."
+        }
+        Stepper::Avbd => {
+            "Here a step gets as far as its iterations take it: set Δt, release, and see what it leaves undone."
+        }
+        Stepper::TgsSoft | Stepper::Dem => {
+            "Here cohesion is a force like any other, whatever Δt: set Bond, release, and see whether the pile holds."
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::built_in;
+
+    #[test]
+    fn steps_fall_back_in_the_window_but_where_a_force_drives_a_wall() {
+        for (name, fallback) in [("cradle", Fallback::Tresca), ("shear", Fallback::OfMethod)] {
+            let mut scene = built_in(name).expect("a scene");
+            complete(&mut scene, &SolverChanges::default());
+            assert_eq!(scene.solver.fallback, fallback, "{name}");
+            scene.simulation().expect("a sound scene");
+        }
+        assert!(TRUSTED.settings.falls_back(), "by its method");
+    }
+
+    #[test]
+    fn what_is_certain_is_offered_to_large_piles_that_are_swept() {
+        let pile = built_in("pile").expect("a scene").simulation().expect("a sound scene");
+        let left =
+            Observables { sweeps: 40, converged: false, residual: 0.14, ..*pile.observables() };
+        let said = offer(&FAST.settings, 10_000, &left, 10.0).expect("an offer");
+        assert!(said.contains("residual of 1e-1") && said.contains("some 0.51 s"), "{said}");
+        assert_eq!(offer(&FAST.settings, 2_000, &left, 10.0), None, "small");
+        let solved = Observables { converged: true, ..left };
+        assert_eq!(offer(&FAST.settings, 10_000, &solved, 10.0), None, "solved");
+        assert_eq!(offer(&CERTIFIED.settings, 10_000, &left, 10.0), None, "taken");
+        let [shear, pile] = ["shear", "pile"].map(|name| {
+            let scene = built_in(name).expect("a scene").simulation().expect("a sound scene");
+            CERTIFIED.is_to_be_had(&scene.snapshot().surroundings)
+        });
+        assert!(pile && !shear, "a force drives a wall there");
+    }
+
+    #[test]
+    fn every_effort_is_taken_by_every_scene() {
+        let plain = built_in("pile").expect("a scene").simulation().expect("a sound scene");
+        assert_eq!(FAST.among(&plain.snapshot().surroundings), FAST.settings);
+        let mut scenes: Vec<_> = crate::scene::SCENES
+            .iter()
+            .map(|scene| built_in(scene.name).expect("a scene"))
+            .collect();
+        let mut unforced = built_in("shear").expect("a scene");
+        let drives = unforced.motions.iter_mut().filter_map(|motion| motion.drive.as_mut());
+        let forces = drives.map(|drive| (drive.force, drive.pressure) = (Some(0.0), None));
+        assert!(forces.count() > 0, "a wall that nothing but grains pushes is driven, too");
+        scenes.push(unforced);
+        for scene in scenes {
+            let name = &scene.name;
+            let mut run = scene.simulation().expect("a sound scene");
+            let uses_method = run.settings().stepper.uses_method();
+            let surroundings = run.snapshot().surroundings;
+            let to_be_had = BUDGETS.iter().filter(|effort| effort.is_to_be_had(&surroundings));
+            for effort in to_be_had.filter(|_| uses_method) {
+                let solver = effort.among(&surroundings);
+                run.set_solver(solver).unwrap_or_else(|error| panic!("{name}: {error}"));
+                assert_eq!(solver.max_sweeps, effort.settings.max_sweeps, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_hint_says_nothing_of_sticking_where_nothing_sticks_or_the_time_step_does_not_matter() {
+        let mut settings = Settings::default();
+        let mut said = Vec::new();
+        for (stepper, bond) in [
+            (Stepper::Moreau, 0.0),
+            (Stepper::Moreau, 20.0),
+            (Stepper::Moreau, 100.0),
+            (Stepper::Range, 20.0),
+            (Stepper::Dem, 20.0),
+        ] {
+            (settings.stepper, settings.parameters.bond) = (stepper, bond);
+            said.push(what_to_try(&settings));
+        }
+        let larger = said.iter().filter(|text| text.contains("larger Δt makes these grains stick"));
+        assert_eq!(larger.count(), 1, "{said:?}");
+        said.dedup();
+        assert_eq!(said.len(), 5);
+    }
+}

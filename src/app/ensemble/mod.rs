@@ -1,0 +1,211 @@
+//! The ensemble: what the settings of a world make of piles that differ from its own in their seed alone ("other piles" in
+//! the window), so that a number of one pile stands beside its mean over several.
+//!
+//! Piles are chaotic, and the shipped one was chosen for showing the pattern: its seed is never among the others.
+//! They run on cores that are idle, from the start to the scene's end, with one set of settings. A run whose
+//! settings changed on the way, or which a hand pulled in, is none that they could be compared with.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+mod pool;
+mod runs;
+
+use super::opening::Opened;
+use super::preferences::user_folder;
+use super::state::AppState;
+use crate::scene::NewPile;
+use crate::sim::Settings;
+use pool::{EnsembleSummary, WorkerPool, idle_cores};
+pub(crate) use runs::Band;
+use runs::others_of;
+
+/// The rule that a mean goes by, for whoever points at it.
+const RULE: &str = "Idle cores run piles that differ from this one in their seed alone, with the present settings from \
+                    the start on. The band is their mean slump with its 95 % interval (Student's). Other settings \
+                    begin anew; a run whose settings changed on the way, or that was pulled by hand, has no others: \
+                    reset it. The seed of the shipped pile, which was chosen, is never among them.";
+
+/// A run that stands still for longer is not computed for.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// The other piles of what is open.
+#[derive(Default)]
+pub struct Ensemble {
+    /// Where their initial states are kept; none where there is no such place.
+    folder: Option<PathBuf>,
+    /// What is open, and which its other piles are.
+    opened: Option<Arc<Opened>>,
+    piles: Vec<NewPile>,
+    pool: Option<WorkerPool>,
+    worlds: Vec<Option<Settings>>,
+    /// The number of the last frame: where there is a new one, someone is looking.
+    frame: u64,
+}
+
+impl Ensemble {
+    /// None yet; their initial states are kept in the user's cache folder.
+    pub(crate) fn new() -> Self {
+        let folder = user_folder("XDG_CACHE_HOME", ".cache").map(|folder| folder.join("piles"));
+        Self { folder, ..Self::default() }
+    }
+
+    /// Keeps initial states elsewhere.
+    pub fn keep_in(&mut self, folder: PathBuf) {
+        self.stop();
+        self.folder = Some(folder);
+    }
+
+    /// Ends all threads and forgets what they came to.
+    pub fn stop(&mut self) {
+        self.pool = None;
+        self.worlds.clear();
+    }
+
+    /// Whether what is open has others, and there are cores to compute them.
+    pub(super) fn is_possible(&self) -> bool {
+        self.folder.is_some() && idle_cores() > 0 && !self.piles.is_empty()
+    }
+
+    /// Number of threads that compute them.
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(0, WorkerPool::threads)
+    }
+
+    /// Mean slump of those that have come to their end at a simulated time (s), half the width of its interval, and
+    /// their number.
+    pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
+        let band = self.summary(world)?.band;
+        let (mean, half) = band.at(time_secs)?;
+        Some((mean, half, band.count))
+    }
+
+    /// What is said of those of a world; nothing where it has none.
+    pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
+        self.pool.as_ref()?.summary(world)
+    }
+
+    /// Looks up the others of what is open.
+    fn look_up(&mut self, opened: Option<Arc<Opened>>) {
+        let address = |opened: &Option<Arc<Opened>>| opened.as_ref().map(Arc::as_ptr);
+        if address(&self.opened) != address(&opened) {
+            self.stop();
+            self.piles = opened.as_ref().map_or_else(Vec::new, |opened| others_of(opened));
+            self.opened = opened;
+        }
+    }
+
+    /// Has them follow the worlds, those without settings left out, of the frame of that number.
+    fn follow(&mut self, context: &egui::Context, worlds: Vec<Option<Settings>>, frame: u64) {
+        let (Some(opened), Some(folder), true) = (&self.opened, &self.folder, self.is_possible())
+        else {
+            return;
+        };
+        let start = || WorkerPool::start(folder, context, opened, &self.piles);
+        let pool = self.pool.get_or_insert_with(start);
+        if self.worlds == worlds && self.frame == frame {
+            return;
+        }
+        pool.follow(&worlds);
+        pool.keep_awake(PATIENCE);
+        (self.worlds, self.frame) = (worlds, frame);
+    }
+}
+
+impl AppState {
+    /// Has the other piles follow the worlds that there are.
+    pub(crate) fn follow_ensemble(&mut self, context: &egui::Context) {
+        self.ensemble.look_up(self.opening.last.get());
+        if !self.preferences.ensemble {
+            self.ensemble.stop();
+            return;
+        }
+        let worlds = self.frame.worlds.iter().map(|world| {
+            let is_from_the_start = world.recorded_from_secs == 0.0;
+            (world.is_even && is_from_the_start).then_some(world.controls.settings)
+        });
+        let worlds = worlds.collect();
+        self.ensemble.follow(context, worlds, self.frame.number);
+    }
+
+    /// How other piles come about, and which they are.
+    pub(crate) fn about_ensemble(&self) -> String {
+        let Some(EnsembleSummary { seeds, settling, failed, .. }) =
+            self.ensemble.summary(self.selected)
+        else {
+            return RULE.into();
+        };
+        let all: Vec<String> = seeds.iter().map(u64::to_string).collect();
+        let mut text = format!("{RULE}\nSeeds {}.", all.join(", "));
+        if let Some((number, part)) = settling {
+            text += &format!(" Rain {number} of {}: {:.0} %.", seeds.len(), 100.0 * part);
+        }
+        if failed > 0 {
+            text += &format!(" {failed} of the runs came to no end and are left out.");
+        }
+        text
+    }
+
+    /// What is said of a world's other piles at the moment that is shown; nothing where it has none.
+    pub(crate) fn said_of_ensemble(&self, world: usize) -> Option<String> {
+        let row = self.frame.worlds.get(world)?.snapshot.observables;
+        Some(said(&self.ensemble.summary(world)?, row.time_secs))
+    }
+
+    /// The same in short, for narrow places.
+    pub(crate) fn others_in_short(&self, world: usize) -> Option<String> {
+        Some(self.said_of_ensemble(world)?.replace("other piles", "others"))
+    }
+}
+
+/// What other piles say at a simulated time.
+fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
+    let (planned, count) = (summary.seeds.len() - summary.failed, summary.band.count);
+    let mean = summary.band.at(time_secs);
+    let of = if count < planned { format!("{count} of {planned}") } else { count.to_string() };
+    match (mean, summary.settling) {
+        (Some((mean, half)), _) if half.is_finite() => {
+            let decimals = decimals(half);
+            format!("other piles {mean:.decimals$} ± {half:.decimals$} (n = {of})")
+        }
+        (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
+        (None, _) if count > 0 => "other piles were not run so far".into(),
+        (None, Some((number, _))) => {
+            format!("other piles: rain {number} of {}", summary.seeds.len())
+        }
+        (None, None) => "other piles are under way".into(),
+    }
+}
+
+/// Decimals that show half an interval to two digits, or to one where that is below 0.001.
+fn decimals(half: f64) -> usize {
+    if half >= 0.1 { 2 } else { 3 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(slumps: &[f64], settling: Option<(usize, f32)>) -> EnsembleSummary {
+        let run = |&slump: &f64| Arc::new(vec![[0.0, 0.0], [1.0, slump]]);
+        let runs: Vec<_> = slumps.iter().map(run).collect();
+        EnsembleSummary {
+            band: Arc::new(Band::of(&runs)),
+            seeds: vec![1, 2, 3],
+            failed: 0,
+            settling,
+        }
+    }
+
+    #[test]
+    fn numbers_come_with_their_interval_and_how_many_piles_they_are_of() {
+        // Tables: t(0.975; 2) = 4.302653, and the standard error of 0.2, 0.3, 0.4 is 0.1/√3.
+        assert_eq!(said(&told(&[0.2, 0.3, 0.4], None), 1.0), "other piles 0.30 ± 0.25 (n = 3)");
+        assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
+        assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.25 (n = 1 of 3)");
+        assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: rain 2 of 3");
+        assert_eq!(said(&told(&[], None), 0.0), "other piles are under way");
+        assert_eq!(said(&told(&[0.25], None), 9.0), "other piles were not run so far");
+    }
+}

@@ -1,0 +1,208 @@
+//! Which piles are the others of one that is open, how one of them runs, and the mean of those that have run.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use crate::app::opening::Opened;
+use crate::config::Config;
+use crate::error::Result;
+use crate::scene::{NewPile, Scene, built_in};
+use crate::sim::{RunEnding, Settings, Simulation};
+use crate::study;
+use crate::world::Grain;
+
+/// A run's slump: simulated time, s, and Δy.
+pub(super) type SlumpSeries = Vec<[f64; 2]>;
+
+/// Mean slump of some runs and its 95 % interval by Student's distribution, at the times that all of them have.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Band {
+    /// Simulated times, s.
+    pub times_secs: Vec<f64>,
+    /// Means.
+    pub means: Vec<f64>,
+    /// Lower ends of the intervals; −∞ for one run.
+    pub lows: Vec<f64>,
+    /// Upper ends of the intervals; ∞ for one run.
+    pub highs: Vec<f64>,
+    /// Number of runs.
+    pub count: usize,
+}
+
+impl Band {
+    /// Of runs with the same settings, which have the same times.
+    pub(super) fn of(runs: &[Arc<SlumpSeries>]) -> Self {
+        let mut band = Self { count: runs.len(), ..Self::default() };
+        let shared = runs.iter().map(|run| run.len()).min().unwrap_or(0);
+        for index in 0..shared {
+            let slumps: Vec<f64> = runs.iter().map(|run| run[index][1]).collect();
+            let mean = study::mean(&slumps);
+            band.times_secs.push(runs[0][index][0]);
+            band.means.push(mean.mean);
+            band.lows.push(mean.low);
+            band.highs.push(mean.high);
+        }
+        band
+    }
+
+    /// Mean and half the width of the interval at the last time up to `time_secs`; nothing before the first and
+    /// after the last.
+    pub(crate) fn at(&self, time_secs: f64) -> Option<(f64, f64)> {
+        let (&last, spacing) = (self.times_secs.last()?, self.times_secs.get(1)?);
+        let index = self.times_secs.partition_point(|&at| at <= time_secs + 1e-3 * spacing);
+        let index = index.checked_sub(1).filter(|_| time_secs < last + spacing)?;
+        Some((self.means[index], self.highs[index] - self.means[index]))
+    }
+}
+
+/// Points of a run at the most, but for its end.
+const MOST_POINTS: u64 = 400;
+/// The slump of a scene from its start to its end; nothing where `goes_on`, which is asked after each step, says no.
+///
+/// # Errors
+/// Where the scene is not sound, or its state is no longer finite.
+pub(super) fn slump(
+    scene: &Scene,
+    mut goes_on: impl FnMut() -> bool,
+) -> Result<Option<SlumpSeries>> {
+    let mut simulation = scene.simulation()?;
+    let steps = simulation.step_at(scene.duration_secs);
+    let stride = steps.div_ceil(MOST_POINTS).max(1);
+    let point = |simulation: &Simulation| [simulation.time_secs(), simulation.observables().slump];
+    let mut series = vec![point(&simulation)];
+    let ended = simulation.run(steps, |simulation| {
+        let step = simulation.observables().step;
+        if step.is_multiple_of(stride) || step == steps {
+            series.push(point(simulation));
+        }
+        Ok(if goes_on() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+    })?;
+    match ended {
+        RunEnding::Done => Ok(Some(series)),
+        RunEnding::Stopped => Ok(None),
+        RunEnding::NotFinite(failure) => Err(failure),
+    }
+}
+
+/// Number of other piles.
+const COUNT: usize = 8;
+/// Larger piles rain for minutes each.
+const MOST_GRAINS: usize = 1_000;
+
+/// The other piles of what is open, with seeds from 1 on but for its own and that of the shipped state; none where
+/// it is no pile that was made from a seed, or a large one.
+pub(super) fn others_of(opened: &Opened) -> Vec<NewPile> {
+    let Some(own) = pile_of(opened).filter(|pile| pile.grains <= MOST_GRAINS) else {
+        return Vec::new();
+    };
+    let chosen = NewPile::default().seed;
+    let seeds = (1..).filter(|&seed| seed != own.seed && seed != chosen);
+    seeds.take(COUNT).map(|seed| NewPile { seed, ..own.clone() }).collect()
+}
+
+/// What the grains of a scene were made of.
+fn pile_of(opened: &Opened) -> Option<NewPile> {
+    let Opened { config, scene } = opened;
+    if config.source.initial.is_some() {
+        return None;
+    }
+    // A saved run goes by the name of its scene alone.
+    let is_shipped = || {
+        let shipped = built_in(Config::DEFAULT_SCENE).ok()?;
+        let places = |scene: &Scene| -> Vec<_> {
+            scene.grains.iter().map(|grain| (grain.position, grain.radius)).collect()
+        };
+        (scene.name == shipped.name && places(scene) == places(&shipped)).then(NewPile::default)
+    };
+    config.new_pile().ok()?.or_else(is_shipped)
+}
+
+/// The scene that is open, with other grains and these settings.
+///
+/// # Errors
+/// Where its file is no longer there.
+pub(super) fn scene_of(
+    opened: &Opened,
+    pile: &NewPile,
+    grains: Vec<Grain>,
+    settings: &Settings,
+) -> Result<Scene> {
+    let Config { mut source, .. } = opened.config.clone();
+    if opened.config.source.makes_new_pile() || opened.config.new_pile()?.is_none() {
+        source.grains = Some(pile.grains);
+        source.box_width = Some(pile.box_width_in_diameters);
+        source.seed = Some(pile.seed);
+        source.deposition = Some(pile.deposition);
+    }
+    let config = Config { source, ..Config::default() };
+    config.with_settings(settings).scene_from(grains)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(slumps: [f64; 3]) -> Arc<SlumpSeries> {
+        Arc::new(
+            [0.0, 0.5, 1.0].into_iter().zip(slumps).map(|(time, slump)| [time, slump]).collect(),
+        )
+    }
+
+    #[test]
+    fn means_and_intervals_are_those_of_student() {
+        let band = Band::of(&[run([0.0, 1.0, 2.0]), run([0.0, 2.0, 4.0]), run([0.0, 3.0, 9.0])]);
+        assert_eq!((band.count, &band.means), (3, &vec![0.0, 2.0, 5.0]));
+        // Tables: t(0.975; 2) = 4.302653; the standard error of 1, 2, 3 is 1/√3.
+        let half = band.highs[1] - band.means[1];
+        assert!((half - 4.302_653 / 3f64.sqrt()).abs() < 1e-5, "{half}");
+        assert_eq!(band.at(0.7), Some((2.0, half)));
+        assert_eq!(band.at(0.5 - 1e-12), Some((2.0, half)), "rounding of times is none");
+        assert_eq!(band.at(1.0).map(|(mean, _)| mean), Some(5.0));
+        assert_eq!((band.at(-0.1), band.at(1.6)), (None, None));
+    }
+
+    #[test]
+    fn one_run_has_no_interval_and_none_nothing() {
+        let band = Band::of(&[run([0.0, 1.0, 2.0])]);
+        assert_eq!(band.at(0.5), Some((1.0, f64::INFINITY)));
+        assert_eq!(Band::of(&[]).at(0.0), None);
+    }
+
+    fn opened(config: Config) -> Opened {
+        Opened { scene: config.without_settling().unwrap(), config }
+    }
+
+    fn seeds(config: Config) -> Vec<u64> {
+        others_of(&opened(config)).iter().map(|pile| pile.seed).collect()
+    }
+
+    #[test]
+    fn others_are_of_other_seeds_and_never_the_one_that_was_chosen() {
+        assert_eq!(seeds(Config::default()), [1, 2, 3, 4, 5, 6, 7, 9]);
+        let mut config = Config::default();
+        config.source.seed = Some(3);
+        assert_eq!(seeds(config.clone()), [1, 2, 4, 5, 6, 7, 9, 10]);
+        config.source.grains = Some(MOST_GRAINS + 1);
+        assert_eq!(seeds(config), [0; 0]);
+        assert_eq!(seeds(Config::of_scene("cradle")), [0; 0]);
+    }
+
+    #[test]
+    fn grains_that_came_from_elsewhere_have_no_others() {
+        let mut opened = opened(Config::default());
+        opened.scene.grains[0].position.x += 1e-9;
+        assert!(others_of(&opened).is_empty());
+    }
+
+    #[test]
+    fn another_pile_is_the_scene_with_other_grains() {
+        let opened = opened(Config::default());
+        let mut settings = opened.scene.settings();
+        settings.parameters.bond = 33.0;
+        let pile = others_of(&opened).remove(0);
+        let grains = opened.scene.grains[..100].to_vec();
+        let scene = scene_of(&opened, &pile, grains, &settings).unwrap();
+        assert_eq!((scene.grains.len(), scene.settings()), (100, settings));
+        assert_eq!(scene.duration_secs, opened.scene.duration_secs);
+    }
+}

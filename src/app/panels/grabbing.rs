@@ -1,0 +1,346 @@
+//! What the mouse does in a world: it moves the view, pins and pulls grains, and with Shift it adds grains, takes
+//! them out, and draws walls.
+
+use egui::{Color32, DragValue, PointerButton, Pos2, Rect, Response, RichText, Stroke, Ui};
+use glam::DVec2;
+
+use crate::app::state::AppState;
+use crate::app::theme;
+use crate::live::{Command, WorldFrame};
+use crate::render::Camera;
+use crate::sim::{Edit, GrainView, NEW_GRAIN_DIAMETERS, Pull, place_of};
+use crate::world::{Boundary, Disc, Edge};
+
+/// A grain of one of the worlds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GrainRef {
+    /// Index of the world.
+    pub world: usize,
+    /// Index of the grain.
+    pub grain: usize,
+}
+
+/// What the mouse has chosen and holds.
+#[derive(Default)]
+pub struct Grabbing {
+    /// The grain whose contacts are listed.
+    pub pinned: Option<GrainRef>,
+    /// Whether the view goes with it.
+    pub(crate) follows: bool,
+    /// The grain at the end of the mouse's spring.
+    pub grabbed: Option<GrainRef>,
+    /// The wall that the mouse draws.
+    pub(crate) grip: Option<Grip>,
+}
+
+/// A wall in the hand of the mouse.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grip {
+    /// Index of the world.
+    pub world: usize,
+    /// Index of the boundary.
+    pub boundary: usize,
+    /// From the place of the boundary to where it is held, m.
+    pub from_place: DVec2,
+    /// Where it was last told to go, m.
+    pub sent: Option<DVec2>,
+}
+
+/// Where a world is in the window.
+pub(super) struct WorldCell<'a> {
+    pub index: usize,
+    pub cell: Rect,
+    pub camera: Camera,
+    pub pixels_per_point: f64,
+    pub frame: &'a WorldFrame,
+}
+
+impl WorldCell<'_> {
+    pub(super) fn to_world(&self, at: Pos2) -> DVec2 {
+        let offset = (at - self.cell.center()) * self.pixels_per_point as f32;
+        self.camera.unproject(DVec2::new(f64::from(offset.x), -f64::from(offset.y)))
+    }
+
+    pub(super) fn to_screen(&self, position: DVec2) -> Pos2 {
+        let [x, y] = self.camera.project(position);
+        self.cell.center() + egui::vec2(x, -y) / self.pixels_per_point as f32
+    }
+
+    pub(super) fn grain_at(&self, at: Pos2) -> Option<GrainRef> {
+        let point = self.to_world(at);
+        let inside = |grain: &GrainView| grain.position.distance(point) <= grain.radius;
+        let grain = self.frame.snapshot.grains.iter().rposition(inside)?;
+        Some(GrainRef { world: self.index, grain })
+    }
+
+    /// Rings around the grains that are hovered, pinned and grabbed.
+    pub(super) fn marks(&self, ui: &Ui, state: &AppState, response: &Response) {
+        let painter = ui.painter().with_clip_rect(self.cell);
+        let accent = theme::accent(ui.visuals().dark_mode);
+        let ring = |grain: &GrainView, width: f32, colour: Color32| {
+            let radius = self.camera.pixels(grain.radius) / self.pixels_per_point as f32;
+            painter.circle_stroke(
+                self.to_screen(grain.position),
+                radius,
+                Stroke::new(width, colour),
+            );
+        };
+        let grains = &self.frame.snapshot.grains;
+        if let Some(pinned) = state.mouse.pinned.filter(|pinned| pinned.world == self.index) {
+            for partner in super::grain::partners(&self.frame.snapshot, pinned.grain) {
+                ring(&grains[partner], 1.5, accent);
+            }
+            ring(&grains[pinned.grain], 3.0, accent);
+        }
+        if let Some(grabbed) = state.mouse.grabbed.filter(|grabbed| grabbed.world == self.index) {
+            let grain = &grains[grabbed.grain];
+            ring(grain, 2.0, accent);
+            if let Some(at) = response.interact_pointer_pos() {
+                let stroke = Stroke::new(2.0, accent);
+                painter.line_segment([self.to_screen(grain.position), at], stroke);
+                painter.circle_filled(at, 4.0, accent);
+            }
+            return;
+        }
+        let changes = ui.input(|input| input.modifiers.shift);
+        if let Some(at) = response.hover_pos().filter(|_| changes || state.mouse.grip.is_some()) {
+            return self.marks_of_hand(ui, state, at);
+        }
+        let hovered = response.hover_pos().and_then(|at| self.grain_at(at));
+        if let Some(hovered) = hovered {
+            ring(&grains[hovered.grain], 1.5, accent);
+            response
+                .clone()
+                .on_hover_ui_at_pointer(|ui| super::grain::describe(ui, self.frame, hovered.grain));
+        }
+    }
+}
+
+/// How near to a wall the mouse holds it, points.
+const REACH: f32 = 8.0;
+/// What is said where a wall is drawn while time stands still.
+const STANDS_STILL: &str = "Walls go while time passes: let it (space), and draw on.";
+
+impl WorldCell<'_> {
+    /// Has the mouse act.
+    pub(super) fn mouse(&self, ui: &Ui, state: &mut AppState, response: &Response) {
+        let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
+        let changes = ui.input(|input| input.modifiers.shift);
+        if response.drag_started_by(PointerButton::Primary) {
+            let pressed = ui.input(|input| input.pointer.press_origin());
+            if changes {
+                state.mouse.grip = pressed.and_then(|at| self.grip_at(at));
+            } else {
+                state.mouse.grabbed = pressed.and_then(|at| self.grain_at(at));
+            }
+        }
+        if state.mouse.grip.is_some_and(|grip| grip.world == self.index) {
+            self.draw_wall(state, response, pointer);
+        } else {
+            self.pull_or_pan(state, response, pointer);
+        }
+        match (response.double_clicked(), response.clicked(), changes) {
+            (_, true, true) => self.change_grains(state, pointer),
+            (true, _, false) => state.camera.frame_scene(),
+            (false, true, false) => {
+                state.selected = self.index;
+                let clicked = pointer.and_then(|at| self.grain_at(at));
+                state.mouse.pinned = clicked.filter(|grain| state.mouse.pinned != Some(*grain));
+            }
+            _ => {}
+        }
+        if let Some(at) = pointer.filter(|_| response.contains_pointer()) {
+            let (scroll, pinch) =
+                ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let factor = f64::from(pinch) * (f64::from(scroll) / 200.0).exp();
+            if factor != 1.0 {
+                state.camera.zoom(factor, at - self.cell.center());
+            }
+        }
+    }
+
+    fn pull_or_pan(&self, state: &mut AppState, response: &Response, pointer: Option<Pos2>) {
+        let held = state.mouse.grabbed.filter(|grabbed| grabbed.world == self.index);
+        if let (Some(held), Some(at)) = (held, pointer) {
+            if response.dragged() {
+                let pull = Pull { grain: held.grain as u32, target: self.to_world(at) };
+                if state.wanted.get(self.index).is_some_and(|wanted| wanted.pull != Some(pull)) {
+                    state.wanted[self.index].pull = Some(pull);
+                    state.live.send(Command::SetPull(self.index, Some(pull)));
+                }
+            }
+        } else if response.dragged() {
+            state.camera.pan(response.drag_delta());
+        }
+        if held.is_some() && !response.dragged() {
+            state.mouse.grabbed = None;
+            state.live.send(Command::SetPull(self.index, None));
+        }
+    }
+
+    /// Has the wall in the hand follow the mouse, or lets go of it.
+    fn draw_wall(&self, state: &mut AppState, response: &Response, pointer: Option<Pos2>) {
+        let Some(mut grip) = state.mouse.grip else { return };
+        if !response.dragged() {
+            state.mouse.grip = None;
+            if grip.sent.is_some() {
+                state.live.send(Command::Edit(self.index, Edit::LetGo));
+            }
+            return;
+        }
+        let boundaries = &self.frame.snapshot.surroundings.boundaries;
+        let (Some(at), Some(boundary)) = (pointer, boundaries.get(grip.boundary)) else { return };
+        if !state.frame.playing {
+            return state.warn(STANDS_STILL);
+        }
+        let to = goal(boundary, self.to_world(at) - grip.from_place);
+        let half_a_point = 0.5 * self.pixels_per_point * self.camera.metres_per_pixel;
+        if grip.sent.is_none_or(|sent| sent.distance(to) > half_a_point) {
+            grip.sent = Some(to);
+            state.mouse.grip = Some(grip);
+            let edit = Edit::Draw { boundary: grip.boundary as u32, to };
+            state.live.send(Command::Edit(self.index, edit));
+        }
+    }
+
+    /// Takes out the grain under the mouse, or puts one where there is none.
+    fn change_grains(&self, state: &mut AppState, pointer: Option<Pos2>) {
+        let Some(at) = pointer else { return };
+        state.selected = self.index;
+        let edit = match self.grain_at(at) {
+            Some(found) => Edit::Remove(found.grain as u32),
+            None => Edit::Add(self.new_grain(state, at)),
+        };
+        // Grains may go by other numbers from here on.
+        state.mouse.pinned = None;
+        state.live.send(Command::Edit(self.index, edit));
+    }
+
+    fn new_grain(&self, state: &AppState, at: Pos2) -> Disc {
+        let diameter = self.frame.snapshot.surroundings.mean_diameter;
+        let radius = 0.5 * state.preferences.new_grain_diameters * diameter;
+        Disc { position: self.to_world(at), radius }
+    }
+
+    fn grip_at(&self, at: Pos2) -> Option<Grip> {
+        let boundary = self.boundary_at(at)?;
+        let place = place_of(&self.frame.snapshot.surroundings.boundaries[boundary]);
+        let from_place = self.to_world(at) - place;
+        Some(Grip { world: self.index, boundary, from_place, sent: None })
+    }
+
+    /// The wall within reach of the mouse.
+    fn boundary_at(&self, at: Pos2) -> Option<usize> {
+        let point = self.to_world(at);
+        let boundaries = self.frame.snapshot.surroundings.boundaries.iter();
+        let distances = boundaries.map(|boundary| distance(boundary, point)).enumerate();
+        let reach = f64::from(REACH) * self.pixels_per_point * self.camera.metres_per_pixel;
+        let near = distances.filter(|(_, distance)| *distance <= reach);
+        near.min_by(|one, other| one.1.total_cmp(&other.1)).map(|(index, _)| index)
+    }
+
+    /// With Shift held: what a click would put in or take out, and the wall that a drag would draw.
+    pub(super) fn marks_of_hand(&self, ui: &Ui, state: &AppState, at: Pos2) {
+        let painter = ui.painter().with_clip_rect(self.cell);
+        let dark = ui.visuals().dark_mode;
+        let radius = |metres: f64| self.camera.pixels(metres) / self.pixels_per_point as f32;
+        if let Some(found) = self.grain_at(at) {
+            let grain = &self.frame.snapshot.grains[found.grain];
+            let (middle, arm) = (self.to_screen(grain.position), 0.6 * radius(grain.radius));
+            let stroke = Stroke::new(2.0, theme::warning(dark));
+            for side in [-1.0, 1.0] {
+                let end = egui::vec2(arm, side * arm);
+                painter.line_segment([middle - end, middle + end], stroke);
+            }
+            return;
+        }
+        let stroke = Stroke::new(1.5, theme::accent(dark));
+        let held = state.mouse.grip.map(|grip| grip.boundary).or_else(|| self.boundary_at(at));
+        if let Some(boundary) =
+            held.and_then(|it| self.frame.snapshot.surroundings.boundaries.get(it))
+        {
+            for edge in boundary.edges() {
+                let ends = match edge {
+                    Edge::Wall(ends) | Edge::Side(ends) => ends.map(|end| self.to_screen(end)),
+                    Edge::Endless { point, normal } => {
+                        let along = normal.normalize_or_zero().perp();
+                        let reach = f64::from(self.cell.width() + self.cell.height());
+                        let reach = reach * self.pixels_per_point * self.camera.metres_per_pixel;
+                        let foot = point + along * along.dot(self.to_world(at) - point);
+                        [foot - reach * along, foot + reach * along].map(|end| self.to_screen(end))
+                    }
+                };
+                painter.line_segment(ends, Stroke { width: 3.0, ..stroke });
+            }
+        } else {
+            let disc = self.new_grain(state, at);
+            painter.circle_stroke(at, radius(disc.radius), stroke);
+        }
+    }
+}
+
+/// Where a wall goes whose place is to come to a point: a plane along its normal alone, since along itself it is the
+/// same plane.
+fn goal(boundary: &Boundary, to: DVec2) -> DVec2 {
+    match boundary {
+        Boundary::HalfSpace { point, normal } | Boundary::Piston { point, normal, .. } => {
+            let normal = normal.normalize_or_zero();
+            *point + normal * normal.dot(to - *point)
+        }
+        Boundary::Segment { .. } | Boundary::Polyline { .. } | Boundary::ConvexPolygon { .. } => to,
+    }
+}
+
+/// Distance of a point from the surface of a wall, m.
+fn distance(boundary: &Boundary, point: DVec2) -> f64 {
+    let of_edge = |edge: &Edge| match edge {
+        Edge::Endless { point: on_it, normal } => {
+            normal.normalize_or_zero().dot(point - *on_it).abs()
+        }
+        Edge::Wall([from, to]) | Edge::Side([from, to]) => {
+            let along = *to - *from;
+            let part = (point - *from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
+            point.distance(*from + part.clamp(0.0, 1.0) * along)
+        }
+    };
+    boundary.edges().iter().map(of_edge).fold(f64::INFINITY, f64::min)
+}
+
+/// Shows the panel.
+pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
+    ui.label(
+        RichText::new(
+            "With Shift held, a click on the ground puts a grain there, a click on a grain takes it out, and a drag draws \
+             a wall along while time passes. All of it is in the record and in sessions, and in no command line or link.",
+        )
+        .small()
+        .weak(),
+    );
+    ui.horizontal(|ui| {
+        let hint = "Diameter of a grain that Shift click puts in, in mean diameters.";
+        let label = ui.label("New grain").on_hover_text(hint);
+        let value = DragValue::new(&mut state.preferences.new_grain_diameters);
+        let value = value
+            .range(NEW_GRAIN_DIAMETERS[0]..=NEW_GRAIN_DIAMETERS[1])
+            .speed(0.01)
+            .max_decimals(3);
+        ui.add(value.suffix(" d")).labelled_by(label.id);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_go_along_their_normal_and_other_walls_anywhere() {
+        let plane =
+            Boundary::HalfSpace { point: DVec2::new(1.0, 2.0), normal: DVec2::new(0.0, 3.0) };
+        assert_eq!(goal(&plane, DVec2::new(7.0, 5.0)), DVec2::new(1.0, 5.0));
+        assert_eq!(distance(&plane, DVec2::new(-40.0, 1.5)), 0.5);
+        let wall = Boundary::Segment { from: DVec2::ZERO, to: DVec2::new(0.0, 2.0) };
+        assert_eq!(goal(&wall, DVec2::new(7.0, 5.0)), DVec2::new(7.0, 5.0));
+        assert_eq!(distance(&wall, DVec2::new(3.0, 1.0)), 3.0);
+        assert_eq!(distance(&wall, DVec2::new(0.0, 4.0)), 2.0, "beyond its end");
+    }
+}

@@ -1,0 +1,397 @@
+//! The history of a live run: its worlds with all that is recorded of them, and the runs that it has taken the place of.
+//! Nothing that was computed is lost by a reset, by other worlds, or by going on differently from an earlier moment.
+
+use std::sync::Arc;
+
+use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+use serde::{Deserialize, Serialize};
+
+use super::stored_moments::StoredMoments;
+use super::{Controls, Curve, LiveOptions, LiveStart, LoadingProgress, WorldHistory};
+use crate::error::{Error, Result};
+use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
+
+/// Most earlier runs that are kept; the oldest go.
+const MOST_PAST: usize = 4;
+/// Of the memory for keyframes, what one of them gets.
+const PART_OF_PAST: usize = 8;
+/// Bytes of keyframes of the worlds in a history that is handed out, and of each run before: what is between them is
+/// computed again where it is wanted.
+const KEYFRAME_BYTES: usize = 8 << 20;
+const PAST_KEYFRAME_BYTES: usize = 1 << 20;
+/// Rows of each of their curves at the most; a row is some 500 bytes in a file.
+const ROWS: usize = 4096;
+const PAST_ROWS: usize = 512;
+/// Steps of each world between two words of progress.
+const STEPS_AT_ONCE: u64 = 8;
+
+/// Worlds that run side by side, kept at the same simulated time. The world with the largest time step leads; the others
+/// follow to within half a step of their own.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LiveRun {
+    #[serde(rename = "tracks")]
+    pub worlds: Vec<WorldHistory>,
+    /// What their user calls them; empty where nothing.
+    pub name: String,
+    /// What an earlier run is called up by.
+    #[serde(skip)]
+    number: u64,
+}
+
+/// Has each world do something, side by side where there are several. Whether all say yes.
+fn each(
+    worlds: &mut [WorldHistory],
+    act: impl Fn(&mut WorldHistory) -> bool + Send + Sync,
+) -> bool {
+    match worlds {
+        [world] => act(world),
+        worlds => worlds.par_iter_mut().map(act).reduce(|| true, |one, other| one && other),
+    }
+}
+
+impl LiveRun {
+    pub(super) fn settings(&self) -> Vec<Settings> {
+        self.worlds.iter().map(|world| *world.simulation.settings()).collect()
+    }
+
+    /// Whether the next tick leaves what is recorded behind.
+    pub(super) fn branches(&self) -> bool {
+        self.worlds.iter().any(WorldHistory::branches)
+    }
+
+    /// Whether the next tick shows what is recorded.
+    pub(super) fn replays(&self) -> bool {
+        let replays = |world: &WorldHistory| world.record.replays(&world.simulation);
+        !self.branches() && self.worlds.iter().any(replays)
+    }
+
+    /// Whether the moments after the present one are stored.
+    pub(super) fn is_stored(&self) -> bool {
+        self.worlds.iter().all(|world| world.stored.go_on_from(world.steps()))
+    }
+
+    pub(super) fn has_failed(&self) -> bool {
+        self.worlds.iter().any(|world| world.failure.is_some())
+    }
+
+    /// Keeps about that many bytes of keyframes from now on, of all worlds together.
+    fn keep_within(&mut self, budget_bytes: usize) {
+        let each = budget_bytes / self.worlds.len().max(1);
+        self.worlds.iter_mut().for_each(|world| world.record.keep_within(each));
+    }
+
+    fn leader(&self) -> Option<&WorldHistory> {
+        self.worlds.iter().reduce(|best, next| {
+            if next.time_step_secs() > best.time_step_secs() { next } else { best }
+        })
+    }
+
+    /// Simulated time of the leader, s.
+    pub(super) fn time_secs(&self) -> f64 {
+        self.leader().map_or(0.0, |world| world.simulation.time_secs())
+    }
+
+    /// Time step of the leader, s.
+    pub(super) fn time_step_secs(&self) -> f64 {
+        self.leader().map_or(0.0, WorldHistory::time_step_secs)
+    }
+
+    /// Simulated time of the last recorded step of the leader, s.
+    pub(super) fn recorded_secs(&self) -> f64 {
+        self.leader().map_or(0.0, |world| world.record.end_secs())
+    }
+
+    fn steps(&self) -> u64 {
+        self.worlds.iter().map(WorldHistory::steps).sum()
+    }
+
+    /// One step of the leader, and as many of the others as bring them to the same time. Returns
+    /// the number of steps of all worlds, and whether all succeeded.
+    pub(super) fn tick(&mut self) -> (u64, bool) {
+        let steps_before = self.steps();
+        let target_secs = self.time_secs() + self.time_step_secs();
+        let all_well = match self.worlds.as_mut_slice() {
+            [world] => world.step(),
+            worlds => each(worlds, |world| world.catch_up(target_secs)),
+        };
+        (self.steps() - steps_before, all_well)
+    }
+
+    /// Starts on the way to a recorded moment.
+    pub(super) fn seek(&mut self, time_secs: f64) {
+        self.worlds.iter_mut().for_each(|world| world.seek(time_secs));
+    }
+
+    /// Takes one step of a seek. Whether all worlds have arrived.
+    pub(super) fn advance_seek(&mut self) -> bool {
+        each(&mut self.worlds, WorldHistory::advance_seek)
+    }
+
+    /// The same with fewer keyframes and rows, to be handed out.
+    fn thinned(&self, bytes: usize, rows: usize) -> Self {
+        let mut run = Self { worlds: Vec::new(), ..self.clone() };
+        run.worlds = self.worlds.iter().map(WorldHistory::handed_out).collect();
+        run.keep_within(bytes);
+        run.worlds.iter_mut().for_each(|world| world.curve.thin_to(rows));
+        run
+    }
+}
+
+/// What a window is told of an earlier run.
+#[derive(Clone, Debug)]
+pub struct PastRun {
+    /// What it is called up by ([`Command::Return`](super::Command::Return)).
+    pub number: u64,
+    /// What its user calls it; empty where nothing.
+    pub name: String,
+    /// Simulated time of its last recorded step, s.
+    pub recorded_secs: f64,
+    /// Its worlds.
+    pub worlds: Vec<PastWorld>,
+}
+
+/// One world of an earlier run.
+#[derive(Clone, Debug)]
+pub struct PastWorld {
+    /// How its last step was taken.
+    pub controls: Controls,
+    /// The observables of all that is recorded.
+    pub curve: Curve,
+    /// Where it was when it was left.
+    pub snapshot: Arc<Snapshot>,
+}
+
+impl PastRun {
+    fn of(run: &LiveRun) -> Self {
+        let of_world = |world: &WorldHistory| PastWorld {
+            controls: Controls::of(&world.simulation),
+            curve: world.curve.clone(),
+            snapshot: Arc::new(world.simulation.snapshot()),
+        };
+        let ends = run.worlds.iter().map(|world| world.record.end_secs());
+        Self {
+            number: run.number,
+            name: run.name.clone(),
+            recorded_secs: ends.fold(0.0, f64::max),
+            worlds: run.worlds.iter().map(of_world).collect(),
+        }
+    }
+}
+
+/// All that a live run has come to: the present worlds with the way there, and the runs before. It can be gone on with
+/// at another time, or computed anew from what was done.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunHistory {
+    #[serde(rename = "worlds")]
+    pub(super) present: LiveRun,
+    /// The oldest first.
+    past: Vec<LiveRun>,
+    /// What a window is told of them.
+    #[serde(skip)]
+    told: Arc<[PastRun]>,
+    /// Counts the runs that were kept.
+    #[serde(skip)]
+    count: u64,
+    /// Memory for keyframes.
+    #[serde(skip)]
+    recording_bytes: usize,
+}
+
+/// How a world comes about from a start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorldPlan {
+    /// Those of its first step.
+    pub settings: Settings,
+    /// Each with the number of the step after which it is made, in their order.
+    pub changes: Vec<(u64, Settings)>,
+    /// How many steps it takes.
+    pub steps: u64,
+}
+
+impl RunHistory {
+    /// One without worlds, with so much memory for keyframes.
+    pub(super) fn new(recording_bytes: usize) -> Self {
+        Self { recording_bytes, ..Self::default() }
+    }
+
+    /// Forgets everything, and goes on with what another has come to.
+    pub(super) fn take_up(&mut self, other: Self) {
+        self.clear();
+        for run in other.past {
+            self.keep(run);
+        }
+        self.present = other.present;
+        self.present.keep_within(self.recording_bytes);
+    }
+
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
+        self.present = LiveRun::default();
+        self.past.clear();
+        self.tell();
+    }
+
+    /// Puts worlds at a start, one for each of these settings. The present ones are kept.
+    pub(super) fn restart(&mut self, start: &LiveStart, all: &[Settings]) {
+        let budget_bytes = self.recording_bytes / all.len().max(1);
+        let world = |settings: &Settings| {
+            WorldHistory::new(&start.simulation, start.tally, settings, budget_bytes)
+        };
+        let worlds = all.iter().map(world).collect();
+        self.put_in_place(LiveRun { worlds, ..LiveRun::default() });
+    }
+
+    /// Goes back to an earlier run; the present one is kept. Whether there is such a run.
+    pub(super) fn go_back(&mut self, number: u64) -> bool {
+        let Some(index) = self.past.iter().position(|run| run.number == number) else {
+            return false;
+        };
+        let mut run = self.past.remove(index);
+        run.keep_within(self.recording_bytes);
+        self.put_in_place(run);
+        true
+    }
+
+    fn put_in_place(&mut self, run: LiveRun) {
+        let before = std::mem::replace(&mut self.present, run);
+        self.keep(before);
+        self.tell();
+    }
+
+    /// Keeps the present run as it is, where its next tick leaves what is recorded behind.
+    pub(super) fn keep_before_tick(&mut self) {
+        if self.present.branches() {
+            self.keep_copy(self.present.clone());
+        }
+    }
+
+    /// Has a hand change a world. Where that leaves what is recorded behind, it is kept.
+    ///
+    /// # Errors
+    /// Where the world cannot be changed so.
+    pub(super) fn edit(&mut self, world: usize, edit: Edit) -> Result<()> {
+        let Some(edited) = self.present.worlds.get(world) else { return Ok(()) };
+        let branches = edited.record.is_before_end(&edited.simulation);
+        let before = branches.then(|| self.present.clone());
+        self.present.worlds[world].edit(edit)?;
+        before.into_iter().for_each(|before| self.keep_copy(before));
+        Ok(())
+    }
+
+    /// Keeps the present run as it was before it branched off: from now on it is another one.
+    fn keep_copy(&mut self, before: LiveRun) {
+        self.keep(before);
+        self.present.name.clear();
+    }
+
+    /// Keeps a run of which something is recorded, with a part of the memory for keyframes.
+    fn keep(&mut self, mut run: LiveRun) {
+        if !run.worlds.iter().any(|world| world.record.has_steps()) {
+            return;
+        }
+        run.keep_within(self.recording_bytes / PART_OF_PAST);
+        run.worlds.iter_mut().for_each(|world| world.stored = StoredMoments::default());
+        self.count += 1;
+        run.number = self.count;
+        self.past.push(run);
+        if self.past.len() > MOST_PAST {
+            self.past.remove(0);
+        }
+        self.tell();
+    }
+
+    /// Calls an earlier run, or the present one, by a name.
+    pub(super) fn name(&mut self, number: Option<u64>, name: String) {
+        match number {
+            None => self.present.name = name,
+            Some(number) => {
+                let run = self.past.iter_mut().find(|run| run.number == number);
+                run.into_iter().for_each(|run| run.name.clone_from(&name));
+                self.tell();
+            }
+        }
+    }
+
+    /// What a window is told of the earlier runs, the newest last.
+    pub(super) fn told(&self) -> Arc<[PastRun]> {
+        Arc::clone(&self.told)
+    }
+
+    fn tell(&mut self) {
+        self.told = self.past.iter().map(PastRun::of).collect();
+    }
+
+    /// The same with fewer keyframes and rows, to be handed out. A run before whose state is no longer finite is left out.
+    pub(super) fn thinned(&self) -> Self {
+        let kept = self.past.iter().filter(|run| !run.has_failed());
+        Self {
+            present: self.present.thinned(KEYFRAME_BYTES, ROWS),
+            past: kept.map(|run| run.thinned(PAST_KEYFRAME_BYTES, PAST_ROWS)).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// That of worlds which are computed here, side by side, from a state and the sums over the steps before it. `tell`
+    /// hears how far it has come, and ends it by returning false.
+    ///
+    /// # Errors
+    /// Names the first setting that is refused, or says that it was given up.
+    pub fn computed(
+        start: &Simulation,
+        tally: Tally,
+        plans: &[WorldPlan],
+        tell: &mut dyn FnMut(LoadingProgress) -> bool,
+    ) -> Result<Self> {
+        let bytes = LiveOptions::default().recording_bytes / plans.len().max(1);
+        let mut planned = Vec::with_capacity(plans.len());
+        for plan in plans {
+            start.clone().change(plan.settings)?;
+            planned.push((WorldHistory::new(start, tally, &plan.settings, bytes), plan));
+        }
+        let all = plans.iter().map(|plan| plan.steps).fold(0, u64::saturating_add);
+        loop {
+            let goes_on = planned.par_iter_mut().map(|(world, plan)| advance(world, plan));
+            let goes_on = goes_on.try_reduce(|| false, |one, other| Ok(one || other))?;
+            let taken: u64 = planned.iter().map(|(world, _)| world.steps()).sum();
+            let part = taken as f32 / all.max(1) as f32;
+            let text = format!("Computing what the link tells of: {taken} of {all} steps");
+            if !goes_on {
+                break;
+            }
+            if !tell(LoadingProgress { part, text, preview: None }) {
+                return Err(Error::value("link", "given up", "computed to its end"));
+            }
+        }
+        let worlds = planned.into_iter().map(|(world, _)| world).collect();
+        Ok(Self { present: LiveRun { worlds, ..LiveRun::default() }, ..Self::default() })
+    }
+
+    /// Whether one that was read holds together.
+    pub fn is_sound(&self) -> bool {
+        let is_sound = |run: &LiveRun| {
+            !run.worlds.is_empty() && run.worlds.iter().all(|world| world.record.is_sound())
+        };
+        is_sound(&self.present) && self.past.iter().all(is_sound)
+    }
+
+    /// Why one of its worlds cannot go on.
+    pub fn failure(&self) -> Option<&str> {
+        self.present.worlds.iter().find_map(|world| world.failure.as_deref())
+    }
+}
+
+/// Takes some steps of a plan, with its changes. Whether there are more.
+fn advance(world: &mut WorldHistory, plan: &WorldPlan) -> Result<bool> {
+    for _ in 0..STEPS_AT_ONCE {
+        let step = world.steps();
+        if let Some((_, settings)) = plan.changes.iter().find(|(after, _)| *after == step) {
+            world.simulation.change(*settings)?;
+        }
+        if step >= plan.steps || !world.step() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}

@@ -1,0 +1,192 @@
+//! One world of a live run: where it is, what is recorded of it, and its curve.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use super::stored_moments::StoredMoments;
+use super::{Curve, WorldRecord};
+use crate::error::{Error, Result};
+use crate::sim::{Edit, Settings, Simulation, Tally};
+
+/// Weight of the newest step in the mean time a step takes.
+const NEWEST: f64 = 0.05;
+
+/// One world of a live run. A clone shares what is recorded.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WorldHistory {
+    /// The present moment.
+    pub simulation: Simulation,
+    /// All that is recorded, before and after the present moment.
+    #[serde(rename = "recording")]
+    pub record: WorldRecord,
+    /// The observables of all that is recorded.
+    pub curve: Curve,
+    /// What of the record can be shown without computing.
+    #[serde(skip)]
+    pub(super) stored: StoredMoments,
+    /// Sums over the steps up to the present moment.
+    pub tally: Tally,
+    /// Mean time that a step takes, s.
+    #[serde(skip)]
+    pub(super) step_secs: f64,
+    /// Why the run cannot go on from the present moment.
+    pub failure: Option<Arc<str>>,
+    /// The simulated time that a seek is on its way to, s.
+    #[serde(skip)]
+    goal_secs: Option<f64>,
+}
+
+impl WorldHistory {
+    /// A world at a start, with the sums of steps before it.
+    pub(super) fn new(
+        start: &Simulation,
+        tally: Tally,
+        settings: &Settings,
+        budget_bytes: usize,
+    ) -> Self {
+        let mut simulation = start.clone();
+        // Settings are checked where they are made; what is refused here stays as the start has it.
+        let _ = simulation.change(*settings);
+        let mut curve = Curve::default();
+        curve.push(*simulation.observables());
+        Self {
+            record: WorldRecord::new(&simulation, tally, budget_bytes),
+            simulation,
+            curve,
+            stored: StoredMoments::default(),
+            tally,
+            step_secs: 0.0,
+            failure: None,
+            goal_secs: None,
+        }
+    }
+
+    /// The number of the step that led to the present moment.
+    pub(super) fn steps(&self) -> u64 {
+        self.simulation.observables().step
+    }
+
+    pub(super) fn time_step_secs(&self) -> f64 {
+        self.simulation.parameters().time_step_secs
+    }
+
+    /// Whether its next step leaves what is recorded behind.
+    pub(super) fn branches(&self) -> bool {
+        self.record.is_before_end(&self.simulation) && !self.record.replays(&self.simulation)
+    }
+
+    /// Takes a step and records it, unless it is one that is recorded. Whether it succeeded.
+    pub(super) fn step(&mut self) -> bool {
+        if self.failure.is_some() {
+            return false;
+        }
+        if self.record.replays(&self.simulation) {
+            return self.step_in_the_record();
+        }
+        self.record.before_step(&self.simulation, &self.tally);
+        self.curve.truncate(self.steps());
+        let before = Instant::now();
+        let stepped = self.simulation.step().copied();
+        self.note_duration(before.elapsed().as_secs_f64());
+        self.record.after_step(&self.simulation);
+        match stepped {
+            Ok(observables) => {
+                self.tally.add(&observables);
+                self.curve.push(observables);
+                self.stored.store(&self.simulation, &self.tally, false);
+            }
+            Err(error) => self.failure = Some(error.to_string().into()),
+        }
+        self.failure.is_none()
+    }
+
+    /// Takes a step that is recorded, as it was. Whether it succeeded.
+    fn step_in_the_record(&mut self) -> bool {
+        self.record.restore_controls(&mut self.simulation);
+        let before = Instant::now();
+        let is_taken = self.replay_step();
+        self.note_duration(before.elapsed().as_secs_f64());
+        if !self.record.is_before_end(&self.simulation) {
+            self.simulation.set_pull(None);
+        }
+        is_taken
+    }
+
+    fn replay_step(&mut self) -> bool {
+        match self.simulation.step() {
+            Ok(observables) => {
+                self.tally.add(observables);
+                self.stored.store(&self.simulation, &self.tally, true);
+                self.record.restore_controls(&mut self.simulation);
+            }
+            Err(error) => self.failure = Some(error.to_string().into()),
+        }
+        self.failure.is_none()
+    }
+
+    fn note_duration(&mut self, secs: f64) {
+        let weight = if self.step_secs == 0.0 { 1.0 } else { NEWEST };
+        self.step_secs += weight * (secs - self.step_secs);
+    }
+
+    /// Steps until the time of the world is the one nearest to `time_secs`. Whether all succeeded.
+    pub(super) fn catch_up(&mut self, time_secs: f64) -> bool {
+        while self.simulation.time_secs() + 0.5 * self.time_step_secs() < time_secs {
+            if !self.step() {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Starts on the way to a recorded moment.
+    pub(super) fn seek(&mut self, time_secs: f64) {
+        if self.failure.is_none() {
+            self.record.keep_end(&self.simulation, &self.tally);
+        }
+        let (keyframe, tally) = self.record.keyframe_before(time_secs);
+        self.simulation.clone_from(keyframe);
+        self.tally = tally;
+        self.failure = None;
+        self.goal_secs = Some(time_secs);
+        self.record.restore_controls(&mut self.simulation);
+    }
+
+    /// Takes one step of a seek. Whether it has arrived.
+    pub(super) fn advance_seek(&mut self) -> bool {
+        let Some(goal) = self.goal_secs else { return true };
+        if self.record.has_come_to(&self.simulation, goal) || !self.replay_step() {
+            self.goal_secs = None;
+            // The hand that pulled a grain back then is not there when the run goes on from here.
+            self.simulation.set_pull(None);
+            return true;
+        }
+        false
+    }
+
+    /// Has a hand change the world. What was recorded after this moment is forgotten.
+    ///
+    /// # Errors
+    /// Where it cannot be changed so, or cannot go on.
+    pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
+        if let Some(failure) = &self.failure {
+            return Err(Error::value("state", failure, "one that the run can go on from"));
+        }
+        self.simulation.edit(&edit)?;
+        self.record.edited(&self.simulation, edit);
+        self.curve.truncate(self.steps());
+        self.stored.forget_from(self.steps());
+        Ok(())
+    }
+
+    /// All that the world has come to, for whoever takes it down.
+    pub(super) fn handed_out(&self) -> Self {
+        let mut world = Self { stored: StoredMoments::default(), ..self.clone() };
+        // The hand is not there when the run goes on from here.
+        world.simulation.set_pull(None);
+        world
+    }
+}
