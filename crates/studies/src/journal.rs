@@ -30,7 +30,7 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Opens a journal for appending and cuts off a half line at its end. Damaged lines are told of and
+    /// Opens a journal for appending and cuts off a half line at its end. Damaged lines are named and
     /// blanked.
     ///
     /// # Errors
@@ -88,7 +88,7 @@ pub(super) fn read_all<T: Serialize + DeserializeOwned>(
     Ok(all)
 }
 
-/// The records of one journal. Lines that are damaged are told of and left out.
+/// The records of one journal. Damaged lines are named and left out.
 ///
 /// # Errors
 /// Where it cannot be read.
@@ -99,7 +99,7 @@ pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
         let entry = record_of(line).and_then(|record| serde_json::from_str(record).ok());
         match entry {
             Some(entry) => entries.push(entry),
-            None => tell_of_damage(path, number),
+            None => note_damage(path, number),
         }
     }
     Ok(entries)
@@ -112,20 +112,20 @@ fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     lines.map(|(line, number)| (number, line)).filter(|(_, line)| !line.trim_ascii().is_empty())
 }
 
-fn tell_of_damage(path: &Path, line: usize) {
+fn note_damage(path: &Path, line: usize) {
     note_line(format_args!(
         "{}: line {line} is damaged; what it told of is computed anew",
         path.display()
     ));
 }
 
-/// Writes spaces over damaged lines, so that they are told of once. Stopped midway it leaves what it was:
+/// Writes spaces over damaged lines, so that they are named once. Stopped midway it leaves what it was:
 /// damaged lines.
 fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     // What is appended to cannot be written to elsewhere.
     let mut file = OpenOptions::new().write(true).open(path)?;
     for (number, line) in lines(bytes).filter(|(_, line)| record_of(line).is_none()) {
-        tell_of_damage(path, number);
+        note_damage(path, number);
         // Both are parts of one allocation.
         let offset = line.as_ptr().addr() - bytes.as_ptr().addr();
         file.seek(SeekFrom::Start(offset as u64))?;

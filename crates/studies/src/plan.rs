@@ -12,7 +12,7 @@ use crate::config::{BaseScene, Config};
 use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
 
-/// More runs than this are a mistake rather than a wish: planned, run and told of they take some 2 kB
+/// More runs than this are a mistake rather than a wish: planned, run and listed they take some 2 kB
 /// each.
 const MOST_RUNS: usize = 1_000_000;
 
@@ -45,13 +45,13 @@ struct Quick {
     vary: Table,
 }
 
-/// Which rows are kept of a run over time.
+/// Which rows a run writes over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesSettings {
     /// Simulated time between two rows, s.
     pub interval: f64,
-    /// The grains whose positions are kept, by number.
+    /// The grains whose positions are written, by number.
     #[serde(default)]
     pub grains: Vec<usize>,
 }
@@ -65,7 +65,7 @@ pub struct Study {
     pub fingerprint: String,
     /// Whether these are the runs of a quick pass, which differs from the full one.
     pub is_quick_pass: bool,
-    /// Which rows are kept of each run over time, if any.
+    /// Which rows each run writes over time, if any.
     pub series: Option<SeriesSettings>,
     /// What is recorded of each run, if anything: below the results, in a folder that has the run's key.
     pub data: Option<DataSettings>,
@@ -154,7 +154,7 @@ fn lay_out(file: &StudyFile) -> Result<Vec<PlannedRun>> {
         }
         given.push(name);
     }
-    // Wrong names and types are told of by table and key, before any product is formed.
+    // Wrong names and types are refused by table and key, before any product is formed.
     for (key, value) in &file.base {
         config_of("base", [(key, value)])?;
     }
@@ -268,7 +268,7 @@ impl Known {
 }
 
 impl PlannedRun {
-    /// That of a config. Series have these grains; `kept` is what is kept of the run besides its outcome, and
+    /// That of a config. Series have these grains; `outputs` is what is written of the run besides its result, and
     /// `bases` what has been read, by name.
     ///
     /// # Errors
@@ -276,7 +276,7 @@ impl PlannedRun {
     fn new(
         config: &Config,
         grains_asked_for: &[usize],
-        kept: &impl Serialize,
+        outputs: &impl Serialize,
         bases: &mut HashMap<String, Known>,
     ) -> Result<Self> {
         let known = match bases.entry(config.base_scene_key()) {
@@ -284,7 +284,7 @@ impl PlannedRun {
             Entry::Vacant(place) => place.insert(Known::of(config)?),
         };
         let mut scene = config.change(&known.base)?;
-        // What is kept of runs, the study says.
+        // The study says what is written of its runs.
         scene.data = None;
         let config = config.resolved(&scene);
         let grains = config.source.grains.unwrap_or(scene.grains.len());
@@ -295,8 +295,8 @@ impl PlannedRun {
         // they are nearly all that it says, and the same in each run.
         scene.grains.clear();
         scene.fixed_discs.clear();
-        let said = (env!("CARGO_PKG_VERSION"), &config, &scene, &known.discs, kept);
-        let hasher = hash(&said, &scene.name)?;
+        let made_of = (env!("CARGO_PKG_VERSION"), &config, &scene, &known.discs, outputs);
+        let hasher = hash(&made_of, &scene.name)?;
         let steps = scene.duration_secs / scene.parameters.time_step_secs;
         let digits = 1.0 - scene.solver.tolerance.log10().min(0.0);
         Ok(Self { key: short(&hasher), cost: steps * grains as f64 * digits, config })

@@ -54,8 +54,8 @@ pub struct Recorded {
     pub failure: Option<Error>,
 }
 
-/// Runs a scene to `until_secs`, with pictures at `times_secs` (rising, s). What ends it early is told
-/// of in what it leaves.
+/// Runs a scene to `until_secs`, with pictures at `times_secs` (rising, s). What it leaves says
+/// what ended it early.
 ///
 /// # Errors
 /// Where the scene is not sound, or a time lies outside 0 … duration.
@@ -78,7 +78,7 @@ pub fn record(
 }
 
 /// Lets a run go on to `until_secs`, with those pictures at `times_secs` (rising, s) that are not taken yet.
-/// What ends it early is told of in what it leaves.
+/// What it leaves says what ended it early.
 pub fn go_on(
     mut run: OnItsWay,
     times_secs: &[f64],

@@ -1,4 +1,4 @@
-//! Initial states that are new piles: settled once, kept in memory and on disk, shared by all runs.
+//! Initial states that are new piles: settled once, in memory and on disk, shared by all runs.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub(super) struct States {
 }
 
 impl States {
-    /// Reads or makes the states that `configs` start from. They are kept in `folder`.
+    /// Reads or makes the states that `configs` start from. They lie in `folder`.
     ///
     /// # Errors
     /// Where a state does not settle, or the folder cannot be written.
@@ -65,8 +65,8 @@ impl States {
     }
 }
 
-/// The settled grains of a pile: those that are kept in `folder`, or new ones, which are then kept there. A state
-/// reads back bit for bit, so that it does not matter which way it came.
+/// The settled grains of a pile: those that lie in `folder`, or new ones, which are then written there. A state
+/// reads back bit for bit, so that it does not matter whether it was read or made.
 ///
 /// # Errors
 /// As [`settle`], and where the folder cannot be read or written.
@@ -85,7 +85,7 @@ pub fn settled_pile(
     Ok(grains)
 }
 
-/// The grains that a file holds; nothing where it is not there, or damaged, which is told of.
+/// The grains that a file holds; nothing where it is not there, or damaged, which is noted.
 fn read(path: &Path) -> Result<Option<Vec<Grain>>> {
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,

@@ -177,14 +177,14 @@ mod tests {
     fn intervals_hold_the_true_mean_in_95_of_100_samples() {
         use rand::{RngExt, SeedableRng};
         let mut random = rand_pcg::Pcg64::seed_from_u64(1);
-        let held = (0..4000).filter(|_| {
+        let holding = (0..4000).filter(|_| {
             // The sum of twelve uniform numbers is as good as normal here, with mean 6.
             let values: Vec<f64> =
                 (0..8).map(|_| (0..12).map(|_| random.random_range(0.0..1.0)).sum()).collect();
             let mean = mean(&values);
             (mean.low..=mean.high).contains(&6.0)
         });
-        near(held.count() as f64 / 4000.0, 0.95, 0.012);
+        near(holding.count() as f64 / 4000.0, 0.95, 0.012);
     }
 
     #[test]

@@ -69,7 +69,7 @@ pub struct SweepOptions {
     pub shard: Option<Shard>,
     /// Throw away what a folder holds of another study, or what cannot be read.
     pub redo: bool,
-    /// Where initial states are kept; in the folder of results where nothing is said.
+    /// The folder of initial states; one in the folder of results where there is none.
     pub states: Option<PathBuf>,
 }
 
@@ -77,7 +77,7 @@ pub struct SweepOptions {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SweptRun {
     pub outcome: RunResult,
-    /// Checksum of the file with its series, where one is kept.
+    /// Checksum of the file with its series, where it has one.
     #[serde(rename = "course", default, skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
 }

@@ -1,4 +1,5 @@
-//! Slumps of piles that start from the same states and are stepped in two ways, at the same Bond and Δt.
+//! Slumps of piles that start from the same states and are stepped by two laws or variants of the solver, at the same Bond and
+//! Δt.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +10,7 @@ use crate::chart::Point;
 use crate::config::Config;
 use crate::statistics::{Mean, mean, p_value};
 
-/// A difference of slump up to which one way stands for the other, by the largest number of grains that it is
+/// A difference of slump up to which one variant stands for the other, by the largest number of grains that it is
 /// asked of. Slumps are 0.05 to 0.5, and those of two states of a size differ by 0.1 and more.
 const MARGINS: [(usize, f64); 2] = [(138, 0.02), (usize::MAX, 0.04)];
 
@@ -18,7 +19,7 @@ pub(super) fn margin(grains: usize) -> f64 {
     MARGINS.iter().find(|(most, _)| grains <= *most).map_or(0.0, |(_, margin)| *margin)
 }
 
-/// The slumps of all states that ended in both ways, at one Bond and Δt.
+/// The slumps of all states that ended in both variants, at one Bond and Δt.
 pub(super) struct PairedSlumps {
     /// Names it in a sentence.
     pub name: String,
@@ -27,7 +28,7 @@ pub(super) struct PairedSlumps {
     pub step: f64,
     pub reference: Mean,
     pub other: Mean,
-    /// The other way's less the reference's, state by state.
+    /// The other's less the reference's, state by state.
     pub difference: Mean,
     /// That of each state, by its seed.
     of_states: Vec<(Option<u64>, f64)>,
@@ -58,7 +59,7 @@ impl PairedSlumps {
         Self::new(format!("Bond {bond} at {step:e} s"), (bond, step), reference, other)
     }
 
-    /// Every Δt of the other way with every Bond of it.
+    /// Every Δt of the other with every Bond of it.
     pub(super) fn all(reference: &Rows<'_>, other: &Rows<'_>) -> Vec<Self> {
         let bonds = other.bonds();
         let at = |bond: f64, step: f64| {
@@ -97,7 +98,7 @@ impl PairedSlumps {
     }
 }
 
-/// The states that ended in both ways: seed, slump of the reference, that of the other.
+/// The states that ended in both: seed, slump of the reference, that of the other.
 pub(super) fn pairs(reference: &Rows<'_>, other: &Rows<'_>) -> Vec<(Option<u64>, f64, f64)> {
     let with = |seed| other.0.iter().find(move |(config, _)| config.source.seed == seed);
     let pair = |(config, result): &(&Config, &RunResult)| {

@@ -93,13 +93,16 @@ pub(super) fn tolerance(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "pile-tolerance", sheet, claims, table: None })
 }
 
-/// One curve a cohesive time; and each such time with its slope for each initial state.
+/// A cohesive time and its slope for each initial state.
+type SlopesAtTime = (f64, Vec<f64>);
+
+/// One curve a cohesive time.
 fn series(
     rows: &Rows<'_>,
     title: &str,
     x: Axis,
     number: impl Fn(&Config) -> Option<f64>,
-) -> Result<(Sheet, Vec<(f64, Vec<f64>)>)> {
+) -> Result<(Sheet, Vec<SlopesAtTime>)> {
     let unit_secs = unit_secs()?;
     let mut chart = Chart::new(title, x, Axis::linear("slump Δy_G", 0.0, 0.7));
     chart.legend = LegendCorner::UpperRight;

@@ -23,8 +23,8 @@ pub fn figure_names() -> Vec<&'static str> {
     [ALL, SNAPSHOTS].into_iter().chain(charts).collect()
 }
 
-/// Makes the figures of those names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies are
-/// kept below it, so that the same call goes on where one was stopped. `snapshots` draws the pictures
+/// Makes the figures of those names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies
+/// lie below it, so that the same call goes on where one was stopped. `snapshots` draws the pictures
 /// of grains into a folder.
 ///
 /// # Errors
@@ -154,16 +154,5 @@ impl Report {
             rayon::current_num_threads()
         );
         self.text
-    }
-}
-
-#[cfg(test)]
-mod tmp {
-    #[test]
-    fn tmp_reproduce() {
-        let (Ok(name), Ok(out)) = (std::env::var("TMP_FIG"), std::env::var("TMP_OUT")) else {
-            return;
-        };
-        super::reproduce(&[name], out.as_ref(), true, |_| Ok(())).unwrap();
     }
 }

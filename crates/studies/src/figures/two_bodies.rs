@@ -59,8 +59,8 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
         let line = [-x_reach, x_reach].map(|v| (v, (1.0 + RESTITUTION) * v + force));
         // Cut where the axes end.
         let line = line.map(|(v, n)| {
-            let kept = n.clamp(-y_reach, y_reach);
-            (v + (kept - n) / (1.0 + RESTITUTION), kept)
+            let cut = n.clamp(-y_reach, y_reach);
+            (v + (cut - n) / (1.0 + RESTITUTION), cut)
         });
         chart.layers.push(Layer::curve(name, points(line), colour, Look::Line(2)));
         // A = −m(1 + ρ) v^{n−1} / Δt where no other force acts.

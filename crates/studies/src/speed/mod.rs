@@ -20,10 +20,11 @@ use std::time::Instant;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::chart::{Sheet, png, svg};
+use super::chart::Sheet;
 use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, note_line, print_line, print_text, write_file};
+use crate::report::write_sheet;
 use crate::runner::Runner;
 
 /// Something to chart.
@@ -104,12 +105,10 @@ impl Bench<'_> {
     /// Writes the files of a section, and gives its part of the report.
     fn write(&self, section: &ChartSection) -> Result<String> {
         let ChartSection { name, sheet, report, tables } = section;
-        let path = |file: &str, ending: &str| self.options.out.join(format!("{file}.{ending}"));
-        write_file(&path(name, "csv"), &sheet.to_csv()?)?;
-        write_file(&path(name, "png"), &png(sheet, &self.options.command())?)?;
-        write_file(&path(name, "svg"), svg(sheet)?.as_bytes())?;
+        let folder = &self.options.out;
+        write_sheet(folder, name, sheet, &self.options.command())?;
         for (table, text) in tables {
-            write_file(&path(table, "csv"), text.as_bytes())?;
+            write_file(&folder.join(format!("{table}.csv")), text.as_bytes())?;
         }
         Ok(format!("\n![{name}]({name}.png)\n\n{report}\n"))
     }

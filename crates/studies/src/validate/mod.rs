@@ -34,10 +34,10 @@ pub use self::experiment::Agreement;
 use self::experiment::Experiment;
 use self::runs::run_all;
 use self::variants::VariantChoice;
-use super::chart::{png, svg};
 use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, print_line, print_text, write_file};
+use crate::report::write_sheet;
 use crate::solver::Method;
 
 /// All experiments, in the order of the report.
@@ -118,9 +118,7 @@ pub fn validate(options: &ValidateOptions) -> Result<()> {
     let runner = machine.runner(out, *quick, "validation")?;
     let ran = run_all(&wanted, &choice.variants(), *quick, &runner)?;
     let sheet = report::sheet(&ran, &machine.words());
-    write_file(&out.join("errors.csv"), &sheet.to_csv()?)?;
-    write_file(&out.join("errors.png"), &png(&sheet, &options.command())?)?;
-    write_file(&out.join("errors.svg"), svg(&sheet)?.as_bytes())?;
+    write_sheet(out, "errors", &sheet, &options.command())?;
     let table = report::table(&ran);
     write_file(&out.join("quantities.csv"), &table.to_csv()?)?;
     write_file(&out.join("quantities.json"), report::json(&ran)?.as_bytes())?;
