@@ -176,7 +176,7 @@ impl PrimitivePipeline {
                 buffers: &[Some(wgpu::VertexBufferLayout {
                     array_stride: stride,
                     step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: attributes,
+                    attributes,
                 })],
             },
             primitive: wgpu::PrimitiveState {

@@ -16,8 +16,8 @@ const FRICTION: f64 = 0.6;
 fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M::Kinematics> {
     let (bodies, contacts) = (40, 90);
     let mut random = Pcg64::seed_from_u64(seed);
-    let mut problem = StepProblem::<M::Kinematics>::default();
-    problem.law = ContactLaw::new(FRICTION, 0.1, FrictionCone::Shifted);
+    let law = ContactLaw::new(FRICTION, 0.1, FrictionCone::Shifted);
+    let mut problem = StepProblem::<M::Kinematics> { law, ..StepProblem::default() };
     problem.bodies.mean_mass = 1.0;
     problem.friction.model = model;
     problem.rows.contacts.extend(0..contacts);

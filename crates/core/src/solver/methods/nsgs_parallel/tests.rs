@@ -20,8 +20,8 @@ fn problem<M: Model>(
     cone: FrictionCone,
 ) -> StepProblem<M::Kinematics> {
     let mut random = Pcg64::seed_from_u64(seed);
-    let mut problem = StepProblem::<M::Kinematics>::default();
-    problem.law = ContactLaw::new(0.5, 0.3, cone);
+    let law = ContactLaw::new(0.5, 0.3, cone);
+    let mut problem = StepProblem::<M::Kinematics> { law, ..StepProblem::default() };
     problem.bodies.mean_mass = 1.0;
     problem.bodies.masses.resize(bodies, 1.0);
     problem.rows.contacts.extend(0..contacts);
