@@ -82,3 +82,31 @@ fn a_file_can_be_held_in_the_head() {
         .collect();
     assert!(long.is_empty(), "longer than {LONGEST_FILE} lines: {long:?}");
 }
+
+#[test]
+fn documents_name_files_that_are_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let places =
+        ["", "crates/core/src/", "crates/data/src/", "crates/studies/src/", "crates/", "src/"];
+    let is_there = |name: &str| {
+        let crates = ["core", "data", "studies"];
+        let in_crate = crates.iter().find_map(|it| {
+            name.strip_prefix(&format!("{it}/")).map(|rest| format!("crates/{it}/src/{rest}"))
+        });
+        let named = places.iter().map(|place| format!("{place}{name}")).chain(in_crate);
+        named.into_iter().any(|path| root.join(path).exists())
+    };
+    let mut gone = Vec::new();
+    for document in ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md", "RESULTS.md"] {
+        let text = std::fs::read_to_string(root.join(document)).unwrap();
+        let names = text.split('`').skip(1).step_by(2);
+        let files = names.filter(|name| {
+            name.contains('/')
+                && [".rs", ".sh", ".py", ".csv"].iter().any(|ending| name.ends_with(ending))
+                && !name.contains(char::is_whitespace)
+                && !["NAME", "out/", "KEY", "{"].iter().any(|it| name.contains(it))
+        });
+        gone.extend(files.filter(|name| !is_there(name)).map(|name| format!("{document}: {name}")));
+    }
+    assert!(gone.is_empty(), "{gone:#?}");
+}

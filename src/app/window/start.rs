@@ -111,7 +111,7 @@ pub(super) fn no_display(error: &dyn std::fmt::Display) -> Error {
     let reason = message.rsplit(": ").next().unwrap_or(&message).trim_end_matches('.');
     Error::Renderer(format!(
         "no window can be opened ({reason}): start Slump on a desktop, or install the Debian \
-         packages libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libx11-xcb1 for X11, or \
-         libwayland-client0 and libxkbcommon0 for Wayland; --headless needs none of them"
+         packages libx11-6, libxcursor1, libxi6, libxkbcommon-x11-0 and libx11-xcb1; --headless \
+         needs none of them"
     ))
 }
