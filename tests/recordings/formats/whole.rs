@@ -123,7 +123,7 @@ fn files_are_whole_after_a_kill() {
     for _ in 0..KILLS {
         let folder = tempfile::tempdir().expect("a folder");
         let mut child = Command::new(std::env::current_exe().expect("this program"))
-            .args(["--exact", "whole::writes_until_it_is_killed", "--ignored"])
+            .args(["--exact", "formats::whole::writes_until_it_is_killed", "--ignored"])
             .env(FOLDER, folder.path())
             .stdout(Stdio::null())
             .spawn()

@@ -3,10 +3,8 @@
 
 use std::ffi::OsString;
 use std::fs::{File, Metadata, OpenOptions, Permissions, TryLockError};
-use std::io::{ErrorKind::NotFound, Write};
+use std::io::{ErrorKind::NotFound, Seek, Write};
 use std::path::{Path, PathBuf};
-
-use tempfile::TempPath;
 
 use super::terminal::note_line;
 use crate::error::{Error, Result};
@@ -30,15 +28,14 @@ pub fn final_name(name: &str) -> &str {
     }
 }
 
-/// A file that has its name only once it is whole, so that a run that is stopped leaves no half file under that
-/// name and destroys none. Devices and pipes are written to as they are.
+/// A file that has its name only once it is whole, so that a run that is stopped leaves no half file
+/// behind and destroys none. Devices and pipes are written to as they are.
 pub struct PendingFile {
     /// As the user wrote it.
     path: PathBuf,
     destination: Destination,
+    /// In no folder until it is whole: it is gone with the process, however that ends.
     file: File,
-    /// Its name until it is whole; none where it is written straight to its destination.
-    draft: Option<TempPath>,
 }
 
 impl PendingFile {
@@ -47,22 +44,15 @@ impl PendingFile {
     /// # Errors
     /// Names the file and what the system says.
     pub fn start(path: &Path) -> Result<Self> {
-        let refuse = |error| Error::file(path, format!("cannot be written ({error})"));
         let destination = Destination::of(path)?;
-        let (file, draft) = if destination.is_special {
-            (File::options().write(true).open(&destination.path).map_err(refuse)?, None)
+        let file = if destination.is_special {
+            File::options().write(true).open(&destination.path)
         } else {
-            let mut prefix = OsString::from(".");
-            prefix.extend([destination.path.file_name().unwrap_or_default(), ".".as_ref()]);
-            // With the permissions that the umask leaves to any new file.
-            let draft = tempfile::Builder::new()
-                .prefix(&prefix)
-                .suffix(ENDING_OF_DRAFT)
-                .make_in(folder_of(&destination.path), |draft| File::create_new(draft));
-            let (file, draft) = draft.map_err(refuse)?.into_parts();
-            (file, Some(draft))
+            tempfile::tempfile_in(folder_of(&destination.path))
         };
-        Ok(Self { path: path.to_owned(), destination, file, draft })
+        let file =
+            file.map_err(|error| Error::file(path, format!("cannot be written ({error})")))?;
+        Ok(Self { path: path.to_owned(), destination, file })
     }
 
     /// What to write to.
@@ -83,19 +73,33 @@ impl PendingFile {
     ///
     /// # Errors
     /// Names the file and what the system says.
-    pub fn finish(self, safe: bool) -> Result<()> {
-        let Self { path, destination, file, draft } = self;
-        let Some(draft) = draft else { return Ok(()) };
-        let mut finished = match destination.permissions {
-            Some(permissions) => file.set_permissions(permissions),
-            None => Ok(()),
-        };
-        if safe {
-            finished = finished.and_then(|()| file.sync_all());
+    pub fn finish(mut self, safe: bool) -> Result<()> {
+        if self.destination.is_special {
+            return Ok(());
         }
-        finished
-            .and_then(|()| Ok(draft.persist(&destination.path)?))
-            .map_err(|error| Error::file(path, error))
+        self.put(safe).map_err(|error| Error::file(&self.path, error))
+    }
+
+    /// Copies it to a hidden name beside its destination, which it then takes in one go.
+    fn put(&mut self, safe: bool) -> std::io::Result<()> {
+        let Destination { path, permissions, .. } = &self.destination;
+        let mut prefix = OsString::from(".");
+        prefix.extend([path.file_name().unwrap_or_default(), ".".as_ref()]);
+        // With the permissions that the umask leaves to any new file.
+        let mut draft = tempfile::Builder::new()
+            .prefix(&prefix)
+            .suffix(ENDING_OF_DRAFT)
+            .make_in(folder_of(path), |draft| File::create_new(draft))?;
+        self.file.rewind()?;
+        std::io::copy(&mut self.file, draft.as_file_mut())?;
+        if let Some(permissions) = permissions {
+            draft.as_file().set_permissions(permissions.clone())?;
+        }
+        if safe {
+            draft.as_file().sync_all()?;
+        }
+        draft.persist(path)?;
+        Ok(())
     }
 }
 
