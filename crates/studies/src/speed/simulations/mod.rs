@@ -1,12 +1,9 @@
 //! Speed against accuracy of whole simulations: what a pile's slump is off by, and how many seconds
-//! are simulated in one.
+//! are simulated in one. Steps have the restitution threshold with which nearly all of them have a solution.
 //!
-//! Steps are posed with the restitution threshold with which nearly all of them have a solution: an
-//! error of the solver means something only where there is something to be solved. Two errors are
-//! told apart. Against the reference *at the same Δt* a slump is off by what the solver left undone;
-//! against the reference at the finest Δt also by the time step. Piles are chaotic: two references,
-//! one solved ten times tighter than the other, differ by the *floor*, and no error below it means
-//! anything. The law `range` is another model of the same pile, and is held against references of its own.
+//! Against the reference *at the same Δt* a slump is off by what the solver left undone; against the
+//! reference at the finest Δt also by the time step. Piles are chaotic: two references, one solved ten times
+//! tighter, differ by the *floor*, below which no error means anything. `range` has references of its own.
 
 mod report;
 
