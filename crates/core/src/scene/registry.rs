@@ -243,11 +243,11 @@ pub(crate) fn scene_names() -> String {
 /// A built-in scene by name.
 ///
 /// ```
-/// let mut scene = slump::scene::built_in("pile")?;
+/// let mut scene = slump_core::scene::built_in("pile")?;
 /// scene.parameters.bond = 20.0;
 /// assert_eq!(scene.simulation()?.world().grains.len(), scene.grains.len());
-/// assert!(slump::scene::built_in("plie").is_err());
-/// # Ok::<(), slump::error::Error>(())
+/// assert!(slump_core::scene::built_in("plie").is_err());
+/// # Ok::<(), slump_core::error::Error>(())
 /// ```
 ///
 /// # Errors

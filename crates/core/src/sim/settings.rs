@@ -16,18 +16,18 @@ use crate::world::{FrictionCone, Gravity, Motion, Parameters, Periodic, Physics,
 /// ([`Settings::validate`]).
 ///
 /// ```
-/// use slump::sim::{Settings, Stepper};
-/// use slump::world::Parameters;
+/// use slump_core::sim::{Settings, Stepper};
+/// use slump_core::world::Parameters;
 ///
 /// let parameters = Parameters { bond: 20.0, friction: 0.5, ..Parameters::default() };
-/// let mut simulation = slump::scene::built_in("column")?.simulation()?;
+/// let mut simulation = slump_core::scene::built_in("column")?.simulation()?;
 /// simulation.change(Settings { stepper: Stepper::Range, parameters, ..Settings::default() })?;
 /// simulation.take_steps(3)?;
 ///
 /// let never = Parameters { time_step_secs: -1.0, ..parameters };
 /// let refused = simulation.set_parameters(never);
 /// assert!(refused.is_err_and(|error| error.to_string().contains("dt")));
-/// # Ok::<(), slump::error::Error>(())
+/// # Ok::<(), slump_core::error::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -109,8 +109,8 @@ impl Simulation {
     /// Takes one step in a way of your own, in place of the settings' stepper.
     ///
     /// ```
-    /// use slump::sim::{Advance, StepResult, Settings, Stage};
-    /// use slump::solver::Model;
+    /// use slump_core::sim::{Advance, StepResult, Settings, Stage};
+    /// use slump_core::solver::Model;
     ///
     /// /// Contacts that never throw grains back.
     /// struct Dead;
@@ -123,9 +123,9 @@ impl Simulation {
     ///     }
     /// }
     ///
-    /// let mut simulation = slump::scene::built_in("collision")?.simulation()?;
+    /// let mut simulation = slump_core::scene::built_in("collision")?.simulation()?;
     /// assert_eq!(simulation.step_by(&mut Dead)?.step, 1);
-    /// # Ok::<(), slump::error::Error>(())
+    /// # Ok::<(), slump_core::error::Error>(())
     /// ```
     ///
     /// # Errors

@@ -30,9 +30,9 @@ pub struct Memory<K: Kinematics> {
 /// the rows' impulses.
 ///
 /// ```
-/// use slump::contact::ContactList;
-/// use slump::sim::ProblemVisitor;
-/// use slump::solver::{Memory, Method, Model, SolverSettings, StepProblem, residual, solve};
+/// use slump_core::contact::ContactList;
+/// use slump_core::sim::ProblemVisitor;
+/// use slump_core::solver::{Memory, Method, Model, SolverSettings, StepProblem, residual, solve};
 ///
 /// /// What one method leaves undone.
 /// struct Left(Method);
@@ -47,9 +47,9 @@ pub struct Memory<K: Kinematics> {
 ///     }
 /// }
 ///
-/// let simulation = slump::scene::built_in("column")?.simulation()?;
+/// let simulation = slump_core::scene::built_in("column")?.simulation()?;
 /// assert!(simulation.next_problem(Left(Method::Newton)) < 1e-3);
-/// # Ok::<(), slump::error::Error>(())
+/// # Ok::<(), slump_core::error::Error>(())
 /// ```
 // Compiled once, with the library, for all models there are: who calls it with one of them compiles none of it anew.
 #[inline(never)]

@@ -33,13 +33,13 @@ impl Config {
     /// What the command line makes of these options, each a name and what is said of it.
     ///
     /// ```
-    /// use slump::config::Config;
+    /// use slump_data::config::Config;
     ///
     /// let config = Config::of_options([("scene", "cradle"), ("max-sweeps", "20")])?;
     /// assert_eq!(config.scene(|_| true)?.solver.max_sweeps, 20);
     /// let refused = Config::of_options([("max-sweeps", "many")]);
     /// assert!(refused.is_err_and(|error| error.to_string().starts_with("--max-sweeps is many")));
-    /// # Ok::<(), slump::error::Error>(())
+    /// # Ok::<(), slump_core::error::Error>(())
     /// ```
     ///
     /// # Errors

@@ -22,8 +22,9 @@ const SEAL: Seal = Seal {
 /// A run at one moment, to go on from.
 ///
 /// ```
-/// use slump::scene::{SavedState, built_in};
-/// use slump::sim::Tally;
+/// use slump_core::scene::built_in;
+/// use slump_data::config::SavedState;
+/// use slump_core::sim::Tally;
 ///
 /// let scene = built_in("collision")?;
 /// let mut simulation = scene.simulation()?;
@@ -32,7 +33,7 @@ const SEAL: Seal = Seal {
 /// let mut read = SavedState::from_bytes(&state.to_bytes()?, "collision.slump")?;
 /// read.simulation.take_steps(1)?;
 /// assert_eq!(read.simulation.observables().step, 4);
-/// # Ok::<(), slump::error::Error>(())
+/// # Ok::<(), slump_core::error::Error>(())
 /// ```
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -29,10 +29,10 @@ const FRAMES_AT_ONCE: usize = 8;
 /// not grow with the run: where the disk is too slow, the run waits.
 ///
 /// ```
-/// use slump::data::{RunFacts, FormatName, Recording};
+/// use slump_data::data::{RunFacts, FormatName, Recording};
 ///
 /// let folder = tempfile::tempdir().expect("a folder");
-/// let mut simulation = slump::scene::built_in("cradle")?.simulation()?;
+/// let mut simulation = slump_core::scene::built_in("cradle")?.simulation()?;
 /// let formats = [FormatName::Csv];
 /// let mut recording = Recording::start(folder.path(), &formats, &RunFacts::default(), false)?;
 /// for _ in 0..10 {
@@ -41,7 +41,7 @@ const FRAMES_AT_ONCE: usize = 8;
 /// }
 /// recording.finish()?;
 /// assert!(folder.path().join("csv/contacts.csv").exists());
-/// # Ok::<(), slump::error::Error>(())
+/// # Ok::<(), slump_core::error::Error>(())
 /// ```
 pub struct Recording {
     folder: RecordingFolder,

@@ -2,11 +2,11 @@
 //! forces, clusters.
 //!
 //! ```
-//! let mut simulation = slump::scene::built_in("pile")?.simulation()?;
+//! let mut simulation = slump_core::scene::built_in("pile")?.simulation()?;
 //! simulation.take_steps(5)?;
-//! let measured = slump::granular::measure(&simulation.moment());
+//! let measured = slump_data::granular::measure(&simulation.moment());
 //! println!("p = {:.1} N/m, Z = {:.2}", measured.pile.pressure, measured.pile.coordination);
-//! # Ok::<(), slump::error::Error>(())
+//! # Ok::<(), slump_core::error::Error>(())
 //! ```
 //!
 //! Lengths are in m and forces in N, so that stresses, which are forces a length in a plane, are in N/m. Compression is

@@ -128,7 +128,7 @@ fn read_parts(path: &Path, _: &[(u64, PathBuf)], _: Option<u64>) -> Result<Recor
 /// counts `id` and the words `kind`. `what` they are of is for messages.
 ///
 /// ```
-/// use slump::data::{Values, grains_of};
+/// use slump_data::data::{Values, grains_of};
 ///
 /// let column = |name: &str, number| (name.to_owned(), Values::Numbers(vec![number]));
 /// let columns = [column("x", 0.01), column("y", 0.02), column("radius", 0.0025)];
@@ -136,7 +136,7 @@ fn read_parts(path: &Path, _: &[(u64, PathBuf)], _: Option<u64>) -> Result<Recor
 /// assert_eq!(discs.grains[0].radius, 0.0025);
 /// let refused = grains_of("my discs".as_ref(), &columns[..2]);
 /// assert!(refused.is_err_and(|error| error.to_string().starts_with("my discs: the columns are x, y")));
-/// # Ok::<(), slump::error::Error>(())
+/// # Ok::<(), slump_core::error::Error>(())
 /// ```
 ///
 /// # Errors
