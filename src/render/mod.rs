@@ -30,7 +30,9 @@ pub use camera::{Camera, bounds};
 pub(crate) use colour::{Colour, automatic_range};
 pub use figure::PanelGrid;
 pub(crate) use overlays::force_reference;
-pub(crate) use primitives::{Batch, DiscInstance, LinkInstance, Picture};
+#[cfg(feature = "gpu")]
+pub(crate) use primitives::Batch;
+pub(crate) use primitives::{DiscInstance, LinkInstance, Picture};
 pub use renderer::{Renderer, RendererChoice, quieten_drivers};
 pub use scene::{WorldPanel, draw_scene, draw_worlds, panel_size};
 pub(crate) use style::Palette;

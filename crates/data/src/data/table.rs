@@ -1,6 +1,8 @@
 //! Tables of named columns, whatever writes them.
 
-use crate::column_spec::{CellValue, ColumnSpec, STEP};
+#[cfg(feature = "data")]
+use crate::column_spec::STEP;
+use crate::column_spec::{CellValue, ColumnSpec};
 
 /// A table: columns of one length.
 #[derive(Clone, Debug, PartialEq)]
