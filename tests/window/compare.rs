@@ -2,7 +2,6 @@
 
 use slump::live::Command;
 use slump::sim::Stepper;
-use slump::solver::FrictionModel;
 
 use crate::robot::{Robot, pile};
 
@@ -55,25 +54,6 @@ fn two_laws_stand_side_by_side() {
         .collect();
     let of_law = |law| [1e-4, 1e-3, 5e-3].map(|time| (law, 20.0, time));
     assert_eq!(told, [of_law(Stepper::Moreau), of_law(Stepper::Range)].concat());
-}
-
-#[test]
-fn models_of_friction_stand_side_by_side() {
-    let mut robot = Robot::open(pile());
-    robot.click("Compare");
-    robot.click("Friction");
-    robot.key(egui::Key::ArrowRight);
-    let solved: Vec<_> = robot
-        .state()
-        .frame
-        .worlds
-        .iter()
-        .map(|world| (world.controls.settings.solver, world.snapshot.observables.model_residual))
-        .map(|(solver, residual)| (solver.friction_model, solver.model_solves, residual.is_some()))
-        .collect();
-    let once = FrictionModel::ALL.iter().map(|&model| (model, 1, model != FrictionModel::Coulomb));
-    let expected: Vec<_> = once.chain([(FrictionModel::Tresca, 4, true)]).collect();
-    assert_eq!(solved, expected);
 }
 
 #[test]
