@@ -5,8 +5,8 @@ use slump::contact::ContactList;
 use slump::scene::Scene;
 use slump::sim::ProblemVisitor;
 use slump::solver::{
-    BodySystem, ContactSystem, FrictionModel, Kinematics, Memory, Method, Model, SolverSettings,
-    StepProblem, solve,
+    BodySystem, ContactSystem, FrictionModel, Memory, Method, Model, SolverSettings, StepProblem,
+    solve,
 };
 use slump::world::{FrictionCone, Parameters, Physics};
 
@@ -119,11 +119,7 @@ struct FromRandomStarts<'a>(&'a SolverSettings, u64);
 impl ProblemVisitor for FromRandomStarts<'_> {
     type Output = Vec<f64>;
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Vec<f64> {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Vec<f64> {
         let mut random = random(self.1);
         let mut root_masses = Vec::new();
         let mut system = BodySystem::<M>::new(problem, &mut root_masses);
@@ -132,9 +128,9 @@ impl ProblemVisitor for FromRandomStarts<'_> {
             .map(|contact| [0, 1].map(|_| impulse() * system.root_mass(contact)))
             .collect();
         system.write(&impulses);
-        let report = solve::<M>(problem, &mut Memory::default(), self.0);
+        let report = solve(problem, &mut Memory::default(), self.0);
         assert!(report.converged, "{report:?}");
-        problem.bodies.now.iter().flat_map(M::Kinematics::coordinates).collect()
+        problem.bodies.now.iter().flat_map(M::coordinates).collect()
     }
 }
 

@@ -4,7 +4,7 @@ use crate::common::{LINE, SMOOTH, UNTURNING, parameters, pressed_pile, start};
 use slump::contact::ContactList;
 use slump::scene::{Scene, cradle};
 use slump::sim::ProblemVisitor;
-use slump::solver::{BodySystem, ContactSystem, Kinematics, Model, StepProblem, residual};
+use slump::solver::{BodySystem, ContactSystem, Model, StepProblem, residual};
 use slump::world::{FrictionCone, Physics};
 
 /// A problem of every model, and how many contacts it has at least.
@@ -71,7 +71,7 @@ struct Check(usize);
 impl ProblemVisitor for Check {
     type Output = ();
 
-    fn visit<M: Model>(self, problem: &mut StepProblem<M::Kinematics>, _: &ContactList) {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) {
         let mut root_masses = Vec::new();
         let mut system = BodySystem::<M>::new(problem, &mut root_masses);
         let count = system.len();
@@ -123,26 +123,25 @@ impl ProblemVisitor for Check {
         system.write(&impulses);
         assert!((system.residual() - before).abs() < 1e-9 * before);
         let scale = scale_of_residual::<M>(problem);
-        let found = residual::<M>(problem);
+        let found = residual(problem);
         assert!(found > 0.0 && (error.sqrt() / scale - found).abs() < 1e-9 * found);
     }
 }
 
 /// ‖(m_n v_n^free, m_t v_t^free)‖, N·s.
-fn scale_of_residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
+fn scale_of_residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     let rows = problem.rows.fixed.iter().map(|row| (&row.row, true));
     let rows = rows.chain(problem.rows.pairs.iter().map(|row| (&row.row, false)));
     let mut sum = 0.0;
     for (row, fixed) in rows {
         let i = &problem.bodies.free[row.i as usize];
         let [normal, tangential] = if fixed {
-            M::Kinematics::velocity(row.normal, i)
+            M::velocity(row.normal, i)
         } else {
-            M::Kinematics::relative_velocity(row.normal, i, &problem.bodies.free[row.j as usize])
+            M::relative_velocity(row.normal, i, &problem.bodies.free[row.j as usize])
         };
         let normal = normal + row.restitution_velocity;
-        let tangential =
-            if M::FRICTION { tangential / M::Kinematics::TANGENTIAL_COMPLIANCE } else { 0.0 };
+        let tangential = if M::FRICTION { tangential / M::TANGENTIAL_COMPLIANCE } else { 0.0 };
         sum += row.effective_mass.powi(2) * (normal * normal + tangential * tangential);
     }
     sum.sqrt()

@@ -12,7 +12,7 @@ use slump::contact::Contact;
 use slump::scene::Scene;
 use slump::sim::Simulation;
 use slump::solver::{
-    Approach, Memory, Plane, ProblemNumbers, SolverSettings, SpinningPlane, StepModel, StepProblem,
+    Approach, Memory, ProblemNumbers, SmoothPlane, SolverSettings, SpinningPlane, StepProblem,
     StopTest, solve,
 };
 use slump::world::{FrictionCone, Grains, Parameters, Physics};
@@ -146,8 +146,6 @@ fn a_step_that_needs_more_sweeps_than_allowed_says_so() {
 
 #[test]
 fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
-    type Full = StepModel<SpinningPlane, true>;
-    type Lean = StepModel<Plane, false>;
     for_random_piles(16, |mut scene| {
         scene.parameters.friction = 0.0;
         let mut simulation = start(&scene);
@@ -155,7 +153,7 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
         simulation.step().expect("a finite state");
         let (world, contacts) = (simulation.world(), simulation.contacts());
         let mut full = StepProblem::<SpinningPlane>::default();
-        let mut lean = StepProblem::<Plane>::default();
+        let mut lean = StepProblem::<SmoothPlane>::default();
         let parameters = &scene.parameters;
         let numbers = ProblemNumbers {
             time_step_secs: parameters.time_step_secs,
@@ -165,10 +163,10 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
         };
         let rebound = |approach: Approach| parameters.restitution * approach.velocity;
         let settings = SolverSettings { tolerance: 1e-6, max_sweeps: 50, ..scene.solver };
-        full.prepare::<Full>(world, contacts, numbers, &settings, rebound);
-        lean.prepare::<Lean>(world, contacts, numbers, &settings, rebound);
-        solve::<Full>(&mut full, &mut Memory::default(), &settings);
-        solve::<Lean>(&mut lean, &mut Memory::default(), &settings);
+        full.prepare(world, contacts, numbers, &settings, rebound);
+        lean.prepare(world, contacts, numbers, &settings, rebound);
+        solve(&mut full, &mut Memory::default(), &settings);
+        solve(&mut lean, &mut Memory::default(), &settings);
         for (a, b) in full.bodies.now.iter().zip(&lean.bodies.now) {
             prop_assert_eq!(a.velocity, b.velocity);
         }

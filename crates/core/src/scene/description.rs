@@ -246,7 +246,6 @@ impl Scene {
         self.validate_motions()
     }
 
-    /// Bodies that move and borders that wrap.
     fn validate_motions(&self) -> Result<()> {
         let Self { boundaries, motions, gravity, physics, .. } = self;
         let fixed_discs = self.fixed_discs.len();
@@ -261,7 +260,6 @@ impl Scene {
         periodic.check(boundaries, fixed_discs, motions, gravity, *physics, lengths)
     }
 
-    /// A scene on a line must lie on the line.
     fn validate_line(&self) -> Result<()> {
         let allowed = "on the x axis where physics.axes is 1";
         let off_line = |grain: &Grain| grain.position.y != 0.0 || grain.velocity.y != 0.0;

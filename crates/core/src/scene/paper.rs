@@ -13,7 +13,6 @@ use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 pub(super) const DIAMETER: f64 = 5e-3;
 /// g, m/s².
 pub(super) const GRAVITY: f64 = 9.8;
-/// Its name.
 const NAME: &str = "pile";
 /// How wide a base may be asked for.
 const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
@@ -25,10 +24,8 @@ const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
 const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
 /// Height of the layers that are told apart by their grey, in diameters.
 const LAYER_IN_DIAMETERS: f64 = 2.0;
-/// The greys of the layers.
 const LAYER_TONES: [u8; 2] = [222, 168];
 
-/// The initial state that all runs of a series share.
 const INITIAL_STATE: &str = include_str!("../../../../assets/pile_138.csv");
 
 /// The paper's 138 grains, from the initial state that is shipped with the program.
@@ -107,7 +104,6 @@ pub(crate) fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
 
 /// d of the collision and of the cradle, m.
 const LINE_DIAMETER: f64 = 0.3;
-/// The physics of both.
 const ON_LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
 
 /// What pictures of both show, in diameters.

@@ -235,7 +235,6 @@ pub const SCENES: [SceneInfo; 31] = [
     },
 ];
 
-/// The names of all built-in scenes, for messages.
 pub(crate) fn scene_names() -> String {
     SCENES.map(|scene| scene.name).join(", ")
 }

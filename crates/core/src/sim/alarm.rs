@@ -90,7 +90,6 @@ impl Alarm {
         })
     }
 
-    /// The change that is most likely to help.
     fn advice(&self, settings: &Settings) -> String {
         let Settings { stepper, parameters, solver, .. } = settings;
         let smaller = self.longest_time_step_secs.map_or_else(

@@ -142,14 +142,12 @@ impl Losses {
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
-    /// Forgets a grain, which is taken out of the world.
     pub(super) fn remove(&mut self, grain: usize) {
         self.from.remove(grain);
         self.initial_heights.remove(grain);
         self.count -= u32::from(self.lost.remove(grain));
     }
 
-    /// Watches over one grain more, the last.
     pub(super) fn add(&mut self, position: DVec2) {
         self.from.push(position);
         self.initial_heights.push(position.y);

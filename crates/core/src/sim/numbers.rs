@@ -33,7 +33,6 @@ impl Simulation {
         }
     }
 
-    /// Whether a force drives a wall.
     fn is_driven(&self) -> bool {
         self.state.world.motions.iter().any(|motion| motion.drive.is_some())
     }

@@ -19,7 +19,8 @@ mod solve;
 
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{
-    Kinematics, Line, LineBody, Plane, PlaneBody, ShearedPlane, SlidingNormal, SpinningPlane,
+    Line, LineBody, Model, Plane, PlaneBody, ShearedPlane, SlidingNormal, SmoothPlane,
+    SpinningPlane,
 };
 pub use method::{METHODS, Method, MethodInfo, MethodOrder, Ordering};
 pub(crate) use methods::picked;
@@ -27,9 +28,7 @@ pub(crate) use methods::picked;
 pub use methods::sweep;
 pub use methods::{BodySystem, ContactSystem, ScaledVector, SolveReport};
 pub(crate) use model::cone_of;
-pub use model::{
-    Model, ModelParts, ModelVisitor, Slot, SlotVisitor, Slots, StepModel, visit_model,
-};
+pub use model::{ModelParts, Slot, Slots};
 pub(crate) use problem::MovingSurfaces;
 pub use problem::{
     Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures, PairRow,

@@ -100,7 +100,6 @@ impl Grains {
         self.tones.push(grain.tone);
     }
 
-    /// Checks that there are discs, and that each list says something of each.
     pub(crate) fn validate(&self) -> Result<()> {
         let count = self.len();
         if count == 0 {

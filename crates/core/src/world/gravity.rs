@@ -126,7 +126,6 @@ impl TurningGravity {
 }
 
 impl GravityTurn {
-    /// By no angle at any time.
     pub(super) const NONE: Self =
         Self { course: TurnCourse::Rate { rate: 0.0 }, elapsed_secs: 0.0 };
 
@@ -142,7 +141,6 @@ impl GravityTurn {
         }
     }
 
-    /// Checks it against the gravity and the physics that it is for.
     pub(crate) fn check(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let field = "gravity_turn";
         if !matches!(gravity, Gravity::Uniform { .. }) {

@@ -100,7 +100,6 @@ impl Physics {
     /// Two axes, friction, rotation and cohesion.
     pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
 
-    /// Checks that the parts fit each other.
     pub(crate) fn validate(&self) -> Result<()> {
         match (self.axes, self.friction, self.rotation) {
             (1 | 2, false, true) => {

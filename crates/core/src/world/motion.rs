@@ -299,7 +299,6 @@ pub(crate) struct Carry {
 }
 
 impl RigidVelocity {
-    /// That of a body which stays.
     pub(crate) const NONE: Self = Self { velocity: DVec2::ZERO, spin: 0.0, pivot: DVec2::ZERO };
 
     pub(super) fn straight(velocity: DVec2) -> Self {
@@ -316,12 +315,10 @@ impl RigidVelocity {
         if self.spin == 0.0 { self.velocity } else { self.spin * (place - self.pivot).perp() }
     }
 
-    /// Whether the body does not stay.
     pub(crate) fn moves(&self) -> bool {
         self.velocity != DVec2::ZERO || self.spin != 0.0
     }
 
-    /// The way in `secs`.
     pub(crate) fn carry(&self, secs: f64) -> Carry {
         let angle = secs * self.spin;
         let (sin, cos) = angle.sin_cos();

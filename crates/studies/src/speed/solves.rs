@@ -151,11 +151,7 @@ impl SolveTimer<'_> {
     }
 
     /// The sweeps that fit in the time limit, from what so many take that it can be told.
-    fn sweeps_in_time<M: Model>(
-        &self,
-        problem: &StepProblem<M::Kinematics>,
-        memory: &mut Memory<M::Kinematics>,
-    ) -> u32 {
+    fn sweeps_in_time<M: Model>(&self, problem: &StepProblem<M>, memory: &mut Memory<M>) -> u32 {
         let mut sweeps = FIRST_SWEEPS;
         loop {
             let (secs, _) = timed::<M>(problem, memory, &self.variant.sweeps(sweeps));
@@ -171,12 +167,8 @@ impl SolveTimer<'_> {
 impl ProblemVisitor for SolveTimer<'_> {
     type Output = TimedSolves;
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        contacts: &ContactList,
-    ) -> TimedSolves {
-        let start = left(&measure::<M>(problem));
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, contacts: &ContactList) -> TimedSolves {
+        let start = left(&measure(problem));
         let mut solves = TimedSolves {
             contacts: contacts.contacts().len(),
             start,
@@ -222,15 +214,15 @@ impl ProblemVisitor for SolveTimer<'_> {
 
 /// Seconds of one solve of a copy, and what it came to.
 pub(super) fn timed<M: Model>(
-    problem: &StepProblem<M::Kinematics>,
-    memory: &mut Memory<M::Kinematics>,
+    problem: &StepProblem<M>,
+    memory: &mut Memory<M>,
     settings: &SolverSettings,
 ) -> (f64, Measures) {
     let mut copy = problem.clone();
     let started = Instant::now();
-    solve::<M>(&mut copy, memory, settings);
+    solve(&mut copy, memory, settings);
     let secs = started.elapsed().as_secs_f64();
-    (secs, measure::<M>(&copy))
+    (secs, measure(&copy))
 }
 
 /// The natural map of what was solved.

@@ -237,7 +237,6 @@ fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
     }
 }
 
-/// What a disc that rolls meets first.
 fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
     let &RollingDisc { radius, centre, on, side } = roll;
     let below = &deposit.discs()[on];

@@ -18,7 +18,6 @@ pub struct ShearCell {
     pub rows: u8,
 }
 
-/// That of the scene.
 const CELL: ShearCell = ShearCell { wide: 24, columns: 19, rows: 12 };
 /// Distance of rows at the start, in diameters.
 const ROW_SPACING: f64 = 1.22;
@@ -134,7 +133,6 @@ pub fn shear_periodic() -> Scene {
     scene
 }
 
-/// Number of grains.
 const GRAINS: usize = 300;
 /// Width of the box that they lie in at the start, in diameters.
 const WIDTH: f64 = 19.0;

@@ -180,7 +180,6 @@ pub(super) struct MeanPair {
 }
 
 impl MeanPair {
-    /// Of a world's grains.
     pub(super) fn of(world: &World) -> Self {
         let masses = &world.grains.masses;
         Self {

@@ -8,7 +8,6 @@ use crate::sim::steppers::StepperInfo;
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{Approach, Model};
 
-/// The row of the registry.
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with cohesion and Coulomb's law",
     source: "A. Abramian, L. Staron, Time Steps v.s. Cohesion (2020); J. J. Moreau (1988)",
@@ -35,7 +34,6 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     ..StepperInfo::WHOLE
 };
 
-/// Takes one step.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     set_up(stage, settings);
     let report = remedies::solve(stage, settings);

@@ -134,7 +134,6 @@ fn damping_ratio(restitution: f64) -> f64 {
     high
 }
 
-/// The restitution that a damping ratio gives.
 fn restitution_of(damping_ratio: f64) -> f64 {
     match angle_and_root(damping_ratio) {
         Some((angle, root)) => (-2.0 * damping_ratio * angle / root).exp(),

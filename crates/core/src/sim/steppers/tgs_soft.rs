@@ -26,10 +26,9 @@ use crate::sim::state::State;
 use crate::sim::steppers::StepperInfo;
 use crate::sim::steppers::substeps::{self, Substepping, Touching, Works, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{DrivenRow, DrivenWall, Kinematics, Model, Row, StepProblem};
+use crate::solver::{DrivenRow, DrivenWall, Model, Row, StepProblem};
 use crate::world::{Parameters, World};
 
-/// The row of the registry.
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "E. Catto, Solver2D (2024)",
@@ -55,7 +54,6 @@ fn substeps(parameters: &Parameters) -> u32 {
     if parameters.substeps == 0 { DEFAULT_SUBSTEPS } else { parameters.substeps }
 }
 
-/// Takes one step.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let substeps = substeps(&settings.parameters);
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
@@ -102,8 +100,8 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
 }
 
 /// Gives contacts that met, and pushed, the speed they part with.
-fn restitute<K: Kinematics>(
-    problem: &mut StepProblem<K>,
+fn restitute<M: Model>(
+    problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
     contacts: &mut [Touching],
     works: &mut Works,
@@ -117,7 +115,7 @@ fn restitute<K: Kinematics>(
         let (push, before, after) = ([missing, 0.0], normal_velocity, normal_velocity + missing);
         contact.total[0] += missing;
         let (velocities, wall) = ([[before, 0.0], [after, 0.0]], contact.wall_velocity());
-        works.add::<K>(row.effective_mass, row.normal, push, velocities, wall);
+        works.add::<M>(row.effective_mass, row.normal, push, velocities, wall);
         // The wall gave way, which takes so much off its mean speed.
         let given_way = (contact.answers[0] - 1.0) * missing;
         works.wall += -0.5 * row.effective_mass * missing * given_way;
@@ -128,25 +126,25 @@ fn restitute<K: Kinematics>(
 /// Calls `change` with every row, its contact and its relative velocities, and pushes the bodies by
 /// the impulses λ that it returns.
 #[inline(always)]
-fn update<K: Kinematics>(
-    problem: &mut StepProblem<K>,
+fn update<M: Model>(
+    problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
     contacts: &mut [Touching],
-    mut change: impl FnMut(&Row<K>, &mut Touching, [f64; 2]) -> [f64; 2],
+    mut change: impl FnMut(&Row<M>, &mut Touching, [f64; 2]) -> [f64; 2],
 ) {
     let (bodies, rows) = (&mut problem.bodies.now, &problem.rows);
     let (of_fixed, of_pairs) = contacts.split_at_mut(rows.fixed.len());
     for (row, contact) in rows.fixed.iter().zip(of_fixed) {
         let i = &mut bodies[row.i as usize];
         contact.see(walls);
-        let impulse = change(row, contact, K::velocity(row.normal, i));
-        K::push_single(i, row.normal, impulse);
+        let impulse = change(row, contact, M::velocity(row.normal, i));
+        M::push_single(i, row.normal, impulse);
         contact.push_back(walls, row.effective_mass, impulse);
     }
     for (row, contact) in rows.pairs.iter().zip(of_pairs) {
         let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
-        let impulse = change(row, contact, K::relative_velocity(row.normal, &i, &j));
-        K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+        let impulse = change(row, contact, M::relative_velocity(row.normal, &i, &j));
+        M::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
         bodies[row.i as usize] = i;
         bodies[row.j as usize] = j;
     }
@@ -234,7 +232,7 @@ impl Softness {
         contact.impulse[0] = shifted - contact.capture_speed;
         if M::FRICTION {
             let bound = self.bound::<M>(shifted, contact.capture_speed);
-            let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            let part = 1.0 / M::TANGENTIAL_COMPLIANCE;
             let slip = tangential_velocity - contact.surface_speed;
             contact.impulse[1] = law::coulomb(before[1] - part * slip / tangential_answer, bound);
         }
@@ -287,13 +285,13 @@ fn begin_walls<M: Model>(
     let State { world, walls, .. } = &*stage.state;
     let mut driven: Vec<DrivenWall> = walls.driven(world, substep_secs).collect();
     driven.iter_mut().for_each(|wall| wall.now = wall.free);
-    set_answers::<M::Kinematics>(stage.problem, contacts, &driven);
+    set_answers::<M>(stage.problem, contacts, &driven);
     driven
 }
 
 /// Tells contacts d_n and d_t.
-fn set_answers<K: Kinematics>(
-    problem: &StepProblem<K>,
+fn set_answers<M: Model>(
+    problem: &StepProblem<M>,
     contacts: &mut [Touching],
     walls: &[DrivenWall],
 ) {
@@ -301,7 +299,7 @@ fn set_answers<K: Kinematics>(
         if let Some(DrivenRow { by, .. }) = contact.driven {
             let share = walls[by.wall as usize].response * row.effective_mass;
             let [normal, tangential] = by.along.map(|along| share * along * along);
-            contact.answers = [1.0 + normal, 1.0 + tangential / K::TANGENTIAL_COMPLIANCE];
+            contact.answers = [1.0 + normal, 1.0 + tangential / M::TANGENTIAL_COMPLIANCE];
         }
     }
 }
@@ -318,8 +316,8 @@ fn take_walls<M: Model>(
 }
 
 /// Takes off what contacts told of the work of walls with their last speed in a substep, since they had the mean one.
-fn correct_wall_works<K: Kinematics>(
-    problem: &StepProblem<K>,
+fn correct_wall_works<M: Model>(
+    problem: &StepProblem<M>,
     contacts: &[Touching],
     walls: &[DrivenWall],
     works: &mut Works,

@@ -5,7 +5,7 @@
 //! meets those that share one of its grains, and no others: where n of them share one, W has n² blocks.
 
 use crate::error::{Error, Result};
-use crate::solver::kinematics::Kinematics;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::{Row, StepProblem};
 
 /// Two entries of W that stand opposite each other may differ by this part of √(W_ii W_jj): what a
@@ -146,7 +146,7 @@ impl Assembled {
     ///
     /// # Errors
     /// Names the body that most contacts share, where they make W too large.
-    pub fn of<K: Kinematics>(problem: &StepProblem<K>) -> Result<Self> {
+    pub fn of<M: Model>(problem: &StepProblem<M>) -> Result<Self> {
         let mut contacts_of_body = vec![Vec::new(); problem.bodies.masses.len()];
         for (number, row) in problem.rows() {
             contacts_of_body[row.i as usize].push(number);
@@ -202,26 +202,26 @@ fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
 }
 
 /// The entry of W of two rows, each by its number and axis: 0 normal, 1 tangential.
-fn entry<K: Kinematics>(
-    problem: &StepProblem<K>,
+fn entry<M: Model>(
+    problem: &StepProblem<M>,
     [number, axis]: [usize; 2],
     [other_number, other_axis]: [usize; 2],
 ) -> f64 {
     let (row, other) = (problem.rows.get(number), problem.rows.get(other_number));
-    if K::AXES == 1 && (axis, other_axis) != (0, 0) {
+    if M::AXES == 1 && (axis, other_axis) != (0, 0) {
         let same = number == other_number && axis == other_axis;
         return if same { 1.0 / row.effective_mass } else { 0.0 };
     }
     let bodies =
-        |row: &Row<K>, number: usize| [Some(row.i), problem.rows.is_pair(number).then_some(row.j)];
-    let gradients = [K::gradients(row.normal), K::gradients(other.normal)];
+        |row: &Row<M>, number: usize| [Some(row.i), problem.rows.is_pair(number).then_some(row.j)];
+    let gradients = [M::gradients(row.normal), M::gradients(other.normal)];
     let mut sum = 0.0;
     for (side, body) in bodies(row, number).into_iter().enumerate() {
         for (other_side, other_body) in bodies(other, other_number).into_iter().enumerate() {
             let Some(body) = body.filter(|_| body == other_body) else { continue };
             let mass = problem.bodies.masses[body as usize];
             let (one, two) = (gradients[0][side][axis], gradients[1][other_side][other_axis]);
-            let inertias = K::INERTIA_OVER_MASS.iter().take(K::DEGREES);
+            let inertias = M::INERTIA_OVER_MASS.iter().take(M::DEGREES);
             for ((a, b), inertia) in one.iter().zip(two).zip(inertias) {
                 sum += a * b / (mass * inertia);
             }

@@ -11,7 +11,7 @@
 
 use smallvec::SmallVec;
 
-use crate::solver::kinematics::Kinematics;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 
 /// BodyNeighbours of a body. A disc has seldom more than six at first, and elimination seldom doubles
@@ -269,7 +269,7 @@ pub(crate) struct ContactGraph {
 
 impl ContactGraph {
     /// Orders the elimination, unless the contacts between grains are those of the last time.
-    pub(crate) fn analyse<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+    pub(crate) fn analyse<M: Model>(&mut self, problem: &StepProblem<M>) {
         let pairs = || problem.rows.pairs.iter().map(|row| (row.i, row.j));
         let bodies = problem.bodies.now.len();
         if self.bodies == bodies && pairs().eq(self.pairs.iter().copied()) {

@@ -25,7 +25,7 @@ use super::contact_system::{
     BestIterate, ContactSystem, ScaledVector, SystemMemory, WorkVectors, projected,
 };
 use super::stopping::{SolveReport, is_tested};
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::SolverSettings;
 
@@ -33,9 +33,8 @@ use crate::solver::settings::SolverSettings;
 /// the next step meets as much again.
 const MARGIN: f64 = 1.05;
 
-/// Solves a prepared problem.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut SystemMemory,
     settings: &SolverSettings,
 ) -> SolveReport {

@@ -9,8 +9,8 @@ use super::contact_system::SystemMemory;
 use super::newton::{self, NewtonMemory};
 use super::stopping::SolveReport;
 use super::{nncg, nsgs};
+use crate::solver::kinematics::Model;
 use crate::solver::method::Method;
-use crate::solver::model::Model;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{SolverSettings, StopTest};
 
@@ -27,7 +27,7 @@ pub(super) struct AutoMemory {
 
 /// Solves a prepared problem by the method that is picked.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut AutoMemory,
     settings: &SolverSettings,
 ) -> SolveReport {

@@ -16,8 +16,7 @@
 use super::nsgs::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
 use crate::contact::law;
-use crate::solver::kinematics::Kinematics;
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::{ContactRows, Row, StepProblem, residual};
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::world::FrictionCone;
@@ -102,7 +101,7 @@ impl SystemMemory {
     /// A problem as a system, and vectors to work with.
     pub(crate) fn system<'a, M: Model>(
         &'a mut self,
-        problem: &'a mut StepProblem<M::Kinematics>,
+        problem: &'a mut StepProblem<M>,
     ) -> (BodySystem<'a, M>, &'a mut WorkVectors) {
         (BodySystem::new(problem, &mut self.root_masses), &mut self.vectors)
     }
@@ -111,7 +110,7 @@ impl SystemMemory {
 /// The problem of a step: impulses move bodies, and A is never formed.
 #[derive(Debug)]
 pub struct BodySystem<'a, M: Model> {
-    problem: &'a mut StepProblem<M::Kinematics>,
+    problem: &'a mut StepProblem<M>,
     /// √m_n of the rows, kg^½.
     root_masses: &'a [f64],
 }
@@ -119,7 +118,7 @@ pub struct BodySystem<'a, M: Model> {
 impl<'a, M: Model> BodySystem<'a, M> {
     /// Contacts are numbered as the rows: those with fixed bodies first. `root_masses` is cleared
     /// first.
-    pub fn new(problem: &'a mut StepProblem<M::Kinematics>, root_masses: &'a mut Vec<f64>) -> Self {
+    pub fn new(problem: &'a mut StepProblem<M>, root_masses: &'a mut Vec<f64>) -> Self {
         root_masses.clear();
         root_masses.extend(problem.rows.iter().map(|row| row.effective_mass.sqrt()));
         Self { problem, root_masses }
@@ -131,7 +130,7 @@ impl<'a, M: Model> BodySystem<'a, M> {
     }
 
     /// Rows with √m_n, kg^½.
-    fn rows(&self) -> impl Iterator<Item = (&Row<M::Kinematics>, &f64)> {
+    fn rows(&self) -> impl Iterator<Item = (&Row<M>, &f64)> {
         self.problem.rows.iter().zip(self.root_masses)
     }
 }
@@ -174,7 +173,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
 
     #[inline(always)]
     fn tangential_diagonal(&self, _contact: usize) -> f64 {
-        M::Kinematics::TANGENTIAL_COMPLIANCE
+        M::TANGENTIAL_COMPLIANCE
     }
 
     #[inline(always)]
@@ -230,11 +229,11 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 
     fn tested_sweep(&mut self, settings: &SolverSettings) -> bool {
-        tested_sweep::<M>(self.problem, settings)
+        tested_sweep(self.problem, settings)
     }
 
     fn residual(&self) -> f64 {
-        residual::<M>(self.problem)
+        residual(self.problem)
     }
 
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool {

@@ -21,8 +21,8 @@ pub(super) use self::interior_point::fall_back;
 pub use self::nsgs::sweep;
 pub use self::stopping::SolveReport;
 pub(super) use self::stopping::sweep_until_settled;
+use super::kinematics::Model;
 use super::method::Method;
-use super::model::Model;
 use super::problem::StepProblem;
 use super::settings::SolverSettings;
 
@@ -41,7 +41,7 @@ pub(super) struct MethodMemory {
 
 /// Solves a prepared problem with the method of the settings.
 pub(super) fn solve_by_method<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut MethodMemory,
     settings: &SolverSettings,
 ) -> SolveReport {

@@ -13,13 +13,12 @@
 
 use super::contact_system::{BestIterate, ContactSystem, SystemMemory, WorkVectors, dot};
 use super::stopping::{SolveReport, is_tested};
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::SolverSettings;
 
-/// Solves a prepared problem.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut SystemMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
@@ -27,7 +26,6 @@ pub(super) fn solve<M: Model>(
     solve_system(&mut system, settings, vectors)
 }
 
-/// Solves a system from its present impulses.
 pub(super) fn solve_system<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,

@@ -177,7 +177,7 @@ struct LeastSolve<'a> {
 impl ProblemVisitor for LeastSolve<'_> {
     type Output = f64;
 
-    fn visit<M: Model>(self, problem: &mut StepProblem<M::Kinematics>, _: &ContactList) -> f64 {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> f64 {
         let once = |_| timed::<M>(problem, &mut Memory::default(), self.settings).0;
         (0..LEAST_REPEATS).map(once).fold(f64::INFINITY, f64::min)
     }

@@ -23,9 +23,7 @@ use crate::sim::settings::Settings;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{
-    Kinematics, Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve,
-};
+use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 
 /// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
 /// and the next step looks at them again.
@@ -74,7 +72,7 @@ pub(super) fn solve_range<M: Model>(
     let mut round = 0;
     loop {
         round += 1;
-        result.report.add(solve::<M>(problem, memory, &settings.solver));
+        result.report.add(solve(problem, memory, &settings.solver));
         let limits = BondLimits { bonds: contacts.bonds(), shocks, numbers };
         if round == 1 {
             *restless |= limits.is_restless::<M>(problem, fastest, lowered);
@@ -110,8 +108,8 @@ struct BondOpening {
 impl BondOpening {
     /// That of a row which tells of a bond. Other forces are even over the whole step, so that a part of it
     /// has that part of them.
-    fn of<K: Kinematics>(
-        problem: &StepProblem<K>,
+    fn of<M: Model>(
+        problem: &StepProblem<M>,
         number: usize,
         motion: &RowVelocities,
         shocks: &Shocks,
@@ -140,8 +138,8 @@ impl BondOpening {
 }
 
 /// Tells the bonds, one a contact, what the solved step has made of them.
-fn update_bonds<K: Kinematics>(
-    problem: &StepProblem<K>,
+fn update_bonds<M: Model>(
+    problem: &StepProblem<M>,
     bonds: &mut [Bond],
     shocks: &Shocks,
     numbers: StepNumbers,
@@ -201,7 +199,7 @@ impl BondLimits<'_> {
     /// wall had that speed (m/s).
     fn is_restless<M: Model>(
         &self,
-        problem: &StepProblem<M::Kinematics>,
+        problem: &StepProblem<M>,
         fastest: f64,
         lowered: &mut Vec<(usize, f64)>,
     ) -> bool {
@@ -214,7 +212,7 @@ impl BondLimits<'_> {
     }
 
     /// Whether nothing moved when the step began, and no pair moves apart or along in it.
-    fn stands<K: Kinematics>(&self, problem: &StepProblem<K>, fastest: f64) -> bool {
+    fn stands<M: Model>(&self, problem: &StepProblem<M>, fastest: f64) -> bool {
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;
         let mut speed = fastest;
@@ -228,7 +226,7 @@ impl BondLimits<'_> {
     /// step, were they of `strength` times their own.
     fn lowered<M: Model>(
         &self,
-        problem: &StepProblem<M::Kinematics>,
+        problem: &StepProblem<M>,
         strength: f64,
         lowered: &mut Vec<(usize, f64)>,
     ) {
@@ -257,7 +255,7 @@ impl BondLimits<'_> {
 }
 
 /// Lowers the bounds of bonds that do not live to the end of the step.
-fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, lowered: &[(usize, f64)]) {
+fn shorten<M: Model>(problem: &mut StepProblem<M>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
         let before = std::mem::replace(&mut problem.rows.captures[number], bound);
         let row = problem.rows.get_mut(number);

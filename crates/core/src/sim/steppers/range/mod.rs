@@ -27,10 +27,9 @@ use crate::sim::state::State;
 use crate::sim::steppers::range::bonds::{pass_shocks, solve_range};
 use crate::sim::steppers::{MeanPair, StepperInfo};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Approach, Kinematics, Model, SolveReport};
+use crate::solver::{Approach, Model, SolveReport};
 use crate::world::{FrictionCone, Parameters, World};
 
-/// The row of the registry.
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
     source: "bonds that cost the work C₀δc; shocks apart from loads",
@@ -242,7 +241,7 @@ pub(super) fn separate<M: Model>(state: &mut State) {
     let State { world, contacts, candidates, .. } = state;
     let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
     for _ in 0..PASSES {
-        let found = if M::Kinematics::AXES == 1 {
+        let found = if M::AXES == 1 {
             contacts.separate::<1>(world, candidates, allowed)
         } else {
             contacts.separate::<2>(world, candidates, allowed)

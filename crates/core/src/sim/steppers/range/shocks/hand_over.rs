@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::{NextImpact, ShockInputs, ShockPair, Shocks, Touch, grains};
 use crate::sim::steppers::range::StepNumbers;
-use crate::solver::{Kinematics, StepProblem};
+use crate::solver::{Model, StepProblem};
 use crate::world::World;
 
 /// A bond that a shock closed.
@@ -33,18 +33,18 @@ impl Shocks {
     ///
     /// **Gaps below the touch are none** after a shock as before it. Slacks of the size of rounding between
     /// grains that touch make a contact open or shut by less than a step is solved to.
-    pub(super) fn hand_over<K: Kinematics>(
+    pub(super) fn hand_over<M: Model>(
         &mut self,
-        problem: &mut StepProblem<K>,
+        problem: &mut StepProblem<M>,
         inputs: &ShockInputs<'_>,
     ) {
         let mut moved = false;
         for (index, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.struck_in_step)
         {
             moved = true;
-            let before = K::coordinates(&problem.bodies.before[index]);
+            let before = M::coordinates(&problem.bodies.before[index]);
             let free = std::array::from_fn(|axis| before[axis] + body.gain[axis]);
-            K::set(&mut problem.bodies.free[index], free);
+            M::set(&mut problem.bodies.free[index], free);
         }
         for number in 0..self.pairs.len() {
             let Some((allowed, normal)) = self.closing_left(problem, inputs, number) else {
@@ -70,9 +70,9 @@ impl Shocks {
 
     /// How fast a contact may close after the shocks, m/s, relative to a wall that moves, and along which normal
     /// if that is another one; nothing where all is as it was.
-    fn closing_left<K: Kinematics>(
+    fn closing_left<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         inputs: &ShockInputs<'_>,
         number: usize,
     ) -> Option<(f64, Option<DVec2>)> {
@@ -107,9 +107,9 @@ impl Shocks {
 
     /// The capture speeds, m/s, that a row was prepared with and that a pair has for what is left of the step
     /// after it has closed its bond; nothing where it has not.
-    fn capture_left<K: Kinematics>(
+    fn capture_left<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         inputs: &ShockInputs<'_>,
         number: usize,
     ) -> Option<[f64; 2]> {
@@ -145,7 +145,7 @@ impl Shocks {
 
     /// Takes note of a solved step: its impulse λ on a pair that met at t moves grains for the time that was left
     /// alone, and not by Δt·λ.
-    pub(in super::super) fn finish<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+    pub(in super::super) fn finish<M: Model>(&mut self, problem: &StepProblem<M>) {
         for (number, row) in problem.rows() {
             let (i, j) = grains(problem, number);
             if !self.acts_late(number, i, j) {

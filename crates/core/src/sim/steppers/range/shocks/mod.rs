@@ -60,7 +60,7 @@ use glam::DVec2;
 use crate::contact::{Candidates, Contact, ContactList};
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{Kinematics, Model, SolverSettings, StepProblem, for_each_row};
+use crate::solver::{Model, SolverSettings, StepProblem, for_each_row};
 use crate::world::World;
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
@@ -218,32 +218,30 @@ struct ShockInputs<'a> {
 }
 
 impl ShockInputs<'_> {
-    /// The contact behind a row.
-    fn contact<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> &Contact {
+    fn contact<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> &Contact {
         &self.contacts.contacts()[problem.rows.contacts[number] as usize]
     }
 
-    /// Whether its pair is bonded.
-    fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
+    fn is_bonded<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> bool {
         self.contacts.is_in_touch(problem.rows.contacts[number] as usize)
     }
 
     /// How far its bond is open, m.
-    fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
+    fn stretch<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> f64 {
         let bond = self.contacts.bonds()[problem.rows.contacts[number] as usize];
         if bond.alive { bond.stretch } else { 0.0 }
     }
 }
 
 /// The grains of a row by its number: i, and j unless that is fixed.
-fn grains<K: Kinematics>(problem: &StepProblem<K>, number: usize) -> (usize, Option<usize>) {
+fn grains<M: Model>(problem: &StepProblem<M>, number: usize) -> (usize, Option<usize>) {
     let row = problem.rows.get(number);
     let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
 /// ‖m_n (v_n^free + what the law adds)‖ of a problem, N·s, which its residual is measured by.
-fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
+fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {
         let free = row.effective_mass * (motion.free[0] + row.restitution_velocity);
@@ -253,15 +251,15 @@ fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
 }
 
 /// Along x and y.
-fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
-    let [x, y, _] = K::coordinates(body);
-    if K::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
+fn along_axes<M: Model>(body: &M::Body<f64>) -> DVec2 {
+    let [x, y, _] = M::coordinates(body);
+    if M::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
 }
 
 impl ShockBody {
     /// One of which nothing has happened yet, as it begins and as gravity alone would leave it.
-    fn untouched<K: Kinematics>(before: &K::Body<f64>, free: &K::Body<f64>) -> Self {
-        let [before, free] = [before, free].map(K::coordinates);
+    fn untouched<M: Model>(before: &M::Body<f64>, free: &M::Body<f64>) -> Self {
+        let [before, free] = [before, free].map(M::coordinates);
         Self {
             offset: [0.0; 3],
             shift: DVec2::ZERO,
@@ -279,17 +277,16 @@ impl ShockBody {
 }
 
 impl Shocks {
-    /// Nothing has happened yet.
-    fn begin<K: Kinematics>(
+    fn begin<M: Model>(
         &mut self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         inputs: &ShockInputs<'_>,
         tolerance: f64,
     ) {
         let Self { pairs, bodies, .. } = self;
         bodies.clear();
         let ends = problem.bodies.before.iter().zip(&problem.bodies.free);
-        bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<K>(before, free)));
+        bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<M>(before, free)));
         pairs.clear();
         let is_cohesive = problem.law.capture_speed() > 0.0;
         for_each_row(problem, |number, _, motion| {
@@ -320,7 +317,7 @@ impl Shocks {
             });
         });
         for body in bodies.iter_mut().filter(|body| !body.is_supported) {
-            let fallen = along_axes::<K>(&K::from_coordinates(body.gain));
+            let fallen = along_axes::<M>(&M::from_coordinates(body.gain));
             body.rest_of_way = -0.5 * inputs.numbers.time_step_secs * fallen;
         }
         self.least = tolerance * scale(problem);

@@ -8,13 +8,13 @@ use super::{
 };
 use crate::contact::RelativeMotion;
 use crate::sim::steppers::range::StepNumbers;
-use crate::solver::{Kinematics, StepProblem};
+use crate::solver::{Model, StepProblem};
 
 impl Shocks {
     /// Tells of each pair when it is struck next, and gives the first of these moments, s.
-    pub(super) fn find_next<K: Kinematics>(
+    pub(super) fn find_next<M: Model>(
         &mut self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         inputs: &ShockInputs<'_>,
     ) -> f64 {
         let mut first = NEVER;
@@ -33,9 +33,9 @@ impl Shocks {
     }
 
     /// a_n, m/s², of a grain that falls on what is fixed and has not met it yet.
-    fn acceleration<K: Kinematics>(
+    fn acceleration<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         number: usize,
         numbers: StepNumbers,
     ) -> f64 {
@@ -44,32 +44,32 @@ impl Shocks {
         if j.is_some() || self.bodies[i].is_supported || pair.touch == Touch::Met {
             return 0.0;
         }
-        pair.normal.dot(self.fall::<K>(i)) / numbers.time_step_secs
+        pair.normal.dot(self.fall::<M>(i)) / numbers.time_step_secs
     }
 
     /// What gravity gives a grain in the step, m/s.
-    fn fall<K: Kinematics>(&self, grain: usize) -> DVec2 {
-        along_axes::<K>(&K::from_coordinates(self.bodies[grain].gain))
+    fn fall<M: Model>(&self, grain: usize) -> DVec2 {
+        along_axes::<M>(&M::from_coordinates(self.bodies[grain].gain))
     }
 
     /// How the grain of a row goes relative to the other body.
-    pub(super) fn course<K: Kinematics>(
+    pub(super) fn course<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         number: usize,
         time_step_secs: f64,
     ) -> RelativeMotion {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
         let offset =
-            |grain: usize| along_axes::<K>(&K::from_coordinates(self.bodies[grain].offset));
-        let velocity = |grain: usize| along_axes::<K>(&problem.bodies.before[grain]);
+            |grain: usize| along_axes::<M>(&M::from_coordinates(self.bodies[grain].offset));
+        let velocity = |grain: usize| along_axes::<M>(&problem.bodies.before[grain]);
         let falls = pair.acceleration != 0.0;
-        let acceleration = if falls { self.fall::<K>(i) / time_step_secs } else { DVec2::ZERO };
+        let acceleration = if falls { self.fall::<M>(i) / time_step_secs } else { DVec2::ZERO };
         let of_other = match j {
             None => (DVec2::ZERO, problem.shape_velocity(number, pair.normal)),
             Some(j) => {
-                let slide = K::slide(problem.rows.get(number).normal);
+                let slide = M::slide(problem.rows.get(number).normal);
                 (offset(j), velocity(j) + slide * DVec2::X)
             }
         };
@@ -84,9 +84,9 @@ impl Shocks {
 
     /// Whether a pair touches when its grains were struck last. Where they were struck by others since it met,
     /// its normal is another one.
-    pub(super) fn is_in_touch<K: Kinematics>(
+    pub(super) fn is_in_touch<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         number: usize,
         inputs: &ShockInputs<'_>,
     ) -> bool {
@@ -101,9 +101,9 @@ impl Shocks {
     }
 
     /// Normal and gap of a pair at a moment, s.
-    pub(super) fn approach<K: Kinematics>(
+    pub(super) fn approach<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         number: usize,
         inputs: &ShockInputs<'_>,
         secs: f64,
@@ -111,16 +111,16 @@ impl Shocks {
         let contact = inputs.contact(problem, number);
         let course = self.course(problem, number, inputs.numbers.time_step_secs);
         let (world, candidates) = (inputs.world, inputs.candidates);
-        match K::AXES {
+        match M::AXES {
             1 => course.approach::<1>(world, candidates, contact, secs),
             _ => course.approach::<2>(world, candidates, contact, secs),
         }
     }
 
     /// When a pair is struck next.
-    fn next_of<K: Kinematics>(
+    fn next_of<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         number: usize,
         inputs: &ShockInputs<'_>,
     ) -> NextImpact {
@@ -144,9 +144,9 @@ impl Shocks {
     }
 
     /// When a pair meets from a moment (s) on.
-    fn meeting<K: Kinematics>(
+    fn meeting<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         number: usize,
         inputs: &ShockInputs<'_>,
         from: f64,
@@ -155,7 +155,7 @@ impl Shocks {
         let end = inputs.numbers.time_step_secs;
         let course = self.course(problem, number, end);
         let (world, candidates) = (inputs.world, inputs.candidates);
-        let meeting = match K::AXES {
+        let meeting = match M::AXES {
             1 => course.time_of_impact::<1>(world, candidates, contact, [from, end]),
             _ => course.time_of_impact::<2>(world, candidates, contact, [from, end]),
         };
@@ -163,11 +163,7 @@ impl Shocks {
     }
 
     /// Looks for the very moment at which a pair closes that touches but for a last gap, and is struck alone.
-    pub(super) fn refine<K: Kinematics>(
-        &mut self,
-        problem: &StepProblem<K>,
-        inputs: &ShockInputs<'_>,
-    ) {
+    pub(super) fn refine<M: Model>(&mut self, problem: &StepProblem<M>, inputs: &ShockInputs<'_>) {
         for (number, row) in problem.rows() {
             let root = self.root(row.i as usize);
             let pair = &self.pairs[number];
@@ -184,9 +180,9 @@ impl Shocks {
 
     /// Chooses what is struck in this pass, `first` being the earliest moment, s: pairs that are the next of
     /// both their grains, and what touches then and is joined to them.
-    pub(super) fn choose<K: Kinematics>(
+    pub(super) fn choose<M: Model>(
         &mut self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         first: f64,
         StepNumbers { time_step_secs, touch, .. }: StepNumbers,
     ) {

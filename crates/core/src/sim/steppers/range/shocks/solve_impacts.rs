@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::{NEVER, NextImpact, Role, ShockInputs, Shocks, Touch, along_axes, grains, scale};
 use crate::sim::stepping::StepResult;
 use crate::solver::{
-    Kinematics, Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
-    StopTest, measure, solve, sweep,
+    Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem, StopTest, measure,
+    solve, sweep,
 };
 
 /// Rows from which on shocks are solved no more tightly than the step.
@@ -20,8 +20,8 @@ const LOOSEST: f64 = 1e-3;
 
 /// Solves shocks that share grains, as tightly as a step is solved in which contacts may err by `least` (N·s).
 fn solve_together<M: Model>(
-    part: &mut StepProblem<M::Kinematics>,
-    memory: &mut Memory<M::Kinematics>,
+    part: &mut StepProblem<M>,
+    memory: &mut Memory<M>,
     settings: &SolverSettings,
     least: f64,
 ) -> SolveReport {
@@ -31,7 +31,7 @@ fn solve_together<M: Model>(
             StopTest::Residual => settings.tolerance.min(TIGHTLY.tolerance),
             StopTest::RelativeChange | StopTest::ImpulsePerMass => TIGHTLY.tolerance,
         };
-        earlier = solve::<M>(part, memory, &SolverSettings { tolerance, ..TIGHTLY });
+        earlier = solve(part, memory, &SolverSettings { tolerance, ..TIGHTLY });
         if earlier.converged {
             return earlier;
         }
@@ -41,16 +41,16 @@ fn solve_together<M: Model>(
         StopTest::Residual => settings.tolerance.max(of_step),
         StopTest::RelativeChange | StopTest::ImpulsePerMass => settings.tolerance,
     };
-    solve::<M>(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
+    solve(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
 }
 
 impl Shocks {
     /// Puts what is struck in this pass into `part`: either pairs that are struck alone, or all others.
     /// Whether there are any.
-    pub(super) fn set_up<K: Kinematics>(
+    pub(super) fn set_up<M: Model>(
         &mut self,
-        problem: &mut StepProblem<K>,
-        part: &mut StepProblem<K>,
+        problem: &mut StepProblem<M>,
+        part: &mut StepProblem<M>,
         inputs: &ShockInputs<'_>,
         alone: bool,
     ) -> bool {
@@ -83,9 +83,9 @@ impl Shocks {
     }
 
     /// What a shock adds to v_n of a row in its law, m/s. From now on the row is along the normal of a meeting.
-    fn strike_row<K: Kinematics>(
+    fn strike_row<M: Model>(
         &mut self,
-        problem: &mut StepProblem<K>,
+        problem: &mut StepProblem<M>,
         inputs: &ShockInputs<'_>,
         number: usize,
     ) -> f64 {
@@ -98,8 +98,8 @@ impl Shocks {
             wall_speed = problem.turn_row(number, normal);
             let (row, before) = (problem.rows.get(number), &problem.bodies.before);
             let [speed, _] = j.map_or_else(
-                || K::velocity(row.normal, &before[i]),
-                |j| K::relative_velocity(row.normal, &before[i], &before[j]),
+                || M::velocity(row.normal, &before[i]),
+                |j| M::relative_velocity(row.normal, &before[i], &before[j]),
             );
             pair.speed = speed - wall_speed;
             pair.normal = normal;
@@ -124,9 +124,9 @@ impl Shocks {
     /// Solves what was set up and takes it over; what is struck alone by one sweep, which is exact.
     pub(super) fn solve<M: Model>(
         &mut self,
-        problem: &mut StepProblem<M::Kinematics>,
-        part: &mut StepProblem<M::Kinematics>,
-        memory: &mut Memory<M::Kinematics>,
+        problem: &mut StepProblem<M>,
+        part: &mut StepProblem<M>,
+        memory: &mut Memory<M>,
         settings: &SolverSettings,
         alone: bool,
         result: &mut StepResult,
@@ -137,7 +137,7 @@ impl Shocks {
         } else {
             solve_together::<M>(part, memory, settings, self.least)
         };
-        let measures = measure::<M>(part);
+        let measures = measure(part);
         let Measures { residual, normal_work, mut tangential_work, border_work, .. } = measures;
         let [wall_work, of_surfaces] = problem.surface_works_in(part);
         tangential_work += of_surfaces;
@@ -169,24 +169,23 @@ impl Shocks {
             if moment == NEVER || (rows == 1) != alone {
                 continue;
             }
-            let [before, after] =
-                [&problem.bodies.before[grain], after].map(M::Kinematics::coordinates);
+            let [before, after] = [&problem.bodies.before[grain], after].map(M::coordinates);
             if before == after {
                 continue;
             }
             let shift = std::array::from_fn(|axis| -moment * (after[axis] - before[axis]));
             let body = &mut self.bodies[grain];
             body.offset = std::array::from_fn(|axis| body.offset[axis] + shift[axis]);
-            body.shift = along_axes::<M::Kinematics>(&M::Kinematics::from_coordinates(shift));
+            body.shift = along_axes::<M>(&M::from_coordinates(shift));
             body.since = body.since.max(moment);
             body.struck_in_step = true;
             body.struck_in_pass = true;
-            M::Kinematics::set(&mut problem.bodies.before[grain], after);
+            M::set(&mut problem.bodies.before[grain], after);
         }
     }
 
     /// Tells the pairs of grains that were struck where these are now, and how fast they come.
-    pub(super) fn move_on<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+    pub(super) fn move_on<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies = &self.bodies;
         let shift = |grain: usize| {
             if bodies[grain].struck_in_pass { bodies[grain].shift } else { DVec2::ZERO }
@@ -199,8 +198,8 @@ impl Shocks {
             }
             let before = &problem.bodies.before;
             let [speed, _] = j.map_or_else(
-                || K::velocity(row.normal, &before[i]),
-                |j| K::relative_velocity(row.normal, &before[i], &before[j]),
+                || M::velocity(row.normal, &before[i]),
+                |j| M::relative_velocity(row.normal, &before[i], &before[j]),
             );
             let pair = &mut self.pairs[number];
             pair.speed = speed - problem.wall_speed(number);
