@@ -224,7 +224,7 @@ pub(super) fn alarms_of<'a>(results: impl Iterator<Item = &'a RunResult>) -> Opt
     for result in results {
         all += 1;
         alarmed += u32::from(result.alarms != Alarms::default());
-        for (count, kind) in by_kind.iter_mut().zip(AlarmKind::ALL) {
+        for (count, &kind) in by_kind.iter_mut().zip(AlarmKind::ALL) {
             *count += u32::from(result.alarms.has(kind));
         }
     }
@@ -245,7 +245,7 @@ impl Alarms {
     }
 
     fn kinds(self) -> impl Iterator<Item = AlarmKind> {
-        AlarmKind::ALL.into_iter().filter(move |kind| self.has(*kind))
+        AlarmKind::ALL.iter().copied().filter(move |kind| self.has(*kind))
     }
 }
 
@@ -271,7 +271,7 @@ impl Serialize for Alarms {
 impl<'de> Deserialize<'de> for Alarms {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
         let kind = |name: &str| {
-            let found = AlarmKind::ALL.into_iter().find(|kind| kind.name() == name);
+            let found = AlarmKind::ALL.iter().copied().find(|kind| kind.name() == name);
             found.ok_or_else(|| D::Error::custom(format!("{name} is no kind of alarm")))
         };
         String::deserialize(deserializer)?.split_whitespace().map(kind).collect()

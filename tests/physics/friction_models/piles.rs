@@ -121,8 +121,7 @@ impl ProblemVisitor for FromRandomStarts<'_> {
 
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Vec<f64> {
         let mut random = random(self.1);
-        let mut root_masses = Vec::new();
-        let mut system = BodySystem::<M>::new(problem, &mut root_masses);
+        let mut system = BodySystem::<M>::new(problem);
         let mut impulse = || random.random_range(-1.0..1.0) * 0.05;
         let impulses: Vec<_> = (0..system.len())
             .map(|contact| [0, 1].map(|_| impulse() * system.root_mass(contact)))

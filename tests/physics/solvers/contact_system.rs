@@ -72,8 +72,7 @@ impl ProblemVisitor for Check {
     type Output = ();
 
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) {
-        let mut root_masses = Vec::new();
-        let mut system = BodySystem::<M>::new(problem, &mut root_masses);
+        let mut system = BodySystem::<M>::new(problem);
         let count = system.len();
         assert!(count >= self.0, "{count} contacts");
         let (mut origin, mut answer, mut weights) = (Vec::new(), Vec::new(), Vec::new());

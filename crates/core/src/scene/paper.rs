@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::scene::{NewPile, Scene, View};
 use crate::solver::{Method, Ordering, SolverSettings, StopTest};
 use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
@@ -82,9 +82,7 @@ pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
 /// # Errors
 /// Where the width is outside its range, or the scene is no pile.
 pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
-    if scene.name != NAME {
-        return Err(Error::value("scene", &scene.name, "pile where base-width is given"));
-    }
+    error::check(scene.name == NAME, "scene", &scene.name, "pile where base-width is given")?;
     if !BASE_WIDTHS_IN_DIAMETERS.contains(&width_in_diameters) {
         let (least, most) = BASE_WIDTHS_IN_DIAMETERS.into_inner();
         let allowed = format!("{least} to {most} diameters");
@@ -111,8 +109,6 @@ fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: LINE_DIAMETER * min, max: LINE_DIAMETER * max })
 }
 
-/// A disc dropped from one diameter above a fixed one.
-///
 /// Two bodies, one contact (paper §2.2): a disc dropped on another, fixed one.
 ///
 /// With A = the normal force that would give v̄ = 0, the three cases of the contact graph are: A > 0
@@ -136,8 +132,6 @@ pub fn collision() -> Scene {
 /// comes out. The paper does not state its own; this one was searched for.
 const START_IN_DIAMETERS: f64 = 7.865;
 
-/// The paper's cradle, with the stopping test that gives its pattern.
-///
 /// Three discs on a line, drawn towards one of them (paper §4).
 ///
 /// i sits at the centre of attraction, j touches it on the right, k starts at rest on the left and

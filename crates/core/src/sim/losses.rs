@@ -29,8 +29,8 @@ const WAY_IN_RADII: f64 = 0.25;
 pub(super) struct Losses {
     /// Where each grain's way begins that has not been looked at, m.
     from: Vec<DVec2>,
-    lost: Vec<bool>,
-    count: u32,
+    pub lost: Vec<bool>,
+    pub count: u32,
     /// y_i(0), m.
     initial_heights: Vec<f64>,
     world: Edges,
@@ -70,16 +70,6 @@ impl Losses {
                 false => features.iter().map(frame).collect(),
             },
         }
-    }
-
-    /// Number of grains lost so far.
-    pub(super) fn count(&self) -> u32 {
-        self.count
-    }
-
-    /// Whether that grain is lost.
-    pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.lost[grain]
     }
 
     /// Looks where the grains have gone. Walls may have moved: `features` are where they are now.

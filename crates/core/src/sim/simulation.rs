@@ -294,7 +294,7 @@ impl Simulation {
 
     /// What went wrong so far, one alarm of a kind.
     pub fn alarms(&self) -> &[Alarm] {
-        self.watch.alarms()
+        &self.watch.alarms
     }
 
     /// The step whose end is nearest to a simulated time (s), as long as Δt stays as it is.
@@ -304,7 +304,7 @@ impl Simulation {
 
     /// Whether a grain went through a wall or left the world.
     pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.watch.losses.is_lost(grain)
+        self.watch.losses.lost[grain]
     }
 
     /// Simulated time, s.

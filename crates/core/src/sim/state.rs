@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::{Candidates, ContactList, LookAhead, Reach};
 use crate::error::Result;
-use crate::sim::pull::{Pull, SpringPush};
+use crate::sim::pull::Pull;
 use crate::sim::walls::Walls;
 use crate::solver::{Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
@@ -74,11 +74,6 @@ impl State {
             |grain: usize| ahead.way_of_grain(world.grains.velocities[grain]) + slides;
         candidates.update_ahead::<AXES>(world, way_of_grain, ahead.way_of_others());
         contacts.detect_ahead::<AXES>(world, candidates, ahead);
-    }
-
-    /// The push of the spring on a grain in the next `time_step_secs`.
-    pub(crate) fn push_of_pull(&self, axes: usize, time_step_secs: f64) -> Option<SpringPush> {
-        self.pull?.push(&self.world, axes, time_step_secs)
     }
 
     /// Speed of the fastest grain or wall of a step that has begun, m/s.

@@ -95,8 +95,8 @@ impl<'a, M: Model> Stage<'a, M> {
     }
 
     /// The same for a method of your own, whose impulses move the bodies ([`BodySystem::new`]).
-    pub fn system<'b>(&'b mut self, root_masses: &'b mut Vec<f64>) -> BodySystem<'b, M> {
-        BodySystem::new(self.problem, root_masses)
+    pub fn system(&mut self) -> BodySystem<'_, M> {
+        BodySystem::new(self.problem)
     }
 
     /// The contacts of the step; row k of the problem is contact `problem.rows.contacts[k]` of them.
@@ -128,7 +128,8 @@ impl<'a, M: Model> Stage<'a, M> {
         state.begin(time_step_secs);
         let ahead = look_ahead(state);
         state.detect::<M>(ahead);
-        let push = state.push_of_pull(M::AXES, time_step_secs);
+        let pull = state.pull;
+        let push = pull.and_then(|pull| pull.push(&state.world, M::AXES, time_step_secs));
         let State { world, physics, contacts, walls, .. } = &mut **state;
         let capture_speed = if physics.cohesion {
             parameters.capture_speed(world.gravity.magnitude())
@@ -146,7 +147,7 @@ impl<'a, M: Model> Stage<'a, M> {
             driven: walls.driven(world, time_step_secs).collect(),
             of: &surface_of,
         });
-        problem.prepare_among(world, contacts, numbers, &settings.solver, rebound, surfaces);
+        problem.prepare(world, contacts, numbers, &settings.solver, rebound, surfaces);
         if let Some(push) = push {
             push.apply::<M>(&mut problem.bodies.free);
             push.apply::<M>(&mut problem.bodies.now);

@@ -29,11 +29,10 @@ pub use methods::sweep;
 pub use methods::{BodySystem, ContactSystem, ScaledVector, SolveReport};
 pub(crate) use model::cone_of;
 pub use model::{ModelParts, Slot, Slots};
-pub(crate) use problem::MovingSurfaces;
 pub use problem::{
-    Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures, PairRow,
-    ProblemNumbers, Row, RowVelocities, StepProblem, Surface, for_each_row, measure,
-    relative_velocities, residual, worst,
+    Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures,
+    MovingSurfaces, PairRow, ProblemNumbers, Row, RowVelocities, StepProblem, Surface,
+    for_each_row, measure, relative_velocities, residual, worst,
 };
 pub use settings::{Fallback, FrictionModel, SolverChanges, SolverSettings, StopTest};
 pub use solve::{Memory, solve};

@@ -87,7 +87,7 @@ pub fn solve<M: Model>(
 const NONE: u32 = u32::MAX;
 
 /// One island of a problem, with the memory of its method.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Island<M: Model> {
     /// Its contacts in the order of the whole, with grains numbered anew; in the place of the contact behind each row
     /// stands the row of the whole.
@@ -99,7 +99,7 @@ struct Island<M: Model> {
 }
 
 /// The islands of a problem. Memory is kept between steps.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Islands<M: Model> {
     islands: Vec<Island<M>>,
     /// How many of these are of the present problem.
@@ -107,12 +107,6 @@ struct Islands<M: Model> {
     /// Which island each grain is of, and its number there.
     island_of: Vec<u32>,
     numbers: Vec<u32>,
-}
-
-impl<M: Model> Default for Islands<M> {
-    fn default() -> Self {
-        Self { islands: Vec::new(), count: 0, island_of: Vec::new(), numbers: Vec::new() }
-    }
 }
 
 impl<M: Model> Islands<M> {
@@ -123,7 +117,7 @@ impl<M: Model> Islands<M> {
             return false;
         }
         if self.islands.len() < self.count {
-            self.islands.resize_with(self.count, Island::new);
+            self.islands.resize_with(self.count, Island::default);
         }
         self.islands[..self.count].iter_mut().for_each(|island| island.begin(problem));
         self.numbers.fill(NONE);
@@ -211,15 +205,6 @@ impl<M: Model> Islands<M> {
 }
 
 impl<M: Model> Island<M> {
-    fn new() -> Self {
-        Self {
-            problem: StepProblem::default(),
-            grains: Vec::new(),
-            memory: MethodMemory::default(),
-            report: SolveReport::nothing_yet(),
-        }
-    }
-
     /// Nothing of a problem yet but what all of its contacts share.
     fn begin(&mut self, whole: &StepProblem<M>) {
         let Self { problem, grains, .. } = self;

@@ -233,8 +233,7 @@ struct OwnSweeps {
 impl Advance for OwnSweeps {
     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
         stage.prepare(settings, |_approach| 0.0);
-        let mut root_masses = Vec::new();
-        let mut system = stage.system(&mut root_masses);
+        let mut system = stage.system();
         let (mut impulses, mut velocities) = (Vec::new(), Vec::new());
         system.read(&mut impulses);
         let mut order: Vec<usize> = (0..system.len()).collect();

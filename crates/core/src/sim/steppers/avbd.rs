@@ -35,7 +35,7 @@ use crate::world::Parameters;
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "the step's problem by penalties and multipliers, as far as its iterations get",
     source: "C. Giles, E. Diaz and C. Yuksel (2025)",
-    settings: &["bond", "dt", "tilt", "mu", "cone", "warm-start", "substeps"],
+    settings: "bond dt tilt mu cone warm-start substeps",
     substeps: |_, _, parameters| substeps(parameters),
     ..StepperInfo::WHOLE
 };

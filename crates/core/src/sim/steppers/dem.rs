@@ -13,8 +13,8 @@ use crate::sim::state::State;
 use crate::sim::steppers::spring_dashpot::{
     SpringDashpot, contact_time_secs, critical_time_step_secs, substeps,
 };
-use crate::sim::steppers::substeps::{Substepping, Works, set_drive_speeds};
-use crate::sim::steppers::{MeanPair, StepperInfo};
+use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
+use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenWall, Model, cone_of};
 
@@ -23,17 +23,7 @@ use crate::solver::{DrivenWall, Model, cone_of};
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
-    settings: &[
-        "bond",
-        "dt",
-        "tilt",
-        "rho",
-        "mu",
-        "cone",
-        "stiffness",
-        "damping-ratio",
-        "substeps",
-    ],
+    settings: "bond dt tilt rho mu cone stiffness damping-ratio substeps",
     takes_drives: true,
     substeps,
     critical_time_step_secs: |world, physics, parameters| {
@@ -44,7 +34,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     },
     fracture_work: |world, physics, parameters| {
         let springs = SpringDashpot::of(world, physics.axes, parameters);
-        MeanPair::of(world).fracture_work(physics, parameters, |force| springs.fracture_work(force))
+        fracture_work_of(world, physics, parameters, |force| springs.fracture_work(force))
     },
     ..StepperInfo::WHOLE
 };
@@ -80,7 +70,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
             let of = |bodies: &[_]| velocity::<M>(normal, contact, bodies);
             let velocities = [of(&substepping.start), of(bodies)];
             let works = &mut substepping.works;
-            works.add::<M>(mass, normal, impulse, velocities, of_wall);
+            add_work::<M>(works, mass, normal, impulse, velocities, of_wall);
         }
         substepping.add_gravity_work(bodies, &stage.state.world.grains.masses);
         drive_walls(stage, substepping.substep_secs, &pushes, &mut substepping.works);
@@ -218,9 +208,8 @@ impl Totals {
     }
 }
 
-/// Ends a substep of such walls; `pushes` are m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
-///
-/// Walls that a force drives, among springs: like grains they go on by the forces of the beginning of a substep.
+/// Ends a substep of walls that a force drives: like grains they go on by the forces of its beginning. `pushes` are m_ij,
+/// the impulses λ and the velocity of the wall (m/s) of each contact.
 ///
 /// That is stable while h < 2 √(M/nk) of a wall of mass M with n contacts of stiffness k, which is surely so where M is
 /// that of as many of the lightest grains: substeps are short enough for those.
@@ -228,7 +217,7 @@ fn drive_walls<M: Model>(
     stage: &mut Stage<'_, M>,
     substep_secs: f64,
     pushes: &[(f64, [f64; 2], [f64; 2])],
-    works: &mut Works,
+    works: &mut StepResult,
 ) {
     let State { world, walls, contacts, .. } = &mut *stage.state;
     let mut driven: Vec<DrivenWall> = walls.driven(world, substep_secs).collect();
@@ -246,7 +235,7 @@ fn drive_walls<M: Model>(
         driven[wall].now -= driven[wall].response * along;
     }
     for (wall, along) in pushed() {
-        works.wall += 0.5 * along * (driven[wall].now - driven[wall].before);
+        works.measures.wall_work += 0.5 * along * (driven[wall].now - driven[wall].before);
     }
-    works.drives += walls.take_driven(world, &driven);
+    works.drive_work += walls.take_driven(world, &driven);
 }

@@ -22,18 +22,8 @@ pub(super) struct Substepping<M: Model> {
     pub start: Vec<M::Body<f64>>,
     /// Bodies at the end of the substep if no contact acted.
     pub free: Vec<M::Body<f64>>,
-    pub works: Works,
-}
-
-/// Works since the beginning of the step, J.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Works {
-    normal: f64,
-    tangential: f64,
-    gravity: f64,
-    pub wall: f64,
-    border: f64,
-    pub drives: f64,
+    /// Works since the beginning of the step.
+    pub works: StepResult,
 }
 
 impl<M: Model> Substepping<M> {
@@ -45,27 +35,29 @@ impl<M: Model> Substepping<M> {
             substep_secs: settings.parameters.time_step_secs / f64::from(substeps),
             start: Vec::new(),
             free: Vec::new(),
-            works: Works::default(),
+            works: StepResult::nothing_yet(),
         }
     }
 
     /// Ends the step, after so many passes over its contacts.
     pub(super) fn end_step(&self, stage: &Stage<'_, M>, sweeps: u32) -> StepResult {
-        let Works { normal, tangential, gravity, wall, border, drives } = self.works;
+        let Measures { normal_work, tangential_work, wall_work, border_work, .. } =
+            self.works.measures;
         let measures = Measures {
-            normal_work: normal,
-            tangential_work: tangential,
-            wall_work: wall,
-            border_work: border,
-            ..measure::<M>(stage.problem)
+            normal_work,
+            tangential_work,
+            wall_work,
+            border_work,
+            ..measure(stage.problem)
         };
-        let report = SolveReport { sweeps, ..SolveReport::nothing_yet() };
-        StepResult { report, measures, gravity_work: gravity, drive_work: drives, bonds: None }
+        let report = SolveReport { sweeps, ..self.works.report };
+        StepResult { report, measures, ..self.works }
     }
 
     /// Begins a substep: gravity and a spring that pulls act on the bodies.
     pub(super) fn begin(&mut self, stage: &mut Stage<'_, M>) {
-        let push = stage.state.push_of_pull(M::AXES, self.substep_secs);
+        let State { world, pull, .. } = &*stage.state;
+        let push = pull.and_then(|pull| pull.push(world, M::AXES, self.substep_secs));
         let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);
         self.start.clone_from(bodies);
         for (index, body) in bodies.iter_mut().enumerate() {
@@ -96,30 +88,29 @@ impl<M: Model> Substepping<M> {
     pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
-            self.works.gravity += M::work_of_gravity(start, body, free, masses[index]);
+            self.works.gravity_work += M::work_of_gravity(start, body, free, masses[index]);
         }
     }
 }
 
-impl Works {
-    /// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
-    /// the mean of the velocities at its beginning and its end. `wall` is (V_n, V_t) of its wall, m/s.
-    #[inline(always)]
-    pub(super) fn add<M: Model>(
-        &mut self,
-        mass: f64,
-        normal: M::Normal<f64>,
-        impulse: [f64; 2],
-        [start, end]: [[f64; 2]; 2],
-        wall: [f64; 2],
-    ) {
-        self.normal += 0.5 * mass * impulse[0] * (start[0] + end[0]);
-        self.tangential += 0.5 * mass * impulse[1] * (start[1] + end[1]);
-        self.wall += mass * (impulse[0] * wall[0] + impulse[1] * wall[1]);
-        if M::SLIDES {
-            let along = M::slide_along(normal);
-            self.border += mass * (impulse[0] * along[0] + impulse[1] * along[1]);
-        }
+/// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
+/// the mean of the velocities at its beginning and its end. `wall` is (V_n, V_t) of its wall, m/s.
+#[inline(always)]
+pub(super) fn add_work<M: Model>(
+    works: &mut StepResult,
+    mass: f64,
+    normal: M::Normal<f64>,
+    impulse: [f64; 2],
+    [start, end]: [[f64; 2]; 2],
+    wall: [f64; 2],
+) {
+    let works = &mut works.measures;
+    works.normal_work += 0.5 * mass * impulse[0] * (start[0] + end[0]);
+    works.tangential_work += 0.5 * mass * impulse[1] * (start[1] + end[1]);
+    works.wall_work += mass * (impulse[0] * wall[0] + impulse[1] * wall[1]);
+    if M::SLIDES {
+        let along = M::slide_along(normal);
+        works.border_work += mass * (impulse[0] * along[0] + impulse[1] * along[1]);
     }
 }
 
@@ -208,7 +199,7 @@ pub(super) fn end_substep<M: Model>(
         contact.total[1] += contact.impulse[1];
         let velocities = [start, end];
         let wall = contact.wall_velocity();
-        works.add::<M>(row.effective_mass, row.normal, contact.impulse, velocities, wall);
+        add_work::<M>(works, row.effective_mass, row.normal, contact.impulse, velocities, wall);
     }
 }
 

@@ -24,7 +24,7 @@ use crate::sim::pull::gravity_that_scales;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::StepperInfo;
-use crate::sim::steppers::substeps::{self, Substepping, Touching, Works, set_drive_speeds};
+use crate::sim::steppers::substeps::{self, Substepping, Touching, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenRow, DrivenWall, Model, Row, StepProblem};
 use crate::world::{Parameters, World};
@@ -32,17 +32,7 @@ use crate::world::{Parameters, World};
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "E. Catto, Solver2D (2024)",
-    settings: &[
-        "bond",
-        "dt",
-        "tilt",
-        "rho",
-        "mu",
-        "cone",
-        "restitution-threshold",
-        "warm-start",
-        "substeps",
-    ],
+    settings: "bond dt tilt rho mu cone restitution-threshold warm-start substeps",
     takes_drives: true,
     substeps: |_, _, parameters| substeps(parameters),
     ..StepperInfo::WHOLE
@@ -82,7 +72,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
             softness.solve::<M, false>(contact, velocity)
         });
         substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
-        substepping.works.drives += take_walls(stage, &mut contacts, walls);
+        substepping.works.drive_work += take_walls(stage, &mut contacts, walls);
         substeps::end_substep(stage.problem, &mut contacts, substepping);
         correct_wall_works(stage.problem, &contacts, walls, &mut substepping.works);
         // The spring that pulls a grain looks at its velocity.
@@ -104,7 +94,7 @@ fn restitute<M: Model>(
     problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
     contacts: &mut [Touching],
-    works: &mut Works,
+    works: &mut StepResult,
 ) {
     update(problem, walls, contacts, |row, contact, [normal_velocity, _]| {
         if contact.rebound >= 0.0 || contact.total[0] <= 0.0 {
@@ -115,10 +105,10 @@ fn restitute<M: Model>(
         let (push, before, after) = ([missing, 0.0], normal_velocity, normal_velocity + missing);
         contact.total[0] += missing;
         let (velocities, wall) = ([[before, 0.0], [after, 0.0]], contact.wall_velocity());
-        works.add::<M>(row.effective_mass, row.normal, push, velocities, wall);
+        add_work::<M>(works, row.effective_mass, row.normal, push, velocities, wall);
         // The wall gave way, which takes so much off its mean speed.
         let given_way = (contact.answers[0] - 1.0) * missing;
-        works.wall += -0.5 * row.effective_mass * missing * given_way;
+        works.measures.wall_work += -0.5 * row.effective_mass * missing * given_way;
         push
     });
 }
@@ -161,8 +151,6 @@ const DAMPING_RATIO: f64 = 10.0;
 const PUSH_OUT_SPEED: f64 = 1.0;
 
 /// What all contacts of a step share.
-///
-/// A soft contact in a substep.
 ///
 /// **Softness.** The spring's force is −k s − γ ṡ at gap s, with ω² = k/m_ij and ζ = γ/(2 m_ij ω). Taken
 /// at the end of the substep, s + h v and v, its impulse is σ = −h(ω²(s + h v) + 2ζω v), which with
@@ -320,14 +308,14 @@ fn correct_wall_works<M: Model>(
     problem: &StepProblem<M>,
     contacts: &[Touching],
     walls: &[DrivenWall],
-    works: &mut Works,
+    works: &mut StepResult,
 ) {
     for (row, contact) in problem.rows.fixed.iter().zip(contacts) {
         if let Some(DrivenRow { by, .. }) = contact.driven {
             let wall = &walls[by.wall as usize];
             let along = by.part_along(contact.impulse);
             let gained = wall.now - wall.before;
-            works.wall += -0.5 * row.effective_mass * along * gained;
+            works.measures.wall_work += -0.5 * row.effective_mass * along * gained;
         }
     }
 }

@@ -4,7 +4,7 @@
 //! them, W = G M⁻¹ Gᵀ and q = G v^free, plus restitution's term in the normal rows. A contact
 //! meets those that share one of its grains, and no others: where n of them share one, W has n² blocks.
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{Row, StepProblem};
 
@@ -59,9 +59,7 @@ pub(super) type EntryBlock = ([u32; 2], [[f64; 2]; 2]);
 /// The blocks of W in rows.
 pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBlock>> {
     let Triplets { row, col, val } = matrix;
-    if val.is_empty() {
-        return Err(Error::value("W", "empty", "a matrix with an entry on each diagonal place"));
-    }
+    error::check(!val.is_empty(), "W", "empty", "a matrix with an entry on each diagonal place")?;
     check_length("W.row", row.len(), val.len(), "that of W.val")?;
     check_length("W.col", col.len(), val.len(), "that of W.val")?;
     check_each("W.val", val, "a finite number", |value| value.is_finite())?;
@@ -95,9 +93,7 @@ pub(super) fn own_blocks(blocks: &[EntryBlock], contacts: usize) -> Result<Vec<[
     }
     for (contact, [[normal, mixed], [_, tangential]]) in own.iter().enumerate() {
         for (value, index) in [(normal, 2 * contact), (tangential, 2 * contact + 1)] {
-            if *value <= 0.0 {
-                return Err(Error::value(format!("W[{index}, {index}]"), value, "> 0"));
-            }
+            error::check(*value > 0.0, format!("W[{index}, {index}]"), value, "> 0")?;
         }
         let determinant = normal * tangential - mixed * mixed;
         if determinant <= 0.0 {

@@ -43,8 +43,6 @@ pub(crate) struct AdmmMemory {
     three: Directions<3>,
     /// The best impulses of a solve.
     best: ScaledVector,
-    /// Of the system whose residual is looked at.
-    root_masses: Vec<f64>,
 }
 
 impl Clone for AdmmMemory {
@@ -72,11 +70,11 @@ pub(super) fn solve<M: Model>(
     memory: &mut AdmmMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    let AdmmMemory { one, two, three, best, root_masses } = memory;
+    let AdmmMemory { one, two, three, best } = memory;
     match M::DEGREES {
-        1 => run::<M, 1>(problem, one, best, root_masses, settings),
-        2 => run::<M, 2>(problem, two, best, root_masses, settings),
-        _ => run::<M, 3>(problem, three, best, root_masses, settings),
+        1 => run::<M, 1>(problem, one, best, settings),
+        2 => run::<M, 2>(problem, two, best, settings),
+        _ => run::<M, 3>(problem, three, best, settings),
     }
 }
 
@@ -84,12 +82,11 @@ fn run<M: Model, const D: usize>(
     problem: &mut StepProblem<M>,
     directions: &mut Directions<D>,
     best_impulses: &mut ScaledVector,
-    roots: &mut Vec<f64>,
     settings: &SolverSettings,
 ) -> SolveReport {
     let pairs = problem.rows.pairs.iter().map(|row| (row.i, row.j));
     directions.elimination.analyse(problem.bodies.now.len(), pairs);
-    let mut best = BestIterate::new(&BodySystem::<M>::new(problem, roots), best_impulses);
+    let mut best = BestIterate::new(&BodySystem::new(problem), best_impulses);
     let mut report = SolveReport::default();
     let mut compliance = FIRST_COMPLIANCE;
     directions.factorise::<M>(problem, compliance);
@@ -99,12 +96,12 @@ fn run<M: Model, const D: usize>(
         report.sweeps += 1;
         let is_tested = is_tested(report.sweeps, settings);
         if is_tested {
-            BodySystem::<M>::new(problem, roots).read(&mut directions.before);
+            BodySystem::new(problem).read(&mut directions.before);
         }
         let balance = directions.apply_law::<M>(problem, compliance);
         if is_tested {
             problem.form_velocities();
-            let system = BodySystem::<M>::new(problem, roots);
+            let system = BodySystem::new(problem);
             if system.is_settled(&directions.before, settings) {
                 report.converged = true;
                 break;
@@ -129,8 +126,7 @@ fn run<M: Model, const D: usize>(
     }
     if !report.converged {
         problem.form_velocities();
-        report.stalled =
-            best.restore(&mut BodySystem::<M>::new(problem, roots), report.sweeps).stalled;
+        report.stalled = best.restore(&mut BodySystem::new(problem), report.sweeps).stalled;
     }
     report
 }

@@ -24,9 +24,9 @@
 //! The method is that of an augmented Lagrangian treated by generalised Newton steps (P. Alart,
 //! A. Curnier 1991), with ε adapted as in a trust region.
 
-use super::contact_system::SystemMemory;
+use super::contact_system::{BodySystem, WorkVectors};
 use super::nncg;
-use super::nsgs::{sweep, tested_sweep};
+use super::nsgs::{settles_in, sweep};
 use super::stopping::SolveReport;
 use crate::contact::law::{coulomb, signorini};
 use crate::solver::kinematics::Model;
@@ -66,8 +66,6 @@ pub(crate) struct NewtonMemory {
     one: NewtonWorkspace<1>,
     two: NewtonWorkspace<2>,
     three: NewtonWorkspace<3>,
-    /// Of the conjugate gradients that go on where Newton's method leads nowhere.
-    gradients: SystemMemory,
 }
 
 /// What is kept where a body has `D` degrees of freedom.
@@ -95,13 +93,14 @@ enum Guess {
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut NewtonMemory,
+    vectors: &mut WorkVectors,
     settings: &SolverSettings,
 ) -> SolveReport {
-    let NewtonMemory { one, two, three, gradients } = memory;
+    let NewtonMemory { one, two, three } = memory;
     match M::DEGREES {
-        1 => Newton::<M, 1> { problem, settings, workspace: one, gradients }.run(),
-        2 => Newton::<M, 2> { problem, settings, workspace: two, gradients }.run(),
-        _ => Newton::<M, 3> { problem, settings, workspace: three, gradients }.run(),
+        1 => Newton::<M, 1> { problem, settings, workspace: one, vectors }.run(),
+        2 => Newton::<M, 2> { problem, settings, workspace: two, vectors }.run(),
+        _ => Newton::<M, 3> { problem, settings, workspace: three, vectors }.run(),
     }
 }
 
@@ -109,7 +108,8 @@ struct Newton<'a, M: Model, const D: usize> {
     problem: &'a mut StepProblem<M>,
     settings: &'a SolverSettings,
     workspace: &'a mut NewtonWorkspace<D>,
-    gradients: &'a mut SystemMemory,
+    /// Of the conjugate gradients that go on where Newton's method leads nowhere.
+    vectors: &'a mut WorkVectors,
 }
 
 impl<M: Model, const D: usize> Newton<'_, M, D> {
@@ -163,16 +163,9 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.go_on_without(report)
     }
 
-    /// Sweeps up to so many times; whether the stopping test is met.
+    /// Sweeps up to so many times. True where the stopping test is met.
     fn settles_in(&mut self, sweeps: u32, report: &mut SolveReport) -> bool {
-        for _ in 0..sweeps {
-            report.sweeps += 1;
-            if tested_sweep(self.problem, self.settings) {
-                report.converged = true;
-                break;
-            }
-        }
-        report.converged
+        settles_in(self.problem, self.settings, sweeps, report)
     }
 
     /// Where Newton's method leads nowhere, conjugate gradients use up the sweeps that are left:
@@ -183,7 +176,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
             return report;
         }
         let settings = SolverSettings { max_sweeps: left, ..*self.settings };
-        let rest = nncg::solve::<M>(self.problem, self.gradients, &settings);
+        let rest = nncg::solve(&mut BodySystem::new(self.problem), &settings, self.vectors);
         SolveReport {
             sweeps: report.sweeps + rest.sweeps,
             factorisations: report.factorisations,

@@ -11,8 +11,8 @@ use crate::contact::{ContactLaw, law};
 use crate::solver::kinematics::Model;
 use crate::solver::method::Ordering;
 use crate::solver::problem::{
-    Bodies, BoundedFriction, ConeFriction, ContactRows, CoulombFriction, DrivenRow, DrivenWall,
-    FixedRow, FrictionProjection, MovingWalls, StepProblem, natural_map,
+    Bodies, BoundedFriction, ContactRows, CoulombFriction, DrivenRow, DrivenWall, FixedRow,
+    FrictionProjection, StepProblem, natural_map, with_projection,
 };
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
@@ -31,15 +31,7 @@ pub(super) fn solve<M: Model>(
             if is_tested(sweeps, settings) {
                 return sweep_of_model(problem, settings, backward);
             }
-            match problem.friction.model {
-                FrictionModel::Tresca if M::FRICTION => {
-                    sweep_by::<M, BoundedFriction, false>(problem, backward)
-                }
-                FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
-                    sweep_by::<M, ConeFriction, false>(problem, backward)
-                }
-                _ => sweep_by::<M, CoulombFriction, false>(problem, backward),
-            };
+            with_projection!(problem, M, P => sweep_by::<M, P, false>(problem, backward));
             false
         };
         sweep_until_settled(problem, settings, sweep, |problem| natural_map(problem))
@@ -73,20 +65,29 @@ pub(super) fn solve_models<M: Model>(
 
 /// One sweep of the model of friction that a problem was prepared for, and whether the stopping test is met
 /// after it.
-pub(super) fn sweep_of_model<M: Model>(
+fn sweep_of_model<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
     backward: bool,
 ) -> bool {
-    match problem.friction.model {
-        FrictionModel::Tresca if M::FRICTION => {
-            tested::<M, BoundedFriction>(problem, settings, backward)
+    with_projection!(problem, M, P => tested::<M, P>(problem, settings, backward))
+}
+
+/// Sweeps up to so many times under the model of friction of a problem. True where the stopping test is met.
+pub(super) fn settles_in<M: Model>(
+    problem: &mut StepProblem<M>,
+    settings: &SolverSettings,
+    sweeps: u32,
+    report: &mut SolveReport,
+) -> bool {
+    for _ in 0..sweeps {
+        report.sweeps += 1;
+        if sweep_of_model(problem, settings, false) {
+            report.converged = true;
+            break;
         }
-        FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
-            tested::<M, ConeFriction>(problem, settings, backward)
-        }
-        _ => tested::<M, CoulombFriction>(problem, settings, backward),
     }
+    report.converged
 }
 
 /// One sweep under Coulomb's law, and whether the stopping test is met after it.
@@ -134,14 +135,14 @@ fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     backward: bool,
 ) -> ImpulseChange {
     if !P::LAGS && problem.is_driven() {
-        return pass_with_driven_walls::<M, MEASURE>(problem, backward);
+        return pass::<M, P, MEASURE, true>(problem, backward);
     }
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx") {
         // SAFETY: the processor has just been asked.
         return unsafe { pass_with_avx::<M, P, MEASURE>(problem, backward) };
     }
-    pass::<M, P, MEASURE>(problem, backward)
+    pass::<M, P, MEASURE, false>(problem, backward)
 }
 
 /// The same operations in the same order, and so bitwise the same result, in the three-operand
@@ -152,11 +153,13 @@ fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
     problem: &mut StepProblem<M>,
     backward: bool,
 ) -> ImpulseChange {
-    pass::<M, P, MEASURE>(problem, backward)
+    pass::<M, P, MEASURE, false>(problem, backward)
 }
 
+/// Where walls are driven (`problem::walls`), what a contact does to its wall is told to the wall at once, and each
+/// contact is solved for its wall's answer as for its grain's.
 #[inline(always)]
-fn pass<M: Model, P: FrictionProjection, const MEASURE: bool>(
+fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool>(
     problem: &mut StepProblem<M>,
     backward: bool,
 ) -> ImpulseChange {
@@ -164,65 +167,41 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool>(
     let lagged = &problem.friction.now;
     let Bodies { now: bodies, .. } = &mut problem.bodies;
     let ContactRows { fixed, pairs, .. } = &mut problem.rows;
+    let walls = &mut problem.walls;
     let first_pair = fixed.len();
     let project = |number: usize| {
         let lagged = if P::LAGS { lagged[number] } else { 0.0 };
         move |trial| P::project::<M>(&law, lagged, trial)
     };
     let mut change = ImpulseChange::default();
+    let mut solve_fixed =
+        |number: usize, row: &mut FixedRow<M>, bodies: &mut [_], change: &mut _| {
+            if DRIVEN && let Some(known) = walls.driven_row(number).copied() {
+                let wall = &mut walls.driven[known.by.wall as usize];
+                let impulse = solve_driven(&law, row, &known, &mut bodies[row.i as usize], wall);
+                ImpulseChange::add::<M, MEASURE>(change, row.effective_mass, impulse);
+            } else {
+                row.solve::<MEASURE>(bodies, change, project(number));
+            }
+        };
     if backward {
         for (number, row) in pairs.iter_mut().enumerate().rev() {
             row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
         }
         for (number, row) in fixed.iter_mut().enumerate().rev() {
-            row.solve::<MEASURE>(bodies, &mut change, project(number));
+            solve_fixed(number, row, bodies, &mut change);
         }
     } else {
         for (number, row) in fixed.iter_mut().enumerate() {
-            row.solve::<MEASURE>(bodies, &mut change, project(number));
+            solve_fixed(number, row, bodies, &mut change);
         }
         for (number, row) in pairs.iter_mut().enumerate() {
             row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
         }
     }
-    change
-}
-
-/// A pass where walls are driven (`problem::walls`): what a contact does to its wall is told to the wall at once, and
-/// each contact is solved for its wall's answer as for its grain's.
-fn pass_with_driven_walls<M: Model, const MEASURE: bool>(
-    problem: &mut StepProblem<M>,
-    backward: bool,
-) -> ImpulseChange {
-    let law = problem.law;
-    let project = |trial| CoulombFriction::project::<M>(&law, 0.0, trial);
-    let Bodies { now: bodies, .. } = &mut problem.bodies;
-    let ContactRows { fixed, pairs, .. } = &mut problem.rows;
-    let walls = &mut problem.walls;
-    let mut change = ImpulseChange::default();
-    let fixed_count = fixed.len();
-    let mut solve_fixed = |number: usize, bodies: &mut [_], change: &mut ImpulseChange| {
-        let row: &mut FixedRow<_> = &mut fixed[number];
-        let Some(known) = walls.driven_row(number).copied() else {
-            return row.solve::<MEASURE>(bodies, change, project);
-        };
-        let MovingWalls { driven, .. } = &mut *walls;
-        let wall = &mut driven[known.by.wall as usize];
-        let impulse = solve_driven::<M>(&law, row, &known, &mut bodies[row.i as usize], wall);
-        change.add::<M, MEASURE>(row.effective_mass, impulse);
-    };
-    if backward {
-        for row in pairs.iter_mut().rev() {
-            row.solve::<MEASURE>(bodies, &mut change, project);
-        }
-        (0..fixed_count).rev().for_each(|number| solve_fixed(number, bodies, &mut change));
-    } else {
-        (0..fixed_count).for_each(|number| solve_fixed(number, bodies, &mut change));
-        for row in pairs {
-            row.solve::<MEASURE>(bodies, &mut change, project);
-        }
+    if DRIVEN {
+        problem.tell_of_walls();
     }
-    problem.tell_of_walls();
     change
 }
 

@@ -35,7 +35,7 @@ pub(crate) struct LaggedFriction {
 }
 
 /// How a contact's impulses are projected under a model of friction.
-pub(crate) trait FrictionProjection {
+pub(crate) trait FrictionProjection: Sized {
     /// True where each row has a lagged number.
     const LAGS: bool;
 
@@ -43,8 +43,31 @@ pub(crate) trait FrictionProjection {
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 
     /// The natural map's residual of this projection.
-    fn residual<M: Model>(problem: &StepProblem<M>) -> f64;
+    fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
+        projection_residual::<M, Self>(problem)
+    }
 }
+
+/// Evaluates an expression for the projection that a problem is solved by.
+macro_rules! with_projection {
+    ($problem:expr, $M:ident, $P:ident => $work:expr) => {
+        match $problem.friction.model {
+            FrictionModel::Tresca if $M::FRICTION => {
+                type $P = $crate::solver::problem::BoundedFriction;
+                $work
+            }
+            FrictionModel::Associated | FrictionModel::Desaxce if $M::FRICTION => {
+                type $P = $crate::solver::problem::ConeFriction;
+                $work
+            }
+            _ => {
+                type $P = $crate::solver::problem::CoulombFriction;
+                $work
+            }
+        }
+    };
+}
+pub(crate) use with_projection;
 
 /// Coulomb's law itself.
 pub(crate) enum CoulombFriction {}
@@ -91,10 +114,6 @@ impl FrictionProjection for BoundedFriction {
         let bound = if lagged == UNSET_BOUND { law.friction_bound(shifted) } else { lagged };
         [shifted, law::coulomb(tangential, bound)]
     }
-
-    fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
-        projection_residual::<M, Self>(problem)
-    }
 }
 
 /// `associated` and `desaxce`: what is added to w lags.
@@ -107,10 +126,6 @@ impl FrictionProjection for ConeFriction {
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2] {
         let compliance = M::TANGENTIAL_COMPLIANCE;
         law::nearest_on_cone(law.friction, compliance, [trial[0] - lagged, trial[1]])
-    }
-
-    fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
-        projection_residual::<M, Self>(problem)
     }
 }
 

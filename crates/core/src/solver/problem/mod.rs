@@ -14,7 +14,7 @@ use glam::DVec2;
 
 pub(crate) use self::friction::{
     BoundedFriction, ConeFriction, CoulombFriction, FrictionProjection, LaggedFriction,
-    project_by_coulomb,
+    project_by_coulomb, with_projection,
 };
 use self::order::RowOrder;
 pub use self::residual::{
@@ -22,8 +22,8 @@ pub use self::residual::{
 };
 pub(crate) use self::residual::{errors, natural_map, residual_of, squared_residual_scale};
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
-pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, Surface};
-pub(crate) use self::walls::{MovingSurfaces, MovingWalls};
+pub(crate) use self::walls::MovingWalls;
+pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, MovingSurfaces, Surface};
 use super::kinematics::Model;
 use super::settings::SolverSettings;
 use crate::contact::{Contact, ContactLaw, ContactList, Impulse, Numbering, Other, law};
@@ -34,7 +34,7 @@ use crate::world::{FrictionCone, World};
 ///
 /// From outside a problem can be looked at; its impulses are changed by the methods, and by one of your own
 /// through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows in step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct StepProblem<M: Model> {
     /// The bodies that the rows' impulses move.
     pub bodies: Bodies<M>,
@@ -47,19 +47,8 @@ pub struct StepProblem<M: Model> {
     /// What is asked of friction.
     pub(crate) friction: LaggedFriction,
     pub(super) order: RowOrder,
-}
-
-impl<M: Model> Default for StepProblem<M> {
-    fn default() -> Self {
-        Self {
-            bodies: Bodies::default(),
-            rows: ContactRows::default(),
-            law: ContactLaw::default(),
-            walls: MovingWalls::default(),
-            friction: LaggedFriction::default(),
-            order: RowOrder::default(),
-        }
-    }
+    /// √m_ij of the rows, kg^½, for methods that work on scaled variables.
+    pub(super) root_masses: Vec<f64>,
 }
 
 /// The numbers that a problem is set up with.
@@ -87,22 +76,10 @@ pub struct Approach {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Sets up a step in which no surface moves: free velocities, and rows in the order of the method and its
-    /// settings that carry the impulses of `contacts` (warm start) or none. `rebound` gives what the law
-    /// adds to v_n of a contact, m/s.
+    /// Sets up a step: free velocities, and rows in the order of the method and its settings that carry the impulses of
+    /// `contacts` (warm start) or none. `rebound` gives what the law adds to v_n of a contact, m/s; `surfaces` are
+    /// those that move, if any does.
     pub fn prepare(
-        &mut self,
-        world: &World,
-        contacts: &ContactList,
-        numbers: ProblemNumbers,
-        settings: &SolverSettings,
-        rebound: impl Fn(Approach) -> f64 + Sync,
-    ) {
-        self.prepare_among(world, contacts, numbers, settings, rebound, None);
-    }
-
-    /// The same among surfaces that move.
-    pub(crate) fn prepare_among(
         &mut self,
         world: &World,
         contacts: &ContactList,
@@ -204,15 +181,16 @@ impl<M: Model> StepProblem<M> {
     pub fn form_velocities(&mut self) {
         let Bodies { now, free, .. } = &mut self.bodies;
         now.clone_from(free);
-        let captures = Captures { all: self.law.capture_speed(), each: &self.rows.captures };
+        let impulse = |number: usize, row: &Row<M>| {
+            let capture = self.rows.capture(number, &self.law);
+            [row.shifted_impulse - capture, row.tangential_impulse]
+        };
         for (number, row) in self.rows.fixed.iter().enumerate() {
-            let impulse = captures.reduced_impulse(number, row);
-            M::push_single(&mut now[row.i as usize], row.normal, impulse);
+            M::push_single(&mut now[row.i as usize], row.normal, impulse(number, row));
         }
         for (number, row) in (self.rows.fixed.len()..).zip(&self.rows.pairs) {
-            let impulse = captures.reduced_impulse(number, row);
             let (mut i, mut j) = (now[row.i as usize], now[row.j as usize]);
-            M::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+            M::push_pair(&mut i, &mut j, row.normal, impulse(number, row), row.share);
             now[row.i as usize] = i;
             now[row.j as usize] = j;
         }
@@ -246,18 +224,13 @@ impl<M: Model> StepProblem<M> {
     /// The capture speed of a row by its number, m/s.
     #[inline(always)]
     pub fn capture(&self, number: usize) -> f64 {
-        self.captures().of(number)
+        self.rows.capture(number, &self.law)
     }
 
     /// (λ_n, λ_t) of a row with its number, m/s.
     #[inline(always)]
     pub fn reduced_impulse(&self, number: usize, row: &Row<M>) -> [f64; 2] {
-        self.captures().reduced_impulse(number, row)
-    }
-
-    #[inline(always)]
-    fn captures(&self) -> Captures<'_> {
-        Captures { all: self.law.capture_speed(), each: &self.rows.captures }
+        [row.shifted_impulse - self.capture(number), row.tangential_impulse]
     }
 
     /// The rows with their numbers.
@@ -309,26 +282,5 @@ impl<M: Model> StepProblem<M> {
             [row.shifted_impulse, row.tangential_impulse] = impulse;
         }
         self.form_velocities();
-    }
-}
-
-/// The capture speeds of rows, m/s.
-#[derive(Clone, Copy)]
-struct Captures<'a> {
-    /// That of all rows where they do not differ.
-    all: f64,
-    /// That of each row; empty where they do not differ.
-    each: &'a [f64],
-}
-
-impl Captures<'_> {
-    #[inline(always)]
-    fn of(self, number: usize) -> f64 {
-        if self.each.is_empty() { self.all } else { self.each[number] }
-    }
-
-    #[inline(always)]
-    fn reduced_impulse<M: Model>(self, number: usize, row: &Row<M>) -> [f64; 2] {
-        [row.shifted_impulse - self.of(number), row.tangential_impulse]
     }
 }

@@ -14,7 +14,7 @@
 
 use std::ops::Range;
 
-use super::{BoundedFriction, ConeFriction, FrictionProjection, Row, StepProblem};
+use super::{FrictionProjection, Row, StepProblem, with_projection};
 use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
@@ -116,13 +116,7 @@ pub(super) fn projection_residual<M: Model, P: FrictionProjection>(
 
 /// The natural map's residual of what a problem is solved for: of its model of friction, or the common one.
 pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M>) -> f64 {
-    match problem.friction.model {
-        FrictionModel::Tresca if M::FRICTION => BoundedFriction::residual::<M>(problem),
-        FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
-            ConeFriction::residual::<M>(problem)
-        }
-        _ => residual(problem),
-    }
+    with_projection!(problem, M, P => P::residual(problem))
 }
 
 /// The residual of the model of friction of a problem; none under Coulomb's law.

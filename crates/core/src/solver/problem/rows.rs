@@ -2,6 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
+use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 
 /// The bodies of a step, one a grain.
@@ -21,13 +22,8 @@ pub struct Bodies<M: Model> {
 
 impl<M: Model> Default for Bodies<M> {
     fn default() -> Self {
-        Self {
-            now: Vec::new(),
-            before: Vec::new(),
-            free: Vec::new(),
-            masses: Vec::new(),
-            mean_mass: 0.0,
-        }
+        let [now, before, free] = [(); 3].map(|()| Vec::new());
+        Self { now, before, free, masses: Vec::new(), mean_mass: 0.0 }
     }
 }
 
@@ -129,7 +125,7 @@ impl<M: Model> PairRow<M> {
 
 /// The rows of a step. They are numbered through: first those against fixed bodies, then those between
 /// grains, each in the order of the sweep (`problem::order`).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ContactRows<M: Model> {
     /// Rows against fixed bodies.
     pub fixed: Vec<FixedRow<M>>,
@@ -140,12 +136,6 @@ pub struct ContactRows<M: Model> {
     /// The capture speed of each row, m/s, where rows differ in it (law `range`); else empty. Sweeps do
     /// not need it: they see σ alone.
     pub captures: Vec<f64>,
-}
-
-impl<M: Model> Default for ContactRows<M> {
-    fn default() -> Self {
-        Self { fixed: Vec::new(), pairs: Vec::new(), contacts: Vec::new(), captures: Vec::new() }
-    }
 }
 
 impl<M: Model> ContactRows<M> {
@@ -210,6 +200,12 @@ impl<M: Model> ContactRows<M> {
     #[inline(always)]
     pub(crate) fn surface_speed(&self, number: usize) -> f64 {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
+    }
+
+    /// The capture speed of the row of a number, m/s: under a law, where rows do not differ in it.
+    #[inline(always)]
+    pub(super) fn capture(&self, number: usize, law: &ContactLaw) -> f64 {
+        if self.captures.is_empty() { law.capture_speed() } else { self.captures[number] }
     }
 
     /// Adds a copy of row `number` of others, changed by `change`. In the place of the contact behind it stands

@@ -126,7 +126,7 @@ pub(crate) struct MovingWalls {
 }
 
 /// The surfaces that a problem is prepared among.
-pub(crate) struct MovingSurfaces<'a> {
+pub struct MovingSurfaces<'a> {
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
     /// The surface that a contact touches, if it moves.

@@ -113,11 +113,9 @@ impl BondOpening {
         number: usize,
         motion: &RowVelocities,
         shocks: &Shocks,
-        bond: Bond,
-        numbers: StepNumbers,
     ) -> Self {
         let row = problem.rows.get(number);
-        let closed = shocks.closed(number, bond.alive, numbers.time_step_secs);
+        let closed = shocks.closed(number);
         let ClosedBond { part, gained } = closed.unwrap_or(ClosedBond { part: 1.0, gained: 0.0 });
         let [impulse, _] = problem.reduced_impulse(number, row);
         let [now, before] = [motion.now, motion.before].map(|[normal, _]| normal);
@@ -149,7 +147,7 @@ fn update_bonds<M: Model>(
     for_each_row(problem, |number, row, motion| {
         let bond = &mut bonds[problem.rows.contacts[number] as usize];
         let cohesion_force = row.effective_mass * problem.law.capture_speed() / time_step_secs;
-        let opens = BondOpening::of(problem, number, &motion, shocks, *bond, numbers);
+        let opens = BondOpening::of(problem, number, &motion, shocks);
         let opening_speed = opens.opening_speed();
         let before = if bond.alive { cohesion_force * bond.stretch } else { 0.0 };
         if opens.is_closed || row.shifted_impulse > 0.0 {
@@ -241,7 +239,7 @@ impl BondLimits<'_> {
                 return;
             }
             let bond = self.bonds[problem.rows.contacts[number] as usize];
-            let opens = BondOpening::of(problem, number, &motion, self.shocks, bond, self.numbers);
+            let opens = BondOpening::of(problem, number, &motion, self.shocks);
             let stretch = if opens.is_closed { 0.0 } else { bond.stretch };
             let left = (debonding_distance - stretch).max(0.0);
             let opening = Opening { left, speed: opens.speed, load: opens.load };

@@ -38,8 +38,7 @@ use self::contact::{
 };
 use self::proximal::ProximalContact;
 use self::system::StepMatrix;
-use super::newton::{self, NewtonMemory};
-use super::nsgs::{solve_models, sweep_of_model};
+use super::nsgs::{settles_in, solve_models};
 use super::stopping::SolveReport;
 use crate::contact::law;
 use crate::solver::kinematics::Model;
@@ -82,8 +81,6 @@ pub(crate) struct InteriorMemory {
     three: PathWorkspace<3>,
     /// (σ, λ_t) of the rows of a problem that was not solved under Coulomb's law.
     unsolved: Vec<[f64; 2]>,
-    /// Of Newton's method, which goes on where a path leads nowhere.
-    newton: NewtonMemory,
 }
 
 /// What is kept where a body has `D` degrees of freedom.
@@ -110,11 +107,13 @@ struct PathWorkspace<const D: usize> {
     stopped: Vec<bool>,
 }
 
-/// Solves a prepared problem under the model of friction that it was prepared for.
+/// Solves a prepared problem under the model of friction that it was prepared for. Where the path of Coulomb's law leads
+/// nowhere, `go_on` takes over.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
     settings: &SolverSettings,
+    mut go_on: impl FnMut(&mut StepProblem<M>, &SolverSettings) -> SolveReport,
 ) -> SolveReport {
     solve_models(problem, settings, |problem| match problem.friction.model {
         _ if !M::FRICTION => convex::<M, HalfLine>(problem, memory, settings),
@@ -122,7 +121,7 @@ pub(super) fn solve<M: Model>(
         FrictionModel::Associated | FrictionModel::Desaxce => {
             convex::<M, Cone>(problem, memory, settings)
         }
-        FrictionModel::Coulomb => coulomb(problem, memory, settings),
+        FrictionModel::Coulomb => coulomb(problem, memory, settings, &mut go_on),
     })
 }
 
@@ -164,14 +163,15 @@ pub(in crate::solver) fn fall_back<M: Model>(
     SolveReport { converged: false, stalled: report.stalled, fell_back, ..instead.after(report) }
 }
 
-/// Follows the path of Coulomb's law as far as it leads, and has Newton's method go on from there. The
+/// Follows the path of Coulomb's law as far as it leads, and has another method go on from there. The
 /// compressive cone has a corner at σ = c, which no path goes round.
 fn coulomb<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
     settings: &SolverSettings,
+    go_on: impl FnOnce(&mut StepProblem<M>, &SolverSettings) -> SolveReport,
 ) -> SolveReport {
-    let InteriorMemory { two, three, newton, .. } = memory;
+    let InteriorMemory { two, three, .. } = memory;
     let report = match M::DEGREES {
         _ if problem.law.cone() == FrictionCone::Compressive => SolveReport::default(),
         2 => InteriorPoint::<M, Leaning, 2>::new(problem, settings, two).follow_path(),
@@ -182,7 +182,7 @@ fn coulomb<M: Model>(
         return report;
     }
     let rest = SolverSettings { max_sweeps: left, ..*settings };
-    newton::solve::<M>(problem, newton, &rest).after(report)
+    go_on(problem, &rest).after(report)
 }
 
 struct InteriorPoint<'a, M: Model, S, const D: usize> {
@@ -220,16 +220,10 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Sweeps up to so many times; whether the stopping test is met.
+    /// Sweeps up to so many times. True where the stopping test is met.
     fn settles_in(&mut self, sweeps: u32) -> bool {
-        for _ in 0..sweeps.min(self.settings.max_sweeps - self.report.sweeps) {
-            self.report.sweeps += 1;
-            if sweep_of_model(self.problem, self.settings, false) {
-                self.report.converged = true;
-                break;
-            }
-        }
-        self.report.converged
+        let sweeps = sweeps.min(self.settings.max_sweeps - self.report.sweeps);
+        settles_in(self.problem, self.settings, sweeps, &mut self.report)
     }
 
     /// Takes a step along the path; the share of it that was taken, and the natural map where it leads.

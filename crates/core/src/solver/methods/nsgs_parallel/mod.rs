@@ -70,7 +70,7 @@ fn solve_at<M: Model>(
 ) -> SolveReport {
     match Tiled::<M>::new(level, problem, memory) {
         Some(mut tiled) => tiled.run(settings),
-        None => nsgs::solve::<M>(problem, settings),
+        None => nsgs::solve(problem, settings),
     }
 }
 

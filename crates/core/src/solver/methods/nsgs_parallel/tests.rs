@@ -97,7 +97,7 @@ fn residual_is_that_of_the_rows<M: Model>(cone: FrictionCone) {
     for (bodies, contacts) in [(40, 203), (4000, 8000)] {
         for level in levels() {
             let mut problem = problem::<M>(4, bodies, contacts, cone);
-            nsgs::solve::<M>(&mut problem, &sweeps(3));
+            nsgs::solve(&mut problem, &sweeps(3));
             let expected = residual(&problem);
             let mut memory = BlockMemory::default();
             let mut tiled = Tiled::<M>::new(level, &mut problem, &mut memory).expect("colours");
@@ -141,7 +141,7 @@ fn same_bits_at_all_levels<M: Model>(cone: FrictionCone) {
         let start = problem::<M>(seed, 40, 1 + 3 * seed as u32, cone);
         let settings = sweeps(1 + seed as u32 % 30);
         let mut expected = start.clone();
-        nsgs::solve::<M>(&mut expected, &settings);
+        nsgs::solve(&mut expected, &settings);
         for level in levels() {
             let (mut solved, mut memory) = (start.clone(), BlockMemory::default());
             let report = solve_at::<M>(level, &mut solved, &mut memory, &settings);

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{NEVER, NextImpact, Role, ShockInputs, Shocks, Touch, along_axes, grains, scale};
+use super::{NEVER, NextImpact, Role, Shocks, Touch, along_axes, grains, scale};
 use crate::sim::stepping::StepResult;
 use crate::solver::{
     Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem, StopTest, measure,
@@ -51,7 +51,6 @@ impl Shocks {
         &mut self,
         problem: &mut StepProblem<M>,
         part: &mut StepProblem<M>,
-        inputs: &ShockInputs<'_>,
         alone: bool,
     ) -> bool {
         part.rows.clear();
@@ -61,7 +60,7 @@ impl Shocks {
             if self.pairs[number].role == Role::Apart || moment == NEVER || (rows == 1) != alone {
                 continue;
             }
-            let restitution_velocity = self.strike_row(problem, inputs, number);
+            let restitution_velocity = self.strike_row(problem, number);
             part.rows.push_copy(&problem.rows, number, |row| {
                 row.restitution_velocity = restitution_velocity;
                 (row.shifted_impulse, row.tangential_impulse) = (0.0, 0.0);
@@ -83,13 +82,8 @@ impl Shocks {
     }
 
     /// What a shock adds to v_n of a row in its law, m/s. From now on the row is along the normal of a meeting.
-    fn strike_row<M: Model>(
-        &mut self,
-        problem: &mut StepProblem<M>,
-        inputs: &ShockInputs<'_>,
-        number: usize,
-    ) -> f64 {
-        let numbers = inputs.numbers;
+    fn strike_row<M: Model>(&mut self, problem: &mut StepProblem<M>, number: usize) -> f64 {
+        let numbers = self.numbers;
         let mut wall_speed = problem.wall_speed(number);
         let (i, j) = grains(problem, number);
         let pair = &mut self.pairs[number];
@@ -107,7 +101,7 @@ impl Shocks {
             (pair.gap, pair.shift) = (0.0, 0.0);
             pair.gap = -pair.gap_at(secs);
             pair.touch = Touch::Met;
-            let stored = inputs.stretch(problem, number) * problem.law.capture_speed();
+            let stored = pair.stretch * problem.law.capture_speed();
             let squared = (pair.speed + gained).powi(2) + 2.0 * stored / numbers.time_step_secs;
             closing = -squared.sqrt();
         }
