@@ -20,7 +20,7 @@ pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &st
 /// Numbers that a figure's claims rest on.
 pub(crate) struct ReportTable {
     /// Name of its file, without the ending.
-    pub name: &'static str,
+    pub name: String,
     pub columns: Vec<&'static str>,
     /// A cell a column.
     pub rows: Vec<Vec<String>>,
@@ -33,12 +33,12 @@ impl ReportTable {
     /// Where a row has not a cell a column.
     pub(crate) fn to_csv(&self) -> Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let refuse = |error: csv::Error| Error::file(self.name, error);
+        let refuse = |error: csv::Error| Error::file(&self.name, error);
         writer.write_record(&self.columns).map_err(refuse)?;
         for row in &self.rows {
             writer.write_record(row).map_err(refuse)?;
         }
-        writer.into_inner().map_err(|error| Error::file(self.name, error.error()))
+        writer.into_inner().map_err(|error| Error::file(&self.name, error.error()))
     }
 
     /// The table as Markdown.

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use serde_json::Value;
+
 use super::claims::{Alike, Claim, Verdict};
 use crate::config::Config;
 use crate::error::{Error, Result};
@@ -132,6 +134,11 @@ impl<'a> Rows<'a> {
         Self(self.0.iter().copied().filter(|(config, _)| holds(config)).collect())
     }
 
+    /// The same, and the others.
+    pub(super) fn parted(&self, holds: impl Fn(&Config) -> bool) -> [Self; 2] {
+        [self.such_that(&holds), self.such_that(|config| !holds(config))]
+    }
+
     /// Those of initial states that were not chosen for what they show.
     pub(super) fn ensemble(&self) -> Self {
         self.such_that(|config| config.source.seed != Some(NewPile::default().seed))
@@ -216,6 +223,19 @@ impl<'a> Rows<'a> {
         };
         groups.map(pairs).collect()
     }
+}
+
+/// The settings of a run that are other than those of the first one, but for Bond, Δt and the state.
+pub(super) fn changes(config: &Config, first: &Config) -> String {
+    let settings = |config: &Config| serde_json::to_value(config).unwrap_or_default();
+    let (here, first) = (settings(config), settings(first));
+    let is_change = |(name, value): &(&String, &Value)| {
+        !["bond", "dt", "seed"].contains(&name.as_str()) && first.get(*name) != Some(*value)
+    };
+    let all = here.as_object().into_iter().flatten().filter(is_change);
+    let words = |(name, value): (&String, &Value)| format!("{name} {value}").replace('"', "");
+    let changes: Vec<String> = all.map(words).collect();
+    if changes.is_empty() { "as it is".to_owned() } else { changes.join(", ") }
 }
 
 /// The decimal logarithm of a run's Δt.

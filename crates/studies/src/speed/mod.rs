@@ -1,12 +1,11 @@
-//! Speed charted against accuracy: of single steps, by their size as well, of whole simulations, and what a scene
-//! saves by computing no more than it needs. Every method of the registry is on every chart.
+//! Speed charted against accuracy: of single steps, by their size as well, and of whole simulations. Every method of
+//! the registry is on every chart.
 //!
 //! The folder of a chart holds pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and
 //! `measured/`: journals of what was measured, by program and processor, so that the same command
 //! goes on where it was stopped and never mixes times of different programs.
 
 mod collection;
-mod models;
 mod performance;
 mod simulations;
 mod sizes;
@@ -34,8 +33,6 @@ pub enum ChartPart {
     Step,
     /// Error of the slump against simulated seconds per second
     Simulation,
-    /// What a scene's model costs
-    Model,
     /// A step of 500 to 10,000 grains, to residuals and to a certificate
     Size,
 }
@@ -124,14 +121,13 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     let is_wanted = |part| match part {
         _ if !options.only.is_empty() => options.only.contains(&part),
         ChartPart::Size => options.large,
-        ChartPart::Step | ChartPart::Simulation | ChartPart::Model => true,
+        ChartPart::Step | ChartPart::Simulation => true,
     };
     let mut report = format!("# Speed against accuracy\n\n{}\n", bench.machine.words());
     type Make = fn(&Bench) -> Result<Vec<ChartSection>>;
-    let makers: [(ChartPart, &str, Make); 4] = [
+    let makers: [(ChartPart, &str, Make); 3] = [
         (ChartPart::Step, "Single steps", steps::make),
         (ChartPart::Simulation, "Whole simulations", simulations::make),
-        (ChartPart::Model, "What a scene's model costs", models::make),
         (ChartPart::Size, "Steps by size", sizes::make),
     ];
     for (_, title, make) in makers.into_iter().filter(|(part, ..)| is_wanted(*part)) {

@@ -81,7 +81,7 @@ pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
         "wall_secs",
         "share_of_unsolved_steps",
     ];
-    ReportTable { name: "quantities", columns, rows }
+    ReportTable { name: "quantities".into(), columns, rows }
 }
 
 /// The same as JSON: numbers as numbers, and those that do not exist as null.
