@@ -141,7 +141,7 @@ pub(super) struct ChartCommand {
     /// Coarser, in a few minutes
     #[arg(long)]
     quick: bool,
-    /// Also race on steps of 500, 2,000 and 10,000 grains, and simulate 2,000
+    /// Also race on steps of 500, 2,000 and 10,000 grains
     #[arg(long)]
     large: bool,
     /// Chart these alone

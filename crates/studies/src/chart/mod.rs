@@ -194,8 +194,6 @@ pub struct Chart {
     pub(crate) width: f64,
     /// Whether it is nothing but a legend, without axes: for long ones, beside other charts.
     pub(crate) only_legend: bool,
-    /// Whether it stands below the charts before it, at the left.
-    pub(crate) begins_row: bool,
 }
 
 impl Chart {
@@ -209,7 +207,6 @@ impl Chart {
             legend: LegendCorner::default(),
             width: 1.0,
             only_legend: false,
-            begins_row: false,
         }
     }
 
@@ -248,7 +245,7 @@ const CAPTION_LINE: u32 = 28;
 pub struct Sheet {
     /// Pixels.
     pub size: (u32, u32),
-    /// From left to right, and from the top to the bottom.
+    /// From left to right.
     pub charts: Vec<Chart>,
     /// Lines of words below.
     pub caption: Vec<String>,

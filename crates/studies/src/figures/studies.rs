@@ -249,16 +249,16 @@ mod tests {
     use crate::sim::AlarmKind;
 
     fn result(status: Status, lost_grains: u32, alarm: Option<AlarmKind>) -> RunResult {
-        let alarms = alarm.into_iter().collect();
+        let alarms = alarm.map_or("", AlarmKind::name).to_owned();
         RunResult { status, lost_grains, alarms, ..RunResult::of_slump(0.0) }
     }
 
     /// A claim that holds, on those runs.
-    fn qualified(results: &[RunResult]) -> Claim {
+    fn qualified(results: &[&RunResult]) -> Claim {
         let mut studies = StudyRunner::new(PathBuf::new(), true);
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";
         let study = Study::parse(text, "pile.toml".as_ref(), true).expect("a study");
-        let rows = results.iter().map(|&result| (String::new(), Config::default(), result));
+        let rows = results.iter().map(|&result| (String::new(), Config::default(), result.clone()));
         let table = RunsTable { rows: rows.collect(), core_secs: 0.0 };
         studies.finished.insert("pile", (study, table));
         let mut claims = [Claim::new("it falls", "p = 0.001", Verdict::Holds)];
@@ -274,14 +274,14 @@ mod tests {
         let lost = result(Status::Done, 2, Some(AlarmKind::GrainLost));
         let infinite = result(Status::NotFinite, 0, Some(AlarmKind::NotFinite));
 
-        let claim = qualified(&[sound; 40]);
+        let claim = qualified(&[&sound; 40]);
         assert_eq!((claim.measured.as_str(), claim.verdict), ("p = 0.001", Verdict::Holds));
-        let claim = qualified(&[sound, deep, sound]);
+        let claim = qualified(&[&sound, &deep, &sound]);
         assert_eq!(claim.measured, "p = 0.001; 1 of 3 runs raised alarms (overlap 1)");
         assert_eq!(claim.verdict, Verdict::Holds);
-        for spoilt in [lost, infinite] {
-            let mut results = vec![sound; 999];
-            results.extend([deep, spoilt]);
+        for spoilt in [&lost, &infinite] {
+            let mut results = vec![&sound; 999];
+            results.extend([&deep, spoilt]);
             let claim = qualified(&results);
             assert!(claim.measured.starts_with("p = 0.001; 2 of 1001 runs raised"));
             assert!(claim.measured.ends_with(", and 1 lost grains or did not end"));

@@ -16,7 +16,7 @@ use crate::world::ParameterChanges;
 
 /// How the piles get to the steps that are collected: far better solved than any claim about a pile
 /// needs, so that a collection does not favour the errors of the methods it is to compare.
-pub(super) const ADVANCE: SolverSettings = SolverSettings {
+const ADVANCE: SolverSettings = SolverSettings {
     method: Method::Newton,
     ordering: Ordering::Interleaved,
     stop: StopTest::Residual,
@@ -28,6 +28,9 @@ pub(super) const ADVANCE: SolverSettings = SolverSettings {
     fallback: Fallback::None,
     islands: false,
 };
+
+/// Width of a box over the root of the number of its grains, in diameters: 16 for 138.
+const WIDTH_BY_ROOT: f64 = 1.35;
 
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +79,35 @@ impl CollectionPlan {
     /// 24 of them: the first two times.
     pub(super) fn fewer_piles(restitution_threshold: f64) -> Self {
         Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
+    }
+
+    /// Steps at Δt = 1e-3 s of piles without cohesion and with, made quickly, as steep as that of 138 grains: beginning to
+    /// slump or, in their box, at rest. They stand in runs whose every step was certified under bounds of friction, so
+    /// that what a warm start takes over is the error of no method.
+    pub(super) fn of_size(grains: usize, in_a_box: bool, quick: bool) -> Self {
+        let times_secs = match (in_a_box, quick) {
+            (true, true) => vec![5e-3],
+            (true, false) => vec![1e-2, 2e-2],
+            (false, true) => vec![2e-2],
+            (false, false) => vec![3e-2, 0.1],
+        };
+        Self {
+            // The second one is felt, and yet lets a pile of any size slump.
+            bonds: vec![0.0, 10.0],
+            time_steps_secs: vec![1e-3],
+            times_secs,
+            seeds: vec![1],
+            grains,
+            box_width_in_diameters: (WIDTH_BY_ROOT * (grains as f64).sqrt()).round(),
+            deposition: Deposition::DropAndRoll,
+            in_a_box,
+            advance: SolverSettings {
+                method: Method::InteriorPoint,
+                friction_model: FrictionModel::Tresca,
+                ..ADVANCE
+            },
+            restitution_threshold: 2.0,
+        }
     }
 
     /// The names of its steps, in their order.
@@ -224,6 +256,13 @@ mod tests {
         }
         names.dedup();
         assert_eq!(names.len(), collected.len(), "every step has a name of its own");
+    }
+
+    #[test]
+    fn boxes_are_as_steep_as_the_papers() {
+        let paper = NewPile::default();
+        let width = CollectionPlan::of_size(paper.grains, false, false).box_width_in_diameters;
+        assert_eq!(width, paper.box_width_in_diameters);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Speed charted against accuracy: of single steps, by their size as well, and of whole simulations. Every method of
+//! Speed charted against accuracy: of single steps, small and large, and of whole simulations. Every method of
 //! the registry is on every chart.
 //!
 //! The folder of a chart holds pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and
@@ -8,7 +8,6 @@
 mod collection;
 mod performance;
 mod simulations;
-mod sizes;
 mod solves;
 mod steps;
 mod variants;
@@ -29,11 +28,11 @@ use crate::runner::Runner;
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ChartPart {
-    /// Residual against the time of a step, and performance profiles
+    /// Residual against the time of a step
     Step,
     /// Error of the slump against simulated seconds per second
     Simulation,
-    /// A step of 500 to 10,000 grains, to residuals and to a certificate
+    /// The same of steps of 500 to 10,000 grains, with certificates under `tresca`
     Size,
 }
 
@@ -44,7 +43,7 @@ pub struct ChartOptions {
     pub out: PathBuf,
     /// Coarser, in a few minutes.
     pub quick: bool,
-    /// Also steps of up to 10,000 grains, and simulations of 2,000.
+    /// Also steps of up to 10,000 grains.
     pub large: bool,
     /// The parts; all where there is none.
     pub only: Vec<ChartPart>,
@@ -128,7 +127,7 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     let makers: [(ChartPart, &str, Make); 3] = [
         (ChartPart::Step, "Single steps", steps::make),
         (ChartPart::Simulation, "Whole simulations", simulations::make),
-        (ChartPart::Size, "Steps by size", sizes::make),
+        (ChartPart::Size, "Steps by size", steps::make_sizes),
     ];
     for (_, title, make) in makers.into_iter().filter(|(part, ..)| is_wanted(*part)) {
         let begun = Instant::now();

@@ -1,5 +1,5 @@
-//! How methods are compared over many problems, some of which some methods fail on: means with
-//! failures, performance profiles, and the front of what nothing beats.
+//! How methods are compared over many problems, some of which some methods fail on: means with failures, and the front
+//! of what nothing beats.
 
 /// What one solve took.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,32 +68,6 @@ pub(super) fn speed_ratio(base: &[Timing], method: &[Timing]) -> SpeedRatio {
     }
 }
 
-/// Performance profiles (E. Dolan, J. Moré 2002): for each method, the share of problems that it
-/// solves within τ times the least time of any method, as the corners (τ, share) of a staircase that
-/// begins at τ = 1. `timings[method][problem]`. Problems that no method solves count against all.
-pub(super) fn performance_profiles(timings: &[Vec<Timing>]) -> Vec<Vec<(f64, f64)>> {
-    let problems = timings.first().map_or(0, Vec::len);
-    let secs = |timing: &Timing| if timing.solved { timing.secs } else { f64::INFINITY };
-    let best: Vec<f64> = (0..problems)
-        .map(|problem| timings.iter().map(|of| secs(&of[problem])).fold(f64::INFINITY, f64::min))
-        .collect();
-    let profile = |of: &Vec<Timing>| {
-        let solved = of.iter().zip(&best).filter(|(timing, _)| timing.solved);
-        let mut factors: Vec<f64> = solved.map(|(timing, best)| timing.secs / best).collect();
-        factors.sort_by(f64::total_cmp);
-        let mut corners = vec![(1.0, 0.0)];
-        for (index, factor) in factors.into_iter().enumerate() {
-            let share = (index + 1) as f64 / problems as f64;
-            match corners.last_mut() {
-                Some(last) if last.0 == factor => last.1 = share,
-                _ => corners.push((factor, share)),
-            }
-        }
-        corners
-    };
-    timings.iter().map(profile).collect()
-}
-
 /// The points (speed, error) that no other beats in both, by rising speed. Of equal ones the first
 /// is kept.
 pub(super) fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
@@ -149,16 +123,6 @@ mod tests {
         // √(4 · 50)
         assert!((ratio.at_least.expect("a ratio") - 200f64.sqrt()).abs() < 1e-12);
         assert_eq!(speed_ratio(&base, &[failed(1.0); 4]).both, None);
-    }
-
-    #[test]
-    fn a_profile_is_the_share_within_a_factor_of_the_best() {
-        let fast = vec![solved(1.0), solved(1.0), failed(9.0), failed(9.0)];
-        let slow = vec![solved(2.0), solved(2.0), solved(5.0), failed(9.0)];
-        let profiles = performance_profiles(&[fast, slow]);
-        assert_eq!(profiles[0], [(1.0, 0.5)], "best on two of four, and fails on the others");
-        assert_eq!(profiles[1], [(1.0, 0.25), (2.0, 0.75)]);
-        assert_eq!(performance_profiles(&[vec![failed(1.0)]]), [vec![(1.0, 0.0)]]);
     }
 
     #[test]

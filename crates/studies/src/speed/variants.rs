@@ -1,7 +1,7 @@
 //! The solver variants that are charted: every method of the registry with its settings, each with one look on every
 //! chart. A look is a colour, and dashes after the colours run out; after the dashes run out too, other colours.
 
-use crate::chart::{Layer, Look, PALETTE, Point, Rgb, points};
+use crate::chart::{Layer, Look, PALETTE, Rgb, points};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 
@@ -98,11 +98,6 @@ impl ChartedVariant {
         self.stepper.uses_method().then_some(self.solver.method)
     }
 
-    /// Whether it solves another problem than Coulomb's law poses.
-    pub(super) fn is_of_model(&self) -> bool {
-        self.solver.friction_model != FrictionModel::Coulomb
-    }
-
     /// Warm-started, down to a residual.
     pub(super) fn to_residual(&self, tolerance: f64, max_sweeps: u32) -> SolverSettings {
         let stop = StopTest::Residual;
@@ -126,11 +121,6 @@ impl ChartedVariant {
         self.look >= PALETTE.len()
     }
 
-    /// Its line.
-    pub(super) fn stroke(&self) -> Look {
-        if self.is_dashed() { Look::Dashes(3) } else { Look::Line(3) }
-    }
-
     /// Its dots, of that radius.
     pub(super) fn dots(&self, radius: u32) -> Look {
         if self.is_dashed() { Look::Rings(radius) } else { Look::Dots(radius) }
@@ -145,17 +135,6 @@ impl ChartedVariant {
         }
         vec![Layer::curve(name, points, colour, Look::LineAndDots)]
     }
-}
-
-/// A staircase's corners as a line that ends at `end`.
-pub(super) fn staircase(corners: &[(f64, f64)], end: f64) -> Vec<Point> {
-    let mut line: Vec<(f64, f64)> = Vec::new();
-    for &(x, y) in corners {
-        line.extend(line.last().map(|&(_, before)| (x, before)));
-        line.push((x, y));
-    }
-    line.extend(line.last().filter(|(x, _)| *x < end).map(|&(_, y)| (end, y)));
-    points(line)
 }
 
 #[cfg(test)]

@@ -175,8 +175,7 @@ impl<'a> Measurements<'a> {
 }
 
 /// Where a number comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SourceKind {
     /// Taken from the source, or from a review that quotes it.
     Read,
@@ -201,7 +200,7 @@ impl SourceKind {
 }
 
 /// What a quantity should be.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Expected {
     /// The published value, or the middle of what was published.
     pub value: f64,
@@ -215,10 +214,9 @@ pub(super) struct Expected {
     pub source: &'static str,
 }
 
-/// Whether the measured agrees with the published.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Agreement {
+/// How the measured compares with the published.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Agreement {
     /// The whole interval lies within the band.
     Agrees,
     /// The whole interval lies outside.

@@ -5,7 +5,7 @@
 //! within agrees, what lies outside differs, and what does neither is not decided. Numbers that were recalled, not
 //! read, have generous bands and say so.
 //!
-//! The folder holds `report.md`, `quantities.csv` and `.json`, a figure (`errors.png`, `.svg`, `.csv`), and
+//! The folder holds `report.md`, `quantities.csv`, a figure (`errors.png`, `.svg`, `.csv`), and
 //! `measured/`: journals of finished runs, by program and processor, so that the same command goes on where it was
 //! stopped.
 
@@ -28,8 +28,6 @@ mod watched;
 
 use std::path::PathBuf;
 use std::time::Instant;
-
-pub use self::experiment::Agreement;
 
 use self::experiment::Experiment;
 use self::runs::run_all;
@@ -121,7 +119,6 @@ pub fn validate(options: &ValidateOptions) -> Result<()> {
     write_sheet(out, "errors", &sheet, &options.command())?;
     let table = report::table(&ran);
     write_file(&out.join("quantities.csv"), &table.to_csv()?)?;
-    write_file(&out.join("quantities.json"), report::json(&ran)?.as_bytes())?;
     let text = report::markdown(&ran, *quick, &machine.words(), started.elapsed().as_secs_f64());
     let path = out.join("report.md");
     write_file(&path, text.as_bytes())?;

@@ -12,7 +12,7 @@ pub(super) fn sheet(
     let good = || simulated.iter().filter(|point| point.failed.is_none()).map(|point| point.speed);
     let slowest = 0.7 * good().fold(f64::INFINITY, f64::min).min(1.0);
     let fastest = 1.5 * good().fold(0.0, f64::max).max(10.0 * slowest);
-    let finest = format!("Δt = {:e} s", plan.finest_secs);
+    let finest = format!("Δt = {:e} s", FINEST_SECS);
     let panels = [("the same Δt", Some(references.floor(plan))), (finest.as_str(), None)];
     let mut charts: Vec<Chart> = panels
         .into_iter()
@@ -29,14 +29,14 @@ pub(super) fn sheet(
     let legend = Chart::legend_of(&mut charts, 0.42);
     charts.push(legend);
     let steps = listed(&plan.time_steps_secs, |step| format!("{step:e} s"));
-    let (piles, grains) = (plan.piles.len(), plan.made_as.grains);
+    let (piles, grains) = (plan.piles.len(), NewPile::default().grains);
     let caption = bench.caption(&[
         &format!(
             "A point for each method, effort and Δt (the larger the dot, the larger: {steps}); means over {piles} piles of {grains} grains."
         ),
         &format!(
             "References by {}. Slump after {} s. On the lower edge: the reference itself.",
-            plan.reference.name, plan.duration_secs
+            REFERENCE, DURATION_SECS
         ),
     ]);
     Sheet { size: (1800, 900), charts, caption }.high_enough()
@@ -86,7 +86,7 @@ pub(super) fn report(
     simulated: &[SimulatedPoint],
     references: &References,
 ) -> String {
-    let [tight, tighter] = plan.tolerances;
+    let [tight, tighter] = TOLERANCES;
     let [unsolved, steps] = references.unsolved();
     let mut lines = vec![
         format!(
@@ -94,7 +94,7 @@ pub(super) fn report(
              {:.4} in the mean: no smaller error means anything. {unsolved} of their {steps} steps were not solved as \
              asked. Runs that take more than {} s a simulated second are given up as too slow. Every time is the least \
              of {}.",
-            plan.reference.name,
+            REFERENCE,
             references.floor(plan),
             plan.limit_secs,
             if plan.repeats == 1 { "1 run".into() } else { format!("{} runs", plan.repeats) }
