@@ -5,7 +5,7 @@ use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
 use super::studies::{Rows, log_step};
 use super::{Figure, StudyRunner};
 use crate::RunResult;
-use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Point, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet, points};
 use crate::error::Result;
 use crate::scene::NewPile;
 use crate::statistics::{Mean, mean, p_value, slope};
@@ -77,12 +77,10 @@ pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let rows = all.ensemble();
     let overlap = |result: &RunResult| result.tally.mean_overlap;
     let y = Axis::log("mean overlap δ/d", 1e-5, 0.2);
-    let mut of_exponent = chart(&all, "Fig. 5b: mean overlap during 1 s", time_steps(), y, overlap);
-    of_exponent.legend = LegendCorner::UpperLeft;
+    let of_exponent = chart(&all, "Fig. 5b: mean overlap during 1 s", time_steps(), y, overlap);
     let x = Axis::linear("Δt (s)", 0.0, 5.5e-3);
     let y = Axis::linear("mean overlap δ/d", 0.0, END_OF_AXIS);
-    let mut of_paper = chart(&all, "On the paper's axes", x, y, overlap);
-    of_paper.legend = LegendCorner::UpperLeft;
+    let of_paper = chart(&all, "On the paper's axes", x, y, overlap);
     let caption = vec![format!(
         "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no mean.",
         rows.seeds().len()

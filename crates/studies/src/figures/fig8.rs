@@ -6,9 +6,7 @@ use super::paired::parts;
 use super::studies::{Rows, changes};
 use super::{Figure, StudyRunner};
 use crate::RunResult;
-use crate::chart::{
-    Axis, Chart, INK, Layer, LegendCorner, Look, MapCell, PALETTE, Point, Rgb, Sheet, points,
-};
+use crate::chart::{Axis, Chart, INK, Layer, Look, MapCell, PALETTE, Point, Rgb, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
 use crate::report::ReportTable;
@@ -52,7 +50,7 @@ fn loose_and_tight(rows: &Rows<'_>) -> (f64, f64) {
 pub(super) fn strip(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle")?;
     let (loose, tight) = loose_and_tight(&rows);
-    let mut y = Axis::linear("", -0.6, 1.6);
+    let mut y = Axis::linear("", -0.4, 1.4);
     y.ticks = vec![(0.0, "closed".into()), (1.0, "open".into())];
     let mut chart =
         Chart::new("The bond of i and j after the shock", Axis::log("Δt (s)", 8e-5, 1.3e-2), y);
@@ -69,7 +67,6 @@ pub(super) fn strip(studies: &StudyRunner) -> Result<Figure> {
         let name = format!("{what}: stop at {tolerance:e} m/s").replace('-', "−");
         chart.layers.push(Layer::curve(name, points(of(tolerance)), colour, look));
     }
-    chart.legend = LegendCorner::UpperRight;
     let mut sheet = Sheet::of(chart);
     sheet.size = (1200, 480);
     sheet.caption = vec![
@@ -98,7 +95,7 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
     let first = rows.0[0].0;
     let all = parts(&rows, |config| changes(config, first));
-    let mut y = Axis::linear("", -(all.len() as f64), 2.2);
+    let mut y = Axis::linear("", -(all.len() as f64), 1.0);
     y.ticks = (0..).zip(&all).map(|(row, (name, _))| (-f64::from(row), name.clone())).collect();
     let x = Axis::log("Δt (s)", 8e-5, 1.3e-2);
     let mut chart = Chart::new("The bond of i and j with one choice changed", x, y);
@@ -190,10 +187,8 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     let mut chart = Chart::new(
         "Share of runs that lose the bond",
         Axis::log("Δt (s)", 8e-5, 1.3e-2),
-        Axis::linear("share of start distances", -0.02, 1.35),
+        Axis::linear("share of start distances", -0.02, 1.02),
     );
-    chart.y.ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].map(|share| (share, share.to_string())).to_vec();
-    chart.legend = LegendCorner::UpperRight;
     let starts = rows.values(|config| config.source.start);
     let mut at_large_steps = Vec::new();
     let tolerances = rows.tolerances();

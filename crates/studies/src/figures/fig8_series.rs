@@ -2,7 +2,7 @@
 
 use super::fig8::{OPEN_GAP, PHASE_SECS};
 use super::{Claim, Figure, StudyRunner};
-use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
@@ -96,7 +96,6 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
 fn chart(runs: &[DiscSeries], title: &str, (from, to): (f64, f64)) -> Result<Chart> {
     let axes = (Axis::linear("t − t_shock (s)", from, to), Axis::linear("x_j / d", 0.98, 1.2));
     let mut chart = Chart::new(format!("Fig. 8: {title}"), axes.0, axes.1);
-    chart.legend = LegendCorner::UpperLeft;
     for (index, shown) in SHOWN_SECS.into_iter().enumerate() {
         let run = runs.iter().find(|run| run.step_secs == shown);
         let run = run.ok_or_else(|| Error::value("dt", shown, "part of the study"))?;

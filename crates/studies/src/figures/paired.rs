@@ -17,10 +17,9 @@ use crate::statistics::{Mean, mean, p_value};
 const MARGINS: [(usize, f64); 2] = [(138, 0.02), (usize::MAX, 0.04)];
 /// More groups than this share one chart.
 const MOST_CHARTS: usize = 4;
-/// Width of a chart, of one that all groups share, of the legend, and of a character, pixels.
+/// Width of a chart, of one that all groups share, and of a character, pixels.
 const CHART: u32 = 560;
 const SHARED_CHART: u32 = 1200;
-const LEGEND: u32 = 190;
 const CHARACTER: usize = 12;
 
 /// An experiment that compares slumps state by state.
@@ -272,8 +271,9 @@ fn sheet(all: &[Comparison]) -> Sheet {
         let title = |one: &Comparison| format!("{}, less {}", one.group, one.base);
         parts.extend(all.iter().map(|one| (title(one), one.places())));
     }
-    let mut caption = Vec::new();
+    let mut caption: Vec<String> = Vec::new();
     let mut charts = Vec::new();
+    let signed = |words: &str| words.replace("e-", "e−");
     for (title, places) in parts {
         let ends = (-0.6, places.len() as f64 - 0.4);
         let mut x = Axis::linear("", ends.0, ends.1);
@@ -281,16 +281,16 @@ fn sheet(all: &[Comparison]) -> Sheet {
             places.iter().map(|(name, _)| CHARACTER * (name.chars().count() + 1)).sum();
         let is_numbered = room > width as usize * 3 / 4;
         let tick = |(at, (name, _)): (usize, &Place<'_>)| {
-            (at as f64, if is_numbered { (at + 1).to_string() } else { name.clone() })
+            (at as f64, if is_numbered { (at + 1).to_string() } else { signed(name) })
         };
         x.ticks = places.iter().enumerate().map(tick).collect();
         if is_numbered && caption.is_empty() {
             let numbered =
                 places.iter().zip(1..).map(|((name, _), number)| format!("{number}: {name}"));
-            caption = lines(numbered, (width as usize * all.len().min(2)) / 10);
+            caption.push(signed(&numbered.collect::<Vec<_>>().join("; ")));
         }
         let y = Axis::linear("difference of slump", -reach, reach);
-        let mut chart = Chart::new(title, x, y);
+        let mut chart = Chart::new(signed(&title), x, y);
         let zero = points([(ends.0, 0.0), (ends.1, 0.0)]);
         chart.layers.push(Layer::quiet("none", zero, INK, Look::Dashes(1)));
         for (index, &bond) in bonds.iter().enumerate() {
@@ -304,13 +304,11 @@ fn sheet(all: &[Comparison]) -> Sheet {
         }
         charts.push(chart);
     }
-    let size = (width * charts.len() as u32 + LEGEND, 620);
-    let legend = Chart::legend_of(&mut charts, f64::from(LEGEND) / f64::from(width));
-    charts.push(legend);
+    let size = (width * charts.len() as u32, 620);
     caption.push(
         "Differences from the same states: means, with 95 % intervals from three states up.".into(),
     );
-    Sheet { size, charts, caption }.high_enough()
+    Sheet { size, charts, caption }
 }
 
 /// A place of a chart: its name, and what is drawn there.
@@ -330,19 +328,7 @@ impl Comparison {
 
 /// A time, as it is written.
 pub(super) fn seconds(secs: f64) -> String {
-    format!("{secs:e} s").replace('-', "−")
-}
-
-/// Words in lines of no more than so many characters.
-fn lines(words: impl Iterator<Item = String>, most: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in words {
-        match lines.last_mut().filter(|line| line.chars().count() + word.chars().count() < most) {
-            Some(line) => *line = format!("{line}; {word}"),
-            None => lines.push(word),
-        }
-    }
-    lines
+    format!("{secs:e} s")
 }
 
 #[cfg(test)]
@@ -388,7 +374,7 @@ mod tests {
         ];
         let rows = judged(&PILE_CHOICES, &runs).1.rows;
         let groups: Vec<_> = rows.iter().map(|row| (&*row[0], &*row[2])).collect();
-        assert_eq!(groups, [("as it is", "5e−3 s"), ("tolerance 0.5", "5e−3 s")]);
+        assert_eq!(groups, [("as it is", "5e-3 s"), ("tolerance 0.5", "5e-3 s")]);
         let first = &runs[0].0;
         assert_eq!(super::super::studies::changes(&runs[1].0, first), "cone compressive");
     }

@@ -225,15 +225,11 @@ fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> She
         }
         charts.push(chart);
     }
-    let count = charts.len() as u32;
-    // Each panel has its share of solved steps in the legend.
-    let legend = Chart::legend_of(&mut charts, 0.18 + 0.06 * f64::from(count));
-    charts.push(legend);
     let caption = bench.caption(&[
         "Median time, warm start; a curve ends where half of the steps are solved no further. To 10⁻⁸: share of \
          steps solved to that residual, panel by panel.",
     ]);
-    Sheet { size: (760 * count + 280, 820), charts, caption }
+    Sheet { size: (760 * charts.len() as u32, 760), charts, caption }
 }
 
 /// Markdown: shares solved, times, ratios and residual floors.

@@ -11,11 +11,8 @@
 //! what `scene::stability` derives for each scene. In T it sinks by v T = 0.01 d where
 //! s = ln(q/(1 + q)) / ln ρ, q = 0.01 d/(A g Δt T). The border of springs is their critical time step.
 //!
-//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever, and Δt does
-//! not enter. One might fear another where bonds are strong and steps long, with C₀Δt²/m_ij = Bond·g·Δt²
-//! a hundredth of d: an impulse of cohesion, left alone for a step, would pull two grains into each other
-//! by that much. There is none. In the map's corner of Bond 500 and Δt = 0.01 s that is 49 d, and where
-//! steps are solved nothing overlaps: a bond pulls no more than is asked of it.
+//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever; Δt does not enter. A bond
+//! pulls no more than is asked of it, so that no impulse of cohesion pulls grains into each other however long the step.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,7 +21,7 @@ use rayon::prelude::*;
 use super::rest::{sagging, sunk};
 use super::table::colour;
 use super::{TriedVariant, VARIANTS, jitter};
-use crate::chart::{Axis, Chart, INK, Layer, LegendCorner, Look, MapCell, Sheet, points};
+use crate::chart::{Axis, Chart, INK, Layer, Look, MapCell, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::scene::stability::{
@@ -84,14 +81,24 @@ struct Map {
     x: Parameter,
     y: Parameter,
     scene: fn(f64, f64) -> Scene,
-    /// Whether springs swing in it for longer than a run.
+    /// True if springs swing in it for longer than a run.
     may_swing: bool,
-    /// Sweeps at the border of Gauss–Seidel, against x.
-    border: Option<fn(f64) -> f64>,
-    /// Substeps at the border of springs, against x.
-    border_of_springs: Option<fn(f64) -> Result<f64>>,
-    /// Border of statics, the same for all methods, against x.
-    border_of_statics: Option<fn(f64) -> f64>,
+    /// What theory says.
+    borders: &'static [Border],
+    /// What is said of the borders.
+    caption: &'static str,
+}
+
+/// A border against x.
+struct Border {
+    /// The variant that has it, or all.
+    of: Option<&'static str>,
+    look: Look,
+    at: fn(f64) -> Result<f64>,
+}
+
+const fn border(of: &'static str, look: Look, at: fn(f64) -> Result<f64>) -> Border {
+    Border { of: Some(of), look, at }
 }
 
 const fn sweeps(to: f64) -> Parameter {
@@ -101,6 +108,11 @@ const fn sweeps(to: f64) -> Parameter {
 const fn time_step() -> Parameter {
     Parameter { label: "Δt (s)", from: 1e-4, to: 1e-2, count: 12, whole: false }
 }
+
+const OF_SWEEPS: &str =
+    "Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs.";
+const THEORY: Look = Look::Dashes(3);
+const CRITICAL: Look = Look::Line(3);
 
 /// All maps.
 const MAPS: [Map; 4] = [
@@ -116,9 +128,12 @@ const MAPS: [Map; 4] = [
             scene
         },
         may_swing: true,
-        border: None,
-        border_of_springs: None,
-        border_of_statics: Some(|_| breaking_bond_of_cantilever(CANTILEVER)),
+        borders: &[Border {
+            of: None,
+            look: THEORY,
+            at: |_| Ok(breaking_bond_of_cantilever(CANTILEVER)),
+        }],
+        caption: "Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing.",
     },
     Map {
         name: "map-dt-sweeps",
@@ -127,11 +142,13 @@ const MAPS: [Map; 4] = [
         y: sweeps(1e3),
         scene: |time_step_secs, sweeps| sagging_on_line(DISCS, time_step_secs, sweeps),
         may_swing: false,
-        border: Some(|time_step_secs| {
-            sweeps_at_border(TOP_OF_COLUMN, time_step_secs, contraction_of_column(DISCS as f64))
-        }),
-        border_of_springs: Some(|time_step_secs| substeps_at_border(DISCS, time_step_secs)),
-        border_of_statics: None,
+        borders: &[
+            border("nsgs", THEORY, |step| {
+                Ok(sweeps_at_border(TOP_OF_COLUMN, step, contraction_of_column(DISCS as f64)))
+            }),
+            border("dem", CRITICAL, |step| substeps_at_border(DISCS, step)),
+        ],
+        caption: OF_SWEEPS,
     },
     Map {
         name: "map-mass-sweeps",
@@ -144,9 +161,10 @@ const MAPS: [Map; 4] = [
             scene
         },
         may_swing: false,
-        border: Some(|ratio| sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0))),
-        border_of_springs: None,
-        border_of_statics: None,
+        borders: &[border("nsgs", THEORY, |ratio| {
+            Ok(sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0)))
+        })],
+        caption: OF_SWEEPS,
     },
     Map {
         name: "map-discs-sweeps",
@@ -155,9 +173,13 @@ const MAPS: [Map; 4] = [
         y: sweeps(1e4),
         scene: |count, sweeps| sagging_on_line(count as usize, 1e-3, sweeps),
         may_swing: false,
-        border: Some(|count| sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count))),
-        border_of_springs: Some(|count| substeps_at_border(count as usize, 1e-3)),
-        border_of_statics: None,
+        borders: &[
+            border("nsgs", THEORY, |count| {
+                Ok(sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count)))
+            }),
+            border("dem", CRITICAL, |count| substeps_at_border(count as usize, 1e-3)),
+        ],
+        caption: OF_SWEEPS,
     },
 ];
 
@@ -217,15 +239,10 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
             charts.push(map.chart(variant, quick, &progress)?);
         }
         for (number, charts) in charts.chunks(ABREAST).enumerate() {
-            let mut caption = vec![
+            let caption = vec![
                 "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s; red is torn, thrown, still shaking or not finite.".to_owned(),
+                map.caption.to_owned(),
             ];
-            if map.border.is_some() {
-                caption.push("Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs.".into());
-            }
-            if map.border_of_statics.is_some() {
-                caption.push("Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing.".into());
-            }
             let size = (CHART_WIDTH * charts.len() as u32, 620);
             let sheet = Sheet { size, charts: charts.to_vec(), caption };
             sheets.push((format!("{}-{}", map.name, number + 1), sheet));
@@ -257,27 +274,19 @@ impl Map {
             Axis::log(self.x.label, self.x.from, self.x.to),
             Axis::log(self.y.label, self.y.from, self.y.to),
         );
-        chart.legend = LegendCorner::UpperLeft;
         chart.layers.push(Layer::Cells { name: variant.name.into(), cells, colour });
         let ratio = (self.x.to / self.x.from).powf(1.0 / 60.0);
         let places: Vec<f64> = (0..=60).map(|k| self.x.from * ratio.powi(k)).collect();
-        let mut push = |name: &str, look, border: &dyn Fn(f64) -> Result<f64>| -> Result<()> {
+        for Border { of, look, at } in self.borders {
+            if of.is_some_and(|of| of != variant.name) {
+                continue;
+            }
             let mut curve = Vec::new();
             for &x in &places {
-                curve.push((x, border(x)?));
+                curve.push((x, at(x)?));
             }
             curve.retain(|(_, y)| (self.y.from..=self.y.to).contains(y));
-            chart.layers.push(Layer::quiet(name, points(curve), INK, look));
-            Ok(())
-        };
-        if let (Some(border), "nsgs") = (self.border, variant.name) {
-            push("theory", Look::Dashes(3), &|x| Ok(border(x)))?;
-        }
-        if let Some(border) = self.border_of_statics {
-            push("statics", Look::Dashes(3), &|x| Ok(border(x)))?;
-        }
-        if let (Some(border), "dem") = (self.border_of_springs, variant.name) {
-            push("critical time step", Look::Line(3), &border)?;
+            chart.layers.push(Layer::quiet("border", points(curve), INK, *look));
         }
         progress();
         Ok(chart)

@@ -201,15 +201,13 @@ pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
         }
         charts.push(chart);
     }
-    let legend = Chart::legend_of(&mut charts, 0.5);
-    charts.push(legend);
     let caption = vec![
         "Error: mean deviation of an experiment's quantities from the published values, drawn between 1e-3 and 2. Runs \
          were timed while the other cores ran others."
             .to_owned(),
         machine.to_owned(),
     ];
-    Sheet { size: (1700, 170 + 46 * names.len().max(6) as u32), charts, caption }.high_enough()
+    Sheet { size: (1300, 120 + 46 * names.len() as u32), charts, caption }
 }
 
 /// Mean relative error of the quantities of an experiment by one variant; NaN where one has no value, since the others

@@ -14,7 +14,7 @@ pub(super) fn sheet(
     let fastest = 1.5 * good().fold(0.0, f64::max).max(10.0 * slowest);
     let finest = format!("Δt = {:e} s", FINEST_SECS);
     let panels = [("the same Δt", Some(references.floor(plan))), (finest.as_str(), None)];
-    let mut charts: Vec<Chart> = panels
+    let charts: Vec<Chart> = panels
         .into_iter()
         .enumerate()
         .map(|(panel, (against, floor))| {
@@ -26,8 +26,6 @@ pub(super) fn sheet(
             with_errors(chart, plan, simulated, panel, floor)
         })
         .collect();
-    let legend = Chart::legend_of(&mut charts, 0.42);
-    charts.push(legend);
     let steps = listed(&plan.time_steps_secs, |step| format!("{step:e} s"));
     let (piles, grains) = (plan.piles.len(), NewPile::default().grains);
     let caption = bench.caption(&[
@@ -39,7 +37,7 @@ pub(super) fn sheet(
             REFERENCE, DURATION_SECS
         ),
     ]);
-    Sheet { size: (1800, 900), charts, caption }.high_enough()
+    Sheet { size: (1500, 840), charts, caption }
 }
 
 /// Adds the points with their Pareto front, and how far two references are from each other.
