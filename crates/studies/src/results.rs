@@ -56,7 +56,6 @@ impl RunResult {
     const COLUMNS: &str = "status,steps,slump,mean_overlap,max_overlap,mean_contacts,first_gap,\
         unconverged_steps,stalled_steps,fallback_steps,sweeps,largest_residual,lost_grains,alarms";
 
-    /// What stands in these columns.
     fn cells(&self) -> impl Serialize + '_ {
         let Self { status, tally, slump, first_gap, lost_grains, alarms } = self;
         (
@@ -88,10 +87,6 @@ impl RunResult {
     }
 }
 
-/// Takes a scene to its end.
-///
-/// # Errors
-/// Where the scene is not sound, or series or recording cannot be written. A state that is no longer finite is a result.
 pub(super) fn run_to_end(
     scene: &Scene,
     mut series: Option<&mut Series<'_>>,
@@ -160,7 +155,6 @@ pub struct RunsTable {
 }
 
 impl RunsTable {
-    /// Puts finished runs in the study's order.
     pub(super) fn new(
         study: &Study,
         finished: &HashMap<String, FinishedCase<SweptRun>>,
@@ -192,9 +186,6 @@ impl RunsTable {
     }
 
     /// Writes the table as CSV. Numbers read back bit for bit.
-    ///
-    /// # Errors
-    /// Names the file and what the system says.
     pub(super) fn write(&self, path: &Path) -> Result<()> {
         let refuse = |error: csv::Error| Error::file("runs.csv", error);
         let fields = Config::names();

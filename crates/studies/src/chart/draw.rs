@@ -236,7 +236,6 @@ fn draw_layer<'a, DB: DrawingBackend + 'a>(
     Ok(())
 }
 
-/// Draws a curve through places of the axes.
 fn draw_curve<'a, DB: DrawingBackend + 'a>(
     line: Vec<(f64, f64)>,
     colour: RGBColor,

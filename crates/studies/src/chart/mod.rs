@@ -10,7 +10,6 @@ use crate::error::{Error, Result};
 /// A colour, 0 … 255 each.
 pub type Rgb = (u8, u8, u8);
 
-/// Ink of axes and words.
 pub(crate) const INK: Rgb = (40, 40, 40);
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
 pub const PALETTE: [Rgb; 7] = [
@@ -29,13 +28,9 @@ const ASIDE: f64 = 0.006;
 /// One axis of a chart.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What it stands for, with its unit.
     pub(crate) label: String,
-    /// Linear or logarithmic.
     pub(crate) scale: Scale,
-    /// Where it begins.
     pub(crate) from: f64,
-    /// Where it ends.
     pub(crate) to: f64,
     /// Places with words of their own; where there are none, round numbers.
     pub(crate) ticks: Vec<(f64, String)>,
@@ -144,7 +139,6 @@ impl Layer {
         self.aside(ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0)))
     }
 
-    /// The same curve, so far aside, in widths of the chart.
     pub(crate) fn aside(mut self, widths: f64) -> Self {
         if let Self::Curve { aside, .. } = &mut self {
             *aside = widths;
@@ -166,11 +160,8 @@ impl Layer {
 /// One pair of axes.
 #[derive(Clone, Debug)]
 pub struct Chart {
-    /// Above it.
     pub(crate) title: String,
-    /// Horizontal.
     pub(crate) x: Axis,
-    /// Vertical.
     pub(crate) y: Axis,
     /// From back to front.
     pub layers: Vec<Layer>,
@@ -197,7 +188,6 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// One chart of the usual size.
     pub(crate) fn of(chart: Chart) -> Self {
         Self { size: (1200, 820), charts: vec![chart], caption: Vec::new() }
     }
@@ -241,16 +231,12 @@ impl Sheet {
     }
 }
 
-/// How an axis is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
-    /// Evenly.
     Linear,
-    /// In ratio.
     Log,
 }
 
-/// Marks on a linear axis, about.
 const MARKS: f64 = 6.0;
 
 /// On a logarithmic axis that ends below this many times its beginning, 2 and 5 have words too.

@@ -132,7 +132,6 @@ fn grains(config: &Config) -> String {
     format!("{} grains", config.source.grains.unwrap_or_default())
 }
 
-/// How the steps of a run are solved.
 fn accuracy(config: &Config) -> String {
     let solver = &config.solver;
     let tolerance = format!("{:e}", solver.tolerance.unwrap_or_default());
@@ -152,7 +151,6 @@ fn of_cohesive_time(config: &Config) -> String {
     format!("cohesive time of {:.1}", cohesive_time(config))
 }
 
-/// The runs at the smallest Δt, and the others.
 fn from_least_step<'a>(rows: &Rows<'a>) -> [Rows<'a>; 2] {
     let least = rows.steps().first().copied();
     rows.parted(|config| config.parameters.time_step_secs == least)
@@ -214,7 +212,6 @@ fn claim_of_sign(bond: f64, sign: f64, all: &[Comparison]) -> Claim {
         .hanging_on("the choices that were tried; two Δt of six; states that have no part in Fig. 5a")
 }
 
-/// That slump hangs on the number of grains, at one Δt.
 fn grows(rows: &Rows<'_>) -> Claim {
     let of_seed = |seed| {
         let run = rows.of_seed(seed);

@@ -17,7 +17,6 @@ use crate::scene::Scene;
 use crate::sim::Stepper;
 use crate::statistics::mean;
 
-/// Grains of a pile of the study.
 const GRAINS: usize = 138;
 
 /// Runs at a Bond and a work of fracture under the laws that have one: `range`, then `dem`.
@@ -34,7 +33,6 @@ fn scene(config: &Config) -> Result<Scene> {
     Config { source, ..config.clone() }.without_settling()
 }
 
-/// The work of fracture of some runs, in m g d.
 fn work(rows: &Rows<'_>) -> Result<f64> {
     let none = || Error::value("cohesion", "without a run", "a study with all its runs");
     let (config, _) = rows.0.first().ok_or_else(none)?;
@@ -42,7 +40,6 @@ fn work(rows: &Rows<'_>) -> Result<f64> {
     work.map(|work| work.over_mgd).ok_or_else(none)
 }
 
-/// Every Bond with every work, rising.
 fn equal_works<'a>(rows: &Rows<'a>) -> Result<Vec<EqualWork<'a>>> {
     let mut all = Vec::new();
     for bond in rows.bonds() {

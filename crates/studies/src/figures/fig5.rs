@@ -14,7 +14,6 @@ use crate::statistics::{Mean, mean, p_value, slope};
 const CHOICES: &str = "the base, a row of fixed discs (the paper names none); the stop, a relative change of 1e−7; \
                        restitution without a threshold; the states. pile-choices has what becomes of it where they are \
                        changed";
-/// The cones and the studies in them.
 const CONES: [(&str, &str); 2] = [("shifted", "pile"), ("compressive", "pile-compressive")];
 /// A pile whose slump changes by less than this per decade of Δt is flat: a tenth of what the paper's
 /// cohesive piles do.
@@ -36,7 +35,6 @@ const SLUMP_CLAIMS: [SlumpClaim; 4] = [
     (100.0, "at Bond 100 it rises as Δt grows", rising, 0.0),
 ];
 
-/// Fig. 5a, in both readings of the paper's friction cone.
 pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
     let mut charts = Vec::new();
     let mut claims: Vec<Claim> = Vec::new();
@@ -91,7 +89,6 @@ pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig5b", sheet, claims, table: None })
 }
 
-/// The axis of the paper's time steps.
 fn time_steps() -> Axis {
     Axis::log("Δt (s)", 8e-5, 6.5e-3)
 }
@@ -121,7 +118,6 @@ fn chart(rows: &Rows<'_>, title: &str, x: Axis, y: Axis, number: fn(&RunResult) 
     chart
 }
 
-/// The mean slope of groups.
 fn slopes(groups: &[Alike]) -> Mean {
     mean(&groups.iter().map(|pairs| slope(pairs)).collect::<Vec<_>>())
 }

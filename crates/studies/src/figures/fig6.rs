@@ -18,7 +18,6 @@ const FEWER_RESAMPLINGS: usize = 20;
 const DIAMETER: f64 = 5e-3;
 const GRAVITY: f64 = 9.8;
 
-/// The cohesive time of a run.
 pub(super) fn cohesive_time(config: &Config) -> f64 {
     config.parameters.bond.unwrap_or(0.0) * config.parameters.time_step_secs.unwrap_or(0.0)
         / unit_secs()
@@ -69,7 +68,6 @@ fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
     groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
 }
 
-/// That two regimes part at 1.
 fn guess(groups: &[Alike], count: usize, turn: Turn) -> Claim {
     let verdict = |turn: Turn| Verdict::of_interval(1.0, turn.low, turn.high);
     let holds = |groups: &[Alike]| {
@@ -88,7 +86,6 @@ fn guess(groups: &[Alike], count: usize, turn: Turn) -> Claim {
     .hanging_on("the shifted cone; three Bonds drawn as one curve; a broken line as the shape of the curve")
 }
 
-/// Whether the slump falls and rises.
 fn regimes(groups: &[Alike], count: usize) -> Claim {
     let side = |groups: &[Alike], below: bool| {
         let of_state = |state: &Alike| {

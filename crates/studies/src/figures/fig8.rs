@@ -36,7 +36,6 @@ const PAPER: [(f64, bool); 14] = [
 /// Below this step the outcome is no matter of phase, s.
 pub(super) const PHASE_SECS: f64 = 3.5e-3;
 
-/// Whether i and j have parted.
 fn is_open(result: &RunResult) -> bool {
     result.first_gap > OPEN_GAP
 }

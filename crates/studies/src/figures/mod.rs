@@ -24,13 +24,9 @@ use crate::error::Result;
 use crate::report::ReportTable;
 use crate::statistics::mean;
 
-/// A finished figure.
 struct Figure {
-    /// Name of its files.
     pub name: &'static str,
-    /// What is drawn.
     pub sheet: Sheet,
-    /// What it says of the paper's claims.
     pub claims: Vec<Claim>,
     /// The numbers behind them, where the chart shows too few.
     pub table: Option<ReportTable>,
@@ -44,17 +40,13 @@ fn slump_point(x: f64, slumps: &[f64]) -> Point {
     Point { x, y: mean.mean, interval }
 }
 
-/// A figure that can be asked for.
 struct FigureInfo {
-    /// Its name on the command line.
     pub name: &'static str,
     /// The studies that it needs.
     pub studies: &'static [&'static str],
-    /// Makes it.
     pub make: FigureMaker,
 }
 
-/// How a figure is made.
 enum FigureMaker {
     By(fn(&StudyRunner) -> Result<Figure>),
     Paired(PairedExperiment),

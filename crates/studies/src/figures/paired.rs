@@ -42,13 +42,11 @@ pub(super) struct Comparison {
     pub base: String,
     /// Each in words.
     pub levels: Vec<(String, Vec<PairedSlumps>)>,
-    /// Largest number of grains.
     pub grains: usize,
 }
 
 /// The slumps of all states that ended in both variants, at one Bond and Δt.
 pub(super) struct PairedSlumps {
-    /// Names it in a sentence.
     pub name: String,
     pub bond: f64,
     /// Δt of the other, s.
@@ -232,7 +230,6 @@ impl Comparison {
     }
 }
 
-/// The numbers behind the claims.
 pub(super) fn table(name: &str, all: &[Comparison]) -> ReportTable {
     let columns =
         "group base level bond dt states unsolved slump_base difference standard_error low high p";

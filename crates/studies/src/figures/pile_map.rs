@@ -13,7 +13,6 @@ use crate::statistics::{Mean, mean, p_value};
 
 /// Slump that the scale of colours ends at.
 const MOST: f64 = 0.55;
-/// Contours of the cohesive time.
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
 /// Cohesive times from one over this to this are near 1.
@@ -107,7 +106,6 @@ fn contours(most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
     layers
 }
 
-/// The scale of colours.
 fn scale() -> Chart {
     let mut scale =
         Chart::new("", Axis::linear("", 0.0, 1.0), Axis::linear("slump Δy_G", 0.0, MOST));

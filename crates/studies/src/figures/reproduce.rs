@@ -74,7 +74,6 @@ pub fn reproduce(
     Ok(())
 }
 
-/// `report.md`.
 struct Report {
     text: String,
 }

@@ -19,7 +19,6 @@ macro_rules! shipped {
     };
 }
 
-/// The studies that are shipped.
 const STUDIES: &[(&str, &str)] = shipped![
     "pile" "pile-compressive" "pile-choices" "cradle" "cradle-courses" "cradle-choices"
     "cradle-share" "cradle-map" "pile-map" "pile-size" "pile-tolerance" "range" "range-regimes"
@@ -31,20 +30,15 @@ pub(super) struct StudyRunner {
     folder: PathBuf,
     /// Whether studies run their quick pass.
     pub quick: bool,
-    /// Studies and their results.
     pub finished: BTreeMap<&'static str, (Study, RunsTable)>,
 }
 
 impl StudyRunner {
-    /// A runner whose studies lie in `folder`.
     pub(super) fn new(folder: PathBuf, quick: bool) -> Self {
         Self { folder, quick, finished: BTreeMap::new() }
     }
 
     /// Runs a shipped study, unless it was run before.
-    ///
-    /// # Errors
-    /// As [`sweep`].
     pub(super) fn run(&mut self, wanted: &str) -> Result<()> {
         let Some(&(name, text)) = STUDIES.iter().find(|(name, _)| *name == wanted) else {
             return Err(Error::value("study", wanted, "one that is shipped"));
@@ -125,7 +119,6 @@ impl StudyRunner {
     }
 }
 
-/// Runs and their results.
 pub(super) struct Rows<'a>(pub Vec<(&'a Config, &'a RunResult)>);
 
 impl<'a> Rows<'a> {
@@ -144,7 +137,6 @@ impl<'a> Rows<'a> {
         self.such_that(|config| config.source.seed != Some(NewPile::default().seed))
     }
 
-    /// Those at a Bond.
     pub(super) fn of_bond(&self, bond: f64) -> Self {
         self.such_that(|config| config.parameters.bond == Some(bond))
     }
@@ -154,12 +146,10 @@ impl<'a> Rows<'a> {
         self.such_that(|config| config.parameters.time_step_secs == Some(step))
     }
 
-    /// Those from an initial state.
     pub(super) fn of_seed(&self, seed: u64) -> Self {
         self.such_that(|config| config.source.seed == Some(seed))
     }
 
-    /// Those with a tolerance.
     pub(super) fn of_tolerance(&self, tolerance: f64) -> Self {
         self.such_that(|config| config.solver.tolerance == Some(tolerance))
     }
@@ -172,7 +162,6 @@ impl<'a> Rows<'a> {
         values
     }
 
-    /// Bonds, rising.
     pub(super) fn bonds(&self) -> Vec<f64> {
         self.values(|config| config.parameters.bond)
     }
@@ -182,12 +171,10 @@ impl<'a> Rows<'a> {
         self.values(|config| config.parameters.time_step_secs)
     }
 
-    /// Tolerances, rising.
     pub(super) fn tolerances(&self) -> Vec<f64> {
         self.values(|config| config.solver.tolerance)
     }
 
-    /// Seeds, rising.
     pub(super) fn seeds(&self) -> Vec<u64> {
         let mut seeds: Vec<u64> =
             self.0.iter().filter_map(|(config, _)| config.source.seed).collect();
@@ -196,12 +183,10 @@ impl<'a> Rows<'a> {
         seeds
     }
 
-    /// A number of the result of each run.
     pub(super) fn results(&self, number: impl Fn(&RunResult) -> f64) -> Vec<f64> {
         self.0.iter().map(|(_, result)| number(result)).collect()
     }
 
-    /// The slump of each run.
     pub(super) fn slumps(&self) -> Vec<f64> {
         self.results(|result| result.slump)
     }
@@ -238,7 +223,6 @@ pub(super) fn changes(config: &Config, first: &Config) -> String {
     if changes.is_empty() { "as it is".to_owned() } else { changes.join(", ") }
 }
 
-/// The decimal logarithm of a run's Δt.
 pub(super) fn log_step(config: &Config) -> f64 {
     config.parameters.time_step_secs.unwrap_or(1.0).log10()
 }

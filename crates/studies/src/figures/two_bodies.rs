@@ -85,7 +85,6 @@ const RESTITUTION: f64 = 0.2;
 /// Opening speeds at the beginning of the step, m/s.
 const SPEEDS: [f64; 5] = [-0.02, 0.01, 0.02, 0.04, 0.06];
 const TIME_STEPS_SECS: (f64, f64) = (0.0, 0.012);
-/// Points a line.
 const POINTS: u32 = 25;
 
 /// The state after one step of two free discs of different sizes that touch and part with `speed`.

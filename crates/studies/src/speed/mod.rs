@@ -49,20 +49,7 @@ pub struct ChartOptions {
     pub only: Vec<ChartPart>,
 }
 
-impl ChartOptions {
-    /// The command that charts this, with a folder of one's own.
-    fn command(&self) -> String {
-        let only = self.only.iter().filter_map(clap::ValueEnum::to_possible_value);
-        let only: String = only.map(|part| format!(" --only {}", part.get_name())).collect();
-        let switch = |on: bool, word: &str| if on { format!(" --{word}") } else { String::new() };
-        let switches = switch(self.quick, "quick") + &switch(self.large, "large");
-        format!("slump chart{only}{switches} --out chart")
-    }
-}
-
-/// A finished chart with what is said of it.
 struct ChartSection {
-    /// Name of its files.
     name: String,
     sheet: Sheet,
     /// Markdown; may be empty.
@@ -71,7 +58,6 @@ struct ChartSection {
     tables: Vec<(String, String)>,
 }
 
-/// Where charts are made.
 struct Bench<'a> {
     options: &'a ChartOptions,
     machine: Machine,
@@ -82,7 +68,6 @@ impl Bench<'_> {
         self.options.out.join("states")
     }
 
-    /// A runner of the measurements of this program on this machine.
     fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         name: &str,
@@ -102,7 +87,7 @@ impl Bench<'_> {
     fn write(&self, section: &ChartSection) -> Result<String> {
         let ChartSection { name, sheet, report, tables } = section;
         let folder = &self.options.out;
-        write_sheet(folder, name, sheet, &self.options.command())?;
+        write_sheet(folder, name, sheet, &self.machine.command)?;
         for (table, text) in tables {
             write_file(&folder.join(format!("{table}.csv")), text.as_bytes())?;
         }
@@ -149,7 +134,6 @@ fn csv_cell(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| format!("{value:e}"))
 }
 
-/// Values in words, with commas between them.
 fn listed<T>(values: impl IntoIterator<Item = T>, word: impl Fn(T) -> String) -> String {
     values.into_iter().map(word).collect::<Vec<_>>().join(", ")
 }

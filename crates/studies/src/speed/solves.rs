@@ -29,23 +29,18 @@ const FIRST_SWEEPS: u32 = 16;
 /// Share of the time limit from which on a try shows how many sweeps fit into the limit.
 const LONG_TRY: f64 = 0.125;
 
-/// A goal that was reached.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct ReachedGoal {
-    /// What was asked for.
     pub goal: f64,
     /// Least time of a solve, s.
     pub solve_secs: f64,
     /// What the solve came to: the natural map of what was solved.
     pub left: f64,
-    /// The duality gap, where there is one.
     pub duality_gap: Option<f64>,
 }
 
-/// The solves of one step by one variant.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct TimedSolves {
-    /// Contacts of the step.
     pub contacts: usize,
     /// Natural map of the start, with the impulses of the step before.
     #[serde(with = "number")]
@@ -60,12 +55,10 @@ pub(super) struct TimedSolves {
 }
 
 impl TimedSolves {
-    /// The goal, if it was reached.
     pub(super) fn reached(&self, goal: f64) -> Option<&ReachedGoal> {
         self.reached.iter().find(|reached| reached.goal == goal)
     }
 
-    /// The time to one of the goals.
     pub(super) fn timing(&self, goal: f64) -> Timing {
         match self.reached(goal) {
             Some(reached) => Timing { secs: reached.solve_secs, solved: true },
@@ -85,10 +78,6 @@ pub(super) struct SolveTimer<'a> {
 }
 
 impl SolveTimer<'_> {
-    /// Times a simulation's next step.
-    ///
-    /// # Errors
-    /// Where the variant does not fit the simulation.
     pub(super) fn time(self, simulation: &Simulation) -> Result<TimedSolves> {
         // The method decides on the order of the problem's rows.
         let mut simulation = simulation.clone();

@@ -2,14 +2,12 @@
 //! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in `rest` or `motion`
 //! here, and [`CHALLENGES`] lists all.
 
-pub mod maps;
 mod motion;
 mod rest;
 mod table;
 
 use std::sync::LazyLock;
 
-pub use maps::{contraction_of_column, count_of_maps, maps};
 pub use table::{StabilityCell, StabilityTable, StabilityVerdict, picture};
 
 use crate::contact::Numbering;
@@ -31,7 +29,6 @@ pub struct Challenge {
     further: &'static [f64],
     /// Up to the first error it holds, above the second it fails; between the two it degrades.
     limits: [f64; 2],
-    /// How the error is measured.
     error: fn(&Trial) -> Result<f64>,
 }
 
@@ -144,12 +141,10 @@ pub static CHALLENGES: [Challenge; 28] = [
 /// A solver variant that is tried: a method or a stepper, or settings that go together.
 #[derive(Clone, Copy, Debug)]
 pub struct TriedVariant {
-    /// Its name in the table.
     name: &'static str,
     change: VariantChange,
 }
 
-/// What a variant changes of a scene.
 #[derive(Clone, Copy, Debug)]
 enum VariantChange {
     /// The paper's stepper with this method.
@@ -160,7 +155,6 @@ enum VariantChange {
     Model(FrictionModel, u32),
     /// A stepper that solves no problem by a method.
     Stepper(Stepper),
-    /// Settings that go together.
     Preset(Preset),
 }
 
@@ -183,11 +177,6 @@ impl TriedVariant {
             VariantChange::Stepper(stepper) => scene.stepper = stepper,
             VariantChange::Preset(preset) => preset.apply(scene),
         }
-    }
-
-    /// Whether it is a method or a stepper, and not settings of one.
-    fn is_of_registry(&self) -> bool {
-        matches!(self.change, VariantChange::Method(_) | VariantChange::Stepper(_))
     }
 }
 
@@ -212,7 +201,6 @@ static VARIANTS: LazyLock<Vec<TriedVariant>> = LazyLock::new(|| {
 /// One variant at one level of a challenge.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
-    /// Who is tried.
     variant: &'static TriedVariant,
     /// The value of the parameter that drives the scene into failure.
     level: f64,
@@ -232,7 +220,6 @@ impl Trial {
         scene.simulation()
     }
 
-    /// The level as a count.
     fn count(&self) -> usize {
         self.level as usize
     }

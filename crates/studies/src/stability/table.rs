@@ -22,7 +22,6 @@ pub enum StabilityVerdict {
 }
 
 impl StabilityVerdict {
-    /// The verdict on an error.
     fn of(error: f64, [holds, fails]: [f64; 2]) -> Self {
         // Written so that NaN fails.
         if error <= holds {
@@ -135,7 +134,6 @@ impl StabilityTable {
         self.cells.iter().filter(of_both).collect()
     }
 
-    /// The challenges that were tried.
     fn challenges(&self) -> Vec<&'static Challenge> {
         let tried =
             |challenge: &&Challenge| self.cells.iter().any(|cell| cell.scene == challenge.name);
@@ -162,7 +160,6 @@ fn cell(challenge: &Challenge, trial: &Trial) -> Result<StabilityCell> {
     })
 }
 
-/// Widths of the columns in words.
 const SCENE_WIDTH: usize = 17;
 const CELL_WIDTH: usize = 16;
 
@@ -207,7 +204,7 @@ const BELOW: u32 = 220;
 const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
 
 /// The colour of a verdict, given as 0, 1 or 2.
-pub(super) fn colour(verdict: f64) -> Rgb {
+fn colour(verdict: f64) -> Rgb {
     COLOURS[(verdict as usize).min(2)]
 }
 

@@ -18,10 +18,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, named,
-};
+use super::experiment::*;
 use super::fit::{DampedWave, damped_wave};
 use crate::error::Result;
 use crate::scene::stability::column_on_line;
@@ -50,7 +47,6 @@ const PERIODS: [f64; 2] = [1.0, 3.0];
 /// How far off q the mean of short rows may be, in q.
 const WITHIN: f64 = 0.02;
 
-/// Who sweeps.
 struct SweepVariant {
     name: &'static str,
     source: &'static str,
@@ -59,7 +55,6 @@ struct SweepVariant {
 }
 
 impl SweepVariant {
-    /// What q should be.
     fn q(&self) -> f64 {
         diffusion_of_sweep(self.method).unwrap_or(f64::NAN)
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::experiment::{Agreement, Expected, PublishedQuantity};
+use super::experiment::{Agreement, PublishedQuantity};
 use super::runs::ExperimentRuns;
 use super::variants::{SolveBudget, StepVariant};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
@@ -10,12 +10,9 @@ use crate::report::ReportTable;
 use crate::solver::Method;
 use crate::statistics::mean;
 
-/// Errors below this are drawn here.
 const LEAST_ERROR: f64 = 1e-3;
-/// Errors above this are drawn here.
 const MOST_ERROR: f64 = 2.0;
 
-/// A number as it is written.
 fn short(number: f64) -> String {
     if !number.is_finite() {
         return "none".into();
@@ -24,7 +21,6 @@ fn short(number: f64) -> String {
     format!("{number:.digits$}").replace('-', "−")
 }
 
-/// Two ends of a band or an interval.
 fn ends(low: f64, high: f64) -> String {
     match (low.is_finite(), high.is_finite()) {
         (false, false) => "none".into(),
@@ -34,14 +30,14 @@ fn ends(low: f64, high: f64) -> String {
     }
 }
 
-/// Every quantity of every experiment by every variant.
 pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     let mut rows = Vec::new();
     for runs in all {
         for (quantity, verdict) in runs.judged() {
-            let PublishedQuantity { name, system, expected, measured } = &quantity;
-            let Expected { value, low, high, provenance, source } = expected;
-            let numbers = [*value, *low, *high, measured.mean, measured.low, measured.high];
+            let PublishedQuantity { name, system, published, band, provenance, source, measured } =
+                &quantity;
+            let [low, high] = *band;
+            let numbers = [*published, low, high, measured.mean, measured.low, measured.high];
             let mut row = vec![runs.experiment.name.to_owned(), runs.words(), name.clone()];
             row.extend([system.clone(), (*source).to_owned(), provenance.words().to_owned()]);
             row.extend(numbers.map(|number| number.to_string()));
@@ -53,30 +49,13 @@ pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
             rows.push(row);
         }
     }
-    let columns = vec![
-        "experiment",
-        "way",
-        "quantity",
-        "system",
-        "source",
-        "provenance",
-        "published",
-        "published_low",
-        "published_high",
-        "measured",
-        "measured_low",
-        "measured_high",
-        "samples",
-        "verdict",
-        "error",
-        "simulated_secs_per_sec",
-        "wall_secs",
-        "share_of_unsolved_steps",
-    ];
+    let columns = "experiment way quantity system source provenance published published_low published_high measured \
+                   measured_low measured_high samples verdict error simulated_secs_per_sec wall_secs \
+                   share_of_unsolved_steps";
+    let columns = columns.split(' ').collect();
     ReportTable { name: "quantities".into(), columns, rows }
 }
 
-/// `report.md`.
 pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs: f64) -> String {
     let mut text = "# Published experiments\n\n".to_owned();
     if quick {
@@ -104,7 +83,6 @@ pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs:
     text
 }
 
-/// How many quantities came out how.
 fn summary(all: &[ExperimentRuns]) -> String {
     let verdicts: Vec<Agreement> =
         all.iter().flat_map(ExperimentRuns::judged).map(|(_, verdict)| verdict).collect();
@@ -118,7 +96,6 @@ fn summary(all: &[ExperimentRuns]) -> String {
     )
 }
 
-/// The quantities of an experiment by one variant.
 fn of_variant(runs: &ExperimentRuns) -> String {
     let mut text = format!(
         "\n**{}**: {} runs in {:.1} s of one core, {:.2} simulated seconds per second.",
@@ -142,14 +119,14 @@ fn of_variant(runs: &ExperimentRuns) -> String {
          |---|---|---|---|---|---|---|---|\n",
     );
     for (quantity, verdict) in runs.judged() {
-        let PublishedQuantity { name, system, expected, measured } = &quantity;
+        let PublishedQuantity { name, system, published, band, provenance, source, measured } =
+            &quantity;
         let _ = writeln!(
             text,
-            "| {name} | {system} | {} | {} | {}: {} | {} | {} | **{}** |",
-            short(expected.value),
-            ends(expected.low, expected.high),
-            expected.provenance.words(),
-            expected.source,
+            "| {name} | {system} | {} | {} | {}: {source} | {} | {} | **{}** |",
+            short(*published),
+            ends(band[0], band[1]),
+            provenance.words(),
             short(measured.mean),
             ends(measured.low, measured.high),
             verdict.words()

@@ -34,7 +34,6 @@ const MOST_SWEEPS: u32 = 5_000;
 const THRESHOLD: f64 = 2.0;
 /// Δt of the reference with the least error of the time step, s.
 const FINEST_SECS: f64 = 1e-4;
-/// Simulated time of a run, s.
 const DURATION_SECS: f64 = 1.0;
 /// What the references are solved by, and their residuals: the second ones show the floor.
 const REFERENCE: Method = Method::Newton;
@@ -47,7 +46,6 @@ const FLOOR_LAW: Stepper = Stepper::Moreau;
 const STEPS_PER_LOOK: u64 = 16;
 /// What disturbs a run that takes longer, s, averages out within it.
 const LONG_ENOUGH_SECS: f64 = 2.0;
-/// Errors below this are drawn here.
 const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
 
@@ -73,7 +71,6 @@ struct BudgetedVariant {
     variant: usize,
     /// Whose references it is held against.
     law: Stepper,
-    /// The budget in words.
     budget: String,
     solver: SolverSettings,
     /// Of a stepper without a method; its own number where this is 0.
@@ -87,9 +84,7 @@ struct SimulationPlan {
     piles: Vec<(f64, u64)>,
     variants: Vec<ChartedVariant>,
     budgeted: Vec<BudgetedVariant>,
-    /// Laws that have references.
     laws: Vec<Stepper>,
-    /// How often a run is timed.
     repeats: u32,
     /// Wall time that a simulated second may take, s.
     limit_secs: f64,
@@ -133,7 +128,6 @@ impl SimulationPlan {
     }
 }
 
-/// All variants with all their budgets.
 fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<BudgetedVariant>) {
     let residuals: &[f64] =
         if quick { &[1e-2, 1e-4, 1e-6] } else { &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8] };
@@ -149,7 +143,6 @@ fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<Budgeted
             }
             variant.stepper = law;
             variant.name.push_str(" (range)");
-            variant.look += variants::looks();
         }
         let number = variants.len();
         let mut add = |budget: String, solver, substeps| {
@@ -174,7 +167,7 @@ fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<Budgeted
         }
         variants.push(variant);
     }
-    (variants, budgeted)
+    (variants::told_apart(variants), budgeted)
 }
 
 /// (Bond, seed) of each pile of 138 grains. Bond numbers are dealt out to the seeds: each is met by several, and each
@@ -190,19 +183,15 @@ fn piles(quick: bool) -> Vec<(f64, u64)> {
     seeds.into_iter().enumerate().flat_map(of).collect()
 }
 
-/// How a timed run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum TimedEnding {
-    /// At its full duration.
     Done,
-    /// It took longer than it was given.
     TooSlow,
     /// Its state was no longer finite.
     NotFinite,
 }
 
-/// One timed run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct TimedRun {
     ending: TimedEnding,
@@ -263,7 +252,6 @@ fn timed_once(scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
     })
 }
 
-/// Tells a reference from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct ReferenceCase {
     law: Stepper,
@@ -350,7 +338,6 @@ struct SimulatedPoint<'a> {
     runs: Vec<TimedRun>,
     /// Why there is no point, where there is none.
     failed: Option<&'static str>,
-    /// Simulated seconds per second.
     speed: f64,
     /// Mean |slump − reference| at the same Δt, and at the finest.
     errors: [f64; 2],
@@ -358,7 +345,6 @@ struct SimulatedPoint<'a> {
     verdicts: f64,
 }
 
-/// Every variant with every budget at every Δt.
 fn run_all<'a>(
     plan: &'a SimulationPlan,
     states: &States,

@@ -78,7 +78,6 @@ fn with_errors(
     chart
 }
 
-/// The report's lines.
 pub(super) fn report(
     plan: &SimulationPlan,
     simulated: &[SimulatedPoint],
@@ -116,7 +115,6 @@ pub(super) fn report(
     lines.join("\n")
 }
 
-/// Every point as CSV.
 pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> String {
     let mut text = String::from(
         "method,time_step_secs,effort,failed,simulated_secs_per_sec,error_same_step,error_finest_step,\
