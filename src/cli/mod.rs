@@ -47,7 +47,7 @@ enum Command {
     Sweep(SweepCommand),
     /// Make the paper's figures, and those its conclusion asks for, from simulation alone
     Reproduce(ReproduceCommand),
-    /// Chart speed against accuracy of every method: of steps, of simulations, and of lean models
+    /// Chart speed against accuracy of every method: of steps and of simulations
     Chart(ChartCommand),
     /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
     Stability(StabilityCommand),
