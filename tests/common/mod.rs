@@ -1,19 +1,22 @@
-//! What the tests of physics share: short ways to write scenes, and comparisons that say what
-//! differs.
+//! What the tests of physics share: the names that all of them use, short ways to write scenes and to look at runs, and
+//! comparisons that say what differs.
 
-#![allow(dead_code, reason = "every test binary uses its own part of this")]
+#![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
 pub mod natural_map;
-pub mod schemes;
 
-use glam::DVec2;
-use rand::{RngExt, SeedableRng};
+pub use glam::DVec2;
+pub use rand::RngExt;
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use slump::scene::stability::logs;
-use slump::scene::{Scene, rough_base};
-use slump::sim::{Remedies, Simulation, Stepper};
-use slump::solver::{METHODS, Method, Ordering, SolverSettings, StopTest};
-use slump::world::{Disc, Grain, Gravity, Parameters, Physics};
+
+pub use slump::contact::*;
+pub use slump::granular::{measure, *};
+pub use slump::scene::*;
+pub use slump::sim::*;
+pub use slump::solver::*;
+pub use slump::world::*;
 
 /// g of the scenes made here, m/s².
 pub const G: f64 = 9.8;
@@ -220,4 +223,155 @@ pub fn at_rest_and_falling() -> Scene {
 /// A fixed disc.
 pub fn fixed(position: DVec2, radius: f64) -> Disc {
     Disc { position, radius }
+}
+
+/// A half-space.
+pub fn plane(point: DVec2, normal: DVec2) -> Boundary {
+    Boundary::HalfSpace { point, normal }
+}
+
+/// The level y = 0.
+pub fn level() -> Boundary {
+    plane(DVec2::ZERO, DVec2::Y)
+}
+
+/// Boundaries that go this way.
+pub fn goes(boundaries: &[usize], course: MotionCourse) -> Motion {
+    Motion { boundaries: boundaries.to_vec(), course: Some(course), ..Motion::default() }
+}
+
+/// Fixed discs that go this way.
+pub fn discs_go(count: usize, course: MotionCourse) -> Motion {
+    Motion { fixed_discs: (0..count).collect(), course: Some(course), ..Motion::default() }
+}
+
+/// Boundaries with a belt.
+pub fn belt(boundaries: &[usize], surface_speed: f64) -> Motion {
+    Motion { boundaries: boundaries.to_vec(), surface_speed, ..Motion::default() }
+}
+
+/// Straight on, without end.
+pub fn straight(velocity: DVec2) -> MotionCourse {
+    MotionCourse::Straight { direction: velocity, speed: velocity.length(), travel: None }
+}
+
+/// Round a pivot, without end.
+pub fn round(pivot: DVec2, rate: f64) -> MotionCourse {
+    MotionCourse::Rotation { pivot, rate, travel: None }
+}
+
+/// A run of a scene after so many steps.
+pub fn after(scene: &Scene, steps: usize) -> Simulation {
+    let mut run = start(scene);
+    take_steps(&mut run, steps);
+    run
+}
+
+/// The sentence that a scene is refused with.
+#[track_caller]
+pub fn refused(scene: &Scene) -> String {
+    let said = scene.simulation().map(|_| ()).expect_err("a scene with a fault").to_string();
+    assert!(!said.contains('\n'), "one sentence: {said}");
+    said
+}
+
+/// A scene stepped in each of these ways, with the way in words.
+pub fn in_each_way(
+    scene: &Scene,
+    ways: Vec<(Stepper, Method)>,
+) -> impl Iterator<Item = (String, Scene)> {
+    let of = |(stepper, method)| {
+        let solver = SolverSettings { method, ..scene.solver };
+        (format!("{stepper}, {method}"), Scene { stepper, solver, ..scene.clone() })
+    };
+    ways.into_iter().map(of)
+}
+
+/// Takes a step: what it came to, what works leave unexplained of its change of kinetic energy, and the sum of the
+/// sizes of these works and of both energies, J.
+pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
+    let before = run.observables().kinetic_energy;
+    let after = *run.step().expect("a finite state");
+    let works = [after.gravity_work, after.normal_work, after.tangential_work];
+    let border = after.border_work.unwrap_or(0.0);
+    let off = (after.kinetic_energy - before - works.iter().sum::<f64>() - border).abs();
+    let sizes = works.iter().map(|work| work.abs()).sum::<f64>();
+    (after, off, before + after.kinetic_energy + sizes)
+}
+
+/// Short ways to look at the grains of a run.
+pub trait Look {
+    fn grains(&self) -> &Grains;
+
+    fn place(&self, grain: usize) -> DVec2 {
+        self.grains().positions[grain]
+    }
+
+    fn velocity(&self, grain: usize) -> DVec2 {
+        self.grains().velocities[grain]
+    }
+
+    fn places(&self) -> &[DVec2] {
+        &self.grains().positions
+    }
+
+    fn velocities(&self) -> &[DVec2] {
+        &self.grains().velocities
+    }
+
+    /// Speed of the fastest, m/s.
+    fn fastest(&self) -> f64 {
+        self.velocities().iter().map(|velocity| velocity.length()).fold(0.0, f64::max)
+    }
+}
+
+impl Look for Simulation {
+    fn grains(&self) -> &Grains {
+        &self.world().grains
+    }
+}
+
+/// Longest distance of two of a kind.
+pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
+    one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max)
+}
+
+/// The steppers that solve no problem of the whole step, and whose impulses are what moves the grains.
+pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
+
+/// Those, and the one whose bodies are moved a little past their impulses.
+pub const ALL_SCHEMES: [Stepper; 3] = [Stepper::TgsSoft, Stepper::Avbd, Stepper::Dem];
+
+/// The same scene, stepped this way with so many substeps.
+pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {
+    scene.parameters.substeps = substeps;
+    Scene { stepper, ..scene }
+}
+
+/// Two unequal discs that are about to meet, tilted against the axes unless they are on a line.
+pub fn meeting(physics: Physics, restitution: f64, dt: f64) -> Scene {
+    let direction = if physics.axes == 1 { DVec2::X } else { DVec2::new(0.6, 0.8) };
+    let grains = [(0.0, 0.15, 0.7), (0.25 + 1e-9, 0.1, -0.3)].map(|(place, radius, speed)| Grain {
+        feels_gravity: false,
+        ..moving(place * direction, radius, speed * direction)
+    });
+    scene(physics, -G * direction, parameters(0.0, dt, restitution, 0.5), grains.into())
+}
+
+/// Velocity of the second grain relative to the first, m/s.
+pub fn relative_velocity(simulation: &Simulation) -> DVec2 {
+    let velocities = &simulation.world().grains.velocities;
+    velocities[1] - velocities[0]
+}
+
+/// Sum of all grains' momenta, kg·m/s.
+pub fn momentum(simulation: &Simulation) -> DVec2 {
+    let grains = &simulation.world().grains;
+    grains.masses.iter().zip(&grains.velocities).map(|(&mass, &velocity)| mass * velocity).sum()
+}
+
+/// m_ij of the first two grains.
+pub fn effective_mass(simulation: &Simulation) -> f64 {
+    let masses = &simulation.world().grains.masses;
+    1.0 / (1.0 / masses[0] + 1.0 / masses[1])
 }

@@ -1,14 +1,6 @@
 //! The same run is the same, bit for bit; and physics does not depend on how a scene is written.
 
-use crate::common::{
-    G, SMOOTH, assert_close, bits, every_way, fixed, moving, parameters, pressed_pile, scene,
-    start, take_steps, tight, to_residual,
-};
-use glam::DVec2;
-use slump::scene::{Scene, paper_pile};
-use slump::sim::Simulation;
-use slump::solver::{Method, SolverSettings};
-use slump::world::{Disc, Grain, Physics};
+use crate::common::*;
 
 fn collapse() -> Scene {
     let mut scene = paper_pile().expect("the shipped state");
@@ -18,8 +10,7 @@ fn collapse() -> Scene {
 }
 
 fn run(scene: &Scene, steps: usize) -> Simulation {
-    let mut simulation = start(scene);
-    take_steps(&mut simulation, steps);
+    let simulation = after(scene, steps);
     simulation
 }
 
@@ -112,7 +103,7 @@ fn a_moved_scene_moves_alike() {
         there.fixed_discs.iter_mut().for_each(|disc| disc.position += shift);
         // A few steps: a pile is chaotic, and roundings grow.
         let (here, there) = (run(&here, 5), run(&there, 5));
-        let (a, b) = (&here.world().grains, &there.world().grains);
+        let (a, b) = (here.grains(), there.grains());
         assert!(here.observables().contacts > 60, "{}", here.observables().contacts);
         assert!(here.observables().kinetic_energy > 1e-7, "{}", here.observables().kinetic_energy);
         assert!(largest_distance(&a.velocities, &b.velocities, |v| v) < 1e-11);
@@ -136,7 +127,7 @@ fn a_mirrored_scene_moves_mirrored() {
             disc.position = mirror(disc.position);
         });
         let left = run(&scene, 30);
-        let (a, b) = (&right.world().grains, &left.world().grains);
+        let (a, b) = (right.grains(), left.grains());
         // No operation of a step knows left from right, so not even roundings differ.
         assert_eq!(largest_distance(&a.positions, &b.positions, mirror), 0.0);
         assert_eq!(largest_distance(&a.velocities, &b.velocities, mirror), 0.0);
@@ -157,9 +148,9 @@ fn renumbered_grains_move_alike_where_the_solution_is_unique() {
         scene.grains.reverse();
         scene.fixed_discs.reverse();
         let back = run(&scene, 5);
-        let mut velocities = back.world().grains.velocities.clone();
+        let mut velocities = back.grains().velocities.clone();
         velocities.reverse();
-        let off = largest_distance(&forth.world().grains.velocities, &velocities, |v| v);
+        let off = largest_distance(forth.velocities(), &velocities, |v| v);
         assert!(off < 1e-9, "off by {off:e}");
         assert!(off > 0.0, "another order of the sweep was taken");
     }
@@ -182,11 +173,11 @@ fn chain() -> Scene {
 }
 
 /// Sweeps of the next step to a residual of 1e-8.
-fn sweeps_of_next_step(simulation: &mut Simulation, warm_start: bool) -> u32 {
+fn sweeps_of_next_step(run: &mut Simulation, warm_start: bool) -> u32 {
     let settings = SolverSettings { warm_start, ..to_residual(1e-8) };
-    simulation.set_solver(settings).expect("proper settings");
-    simulation.step().expect("a finite state");
-    simulation.observables().sweeps
+    run.set_solver(settings).expect("proper settings");
+    run.step().expect("a finite state");
+    run.observables().sweeps
 }
 
 #[test]
@@ -196,33 +187,31 @@ fn a_contact_that_goes_leaves_the_others_their_impulses() {
     let place = DVec2::new(0.1 - 1e-9, 0.0);
     let velocity = DVec2::new(3.0, 0.0);
     scene.grains.insert(0, Grain { velocity, ..Grain::at_rest(place, 0.05) });
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 1);
-    assert_eq!(simulation.observables().contacts, 13);
-    let next = sweeps_of_next_step(&mut simulation.clone(), false);
+    let mut run = after(&scene, 1);
+    assert_eq!(run.observables().contacts, 13);
+    let next = sweeps_of_next_step(&mut run.clone(), false);
     assert!(next > 20, "a cold start is dear: {next} sweeps");
-    assert_eq!(sweeps_of_next_step(&mut simulation, true), 1);
-    assert_eq!(simulation.observables().contacts, 12, "one has gone");
+    assert_eq!(sweeps_of_next_step(&mut run, true), 1);
+    assert_eq!(run.observables().contacts, 12, "one has gone");
 }
 
 #[test]
 fn a_change_of_the_time_step_leaves_the_forces() {
-    let mut simulation = start(&chain());
-    take_steps(&mut simulation, 10);
-    assert!(sweeps_of_next_step(&mut simulation.clone(), false) > 20, "a cold start is dear");
-    let forces = |simulation: &Simulation| -> Vec<f64> {
-        simulation.snapshot().contacts.iter().map(|contact| contact.normal_force).collect()
+    let mut run = after(&chain(), 10);
+    assert!(sweeps_of_next_step(&mut run.clone(), false) > 20, "a cold start is dear");
+    let forces = |run: &Simulation| -> Vec<f64> {
+        run.snapshot().contacts.iter().map(|contact| contact.normal_force).collect()
     };
-    let before = forces(&simulation);
+    let before = forces(&run);
     for dt in [5e-4, 4e-3, 1e-3] {
-        let mut parameters = *simulation.parameters();
+        let mut parameters = *run.parameters();
         parameters.time_step_secs = dt;
-        simulation.set_parameters(parameters).expect("proper parameters");
-        for (now, then) in forces(&simulation).iter().zip(&before) {
+        run.set_parameters(parameters).expect("proper parameters");
+        for (now, then) in forces(&run).iter().zip(&before) {
             assert_close(*now, *then, 1e-7, "a force between two steps");
         }
-        assert_eq!(sweeps_of_next_step(&mut simulation, true), 1, "Δt {dt}");
-        for (now, then) in forces(&simulation).iter().zip(&before) {
+        assert_eq!(sweeps_of_next_step(&mut run, true), 1, "Δt {dt}");
+        for (now, then) in forces(&run).iter().zip(&before) {
             assert_close(*now, *then, 1e-7, "a force");
         }
     }

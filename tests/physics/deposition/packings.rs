@@ -1,11 +1,9 @@
 //! What holds of every packing, whatever its seed and its sizes.
 
-use glam::DVec2;
+use crate::common::*;
 use proptest::prelude::*;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
-use slump::scene::{drop_and_roll, rough_base};
-use slump::world::Disc;
 
 /// Gap below which discs touch, in d.
 const TOUCHING: f64 = 1e-9;

@@ -1,10 +1,7 @@
 //! Piles that have come to rest.
 
-use glam::DVec2;
+use crate::common::*;
 use slump::config::{Config, read_scene};
-use slump::scene::{Deposition, NewPile, Scene, Settled, deposit, pile_of, settle};
-use slump::sim::Simulation;
-use slump::world::{Boundary, Grain};
 
 /// d, m.
 const DIAMETER: f64 = 5e-3;
@@ -24,9 +21,9 @@ fn walled(grains: Vec<Grain>, width: f64) -> Scene {
 }
 
 /// Mean kinetic energy of a grain, in m g d.
-fn energy(simulation: &Simulation) -> f64 {
-    let mass: f64 = simulation.world().grains.masses.iter().sum();
-    simulation.observables().kinetic_energy / (mass * 9.8 * DIAMETER)
+fn energy(run: &Simulation) -> f64 {
+    let mass: f64 = run.grains().masses.iter().sum();
+    run.observables().kinetic_energy / (mass * 9.8 * DIAMETER)
 }
 
 #[test]
@@ -51,23 +48,23 @@ fn a_pile_at_rest_stays_at_rest_under_the_papers_law() {
             let mut scene = walled(grains.clone(), 24.0);
             scene.parameters.bond = bond;
             scene.parameters.time_step_secs = 2e-4;
-            let mut simulation = scene.simulation().expect("a simulation");
-            while simulation.time_secs() < 0.1 {
-                simulation.step().expect("a step");
+            let mut run = start(&scene);
+            while run.time_secs() < 0.1 {
+                run.step().expect("a step");
             }
-            let energy = energy(&simulation);
+            let energy = energy(&run);
             assert!(energy < 1e-6, "Bond {bond}, seed {seed}: {energy:e} m g d");
-            let slump = simulation.observables().slump;
+            let slump = run.observables().slump;
             assert!(slump.abs() < 1e-3, "Bond {bond}, seed {seed}: it sank by {slump:e}");
         }
         // It is the walls that hold it: the check above can fail.
         let mut released = pile_of(grains, 24.0).expect("a pile");
         released.parameters.bond = 0.0;
-        let mut simulation = released.simulation().expect("a simulation");
-        while simulation.time_secs() < 0.1 {
-            simulation.step().expect("a step");
+        let mut run = start(&released);
+        while run.time_secs() < 0.1 {
+            run.step().expect("a step");
         }
-        assert!(energy(&simulation) > 1e-3, "seed {seed}: {:e}", energy(&simulation));
+        assert!(energy(&run) > 1e-3, "seed {seed}: {:e}", energy(&run));
     }
 }
 
@@ -119,11 +116,8 @@ fn a_wider_base_changes_no_bit_of_a_pile_that_stays_on_it() {
         config.and_then(|config| config.scene(|_| true))
     };
     let run = |scene: &Scene| {
-        let mut simulation = scene.simulation().expect("a sound scene");
-        for _ in 0..50 {
-            simulation.step().expect("finite");
-        }
-        simulation.world().grains.positions.clone()
+        let simulation = after(&scene, 50);
+        simulation.grains().positions.clone()
     };
     let (own, wide) = (said(&[]).expect("a pile"), said(&[("base-width", "500")]).expect("a pile"));
     let ends = [&own, &wide].map(|scene| scene.fixed_discs[0].position.x / scene.mean_diameter);

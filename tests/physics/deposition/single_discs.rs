@@ -1,8 +1,6 @@
 //! Places that are known exactly.
 
-use glam::DVec2;
-use slump::scene::{Deposit, Rest, Support, dropped};
-use slump::world::Disc;
+use crate::common::*;
 
 const FLOOR: f64 = -10.0;
 

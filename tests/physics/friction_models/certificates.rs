@@ -1,17 +1,10 @@
 //! The interior point solves every step of a convex model, and a duality gap says so that anybody can check.
 
-use glam::DVec2;
+use crate::common::*;
 use proptest::prelude::*;
-use slump::scene::{Scene, built_in};
-use slump::sim::Simulation;
-use slump::solver::{FrictionModel, Method, SolverSettings, StopTest};
-use slump::world::Disc;
 
 use super::piles::CONVEX;
 use crate::common::natural_map::judge;
-use crate::common::{
-    G, UNTURNING, assert_close, moving, parameters, pressed_pile, scene, start, take_steps,
-};
 
 fn by_interior_point(model: FrictionModel, tolerance: f64) -> SolverSettings {
     SolverSettings {
@@ -39,17 +32,17 @@ fn every_step_of_a_pile_that_slumps_is_certified() {
             [(0.0, 1e-3, 0.2), (20.0, 1e-3, 0.9), (100.0, 5e-3, 0.2), (0.0, 5e-3, 0.9)]
         {
             let what = format!("{model}, Bond {bond}, dt {time_step_secs}, rho {restitution}");
-            let mut simulation = falling(model, bond, time_step_secs, restitution);
+            let mut run = falling(model, bond, time_step_secs, restitution);
             let mut factorisations = Vec::new();
             for step in 0..60 {
-                let row = *simulation.step().expect("a finite state");
+                let row = *run.step().expect("a finite state");
                 assert!(row.converged, "{what}, step {step}: {:?}", row.model_residual);
                 assert!(row.model_residual.is_some_and(|residual| residual <= 1e-8), "{what}");
                 let gap = row.duality_gap.expect("a gap");
                 assert!((-1e-14..1e-4).contains(&gap), "{what}, step {step}: {gap:e}");
                 factorisations.push(row.factorisations);
             }
-            assert!(simulation.observables().slump > 1e-3, "{what}: it slumps");
+            assert!(run.observables().slump > 1e-3, "{what}: it slumps");
             factorisations.sort_unstable();
             let [median, most] = [30, 59].map(|at| factorisations[at]);
             assert!(median <= 20 && most <= 80, "{what}: {median} in the median, {most} at most");
@@ -58,16 +51,11 @@ fn every_step_of_a_pile_that_slumps_is_certified() {
 }
 
 /// Σ m (σ(w + 2z) + g|v| + λv) from world data, as `solver::problem::residual` states it, and Σ m (v^free)².
-fn gap_of_world(
-    simulation: &Simulation,
-    pile: &Scene,
-    bounds: &[f64],
-    before: &Simulation,
-) -> [f64; 2] {
+fn gap_of_world(run: &Simulation, pile: &Scene, bounds: &[f64], before: &Simulation) -> [f64; 2] {
     let mut sums = [0.0; 2];
     let friction = pile.parameters.friction;
-    let impulses = simulation.contacts().impulses();
-    let judged = judge(simulation, &before.world().grains);
+    let impulses = run.contacts().impulses();
+    let judged = judge(run, before.grains());
     for ((contact, impulse), bound) in judged.iter().zip(impulses).zip(bounds) {
         let p = impulse.normal + contact.cohesion_impulse;
         let rebound = pile.parameters.restitution * contact.before[0];
@@ -96,16 +84,15 @@ fn the_gap_is_what_world_data_make_it() {
         // Far from solved, so that the gap is far above rounding.
         pile.solver = SolverSettings { max_sweeps: 2, ..by_interior_point(model, 1e-8) };
         pile.solver.method = Method::Nsgs;
-        let mut simulation = start(&pile);
-        take_steps(&mut simulation, 3);
-        let before = simulation.clone();
-        let row = *simulation.step().expect("a finite state");
-        let pairs = |simulation: &Simulation| -> Vec<_> {
-            simulation.contacts().contacts().iter().map(|c| (c.grain, c.other)).collect()
+        let mut run = after(&pile, 3);
+        let before = run.clone();
+        let row = *run.step().expect("a finite state");
+        let pairs = |run: &Simulation| -> Vec<_> {
+            run.contacts().contacts().iter().map(|c| (c.grain, c.other)).collect()
         };
-        assert_eq!(pairs(&before), pairs(&simulation), "bounds are those of the same contacts");
-        let bound = |(index, impulse): (usize, &slump::contact::Impulse)| {
-            let cohesion = judge(&simulation, &before.world().grains)[index].cohesion_impulse;
+        assert_eq!(pairs(&before), pairs(&run), "bounds are those of the same contacts");
+        let bound = |(index, impulse): (usize, &Impulse)| {
+            let cohesion = judge(&run, before.grains())[index].cohesion_impulse;
             0.5 * (impulse.normal + cohesion).max(0.0)
         };
         let bounds: Vec<f64> = match model {
@@ -114,7 +101,7 @@ fn the_gap_is_what_world_data_make_it() {
             }
             _ => vec![0.0; before.contacts().impulses().len()],
         };
-        let [gap, scale] = gap_of_world(&simulation, &pile, &bounds, &before);
+        let [gap, scale] = gap_of_world(&run, &pile, &bounds, &before);
         let told = row.duality_gap.expect("a gap");
         assert!(told > 1e-6, "{model}: {told:e}");
         assert_close(told, gap / scale, 1e-9, &format!("{model}"));
@@ -135,11 +122,11 @@ proptest! {
     ) {
         let mut pile = pressed_pile(40, 0.2, seed, parameters(bond, 1e-3, restitution, friction));
         pile.solver = by_interior_point(model, 1e-9);
-        let mut simulation = start(&pile);
-        simulation.step().expect("a finite state");
+        let mut run = start(&pile);
+        run.step().expect("a finite state");
         let mut last = f64::INFINITY;
         for tolerance in [1e-2, 1e-5, 1e-8] {
-            let mut next = simulation.clone();
+            let mut next = run.clone();
             next.set_solver(by_interior_point(model, tolerance)).expect("proper settings");
             let row = *next.step().expect("a finite state");
             prop_assert!(row.converged, "{row:?} at {tolerance:e}");
@@ -172,11 +159,11 @@ fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
             ..scene(UNTURNING, -G * DVec2::Y, parameters(0.0, 1e-3, 0.5, friction), vec![grain])
         };
         wedge.solver = by_interior_point(model, 1e-8);
-        let mut simulation = start(&wedge);
-        let row = *simulation.step().expect("a finite state");
+        let mut run = start(&wedge);
+        let row = *run.step().expect("a finite state");
         assert_eq!((row.converged, row.stalled), (solved, !solved), "{model}, mu {friction}");
-        let mass = simulation.world().grains.masses[0];
-        for impulse in simulation.contacts().impulses() {
+        let mass = run.grains().masses[0];
+        for impulse in run.contacts().impulses() {
             assert!(impulse.normal.abs() < 100.0 * mass, "{model}, mu {friction}: {impulse:?}");
         }
     }

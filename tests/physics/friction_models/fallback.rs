@@ -1,11 +1,6 @@
 //! What becomes of a step that is not solved under Coulomb's law.
 
-use slump::scene::built_in;
-use slump::sim::{Remedies, Simulation, Stepper};
-use slump::solver::{Fallback, Method, SolverSettings, StopTest};
-use slump::world::FrictionCone;
-
-use crate::common::start;
+use crate::common::*;
 
 /// A pile that slumps, as `fallback` says, with too few sweeps a step to solve most of them.
 fn pile(method: Method, fallback: Fallback, cone: FrictionCone) -> Simulation {
@@ -29,10 +24,10 @@ fn a_step_that_is_not_solved_falls_back_on_one_that_is_and_says_so() {
     for cone in FrictionCone::ALL {
         for method in [Method::Nsgs, Method::Nncg, Method::Newton, Method::InteriorPoint] {
             let what = format!("{method}, {cone}");
-            let mut simulation = pile(method, Fallback::Tresca, *cone);
+            let mut run = pile(method, Fallback::Tresca, *cone);
             let (mut fell_back, mut solved) = (0, 0);
             for _ in 0..60 {
-                let row = *simulation.step().expect("a finite state");
+                let row = *run.step().expect("a finite state");
                 let told = row.fell_back.expect("it could fall back");
                 let of_model = row.model_residual.expect("a residual of what was solved");
                 let gap = row.duality_gap.expect("a gap");
@@ -55,18 +50,16 @@ fn a_step_that_is_not_solved_falls_back_on_one_that_is_and_says_so() {
 #[test]
 fn auto_falls_back_unless_told_not_to_and_others_do_where_told() {
     let told = |method, fallback| {
-        let mut simulation = pile(method, fallback, FrictionCone::Shifted);
-        for _ in 0..30 {
-            simulation.step().expect("a finite state");
-        }
-        let places: Vec<_> = simulation
+        let mut run = pile(method, fallback, FrictionCone::Shifted);
+        take_steps(&mut run, 30);
+        let places: Vec<_> = run
             .world()
             .grains
             .positions
             .iter()
             .map(|place| place.to_array().map(f64::to_bits))
             .collect();
-        (simulation.observables().fell_back.is_some(), places)
+        (run.observables().fell_back.is_some(), places)
     };
     let auto = told(Method::Auto, Fallback::OfMethod);
     assert!(auto.0);
@@ -95,10 +88,10 @@ fn a_problem_is_solved_again_after_it_fell_back() {
             max_sweeps: 40,
             ..SolverSettings::default()
         };
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let mut fell_back = 0;
         for _ in 0..40 {
-            let row = *simulation.step().expect("a finite state");
+            let row = *run.step().expect("a finite state");
             fell_back += u32::from(row.fell_back == Some(true));
             assert!(row.model_residual.is_some() && row.residual.is_finite());
         }

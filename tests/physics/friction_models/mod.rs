@@ -6,12 +6,7 @@ mod fallback;
 mod one_contact;
 mod piles;
 
-use crate::common::{G, UNTURNING, moving, parameters, scene};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::solver::{FrictionModel, Method, SolverSettings};
-use slump::world::{Boundary, FrictionCone};
+use crate::common::*;
 
 const RADIUS: f64 = 0.1;
 const MU: f64 = 0.3;
@@ -23,7 +18,7 @@ fn on_incline(model: FrictionModel, slope: f64, speed: f64) -> Scene {
     let gravity = G * DVec2::new(slope, -1.0).normalize();
     let grain = moving(place, RADIUS, DVec2::new(speed, 0.0));
     let mut scene = Scene {
-        boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }],
+        boundaries: vec![level()],
         ..scene(UNTURNING, gravity, parameters(0.0, DT, 0.0, MU), vec![grain])
     };
     scene.solver.friction_model = model;

@@ -1,24 +1,17 @@
 //! One contact or two, against what theory says of them.
 
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::{Pull, Simulation};
-use slump::solver::{FrictionModel, SolverSettings};
-use slump::world::{Boundary, FrictionCone, Grain, Physics};
+use crate::common::*;
 
 use super::{DT, MU, RADIUS, on_incline};
-use crate::common::{G, assert_close, fixed, moving, parameters, scene, start, take_steps};
 
 #[test]
 fn a_block_sticks_up_to_mu_under_every_model_and_slides_above() {
     for &model in FrictionModel::ALL {
-        let mut stuck = start(&on_incline(model, MU * (1.0 - 1e-6), 0.0));
-        take_steps(&mut stuck, 300);
-        assert!(stuck.world().grains.velocities[0].length() < 1e-14, "{model}");
+        let stuck = after(&on_incline(model, MU * (1.0 - 1e-6), 0.0), 300);
+        assert!(stuck.velocity(0).length() < 1e-14, "{model}");
         assert_eq!(stuck.observables().contacts, 1, "{model}");
-        let mut sliding = start(&on_incline(model, MU * (1.0 + 1e-6), 0.0));
-        take_steps(&mut sliding, 1);
-        assert!(sliding.world().grains.velocities[0].x > 1e-10, "{model}");
+        let sliding = after(&on_incline(model, MU * (1.0 + 1e-6), 0.0), 1);
+        assert!(sliding.velocity(0).x > 1e-10, "{model}");
     }
 }
 
@@ -29,10 +22,10 @@ fn what_slides_keeps_its_level_under_tresca_and_is_lifted_by_the_cone_models() {
     let (along, onto) = (G * slope / hypotenuse, G / hypotenuse);
     for &model in FrictionModel::ALL {
         let mut sliding = start(&on_incline(model, slope, speed));
-        let level = sliding.world().grains.positions[0].y;
+        let level = sliding.place(0).y;
         take_steps(&mut sliding, 1);
-        let after = sliding.world().grains.velocities[0];
-        let lift = sliding.world().grains.positions[0].y - level;
+        let after = sliding.velocity(0);
+        let lift = sliding.place(0).y - level;
         let expected = match model {
             FrictionModel::Coulomb | FrictionModel::Tresca => 0.0,
             FrictionModel::Associated => DT * MU * after.x,
@@ -45,7 +38,7 @@ fn what_slides_keeps_its_level_under_tresca_and_is_lifted_by_the_cone_models() {
         assert_close(after.x, speed + along * DT - MU * pressure, 1e-13, model.name());
         if expected == 0.0 {
             take_steps(&mut sliding, 299);
-            let velocity = sliding.world().grains.velocities[0];
+            let velocity = sliding.velocity(0);
             assert_close(velocity.x, speed + (along - MU * onto) * DT * 300.0, 1e-10, model.name());
             assert!(velocity.y.abs() < 1e-12, "{model}");
         }
@@ -55,8 +48,8 @@ fn what_slides_keeps_its_level_under_tresca_and_is_lifted_by_the_cone_models() {
 }
 
 /// (P_n, P_t) of the only contact.
-fn impulse(simulation: &Simulation) -> [f64; 2] {
-    let [impulse] = simulation.contacts().impulses() else { panic!("one contact") };
+fn impulse(run: &Simulation) -> [f64; 2] {
+    let [impulse] = run.contacts().impulses() else { panic!("one contact") };
     [impulse.normal, impulse.tangential]
 }
 
@@ -69,33 +62,33 @@ fn tresca_lags_a_step_behind_the_pressure_on_what_slides() {
     ] {
         let mut scene = on_incline(FrictionModel::Tresca, 0.0, 5.0);
         (scene.parameters.bond, scene.parameters.cone) = (bond, cone);
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let cohesion = match cone {
-            FrictionCone::Shifted => bond * simulation.world().grains.masses[0] * G * DT,
+            FrictionCone::Shifted => bond * run.grains().masses[0] * G * DT,
             FrictionCone::Compressive => 0.0,
         };
-        take_steps(&mut simulation, 1);
-        let [mut pressure, rubbing] = impulse(&simulation);
+        take_steps(&mut run, 1);
+        let [mut pressure, rubbing] = impulse(&run);
         // A new contact has Coulomb's bound.
         assert_close(rubbing.abs(), MU * (pressure + cohesion), 1e-13, "the first step");
         let mut most = 0f64;
         for step in 0..5 {
-            let place = simulation.world().grains.positions[0];
+            let place = run.place(0);
             let target = place - DVec2::new(0.0, RADIUS * f64::from(step));
-            simulation.set_pull(Some(Pull { grain: 0, target }));
-            take_steps(&mut simulation, 1);
-            let [now, rubbing] = impulse(&simulation);
+            run.set_pull(Some(Pull { grain: 0, target }));
+            take_steps(&mut run, 1);
+            let [now, rubbing] = impulse(&run);
             assert_close(rubbing.abs(), MU * (pressure + cohesion), 1e-12, "a later step");
             most = most.max(now / pressure);
             pressure = now;
         }
         assert!(most > 1.5, "{most}: the pressure did not change");
         let coulomb = SolverSettings { friction_model: FrictionModel::Coulomb, ..scene.solver };
-        simulation.set_solver(coulomb).expect("sound settings");
-        take_steps(&mut simulation, 1);
-        let [pressure, rubbing] = impulse(&simulation);
+        run.set_solver(coulomb).expect("sound settings");
+        take_steps(&mut run, 1);
+        let [pressure, rubbing] = impulse(&run);
         assert_close(rubbing.abs(), MU * (pressure + cohesion), 1e-13, "Coulomb's law");
-        assert_eq!(simulation.observables().model_residual, None);
+        assert_eq!(run.observables().model_residual, None);
     }
 }
 
@@ -105,7 +98,7 @@ fn two_bodies(model: FrictionModel, solves: u32) -> Simulation {
     let direction = DVec2::new(0.6, 0.8);
     let above = Grain::at_rest(below.position + 1.998 * RADIUS * direction, RADIUS);
     let mut scene = Scene {
-        boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }],
+        boundaries: vec![level()],
         ..scene(
             Physics::FULL,
             DVec2::new(0.0, -G),
@@ -115,13 +108,12 @@ fn two_bodies(model: FrictionModel, solves: u32) -> Simulation {
     };
     scene.solver.friction_model = model;
     scene.solver.model_solves = solves;
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 1);
+    let mut run = after(&scene, 1);
     // What presses them now did not do so in the step before.
-    let target = simulation.world().grains.positions[1] - DVec2::new(0.0, 8.0 * RADIUS);
-    simulation.set_pull(Some(Pull { grain: 1, target }));
-    take_steps(&mut simulation, 1);
-    simulation
+    let target = run.place(1) - DVec2::new(0.0, 8.0 * RADIUS);
+    run.set_pull(Some(Pull { grain: 1, target }));
+    take_steps(&mut run, 1);
+    run
 }
 
 #[test]
@@ -138,7 +130,7 @@ fn more_solves_a_step_lead_to_coulombs_law() {
     let many = two_bodies(FrictionModel::Tresca, 200);
     assert!(many.observables().residual < 1e-11, "{:e}", many.observables().residual);
     // Both start from the same first step, whose contacts are new.
-    let pairs = many.world().grains.velocities.iter().zip(&coulomb.world().grains.velocities);
+    let pairs = many.velocities().iter().zip(coulomb.velocities());
     for (one, other) in pairs {
         assert!((*one - *other).length() < 1e-10, "{one} and {other}");
     }
@@ -157,9 +149,8 @@ fn a_fixed_disc_holds_by_friction_as_a_grain_does() {
         scene.fixed_discs =
             [-1.0, 1.0].map(|side| fixed(DVec2::new(side * 1.999 * RADIUS, 0.0), RADIUS)).to_vec();
         scene.solver.friction_model = model;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 100);
-        let fallen = -simulation.world().grains.positions[0].y;
+        let run = after(&scene, 100);
+        let fallen = -run.place(0).y;
         assert!(fallen.abs() < 1e-12, "{model}: fell by {fallen:e}");
     }
 }

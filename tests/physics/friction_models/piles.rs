@@ -1,17 +1,8 @@
 //! Piles under every convex model: what is solved is the model, and has one solution.
 
-use rand::RngExt;
-use slump::contact::ContactList;
-use slump::scene::Scene;
-use slump::sim::ProblemVisitor;
-use slump::solver::{
-    BodySystem, ContactSystem, FrictionModel, Kinematics, Memory, Method, Model, SolverSettings,
-    StepProblem, solve,
-};
-use slump::world::{FrictionCone, Parameters, Physics};
+use crate::common::*;
 
 use crate::common::natural_map::judge;
-use crate::common::{UNTURNING, parameters, pressed_pile, random, start, take_steps};
 
 pub const CONVEX: [FrictionModel; 3] =
     [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce];
@@ -56,11 +47,10 @@ fn what(pile: &Scene) -> String {
 fn solved_steps_obey_the_model_as_world_data_show_it() {
     for pile in piles(30, 2.0, 0.3, 1e-3) {
         let what = what(&pile);
-        let mut simulation = start(&pile);
-        take_steps(&mut simulation, 2);
+        let mut simulation = after(&pile, 2);
         let (contacts, impulses) =
             (simulation.contacts().contacts().to_vec(), simulation.contacts().impulses().to_vec());
-        let before = simulation.world().grains.clone();
+        let before = simulation.grains().clone();
         let row = *simulation.step().expect("a finite state");
         assert!(row.converged, "{what}: {:?} after {} sweeps", row.model_residual, row.sweeps);
         assert!(row.model_residual.is_some_and(|residual| residual <= 1e-11), "{what}");
@@ -142,10 +132,9 @@ impl ProblemVisitor for FromRandomStarts<'_> {
 fn the_velocities_of_a_convex_model_are_the_same_from_any_start() {
     for pile in piles(25, 20.0, 0.05, 1e-5) {
         let what = what(&pile);
-        let mut simulation = start(&pile);
-        take_steps(&mut simulation, 3);
+        let run = after(&pile, 3);
         let settings = pile.solver;
-        let solution = |seed| simulation.next_problem(FromRandomStarts(&settings, seed));
+        let solution = |seed| run.next_problem(FromRandomStarts(&settings, seed));
         let first = solution(0);
         let fastest = first.iter().fold(0f64, |fastest, speed| fastest.max(speed.abs()));
         assert!(fastest > 1e-3, "{what}: nothing moves");

@@ -2,11 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
-use slump::sim::{
-    ContactState, ContactStatus, GrainState, Moment, Observables, OtherBody, Settings, Surroundings,
-};
-use slump::world::{Boundary, Disc};
+use crate::common::*;
 
 /// A disc at rest.
 pub fn disc(position: DVec2, radius: f64) -> GrainState {

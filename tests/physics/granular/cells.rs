@@ -2,15 +2,10 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec2;
-use rand::RngExt;
-use slump::granular::{GrainMeasures, PileMeasures, measure};
-use slump::sim::{GrainState, Moment};
-use slump::world::{Boundary, Disc};
+use crate::common::*;
 
 use super::by_hand::{among, box_walls, disc, discs};
 use super::packings::triangular_discs;
-use crate::common::{assert_close, fixed, random};
 
 const EXACT: f64 = 1e-12;
 

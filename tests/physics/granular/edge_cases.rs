@@ -1,13 +1,8 @@
 //! Moments of which little or nothing can be said: no panic, and no number that means nothing.
 
-use glam::DVec2;
-use slump::granular::{ColumnSpec, GrainMeasures, MomentMeasures, PileMeasures, measure};
-use slump::scene::built_in;
-use slump::sim::{GrainState, Moment, OtherBody};
-use slump::world::Boundary;
+use crate::common::*;
 
 use super::by_hand::{among, disc, discs, touch};
-use crate::common::assert_close;
 
 const EXACT: f64 = 1e-12;
 
@@ -87,7 +82,7 @@ fn discs_on_a_line_have_the_box_around_them() {
     assert_close(pile.stress_xx, 3.0, EXACT, "three forces of 4 N over 1 m each, by 4 m²");
     assert_eq!((pile.stress_yy, pile.stress_xy, pile.closed_cells), (0.0, 0.0, 0));
     // A scene with one axis.
-    let mut cradle = built_in("cradle").expect("the cradle").simulation().expect("a simulation");
+    let mut cradle = built_in("cradle").expect("the cradle").simulation().expect("a run");
     cradle.take_steps(50).expect("finite steps");
     let pile = PileMeasures::of(&cradle.moment());
     assert!(pile.area > 0.0 && pile.pressure.is_finite() && pile.coordination > 0.0, "{pile:?}");
@@ -122,8 +117,8 @@ fn what_no_simulation_makes_is_left_out() {
     strange.grains.push(disc(DVec2::new(f64::INFINITY, 0.0), 0.5));
     for other in [OtherBody::Grain(3), OtherBody::Grain(70)] {
         let contact = strange.contacts[0];
-        strange.contacts.push(slump::sim::ContactState { other, ..contact });
-        strange.contacts.push(slump::sim::ContactState { grain: 71, ..contact });
+        strange.contacts.push(ContactState { other, ..contact });
+        strange.contacts.push(ContactState { grain: 71, ..contact });
     }
     let measured = measure(&strange);
     // NaN is not NaN, but reads as it does.
@@ -137,7 +132,7 @@ fn walls_without_length_and_far_places_do_no_harm() {
     let nothing = vec![
         Boundary::Segment { from: point, to: point },
         Boundary::Polyline { points: vec![point; 3] },
-        Boundary::HalfSpace { point: DVec2::new(0.0, -0.5), normal: DVec2::ZERO },
+        plane(DVec2::new(0.0, -0.5), DVec2::ZERO),
     ];
     let areas = |moment: &Moment| {
         let measured = GrainMeasures::of_each(moment);

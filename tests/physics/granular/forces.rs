@@ -1,12 +1,9 @@
 //! How forces and directions are distributed.
 
-use glam::DVec2;
-use slump::granular::{Histogram, PileMeasures, histograms};
-use slump::sim::Moment;
+use crate::common::*;
 
 use super::by_hand::{disc, discs, touch};
 use super::packings::{RADIUS, triangular_discs};
-use crate::common::assert_close;
 
 const EXACT: f64 = 1e-12;
 

@@ -2,17 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use crate::common::*;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use rand::RngExt;
 use rand::seq::SliceRandom;
-use slump::granular::{ColumnSpec, MomentMeasures, measure};
-use slump::sim::{ContactState, ContactStatus, Moment, OtherBody, Surroundings};
-use slump::world::{Boundary, Disc};
 
 use super::by_hand::{among, disc, discs, lean, touch};
-use crate::common::{fixed, random};
 
 const CASES: u32 = 64;
 const FLOOR: usize = 0;
@@ -37,7 +32,7 @@ fn heap(seed: u64, count: usize) -> Moment {
     });
     let mut heap = discs(grains.collect());
     let base = (0..4).map(|k| fixed(DVec2::new(2.0 * f64::from(k), -0.2), 0.5)).collect();
-    let floor = Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y };
+    let floor = level();
     let end = Boundary::Segment { from: DVec2::new(3.0, 3.0), to: DVec2::new(4.0, 4.5) };
     heap = among(heap, vec![floor, end], base);
     let mut forces = || [random.random_range(-1.0..3.0), random.random_range(-1.0..1.0)];
@@ -79,9 +74,7 @@ fn mapped(
         contact.point = place(contact.point);
     }
     let boundary = |boundary: &Boundary| match *boundary {
-        Boundary::HalfSpace { point, normal } => {
-            Boundary::HalfSpace { point: place(point), normal: vector(normal) }
-        }
+        Boundary::HalfSpace { point, normal } => plane(place(point), vector(normal)),
         Boundary::Segment { from, to } => Boundary::Segment { from: place(from), to: place(to) },
         ref other => panic!("{other:?}"),
     };

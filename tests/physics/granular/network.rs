@@ -1,14 +1,9 @@
 //! Rattlers, clusters and shares of contacts, where they can be counted by hand.
 
-use glam::DVec2;
-use slump::granular::{PileMeasures, measure};
-use slump::scene::Scene;
-use slump::sim::{ContactStatus, Moment};
-use slump::world::{Boundary, Grain, Physics};
+use crate::common::*;
 
 use super::by_hand::{among, box_walls, disc, discs, lean, touch};
 use super::packings::RADIUS;
-use crate::common::{G, assert_close, parameters, scene, start, take_steps};
 
 const EXACT: f64 = 1e-12;
 
@@ -99,7 +94,7 @@ fn on_a_slope(angle: f64, friction: f64) -> Scene {
         .map(|k| Grain::at_rest(DVec2::new(4.0 * radius * f64::from(k), radius - 1e-9), radius));
     let gravity = G * DVec2::new(angle.sin(), -angle.cos());
     Scene {
-        boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }],
+        boundaries: vec![level()],
         ..scene(Physics::FULL, gravity, parameters(0.0, 1e-3, 0.0, friction), grains.collect())
     }
 }
@@ -108,9 +103,8 @@ fn on_a_slope(angle: f64, friction: f64) -> Scene {
 fn on_a_slope_discs_slip_where_friction_is_below_a_third_of_its_tangent() {
     let angle = 0.5f64;
     for (friction, share) in [(0.9 * angle.tan() / 3.0, 1.0), (1.1 * angle.tan() / 3.0, 0.0)] {
-        let mut simulation = start(&on_a_slope(angle, friction));
-        take_steps(&mut simulation, 10);
-        let pile = PileMeasures::of(&simulation.moment());
+        let run = after(&on_a_slope(angle, friction), 10);
+        let pile = PileMeasures::of(&run.moment());
         assert_eq!((pile.contacts, pile.sliding_share), (5, share), "μ = {friction}");
         assert_eq!((pile.open_share, pile.clusters, pile.rattlers), (0.0, 5, 5));
     }

@@ -2,12 +2,9 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec2;
-use slump::granular::{GrainMeasures, PileMeasures, measure};
-use slump::sim::{GrainState, Moment};
+use crate::common::*;
 
 use super::by_hand::{among, box_walls, disc, discs, lean, touch};
-use crate::common::assert_close;
 
 pub const RADIUS: f64 = 2e-3;
 const EXACT: f64 = 1e-12;

@@ -1,11 +1,6 @@
 //! Coulomb's cone under the stepping schemes: when a disc on a slope sticks, slides and rolls.
 
-use crate::common::schemes::{SCHEMES, by};
-use crate::common::{G, UNTURNING, assert_close, parameters, scene, start, take_steps};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::world::{Boundary, FrictionCone, Grain, Physics};
+use crate::common::*;
 
 /// A disc on a level half-space, under a gravity that leans by `slope` = tanθ.
 fn on_slope(
@@ -20,19 +15,18 @@ fn on_slope(
     let gravity = G * DVec2::new(slope, -1.0).normalize();
     let mut parameters = parameters(bond, 1e-3, 0.1, 0.3);
     parameters.cone = cone;
-    let level = Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y };
+    let level = level();
     let scene = scene(physics, gravity, parameters, vec![grain]);
     by(stepper, 0, Scene { boundaries: vec![level], ..scene })
 }
 
 /// Its velocity and its acceleration once it lies on the slope.
 fn slides(scene: &Scene) -> (f64, f64) {
-    let mut simulation = start(scene);
-    take_steps(&mut simulation, 500);
-    let velocity = simulation.world().grains.velocities[0].x;
-    take_steps(&mut simulation, 200);
-    let later = simulation.world().grains.velocities[0].x;
-    assert_eq!(simulation.observables().contacts, 1);
+    let mut run = after(scene, 500);
+    let velocity = run.velocity(0).x;
+    take_steps(&mut run, 200);
+    let later = run.velocity(0).x;
+    assert_eq!(run.observables().contacts, 1);
     (later, (later - velocity) / 0.2)
 }
 

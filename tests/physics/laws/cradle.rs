@@ -1,16 +1,13 @@
 //! The paper's cradle (§4): which time steps lose the bond between i and j.
 
-use crate::common::{start, take_steps};
-use slump::scene::{Scene, cradle, cradle_from};
-use slump::solver::StopTest;
+use crate::common::*;
 
 /// Whether i and j are apart by more than 0.1 d after 2.5 s: the latest shock of a start at 8.5 d
 /// comes at √(2·7.5 d/g) = 1.5 s.
 fn opens(mut scene: Scene, dt: f64) -> bool {
     scene.parameters.time_step_secs = dt;
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, (2.5 / dt).round() as usize);
-    let grains = &simulation.world().grains;
+    let run = after(&scene, (2.5 / dt).round() as usize);
+    let grains = run.grains();
     let [i, j, k] = [0, 1, 2].map(|index| grains.positions[index].x);
     assert!(k > i - 8.0 * scene.mean_diameter, "k has fallen in");
     (j - i) / scene.mean_diameter - 1.0 > 0.1
@@ -40,18 +37,18 @@ fn after_a_shock_solved_well_i_and_j_move_together() {
     let mut scene = cradle();
     scene.parameters.time_step_secs = 1e-3;
     scene.solver.tolerance = 1e-12;
-    let mut simulation = start(&scene);
-    let relative = |simulation: &slump::sim::Simulation| {
-        let velocities = &simulation.world().grains.velocities;
+    let mut run = start(&scene);
+    let relative = |run: &Simulation| {
+        let velocities = run.velocities();
         velocities[1].x - velocities[0].x
     };
-    while simulation.observables().contacts < 2 {
-        simulation.step().expect("a finite state");
-        assert!(simulation.time_secs() < 2.0, "k arrives");
+    while run.observables().contacts < 2 {
+        run.step().expect("a finite state");
+        assert!(run.time_secs() < 2.0, "k arrives");
     }
-    let speed = simulation.world().grains.velocities[0].x.abs();
+    let speed = run.velocity(0).x.abs();
     assert!(speed > 0.5, "there was a shock");
-    assert!(relative(&simulation).abs() < 1e-9, "v_ij = {:e}", relative(&simulation));
+    assert!(relative(&run).abs() < 1e-9, "v_ij = {:e}", relative(&run));
 }
 
 /// The share of bonds lost over 100 starts between 6 and 8.5 d.

@@ -6,11 +6,7 @@
 //! three or more breaks under its first disc, at Bond = 2(n − 1). With two discs both contacts reach
 //! their limits together, at Bond = 2.
 
-use crate::common::{G, LINE, SMOOTH, fixed, parameters, scene, start, take_steps, to_residual};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Simulation;
-use slump::world::{Grain, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 0.05;
 /// Overlap of neighbours, m: rounding of the places, and no more than that.
@@ -43,12 +39,12 @@ fn a_chain_holds_while_no_contact_carries_more_than_its_cohesion() {
         for physics in [LINE, SMOOTH, Physics::FULL] {
             for n in [1, 2, 4, 7] {
                 let bond = breaking_bond(n) * (1.0 + NEAR);
-                let mut simulation = chain(n, bond, dt, physics);
-                take_steps(&mut simulation, 50);
-                assert_eq!(simulation.observables().contacts, n as u32, "Δt {dt}, n {n}");
-                let mass = simulation.world().grains.masses[0];
+                let mut run = chain(n, bond, dt, physics);
+                take_steps(&mut run, 50);
+                assert_eq!(run.observables().contacts, n as u32, "Δt {dt}, n {n}");
+                let mass = run.grains().masses[0];
                 for (contact, impulse) in
-                    simulation.contacts().contacts().iter().zip(simulation.contacts().impulses())
+                    run.contacts().contacts().iter().zip(run.contacts().impulses())
                 {
                     // Grain indices rise downward; a contact's lower disc is the one whose number
                     // is larger, or the only one.
@@ -60,7 +56,7 @@ fn a_chain_holds_while_no_contact_carries_more_than_its_cohesion() {
                         "Δt {dt}, n {n}: the contact above grain {lower} carries {force}"
                     );
                 }
-                for velocity in &simulation.world().grains.velocities {
+                for velocity in run.velocities() {
                     assert!(velocity.length() < 1e-8 * G * dt, "Δt {dt}, n {n}: hangs still");
                 }
             }
@@ -74,18 +70,18 @@ fn a_chain_breaks_above_its_threshold_where_it_is_overloaded() {
         for physics in [LINE, SMOOTH, Physics::FULL] {
             for n in [1, 3, 4, 7] {
                 let bond = breaking_bond(n) * (1.0 - NEAR);
-                let mut simulation = chain(n, bond, dt, physics);
-                simulation.step().expect("a finite state");
-                assert!(simulation.observables().converged);
-                assert_eq!(simulation.observables().contacts, n as u32, "all touch at first");
+                let mut run = chain(n, bond, dt, physics);
+                run.step().expect("a finite state");
+                assert!(run.observables().converged);
+                assert_eq!(run.observables().contacts, n as u32, "all touch at first");
                 // NEAR·g opens the overlap within a step or some at each of these time steps.
                 let mut steps = 0;
-                while simulation.observables().contacts == n as u32 {
-                    simulation.step().expect("a finite state");
+                while run.observables().contacts == n as u32 {
+                    run.step().expect("a finite state");
                     steps += 1;
                     assert!(steps < 100, "Δt {dt}, n {n}: it does not break");
                 }
-                let pairs = simulation.contacts().contacts().iter();
+                let pairs = run.contacts().contacts().iter();
                 let ceiling_holds = pairs.clone().any(|contact| contact.other as usize >= n);
                 let first_pair_holds =
                     pairs.clone().any(|contact| (contact.grain, contact.other) == (0, 1));

@@ -1,16 +1,9 @@
 //! Shocks through touching grains, one after the other: what is known exactly, and what always holds.
 
-use crate::common::{
-    LINE, SMOOTH, assert_close, moving, parameters, random, scene, start, take_steps,
-};
-use glam::DVec2;
+use crate::common::*;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use rand::RngExt;
 use slump::scene::stability::{bounce, heap};
-use slump::scene::{Preset, Scene, paper_pile};
-use slump::sim::Simulation;
-use slump::world::{Boundary, Grain, Physics};
 
 const RADIUS: f64 = 0.05;
 /// Overlap of grains that touch, in diameters.
@@ -33,22 +26,21 @@ fn row_of(axis: DVec2, velocities: &[f64]) -> Vec<Grain> {
     velocities.iter().enumerate().map(ball).collect()
 }
 
-fn energy(simulation: &Simulation) -> f64 {
-    let grains = &simulation.world().grains;
+fn energy(run: &Simulation) -> f64 {
+    let grains = run.grains();
     let squares = grains.velocities.iter().map(|velocity| velocity.length_squared());
     0.5 * grains.masses.iter().zip(squares).map(|(mass, squared)| mass * squared).sum::<f64>()
 }
 
-fn momentum(simulation: &Simulation) -> DVec2 {
-    let grains = &simulation.world().grains;
+fn momentum(run: &Simulation) -> DVec2 {
+    let grains = run.grains();
     grains.masses.iter().zip(&grains.velocities).map(|(&mass, &velocity)| mass * velocity).sum()
 }
 
 /// Velocities along `axis` after a step.
 fn after_a_step(scene: &Scene, axis: DVec2) -> Vec<f64> {
-    let mut simulation = start(scene);
-    take_steps(&mut simulation, 1);
-    simulation.world().grains.velocities.iter().map(|velocity| velocity.dot(axis)).collect()
+    let run = after(scene, 1);
+    run.velocities().iter().map(|velocity| velocity.dot(axis)).collect()
 }
 
 #[test]
@@ -126,7 +118,7 @@ fn a_break_shot_is_symmetric_and_does_not_depend_on_the_numbering() {
             let mut simulation = start(&rack(restitution, order));
             let before = energy(&simulation);
             take_steps(&mut simulation, 1);
-            (before, energy(&simulation), simulation.world().grains.clone())
+            (before, energy(&simulation), simulation.grains().clone())
         };
         let (before, after, grains) = run(&straight);
         if restitution == 1.0 {
@@ -185,8 +177,7 @@ fn shocks_keep_the_momentum_and_never_gain_energy() {
                 prop_assert!(grown >= -1e-9 * energy_before, "{grown:e} of {energy_before:e}");
             }
             let off = momentum(&simulation).distance(momentum_before);
-            let scale =
-                (energy_before * simulation.world().grains.masses.iter().sum::<f64>()).sqrt();
+            let scale = (energy_before * simulation.grains().masses.iter().sum::<f64>()).sqrt();
             prop_assert!(off <= 1e-12 * scale, "momentum off by {off:e}");
         }
         Ok(())
@@ -206,10 +197,10 @@ fn with_friction_and_spins_none_of_these_shocks_gains_energy() {
             for grain in &mut scene.grains {
                 grain.angular_velocity = 40.0 * random.random_range(-1.0..=1.0);
             }
-            let mut simulation = start(&scene);
+            let mut run = start(&scene);
             for _ in 0..5 {
-                let before = simulation.observables().kinetic_energy;
-                let after = *simulation.step().expect("a finite state");
+                let before = run.observables().kinetic_energy;
+                let after = *run.step().expect("a finite state");
                 let grown = after.kinetic_energy / before - 1.0;
                 assert!(grown < 1e-6, "seed {seed}, ρ {restitution}: {grown:e}");
             }
@@ -241,7 +232,7 @@ fn difference(scene: &Scene, steps: usize) -> f64 {
     let (mut off, mut largest) = (0f64, 0f64);
     for _ in 0..steps {
         runs.iter_mut().for_each(|run| take_steps(run, 1));
-        let [usual, sequential] = [0, 1].map(|run: usize| &runs[run].world().grains.velocities);
+        let [usual, sequential] = [0, 1].map(|run: usize| runs[run].velocities());
         for (usual, sequential) in usual.iter().zip(sequential) {
             off = off.max(usual.distance(*sequential));
             largest = largest.max(usual.length());
@@ -273,11 +264,11 @@ fn a_pile_whose_shocks_are_followed_closes_its_energy_budget() {
     let mut scene = paper_pile().expect("the shipped state");
     scene.parameters = parameters(0.0, 1e-3, 0.7, 0.5);
     Preset::Robust.apply(&mut scene);
-    let mut simulation = start(&scene);
+    let mut run = start(&scene);
     let mut shocks = 0.0;
     for _ in 0..100 {
-        let before = simulation.observables().kinetic_energy;
-        let after = *simulation.step().expect("a finite state");
+        let before = run.observables().kinetic_energy;
+        let after = *run.step().expect("a finite state");
         let works = [after.gravity_work, after.normal_work, after.tangential_work];
         let off = (after.kinetic_energy - before - works.iter().sum::<f64>()).abs();
         let scale = before + after.kinetic_energy + works.iter().map(|w| w.abs()).sum::<f64>();

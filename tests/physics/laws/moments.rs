@@ -1,9 +1,6 @@
 //! What a moment tells of contacts, against what is known of them.
 
-use glam::DVec2;
-use slump::scene::{Scene, built_in};
-use slump::sim::{ContactState, ContactStatus, Moment, OtherBody, Simulation, Stepper};
-use slump::world::{Boundary, FrictionCone, Grain, Gravity};
+use crate::common::*;
 
 const RADIUS: f64 = 2e-3;
 /// What discs lie deep in the floor, m, so that they touch it: at a gap of exactly 0 they do not.
@@ -15,7 +12,7 @@ fn disc_on_floor(angle: f64, bond: f64, friction: f64, cone: FrictionCone) -> Si
     scene.parameters.bond = bond;
     scene.parameters.friction = friction;
     scene.parameters.cone = cone;
-    scene.simulation().expect("a disc on a floor")
+    start(&scene)
 }
 
 fn scene_of(centres: &[DVec2], angle: f64) -> Scene {
@@ -25,7 +22,7 @@ fn scene_of(centres: &[DVec2], angle: f64) -> Scene {
     scene.mean_diameter = 2.0 * RADIUS;
     scene.grains = centres.iter().map(|&centre| Grain::at_rest(centre, RADIUS)).collect();
     scene.fixed_discs.clear();
-    scene.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }];
+    scene.boundaries = vec![level()];
     scene.gravity = Gravity::Uniform { acceleration: 9.81 * DVec2::new(angle.sin(), -angle.cos()) };
     scene
 }
@@ -52,9 +49,9 @@ fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
             FrictionCone::Compressive => friction * angle.cos(),
         };
         assert_eq!(needed > bound, status == ContactStatus::Slip, "the situation at Bond {bond}");
-        let mut simulation = disc_on_floor(angle, bond, friction, cone);
-        simulation.take_steps(20).expect("finite steps");
-        let moment = simulation.moment();
+        let mut run = disc_on_floor(angle, bond, friction, cone);
+        run.take_steps(20).expect("finite steps");
+        let moment = run.moment();
         let contact = only_contact(&moment);
         assert_eq!(contact.status, status, "Bond {bond}, {cone:?}: {contact:?}");
         let weight = moment.grains[0].mass * 9.81;
@@ -71,9 +68,9 @@ fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
 fn a_disc_that_is_pulled_off_opens_at_its_cohesion() {
     // Gravity upwards: half of the weight is less than it takes to hold a disc, twice is more.
     for (bond, status) in [(0.5, ContactStatus::Open), (2.0, ContactStatus::Slip)] {
-        let mut simulation = disc_on_floor(std::f64::consts::PI, bond, 0.0, FrictionCone::Shifted);
-        simulation.step().expect("a finite step");
-        let moment = simulation.moment();
+        let mut run = disc_on_floor(std::f64::consts::PI, bond, 0.0, FrictionCone::Shifted);
+        run.step().expect("a finite step");
+        let moment = run.moment();
         let contact = only_contact(&moment);
         assert_eq!(contact.status, status, "Bond {bond}: {contact:?}");
         let pull = -contact.normal_force / (moment.grains[0].mass * 9.81);
@@ -89,13 +86,13 @@ fn a_contact_is_as_old_as_it_has_lasted() {
     for stepper in Stepper::ALL.iter().copied() {
         let mut scene = scene_of(&centres, 0.0);
         scene.stepper = stepper;
-        let mut simulation = scene.simulation().expect("two discs");
+        let mut run = start(&scene);
         // What lies there at the start was found then.
         let mut touches = [Some(0), None];
-        assert_eq!(only_contact(&simulation.moment()).age_steps, 0, "{stepper}");
+        assert_eq!(only_contact(&run.moment()).age_steps, 0, "{stepper}");
         for step in 1..=60u64 {
-            simulation.step().expect("a finite step");
-            let moment = simulation.moment();
+            run.step().expect("a finite step");
+            let moment = run.moment();
             for grain in 0..2 {
                 let contact = moment.contacts.iter().find(|contact| contact.grain == grain);
                 let found = &mut touches[grain as usize];
@@ -111,12 +108,12 @@ fn a_contact_is_as_old_as_it_has_lasted() {
 
 #[test]
 fn grains_and_contacts_are_those_of_the_simulation() {
-    let mut simulation = built_in("pile").expect("the pile").simulation().expect("a simulation");
-    simulation.take_steps(30).expect("finite steps");
-    let moment = simulation.moment();
-    let snapshot = simulation.snapshot();
+    let mut run = built_in("pile").expect("the pile").simulation().expect("a run");
+    run.take_steps(30).expect("finite steps");
+    let moment = run.moment();
+    let snapshot = run.snapshot();
     let fastest = moment.grains.iter().map(|grain| grain.velocity.length()).fold(0.0, f64::max);
-    let reach = 2.0 * fastest * simulation.parameters().time_step_secs + 1e-12;
+    let reach = 2.0 * fastest * run.parameters().time_step_secs + 1e-12;
     assert_eq!(moment.grains.len(), snapshot.grains.len());
     assert_eq!(moment.contacts.len(), snapshot.contacts.len());
     for (state, view) in moment.contacts.iter().zip(&snapshot.contacts) {

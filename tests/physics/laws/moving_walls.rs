@@ -1,15 +1,7 @@
 //! Walls that move along their normal: what they do to grains, and that nothing depends on who moves.
 
-use crate::common::{
-    LINE, assert_close, at_rest_and_falling, every_way, every_way_that_balances, parameters, scene,
-    start, take_steps,
-};
-use glam::DVec2;
-use slump::scene::Scene;
+use crate::common::*;
 use slump::scene::stability::logs;
-use slump::sim::{AlarmKind, Simulation};
-use slump::sim::{Remedies, Stepper};
-use slump::world::{Boundary, Grain, Gravity, Physics};
 
 const RADIUS: f64 = 0.05;
 const DT: f64 = 1e-3;
@@ -25,8 +17,8 @@ fn pushed(physics: Physics, restitution: f64, distance: f64, travel: f64) -> Sce
     }
 }
 
-fn wall(simulation: &Simulation) -> f64 {
-    match simulation.world().boundaries[0] {
+fn wall(run: &Simulation) -> f64 {
+    match run.world().boundaries[0] {
         Boundary::Piston { point, .. } => point.x,
         _ => panic!("the wall is a piston"),
     }
@@ -37,10 +29,9 @@ fn a_wall_hits_a_disc_at_rest_as_a_moving_disc_hits_a_wall() {
     for physics in [LINE, Physics::FULL] {
         for restitution in [0.0, 0.5, 1.0] {
             // From further than any list of near pairs reaches.
-            let mut simulation = start(&pushed(physics, restitution, 20.0 * RADIUS, 10.0));
-            take_steps(&mut simulation, 10_000);
+            let run = after(&pushed(physics, restitution, 20.0 * RADIUS, 10.0), 10_000);
             let expected = (1.0 + restitution) * SPEED;
-            let speed = simulation.world().grains.velocities[0].x;
+            let speed = run.velocity(0).x;
             assert_close(speed, expected, 1e-12, "speed after the wall came");
         }
     }
@@ -49,14 +40,14 @@ fn a_wall_hits_a_disc_at_rest_as_a_moving_disc_hits_a_wall() {
 #[test]
 fn a_wall_goes_its_way_to_the_end_and_no_further_and_is_shown_where_it_is() {
     let travel = 10.3 * DT * SPEED;
-    let mut simulation = start(&pushed(LINE, 0.0, 0.0, travel));
-    let begin = wall(&simulation);
-    take_steps(&mut simulation, 10);
-    assert_close(wall(&simulation) - begin, 10.0 * DT * SPEED, 1e-12, "way in ten steps");
-    take_steps(&mut simulation, 10);
-    assert_close(wall(&simulation) - begin, travel, 1e-12, "way in the end");
-    assert_eq!(simulation.snapshot().surroundings.boundaries, simulation.world().boundaries);
-    assert!(simulation.world().grains.positions[0].x > travel, "the disc flies on");
+    let mut run = start(&pushed(LINE, 0.0, 0.0, travel));
+    let begin = wall(&run);
+    take_steps(&mut run, 10);
+    assert_close(wall(&run) - begin, 10.0 * DT * SPEED, 1e-12, "way in ten steps");
+    take_steps(&mut run, 10);
+    assert_close(wall(&run) - begin, travel, 1e-12, "way in the end");
+    assert_eq!(run.snapshot().surroundings.boundaries, run.world().boundaries);
+    assert!(run.place(0).x > travel, "the disc flies on");
 }
 
 /// A scene on a floor at rest, and as one sees it who sinks at [`SPEED`]: floor and grains rise.
@@ -79,10 +70,10 @@ fn difference_of_views(scene: &Scene) -> f64 {
         still.step().expect("a finite state");
         rising.step().expect("a finite state");
         let risen = DVec2::new(0.0, SPEED * still.time_secs());
-        let [one, other] = [&still, &rising].map(|run| &run.world().grains.positions);
+        let [one, other] = [&still, &rising].map(|run| run.places());
         let ways = one.iter().zip(other).map(|(one, other)| (*one + risen).distance(*other));
         furthest = ways.fold(furthest, f64::max);
-        landed |= still.world().grains.positions[3].y < 0.51 * scene.mean_diameter;
+        landed |= still.place(3).y < 0.51 * scene.mean_diameter;
     }
     assert!(landed, "the disc that falls gets to the floor");
     furthest / scene.mean_diameter
@@ -120,10 +111,10 @@ fn the_work_of_a_wall_is_in_the_balance_of_energy() {
     }];
     for (stepper, method) in every_way_that_balances() {
         (scene.stepper, scene.solver.method) = (stepper, method);
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let (mut energy, mut work) = (0.0, 0.0);
         for _ in 0..100 {
-            let now = *simulation.step().expect("a finite state");
+            let now = *run.step().expect("a finite state");
             let change = now.kinetic_energy - energy;
             let works = now.normal_work + now.tangential_work + now.gravity_work;
             let off = (change - works).abs();
@@ -142,12 +133,11 @@ fn a_grain_that_follows_a_wall_on_its_way_back_is_not_lost() {
     if let Boundary::Piston { speed, .. } = &mut scene.boundaries[0] {
         *speed = -20.0 * SPEED;
     }
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 1000);
-    let place = simulation.world().grains.positions[0].x;
+    let run = after(&scene, 1000);
+    let place = run.place(0).x;
     assert!(place < -30.0 * RADIUS, "it falls after the wall, {place} m");
-    let lost = |alarm: &slump::sim::Alarm| alarm.kind == AlarmKind::GrainLost;
-    assert!(!simulation.alarms().iter().any(lost));
+    let lost = |alarm: &Alarm| alarm.kind == AlarmKind::GrainLost;
+    assert!(!run.alarms().iter().any(lost));
 }
 
 #[test]
@@ -174,9 +164,8 @@ fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
         // Wherever rounding has put the last digit, they touch.
         scene.gap_tolerance = 1e-9;
         scene.remedies = Remedies { sequential_impacts: true, ..Remedies::default() };
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 1);
-        for velocity in &simulation.world().grains.velocities {
+        let run = after(&scene, 1);
+        for velocity in run.velocities() {
             assert_close(velocity.x, 2.0 * SPEED, 1e-9, "speed after the wall came");
         }
     }

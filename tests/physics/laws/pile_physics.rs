@@ -3,10 +3,8 @@
 //! Piles are chaotic, so single slumps move by some hundredths with anything. Each claim is one of
 //! the mean of paired differences over the initial states, with Student's 95 % interval.
 
-use crate::common::{start, take_steps};
+use crate::common::*;
 use rayon::prelude::*;
-use slump::scene::{NewPile, pile_of, settle};
-use slump::world::Grain;
 
 const BOX_WIDTH_IN_DIAMETERS: f64 = 8.0;
 /// Initial states, and Student's t for 95 % and one degree of freedom less.
@@ -33,9 +31,8 @@ fn slumps(states: &[Vec<Grain>], bond: f64, dt: f64) -> Vec<f64> {
         scene.parameters.time_step_secs = dt;
         scene.solver.tolerance = 1e-5;
         scene.solver.max_sweeps = 3000;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, (DURATION_SECS / dt).round() as usize);
-        simulation.observables().slump
+        let run = after(&scene, (DURATION_SECS / dt).round() as usize);
+        run.observables().slump
     };
     states.par_iter().map(slump).collect()
 }

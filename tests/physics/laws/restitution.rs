@@ -1,9 +1,6 @@
 //! Bounces on a plane: every shock turns the normal velocity into −ρ times itself.
 
-use crate::common::{G, LINE, SMOOTH, assert_close, parameters, scene, start};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::world::{Boundary, Grain, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 0.05;
 const HEIGHT: f64 = 0.3;
@@ -14,22 +11,22 @@ fn drop(physics: Physics, up: DVec2, restitution: f64, bond: f64) -> Scene {
     let grain = Grain::at_rest((RADIUS + HEIGHT) * up, RADIUS);
     let parameters = parameters(bond, DT, restitution, 0.5);
     Scene {
-        boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: up }],
+        boundaries: vec![plane(DVec2::ZERO, up)],
         ..scene(physics, -G * up, parameters, vec![grain])
     }
 }
 
 /// Speeds (before, after) of each of the first `count` shocks, and the highest point after each.
 fn bounces(scene: &Scene, up: DVec2, count: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
-    let mut simulation = start(scene);
+    let mut run = start(scene);
     let (mut shocks, mut heights) = (Vec::new(), Vec::new());
     let mut highest = 0f64;
     while heights.len() < count {
-        let before = simulation.world().grains.velocities[0].dot(up);
-        simulation.step().expect("a finite state");
-        let after = simulation.world().grains.velocities[0].dot(up);
-        let height = simulation.world().grains.positions[0].dot(up) - RADIUS;
-        if simulation.contacts().impulses().iter().any(|impulse| impulse.normal > 0.0) {
+        let before = run.velocity(0).dot(up);
+        run.step().expect("a finite state");
+        let after = run.velocity(0).dot(up);
+        let height = run.place(0).dot(up) - RADIUS;
+        if run.contacts().impulses().iter().any(|impulse| impulse.normal > 0.0) {
             if !shocks.is_empty() {
                 heights.push(highest);
             }
@@ -37,7 +34,7 @@ fn bounces(scene: &Scene, up: DVec2, count: usize) -> (Vec<[f64; 2]>, Vec<f64>) 
             highest = f64::NEG_INFINITY;
         }
         highest = highest.max(height);
-        assert!(simulation.time_secs() < 20.0, "only {} bounces", heights.len());
+        assert!(run.time_secs() < 20.0, "only {} bounces", heights.len());
     }
     (shocks, heights)
 }
@@ -70,19 +67,19 @@ fn each_bounce_keeps_the_fraction_rho_of_the_speed() {
 #[test]
 fn without_restitution_the_first_shock_is_the_last() {
     for up in [DVec2::Y, DVec2::new(0.6, 0.8)] {
-        let mut simulation = start(&drop(Physics::FULL, up, 0.0, 0.0));
+        let mut run = start(&drop(Physics::FULL, up, 0.0, 0.0));
         let mut shocked = false;
         for _ in 0..10_000 {
-            simulation.step().expect("a finite state");
-            let speed = simulation.world().grains.velocities[0].dot(up);
-            shocked |= simulation.observables().contacts > 0;
+            run.step().expect("a finite state");
+            let speed = run.velocity(0).dot(up);
+            shocked |= run.observables().contacts > 0;
             if shocked {
                 assert!(speed.abs() < 1e-14, "still after the shock: {speed:e}");
             }
         }
         assert!(shocked);
         // It lies as deep as one step of the fall took it.
-        let depth = simulation.observables().max_overlap * simulation.world().mean_diameter;
+        let depth = run.observables().max_overlap * run.world().mean_diameter;
         assert!(depth > 0.0 && depth <= 1.01 * (2.0 * G * HEIGHT).sqrt() * DT);
     }
 }
@@ -98,14 +95,14 @@ fn cohesion_holds_what_bounces_slower_than_the_capture_speed() {
         // Deep enough to touch still after the shock.
         scene.grains[0].position.x = RADIUS - speed * DT;
         scene.grains[0].velocity.x = -speed;
-        let mut simulation = start(&scene);
-        simulation.step().expect("a finite state");
-        let rebound = simulation.world().grains.velocities[0].x;
+        let mut run = start(&scene);
+        run.step().expect("a finite state");
+        let rebound = run.velocity(0).x;
         assert_close(rebound, restitution * speed, 1e-12, "it bounced");
-        let still_overlapping = simulation.world().grains.positions[0].x < RADIUS;
+        let still_overlapping = run.place(0).x < RADIUS;
         assert!(still_overlapping, "or else cohesion had no hold on it");
-        simulation.step().expect("a finite state");
-        let after = simulation.world().grains.velocities[0].x;
+        run.step().expect("a finite state");
+        let after = run.velocity(0).x;
         if escapes {
             let expected = rebound - (bond + 1.0) * G * DT;
             assert_close(after, expected, 1e-9, "speed after one step of cohesion");

@@ -6,10 +6,7 @@
 //! disc, and above slides like the other while its spin grows with 2μ g cosθ / r. In the scheme all
 //! of these hold exactly in every step, whatever Δt: one contact is solved exactly by one update.
 
-use crate::common::{G, UNTURNING, assert_close, fixed, parameters, scene, start, take_steps};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::world::{Boundary, FrictionCone, Grain, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 0.1;
 const MU: f64 = 0.3;
@@ -30,7 +27,7 @@ fn levels() -> Vec<(&'static str, Boundary)> {
     let at = |x: f64| DVec2::new(x, 0.0);
     let low = |x: f64| DVec2::new(x, -1.0);
     vec![
-        ("half-space", Boundary::HalfSpace { point: at(3.0), normal: DVec2::new(0.0, 2.0) }),
+        ("half-space", plane(at(3.0), DVec2::new(0.0, 2.0))),
         ("segment", Boundary::Segment { from: at(-1.0), to: at(50.0) }),
         ("segment backwards", Boundary::Segment { from: at(50.0), to: at(-1.0) }),
         ("polyline", Boundary::Polyline { points: [-1.0, 0.04, 0.9, 50.0].map(at).to_vec() }),
@@ -49,23 +46,21 @@ fn acceleration(slope: f64) -> (f64, f64) {
 #[test]
 fn a_disc_that_cannot_roll_slides_above_coulombs_threshold_and_not_below() {
     for (name, level) in levels() {
-        let mut stuck = start(&on_level(UNTURNING, MU * (1.0 - 1e-6), MU, level.clone()));
-        take_steps(&mut stuck, 500);
+        let stuck = after(&on_level(UNTURNING, MU * (1.0 - 1e-6), MU, level.clone()), 500);
         assert_eq!(stuck.observables().contacts, 1, "{name}");
-        assert!(stuck.world().grains.velocities[0].length() < 1e-14, "{name}: sticks");
+        assert!(stuck.velocity(0).length() < 1e-14, "{name}: sticks");
         let impulse = stuck.contacts().impulses()[0];
         assert_close(impulse.tangential.abs(), MU * impulse.normal, 2e-6, name);
 
         for slope in [MU * (1.0 + 1e-6), 0.5, 2.0] {
-            let mut sliding = start(&on_level(UNTURNING, slope, MU, level.clone()));
-            take_steps(&mut sliding, 500);
+            let sliding = after(&on_level(UNTURNING, slope, MU, level.clone()), 500);
             let (along, onto) = acceleration(slope);
-            let velocity = sliding.world().grains.velocities[0];
+            let velocity = sliding.velocity(0);
             let expected = (along - MU * onto) * DT * 500.0;
             // At 1e-6 above the threshold, roundings of μ g cosθ are 1e-9 of the difference.
             assert_close(velocity.x, expected, 1e-8, name);
             assert!(velocity.y.abs() < 1e-12, "{name}: stays on its level");
-            assert_eq!(sliding.world().grains.angular_velocities[0], 0.0);
+            assert_eq!(sliding.grains().angular_velocities[0], 0.0);
         }
     }
 }
@@ -78,9 +73,8 @@ fn cohesion_steepens_the_threshold_with_the_shifted_cone_alone() {
         let mut scene = on_level(UNTURNING, slope, MU, level.clone());
         scene.parameters.bond = bond;
         scene.parameters.cone = cone;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 100);
-        simulation.world().grains.velocities[0].x / (G * DT * 100.0)
+        let run = after(&scene, 100);
+        run.velocity(0).x / (G * DT * 100.0)
     };
     // sinθ − μ cosθ = μ·Bond, that is sin(θ − φ) = μ·Bond·cosφ with tanφ = μ.
     let steepest = (MU.atan() + (MU * bond * MU.atan().cos()).asin()).tan();
@@ -95,10 +89,9 @@ fn cohesion_steepens_the_threshold_with_the_shifted_cone_alone() {
 fn a_disc_rolls_without_slip_up_to_three_mu_and_with_slip_above() {
     for (name, level) in levels() {
         for slope in [0.1, MU, 3.0 * MU * (1.0 - 1e-6), 3.0 * MU * (1.0 + 1e-6), 2.0] {
-            let mut simulation = start(&on_level(Physics::FULL, slope, MU, level.clone()));
-            take_steps(&mut simulation, 500);
+            let run = after(&on_level(Physics::FULL, slope, MU, level.clone()), 500);
             let (along, onto) = acceleration(slope);
-            let grains = &simulation.world().grains;
+            let grains = run.grains();
             let secs = 500.0 * DT;
             let spin = -RADIUS * grains.angular_velocities[0];
             let (speed, expected_spin) = if slope < 3.0 * MU {
@@ -126,7 +119,7 @@ fn a_vertex_of_a_nearly_flat_polyline_is_not_felt() {
         let mut on_level = start(&on_level(Physics::FULL, 0.2, MU, levels().remove(0).1));
         take_steps(&mut on_bent, 2000);
         take_steps(&mut on_level, 2000);
-        let [a, b] = [&on_bent, &on_level].map(|simulation| simulation.world().grains.clone());
+        let [a, b] = [&on_bent, &on_level].map(|run| run.grains().clone());
         assert!(a.positions[0].x > 2.0, "it rolled over the vertex");
         let off = a.velocities[0].distance(b.velocities[0]);
         assert!(off < 10.0 * tilt * b.velocities[0].length(), "kink {kink}: off by {off}");
@@ -151,12 +144,12 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
                 vec![Grain::at_rest(place, RADIUS)],
             )
         };
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let (mut cosine, mut touched) = (1.0, 0);
-        while simulation.world().grains.positions[0].length() < 1.02 * reach {
-            simulation.step().expect("a finite state");
-            if simulation.observables().contacts > 0 {
-                cosine = simulation.contacts().contacts()[0].normal.y;
+        while run.place(0).length() < 1.02 * reach {
+            run.step().expect("a finite state");
+            if run.observables().contacts > 0 {
+                cosine = run.contacts().contacts()[0].normal.y;
                 touched += 1;
             }
         }

@@ -1,10 +1,7 @@
 //! Contacts that are looked for ahead of a step: nothing tunnels, and what that costs.
 
-use crate::common::{G, moving, parameters, scene, start, take_steps};
-use glam::DVec2;
-use slump::scene::Scene;
+use crate::common::*;
 use slump::scene::stability::{WALL_DISTANCE, heap, thin_wall};
-use slump::world::{Boundary, Grain, Physics};
 
 const PHASES: u32 = 20;
 
@@ -15,11 +12,10 @@ fn rebounds(travel: f64, restitution: f64, mend: impl Fn(&mut Scene)) -> Vec<f64
         let mut scene = thin_wall(travel, (f64::from(phase) + 0.5) / f64::from(PHASES));
         scene.parameters.restitution = restitution;
         mend(&mut scene);
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, ((WALL_DISTANCE + 5.0) / travel) as usize);
-        let beyond = simulation.world().grains.positions[0].x > WALL_DISTANCE * scene.mean_diameter;
+        let run = after(&scene, ((WALL_DISTANCE + 5.0) / travel) as usize);
+        let beyond = run.place(0).x > WALL_DISTANCE * scene.mean_diameter;
         assert!(!beyond, "travel {travel}, phase {phase}: it went through");
-        simulation.world().grains.velocities[0].x / scene.grains[0].velocity.x
+        run.velocity(0).x / scene.grains[0].velocity.x
     };
     (0..PHASES).map(rebound).collect()
 }
@@ -48,17 +44,17 @@ fn a_falling_disc_lands_in_touch_and_rests() {
         let grains = vec![grain];
         let mut fall =
             scene(Physics::FULL, -G * DVec2::Y, parameters(bond, 5e-3, 0.0, 0.5), grains);
-        fall.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }];
+        fall.boundaries = vec![level()];
         fall.remedies.speculative = true;
-        let mut simulation = start(&fall);
+        let mut run = start(&fall);
         let mut deepest = 0f64;
         for _ in 0..200 {
-            deepest = deepest.max(simulation.step().expect("a finite state").max_overlap);
+            deepest = deepest.max(run.step().expect("a finite state").max_overlap);
         }
-        assert_eq!(simulation.observables().contacts, 1, "Bond {bond}");
+        assert_eq!(run.observables().contacts, 1, "Bond {bond}");
         // The usual step would bury it by up to a step of its fall, 0.1 d.
         assert!(deepest < 2e-4, "Bond {bond}: {deepest} d");
-        assert!(simulation.world().grains.velocities[0].length() < 1e-12);
+        assert!(run.velocity(0).length() < 1e-12);
     }
 }
 
@@ -71,16 +67,12 @@ fn cohesion_does_not_pull_across_a_gap() {
     let mut scene =
         scene(Physics::FULL, DVec2::new(0.0, -G), parameters(50.0, 1e-3, 0.0, 0.5), pair);
     scene.remedies.speculative = true;
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 1);
-    assert_eq!(
-        (simulation.observables().contacts, simulation.observables().tensile_contacts),
-        (0, 0)
-    );
-    assert_eq!(simulation.world().grains.velocities[1].x, -0.5, "half the gap is left");
-    take_steps(&mut simulation, 3);
-    assert_eq!(simulation.observables().contacts, 1);
-    let velocities = &simulation.world().grains.velocities;
+    let mut run = after(&scene, 1);
+    assert_eq!((run.observables().contacts, run.observables().tensile_contacts), (0, 0));
+    assert_eq!(run.velocity(1).x, -0.5, "half the gap is left");
+    take_steps(&mut run, 3);
+    assert_eq!(run.observables().contacts, 1);
+    let velocities = run.velocities();
     assert!((velocities[0].x - velocities[1].x).abs() < 1e-12, "they stick: {velocities:?}");
 }
 
@@ -88,9 +80,8 @@ fn cohesion_does_not_pull_across_a_gap() {
 fn a_heap_at_rest_stays_as_it_is() {
     let mut scene = heap(5);
     scene.remedies.speculative = true;
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 300);
-    let now = &simulation.world().grains.positions;
+    let run = after(&scene, 300);
+    let now = run.places();
     let ways = scene.grains.iter().zip(now).map(|(grain, now)| grain.position.distance(*now));
     let longest = ways.fold(0.0, f64::max) / scene.mean_diameter;
     assert!(longest < 0.01, "{longest} d");

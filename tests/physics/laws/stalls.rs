@@ -2,10 +2,8 @@
 //! a user looks: observables, the tally of a run, its manifest, stderr. The window's words are in
 //! `tests/window/alarms.rs`.
 
+use crate::common::*;
 use assert_cmd::Command;
-use slump::scene::{Scene, built_in};
-use slump::sim::{Stepper, Tally};
-use slump::solver::{Method, SolverSettings, StopTest};
 
 /// Below the rounding of any step of a pile.
 const OUT_OF_REACH: f64 = 1e-18;
@@ -24,10 +22,10 @@ fn pile(stepper: Stepper) -> Scene {
 #[test]
 fn a_stalled_step_is_observed_as_such_under_every_stepper_with_a_method() {
     for &stepper in Stepper::ALL.iter().filter(|stepper| stepper.uses_method()) {
-        let mut simulation = pile(stepper).simulation().expect("a sound scene");
+        let mut run = pile(stepper).simulation().expect("a sound scene");
         let mut tally = Tally::default();
         for _ in 0..5 {
-            tally.add(simulation.step().expect("a finite state"));
+            tally.add(run.step().expect("a finite state"));
         }
         assert_eq!(tally.unconverged_steps, 5, "{stepper}: nothing gets to {OUT_OF_REACH:e}");
         assert_eq!(tally.stalled_steps, 5, "{stepper}: more sweeps are of no use");

@@ -9,14 +9,7 @@
 //!   contact pushes (a closing pair bounces), for A < 0 it pulls (an opening pair closes again);
 //! * A < −C₀: λ = −c, and v^n = v + aΔt − C₀Δt/m_ij: the contact opens (u > 0).
 
-use crate::common::{
-    G, LINE, SMOOTH, assert_close, fixed, moving, parameters, scene, start, take_steps, tight,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Simulation;
-use slump::solver::SolverSettings;
-use slump::world::{Boundary, Grain, Parameters, Physics};
+use crate::common::*;
 
 /// What a contact between i and another body, with normal `direction`, starts from.
 struct Case {
@@ -75,17 +68,17 @@ fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
 
 /// Takes one step and compares v^n and P with the three cases; tells which case it was.
 fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
-    let mut simulation = start(scene);
-    simulation.step().expect("a finite state");
-    let grains = &simulation.world().grains;
+    let mut run = start(scene);
+    run.step().expect("a finite state");
+    let grains = run.grains();
     let (mass, other) = match grains.masses[..] {
         [i] => (i, DVec2::ZERO),
         [i, j] => (1.0 / (1.0 / i + 1.0 / j), grains.velocities[1]),
         _ => unreachable!("one or two grains"),
     };
-    assert_eq!(simulation.contacts().contacts().len(), 1, "the pair was to touch");
+    assert_eq!(run.contacts().contacts().len(), 1, "the pair was to touch");
     let found = (grains.velocities[0] - other).dot(direction);
-    let impulse = simulation.contacts().impulses()[0];
+    let impulse = run.contacts().impulses()[0];
 
     let Parameters { bond, time_step_secs: dt, restitution, .. } = case.parameters;
     let acceleration = -G * case.pressing;
@@ -163,17 +156,16 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
     for dt in TIME_STEPS {
         for physics in [LINE, SMOOTH, Physics::FULL] {
             for free in [false, true] {
-                let relative = |simulation: &Simulation| {
-                    let velocities = &simulation.world().grains.velocities;
+                let relative = |run: &Simulation| {
+                    let velocities = run.velocities();
                     velocities[0] - velocities.get(1).copied().unwrap_or_default()
                 };
 
-                let mut holding = start(&pulled(1.0 + 1e-6, dt, physics, free));
-                take_steps(&mut holding, 100);
+                let holding = after(&pulled(1.0 + 1e-6, dt, physics, free), 100);
                 assert_eq!(holding.observables().contacts, 1, "Δt {dt}: held");
                 assert!(relative(&holding).length() < 1e-12 * G * dt, "Δt {dt}: held still");
-                let mass = holding.world().grains.masses[0];
-                let share = if free { holding.world().grains.masses[1] } else { f64::INFINITY };
+                let mass = holding.grains().masses[0];
+                let share = if free { holding.grains().masses[1] } else { f64::INFINITY };
                 let pull = G / (1.0 / mass + 1.0 / share);
                 let impulse = holding.contacts().impulses()[0].normal;
                 assert_close(impulse / dt, -pull, 1e-11, "the force in the contact");
@@ -203,10 +195,10 @@ fn a_corner_of_a_polyline_holds_no_more_than_one_contact() {
         scene.fixed_discs.clear();
         scene.boundaries = vec![Boundary::Polyline { points }];
         scene.grains[0].position = DVec2::new(0.0, OVERLAP - RADIUS);
-        let mut simulation = start(&scene);
-        simulation.step().expect("a finite state");
-        assert_eq!(simulation.observables().contacts, 1, "the corner is told once");
-        take_steps(&mut simulation, 50);
-        assert_eq!(simulation.observables().contacts == 1, holds, "Bond {bond}");
+        let mut run = start(&scene);
+        run.step().expect("a finite state");
+        assert_eq!(run.observables().contacts, 1, "the corner is told once");
+        take_steps(&mut run, 50);
+        assert_eq!(run.observables().contacts == 1, holds, "Bond {bond}");
     }
 }

@@ -1,15 +1,6 @@
 //! What moving bodies do to energy and momentum, and whether their work is told apart.
 
-use super::{belt, goes, level, straight};
-use crate::common::{
-    LINE, assert_close, every_way, every_way_that_balances, parameters, pressed_pile, scene, start,
-    take_steps,
-};
-use glam::DVec2;
-use slump::contact::{Numbering, Other};
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::world::{Boundary, Grain, Motion, MotionCourse};
+use crate::common::*;
 
 /// A pile on a base that is shaken both ways, beside a wall that slides along itself and into it, and a belt.
 fn shaken() -> Scene {
@@ -18,7 +9,7 @@ fn shaken() -> Scene {
     let shaken = MotionCourse::Sine { amplitude, frequency_hz: 20.0, phase: 0.0 };
     scene.boundaries = vec![
         level(),
-        Boundary::HalfSpace { point: -0.017 * DVec2::X, normal: DVec2::X },
+        plane(-0.017 * DVec2::X, DVec2::X),
         Boundary::Segment { from: DVec2::new(0.02, -1.0), to: DVec2::new(0.02, 1.0) },
     ];
     let discs = (0..scene.fixed_discs.len()).collect();
@@ -36,17 +27,17 @@ fn the_budget_of_energy_is_closed_among_bodies_that_move() {
     for (stepper, method) in every_way_that_balances() {
         let mut scene = shaken();
         (scene.stepper, scene.solver.method) = (stepper, method);
-        let mut simulation = start(&scene);
-        let mut energy = simulation.observables().kinetic_energy;
+        let mut run = start(&scene);
+        let mut energy = run.observables().kinetic_energy;
         let (mut scale, mut of_walls) = (energy, 0.0);
         for _ in 0..100 {
-            let now = *simulation.step().expect("a finite state");
+            let now = *run.step().expect("a finite state");
             let works = now.normal_work + now.tangential_work + now.gravity_work;
             let change = now.kinetic_energy - energy;
             scale += works.abs();
             let off = (change - works).abs();
             // A method that comes to no end leaves wedged grains large impulses, which cancel, but not their rounding.
-            let impulses = simulation.contacts().impulses().iter();
+            let impulses = run.contacts().impulses().iter();
             let rounding: f64 = impulses.map(|it| it.normal.abs() + it.tangential.abs()).sum();
             assert!(
                 off < 1e-11 * scale + 1e-13 * rounding,
@@ -62,17 +53,17 @@ fn the_budget_of_energy_is_closed_among_bodies_that_move() {
 #[test]
 fn momentum_comes_from_gravity_and_from_what_is_no_grain_alone() {
     for stepper in [Stepper::Moreau, Stepper::TgsSoft] {
-        let mut simulation = start(&Scene { stepper, ..shaken() });
-        let momentum = |simulation: &slump::sim::Simulation| -> DVec2 {
-            let grains = &simulation.world().grains;
+        let mut run = start(&Scene { stepper, ..shaken() });
+        let momentum = |run: &Simulation| -> DVec2 {
+            let grains = run.grains();
             grains.masses.iter().zip(&grains.velocities).map(|(&mass, &v)| mass * v).sum()
         };
-        let weight: f64 = simulation.world().grains.masses.iter().sum::<f64>() * 9.8;
+        let weight: f64 = run.grains().masses.iter().sum::<f64>() * 9.8;
         for _ in 0..60 {
-            let before = momentum(&simulation);
-            simulation.step().expect("a finite state");
-            let numbering = Numbering::of(simulation.world());
-            let list = simulation.contacts();
+            let before = momentum(&run);
+            run.step().expect("a finite state");
+            let numbering = Numbering::of(run.world());
+            let list = run.contacts();
             let from_outside: DVec2 = list
                 .contacts()
                 .iter()
@@ -82,7 +73,7 @@ fn momentum_comes_from_gravity_and_from_what_is_no_grain_alone() {
                     impulse.normal * contact.normal + impulse.tangential * contact.normal.perp()
                 })
                 .sum();
-            let change = momentum(&simulation) - before;
+            let change = momentum(&run) - before;
             let expected = from_outside - 1e-3 * weight * DVec2::Y;
             assert!(change.distance(expected) < 1e-13, "{stepper}: {change} by {expected}");
         }
@@ -96,18 +87,18 @@ fn the_work_of_a_wall_is_what_it_lifts() {
         let speed = 0.2;
         let grain = Grain::at_rest(DVec2::new(0.05, 0.0), 0.05);
         let mut scene = Scene {
-            boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::X }],
+            boundaries: vec![plane(DVec2::ZERO, DVec2::X)],
             motions: vec![goes(&[0], straight(speed * DVec2::X))],
             ..scene(LINE, -9.8 * DVec2::X, parameters(0.0, 1e-3, 0.0, 0.0), vec![grain])
         };
         (scene.stepper, scene.solver.method) = (stepper, method);
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let (mut of_wall, mut of_gravity) = (0.0, 0.0);
         for _ in 0..1000 {
-            let now = simulation.step().expect("a finite state");
+            let now = run.step().expect("a finite state");
             (of_wall, of_gravity) = (of_wall + now.wall_work, of_gravity + now.gravity_work);
         }
-        let mass = simulation.world().grains.masses[0];
+        let mass = run.grains().masses[0];
         let what = format!("{stepper}, {method}");
         assert_close(of_wall, mass * speed * (speed + 9.8), 2e-3, &what);
         assert_close(of_gravity, -mass * 9.8 * speed, 2e-3, &what);
@@ -121,11 +112,10 @@ fn contacts_take_what_walls_give_beyond_the_grains_own() {
     scene.parameters.restitution = 0.0;
     scene.parameters.bond = 0.0;
     scene.solver.max_sweeps = 2000;
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 5);
+    let mut run = after(&scene, 5);
     let mut taken = 0.0;
     for _ in 0..200 {
-        let now = *simulation.step().expect("a finite state");
+        let now = *run.step().expect("a finite state");
         let of_contacts = now.normal_work + now.tangential_work - now.wall_work;
         assert!(of_contacts < 1e-7, "{of_contacts} J");
         taken += of_contacts;

@@ -2,15 +2,8 @@
 //! goes with the surface. With V the speed of that, a disc that cannot turn then has v = V. One that can has
 //! v = μgt and rω = 2μgt as long as it slips, as it does until v + rω = V: from then on it rolls with v = V/3.
 
-use super::{belt, goes, level, straight, through_a_file};
-use crate::common::{
-    G, UNTURNING, assert_close, every_way_that_balances, parameters, scene, start, take_steps,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::solver::{FrictionModel, Method};
-use slump::world::{Boundary, Grain, Motion, Physics};
+use super::through_a_file;
+use crate::common::*;
 
 const RADIUS: f64 = 0.1;
 const MU: f64 = 0.25;
@@ -53,20 +46,20 @@ fn a_disc_on_a_belt_is_pulled_along_by_friction_until_it_goes_with_it() {
             for (stepper, method) in every_way_that_balances() {
                 (scene.stepper, scene.solver.method) = (stepper, method);
                 let what = format!("{name}, {stepper}, {method}");
-                let mut simulation = start(&through_a_file(&scene));
+                let mut run = start(&through_a_file(&scene));
                 let slipping = (0.5 * end / (MU * G * DT)) as usize;
-                take_steps(&mut simulation, slipping);
-                let speed = simulation.world().grains.velocities[0].x;
+                take_steps(&mut run, slipping);
+                let speed = run.velocity(0).x;
                 let expected = MU * G * DT * slipping as f64;
                 // The springs of the smooth method have not settled yet.
                 let tolerance = if stepper == Stepper::Dem { 0.1 } else { 1e-9 };
                 assert_close(speed, expected, tolerance, &what);
                 let mut of_walls = 0.0;
-                let mut simulation = start(&scene);
+                let mut run = start(&scene);
                 for _ in 0..1500 {
-                    of_walls += simulation.step().expect("a finite state").wall_work;
+                    of_walls += run.step().expect("a finite state").wall_work;
                 }
-                let grains = &simulation.world().grains;
+                let grains = run.grains();
                 assert_close(grains.velocities[0].x, end, 1e-9, &what);
                 let spin = RADIUS * grains.angular_velocities[0];
                 assert!((spin - (SPEED - end)).abs() < 1e-9, "{what}: rω {spin}");
@@ -86,9 +79,8 @@ fn models_of_friction_see_the_belt() {
             (scene.solver.friction_model, scene.solver.method) = (model, method);
             scene.solver.model_solves = 4;
             scene.solver.tolerance = 1e-9;
-            let mut simulation = start(&scene);
-            take_steps(&mut simulation, 400);
-            let speed = simulation.world().grains.velocities[0].x;
+            let run = after(&scene, 400);
+            let speed = run.velocity(0).x;
             assert_close(speed, SPEED / 3.0, 1e-3, &format!("{model}, {method}"));
         }
     }
@@ -101,10 +93,9 @@ fn a_belt_goes_round_a_segment_and_a_disc_that_turns_is_a_belt() {
         let sign = if upside_down { -1.0 } else { 1.0 };
         let mut scene = on_belt(UNTURNING, segment.clone(), belt(&[0], SPEED));
         scene.grains[0].position.y *= sign;
-        scene.gravity = slump::world::Gravity::Uniform { acceleration: DVec2::new(0.0, -G * sign) };
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 50);
-        let speed = simulation.world().grains.velocities[0].x;
+        scene.gravity = Gravity::Uniform { acceleration: DVec2::new(0.0, -G * sign) };
+        let simulation = after(&scene, 50);
+        let speed = simulation.velocity(0).x;
         assert_close(
             speed,
             -sign * MU * G * 50.0 * DT,
@@ -119,7 +110,7 @@ fn a_belt_goes_round_a_segment_and_a_disc_that_turns_is_a_belt() {
         scene.fixed_discs = vec![crate::common::fixed(DVec2::new(0.0, -large), large)];
         start(&scene)
     };
-    let turning = slump::world::MotionCourse::Rotation {
+    let turning = MotionCourse::Rotation {
         pivot: DVec2::new(0.0, -large),
         rate: SPEED / large,
         travel: None,
@@ -129,7 +120,7 @@ fn a_belt_goes_round_a_segment_and_a_disc_that_turns_is_a_belt() {
     let mut goes_round = disc(Motion { surface_speed: SPEED, ..of_disc });
     take_steps(&mut turns, 100);
     take_steps(&mut goes_round, 100);
-    let [one, other] = [&turns, &goes_round].map(|run| run.world().grains.positions[0]);
+    let [one, other] = [&turns, &goes_round].map(|run| run.place(0));
     assert!(one.x < -0.01, "it was pulled along: {one}");
     assert!(one.distance(other) < 1e-9, "{one} and {other}");
 }

@@ -1,13 +1,7 @@
 //! A box of grains whose walls press them together: at rest each wall carries its own force.
 
 use super::driven::{by_force, carried, driven};
-use crate::common::{assert_close, parameters, random, scene, start, take_steps};
-use glam::DVec2;
-use rand::RngExt;
-use slump::scene::{Scene, built_in};
-use slump::sim::Simulation;
-use slump::solver::Method;
-use slump::world::{Boundary, Grain, Physics};
+use crate::common::*;
 
 /// N.
 const FORCE: f64 = 0.03;
@@ -41,8 +35,7 @@ fn pressed_together(seed: u64) -> Scene {
 #[test]
 fn walls_that_press_a_packing_at_rest_carry_each_its_force() {
     for seed in [1, 2] {
-        let mut run = start(&pressed_together(seed));
-        take_steps(&mut run, 2500);
+        let run = after(&pressed_together(seed), 2500);
         // Grains that nothing holds may float; those that bear the walls are at rest when the walls are.
         for motion in &run.world().motions {
             let speed = motion.drive.as_ref().expect("a drive").speed;

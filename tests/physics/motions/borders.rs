@@ -1,18 +1,12 @@
 //! What else knows of borders that wrap: measures, recordings, walls beside them, and what is refused.
 
 use super::periodic::sliding;
-use super::{goes, level, straight};
-use crate::common::{assert_close, moving, parameters, scene, start, take_steps};
-use glam::DVec2;
+use crate::common::*;
 use slump::data::{FormatName, Recording, RunFacts, read_grains};
-use slump::granular::measure;
-use slump::scene::Scene;
-use slump::world::{Boundary, Grain, Motion, MotionCourse, Periodic, Physics};
 
 #[test]
 fn measures_of_a_packing_do_not_depend_on_where_the_border_is() {
-    let mut run = start(&sliding(0.0));
-    take_steps(&mut run, 200);
+    let run = after(&sliding(0.0), 200);
     let state = |shift: f64| {
         let (mut moment, cell) = (run.moment(), run.world().periodic.expect("a cell"));
         let by = shift * cell.periods()[0].expect("a width") * DVec2::X;
@@ -28,7 +22,7 @@ fn measures_of_a_packing_do_not_depend_on_where_the_border_is() {
     assert!(one.pile.closed_cells > 5, "{:?}", one.pile);
     for shift in [0.2, 0.5, 0.77] {
         let other = state(shift);
-        let found = |measured: &slump::granular::MomentMeasures| {
+        let found = |measured: &MomentMeasures| {
             let pile = &measured.pile;
             let of_grains = measured.grains.iter().flat_map(|grain| [grain.solid_fraction]);
             [pile.area, pile.box_area, pile.stress_yy, pile.stress_xy, pile.solid_fraction_cells]
@@ -52,8 +46,7 @@ fn a_recording_says_where_the_borders_are_and_is_a_start() {
     let place = folder.path().join("run");
     let about: RunFacts = slump::config::scene_facts(&scene).expect("facts");
     let mut recording = Recording::start(&place, FormatName::ALL, &about, false).expect("a start");
-    let mut run = start(&scene);
-    take_steps(&mut run, 100);
+    let run = after(&scene, 100);
     recording.add(run.moment()).expect("a frame");
     recording.finish().expect("an end");
     let dump = std::fs::read_to_string(place.join("ovito/grains.dump")).expect("a dump");
@@ -64,7 +57,7 @@ fn a_recording_says_where_the_borders_are_and_is_a_start() {
     assert!(said.contains("periodic"), "{said}");
     let read = read_grains(&place, None).expect("grains").grains;
     let places: Vec<DVec2> = read.iter().map(|grain| grain.position).collect();
-    assert_eq!(places, run.world().grains.positions);
+    assert_eq!(places, run.grains().positions);
 }
 
 #[test]
@@ -79,9 +72,8 @@ fn a_wall_at_the_border_that_a_grain_goes_through_across_it_is_told_of() {
         scene
     };
     let lost = |scene: &Scene| {
-        let mut run = start(scene);
-        take_steps(&mut run, 1);
-        (run.observables().lost_grains, run.world().grains.positions[0].x)
+        let run = after(scene, 1);
+        (run.observables().lost_grains, run.place(0).x)
     };
     let (count, x) = lost(&of(vec![wall(0.5)]));
     assert!(count == 0 && x < 0.05, "it crosses the border and nothing else: {x}");
@@ -99,9 +91,8 @@ fn a_disc_hits_a_wall_beyond_the_border() {
         scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
         let ends = [-1.0, 1.0].map(|y| DVec2::new(wall, y));
         scene.boundaries = vec![Boundary::Segment { from: ends[0], to: ends[1] }];
-        let mut run = start(&scene);
-        take_steps(&mut run, 60);
-        assert_close(run.world().grains.velocities[0].x, -0.5 * speed, 1e-12, "the bounce");
+        let run = after(&scene, 60);
+        assert_close(run.velocity(0).x, -0.5 * speed, 1e-12, "the bounce");
         assert_eq!(run.observables().lost_grains, 0);
     }
 }
@@ -116,12 +107,11 @@ fn a_disc_rolls_over_a_floor_that_ends_at_the_borders_as_over_one_without_end() 
         let mut scene = scene(Physics::FULL, gravity, parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
         scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
         scene.boundaries = vec![floor];
-        let mut run = start(&scene);
-        take_steps(&mut run, 400);
+        let run = after(&scene, 400);
         run
     };
     let [one, other] = [floor, level()].map(run);
-    let [one, other] = [&one, &other].map(|run| run.world().grains.positions[0]);
+    let [one, other] = [&one, &other].map(|run| run.place(0));
     assert!(one.distance(other) < 1e-9, "{one} {other}");
     assert!(one.x < 0.5, "it crossed: {one}");
 }
@@ -145,7 +135,7 @@ fn cells_that_cannot_be_are_refused_in_one_sentence() {
     assert!(of([1.0, -1.0], level(), vec![]).starts_with("periodic.x is [1, -1], but must be at"));
     let said = of([0.0, f64::NAN], level(), vec![]);
     assert_eq!(said, "periodic.x is [0, NaN], but must be two finite numbers of m");
-    let wall = Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::X };
+    let wall = plane(DVec2::ZERO, DVec2::X);
     assert_eq!(
         of([0.0, 1.0], wall, vec![]),
         "boundaries[0] is a half-space that does not go on across it, but must be level, or between the borders of \
@@ -169,7 +159,7 @@ fn two_discs_in_one_place_across_the_border_are_refused() {
         parameters(0.0, 1e-3, 0.0, 0.0),
         vec![grain(0.99), grain(0.01)],
     );
-    scene.simulation().expect("apart");
+    start(&scene);
     scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
     let said = scene.simulation().map(|_| ()).expect_err("in one place").to_string();
     assert!(said.contains("from that of grains[0]"), "{said}");

@@ -1,14 +1,7 @@
 //! Walls that a force drives: they carry it, their momentum and energy balance, and how light they are is no matter.
 
-use super::{goes, level, saved_and_read, straight, through_a_file};
-use crate::common::{
-    LINE, assert_close, fixed, moving, parameters, scene, start, take_steps, tight,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::{OtherBody, Simulation};
-use slump::solver::{METHODS, Method};
-use slump::world::{Boundary, Drive, Grain, Motion, Periodic, Physics};
+use super::{saved_and_read, through_a_file};
+use crate::common::*;
 
 /// Methods that know of such walls.
 fn methods() -> impl Iterator<Item = Method> {
@@ -30,7 +23,7 @@ pub(super) fn drive(run: &Simulation) -> &Drive {
 
 /// The level, and one upside down above.
 fn between(height: f64) -> Vec<Boundary> {
-    vec![level(), Boundary::HalfSpace { point: height * DVec2::Y, normal: DVec2::NEG_Y }]
+    vec![level(), plane(height * DVec2::Y, DVec2::NEG_Y)]
 }
 
 /// Five columns of logs side by side in a periodic cell, and a piston of that mass on them under 40 N/m.
@@ -71,8 +64,7 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
             let of_grain = std::f64::consts::PI * 1e-4;
             scene.motions[0].drive.as_mut().expect("a drive").mass = mass_ratio * of_grain;
             (scene.solver.method, scene.solver.tolerance) = (method, 1e-10);
-            let mut run = start(&through_a_file(&scene));
-            take_steps(&mut run, 40);
+            let run = after(&through_a_file(&scene), 40);
             let what = format!("{method}, {mass_ratio}");
             assert!(run.observables().converged, "{what}: {:?}", run.observables());
             assert_close(carried(&run, 1), 40.0 * 0.25, 1e-8, &what);
@@ -89,10 +81,9 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
 fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
     let grain = Grain::at_rest(-10.0 * DVec2::Y, 0.1);
     let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
-    scene.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::NEG_Y }];
+    scene.boundaries = vec![plane(DVec2::ZERO, DVec2::NEG_Y)];
     scene.motions = vec![driven(&[0], by_force(DVec2::Y, 3.0, 2.0))];
-    let mut run = start(&scene);
-    take_steps(&mut run, 100);
+    let run = after(&scene, 100);
     assert_close(drive(&run).speed, 0.15, 1e-12, "F t/M");
     let Boundary::HalfSpace { point, .. } = run.world().boundaries[0] else {
         panic!("it stays one")
@@ -100,8 +91,7 @@ fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
     // Σ Δt V over steps, the first of which ends with V = FΔt/M.
     assert_close(point.y, 0.5 * 1.5 * 0.1 * 0.101, 1e-12, "the way");
     scene.motions[0].drive.as_mut().expect("a drive").damping = 60.0;
-    let mut run = start(&scene);
-    take_steps(&mut run, 1000);
+    let run = after(&scene, 1000);
     assert_close(drive(&run).speed, 3.0 / 60.0, 1e-9, "F/c");
 }
 
@@ -121,14 +111,13 @@ fn a_grain_that_hits_a_wall_of_a_mass_gets_the_impulse_of_both_masses() {
             let disc = by_force(DVec2::Y, 0.0, mass);
             scene.motions =
                 vec![Motion { fixed_discs: vec![0], drive: Some(disc), ..Motion::default() }];
-            let mut run = start(&scene);
-            take_steps(&mut run, 3);
+            let run = after(&scene, 3);
             // 1/m_eff = 1/m + n_y²/M; the approach is 2 n_y.
             let effective = 1.0 / (1.0 / of_grain + 0.64 / mass);
             let impulse = (1.0 + restitution) * effective * 1.6;
             let what = format!("{method}, {restitution}");
             let expected = -2.0 * DVec2::Y + impulse / of_grain * normal;
-            let found = run.world().grains.velocities[0];
+            let found = run.velocity(0);
             // The way of the first step turns the normal.
             assert!(found.distance(expected) < 1e-2, "{what}: {found} {expected}");
             let momentum = of_grain * found.y + mass * drive(&run).speed;
@@ -165,10 +154,10 @@ fn on_a_line_a_driven_wall_is_as_good_as_a_bead_of_its_mass() {
         let mut walled = start(&walled);
         take_steps(&mut all, 400);
         take_steps(&mut walled, 400);
-        let speeds = &all.world().grains.velocities;
+        let speeds = all.velocities();
         assert!(speeds[4].x > 0.1, "{speeds:?}");
         assert_close(drive(&walled).speed, speeds[4].x, 1e-9, &format!("{method}"));
-        for (one, other) in speeds.iter().zip(&walled.world().grains.velocities) {
+        for (one, other) in speeds.iter().zip(walled.velocities()) {
             assert!((one.x - other.x).abs() < 1e-9, "{method}: {one} {other}");
         }
     }
@@ -241,8 +230,7 @@ fn energy_and_momentum_of_a_driven_wall_balance_in_every_step() {
 #[test]
 fn a_run_with_a_driven_wall_goes_on_from_a_file_bit_for_bit() {
     let scene = through_a_file(&sheared(0.01));
-    let mut run = start(&scene);
-    take_steps(&mut run, 50);
+    let mut run = after(&scene, 50);
     let read = saved_and_read(&scene, &run);
     assert_eq!(read.as_start().motions, run.world().motions, "a new start takes its speed along");
     let mut read = read.simulation;

@@ -1,12 +1,7 @@
 //! The energy of walls that a force drives is in the budget, under every stepper that moves them.
 
 use super::driven::{by_force, carried, drive, driven, pressed};
-use crate::common::{assert_close, start, take_steps};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::{Simulation, Stepper};
-use slump::solver::{METHODS, Method};
-use slump::world::{Boundary, Drive};
+use crate::common::*;
 
 /// Steppers that move driven walls, with methods that solve for them.
 fn ways() -> impl Iterator<Item = (Stepper, Method)> {
@@ -26,8 +21,8 @@ fn jumping(mass: f64) -> Scene {
     }
     let damped = Drive { damping: 0.3, speed: 0.2, ..by_force(DVec2::NEG_Y, 2.0, mass) };
     scene.periodic = None;
-    scene.boundaries.push(Boundary::HalfSpace { point: -0.02 * DVec2::X, normal: DVec2::X });
-    scene.boundaries.push(Boundary::HalfSpace { point: 0.22 * DVec2::X, normal: DVec2::NEG_X });
+    scene.boundaries.push(plane(-0.02 * DVec2::X, DVec2::X));
+    scene.boundaries.push(plane(0.22 * DVec2::X, DVec2::NEG_X));
     scene.motions =
         vec![driven(&[1], damped), driven(&[2], by_force(DVec2::new(1.0, 0.1), 1.0, 3.0 * mass))];
     scene.parameters.restitution = 0.4;
@@ -76,8 +71,7 @@ fn a_piston_on_soft_contacts_carries_its_pressure_however_light_it_is() {
     for mass_ratio in [0.01, 1.0, 100.0] {
         let mut scene = pressed(mass_ratio * std::f64::consts::PI * 1e-4);
         scene.stepper = Stepper::TgsSoft;
-        let mut run = start(&scene);
-        take_steps(&mut run, 1500);
+        let mut run = after(&scene, 1500);
         let mut mean = 0.0;
         for _ in 0..100 {
             take_steps(&mut run, 1);
@@ -95,17 +89,15 @@ fn under_the_law_range_a_piston_carries_its_pressure_and_catches_what_hits_it() 
     for mass_ratio in [0.01, 1.0, 100.0] {
         let mut scene = pressed(mass_ratio * of_grain);
         (scene.stepper, scene.parameters.restitution) = (Stepper::Range, 0.5);
-        let mut run = start(&scene);
-        take_steps(&mut run, 60);
+        let run = after(&scene, 60);
         assert_close(carried(&run, 1), 10.0, 1e-6, &format!("a piston of {mass_ratio}"));
         scene.grains.truncate(1);
         scene.grains[0].feels_gravity = false;
         scene.grains[0].velocity = DVec2::Y;
         scene.grains[0].position.y = 0.0488;
         scene.motions = vec![driven(&[1], by_force(DVec2::NEG_Y, 0.0, mass_ratio * of_grain))];
-        let mut run = start(&scene);
-        take_steps(&mut run, 4);
-        let (grain, wall) = (run.world().grains.velocities[0].y, -drive(&run).speed);
+        let run = after(&scene, 4);
+        let (grain, wall) = (run.velocity(0).y, -drive(&run).speed);
         assert_close(grain + mass_ratio * wall, 1.0, 1e-12, "momentum");
         assert_close(wall, grain, 1e-9, "they go on together");
     }
@@ -122,9 +114,8 @@ fn a_grain_and_a_wall_of_a_mass_part_as_two_free_bodies_do_under_soft_contacts()
         scene.grains[0].position.y = 0.0499;
         scene.motions = vec![driven(&[1], by_force(DVec2::NEG_Y, 0.0, mass_ratio * of_grain))];
         (scene.stepper, scene.parameters.restitution) = (Stepper::TgsSoft, 0.5);
-        let mut run = start(&scene);
-        take_steps(&mut run, 4);
-        let (grain, wall) = (run.world().grains.velocities[0].y, -drive(&run).speed);
+        let run = after(&scene, 4);
+        let (grain, wall) = (run.velocity(0).y, -drive(&run).speed);
         assert_close(grain + mass_ratio * wall, 1.0, 1e-12, "momentum");
         assert_close(wall - grain, 0.5, 1e-6, "restitution");
     }

@@ -1,10 +1,7 @@
 //! Walls that a force drives, among springs.
 
 use super::driven::{carried, drive, pressed};
-use crate::common::{assert_close, start, take_steps};
-use slump::scene::Scene;
-use slump::sim::{Simulation, Stepper};
-use slump::world::Boundary;
+use crate::common::*;
 
 /// The same under springs, with the weight of a grain as the force of a contact, and ten thousand times its stiffness.
 fn on_springs(mass: f64) -> Scene {

@@ -1,14 +1,7 @@
 //! Gravity that turns: what falls freely, what a box that is tilted lets slide, and the budget of energy.
 
-use super::{level, through_a_file};
-use crate::common::{
-    G, UNTURNING, assert_close, every_way, every_way_that_balances, parameters, pressed_pile,
-    scene, start, take_steps,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::world::{Grain, Gravity, GravityTurn, Physics, TurnCourse};
+use super::through_a_file;
+use crate::common::*;
 
 const DT: f64 = 1e-3;
 const RATE: f64 = 0.4;
@@ -27,21 +20,19 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
             gravity_turn: evenly(RATE),
             ..scene(Physics::FULL, -G * DVec2::Y, parameters(0.0, DT, 0.0, 0.5), vec![grain])
         };
-        let mut simulation = start(&through_a_file(&scene));
+        let mut run = start(&through_a_file(&scene));
         let mut work = 0.0;
         for _ in 0..2000 {
-            work += simulation.step().expect("a finite state").gravity_work;
+            work += run.step().expect("a finite state").gravity_work;
         }
         let angle = RATE * 2000.0 * DT;
         let expected = G / RATE * DVec2::new(1.0 - angle.cos(), -angle.sin());
-        let grains = &simulation.world().grains;
+        let grains = run.grains();
         // The middle of a step stands for the step: (ΩΔt)²/24.
         assert!(grains.velocities[0].distance(expected) < 2e-7, "{stepper}");
         let energy = 0.5 * grains.masses[0] * grains.velocities[0].length_squared();
         assert_close(work, energy, 1e-12, stepper.name());
-        let Gravity::Uniform { acceleration } = simulation.world().gravity else {
-            panic!("uniform")
-        };
+        let Gravity::Uniform { acceleration } = run.world().gravity else { panic!("uniform") };
         assert_close(acceleration.length(), G, 1e-15, "g stays as large");
     }
 }
@@ -64,18 +55,17 @@ fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
             ..scene(UNTURNING, -G * DVec2::Y, parameters(0.0, DT, 0.0, mu), vec![grain])
         };
         scene.solver.method = method;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 600);
+        let mut run = after(&scene, 600);
         let what = format!("{stepper}, {method}");
-        let speed = simulation.world().grains.velocities[0].x;
+        let speed = run.velocity(0).x;
         assert!(
             speed.abs() < if stepper == Stepper::Dem { 1e-4 } else { 1e-12 },
             "{what}: {speed}"
         );
-        take_steps(&mut simulation, 1100);
+        take_steps(&mut run, 1100);
         // g (sin θ − μ cos θ) since tan θ = μ, at 0.65 s: evenly rising until 0.7 s.
         let push = G * (above.sin() - mu * above.cos());
-        let speed = simulation.world().grains.velocities[0].x;
+        let speed = run.velocity(0).x;
         assert_close(speed, push * (1.0 + 0.025), 5e-3, &what);
     }
 }
@@ -87,11 +77,11 @@ fn the_budget_of_energy_is_closed_under_gravity_that_turns() {
         scene.gravity_turn = evenly(3.0);
         scene.solver.max_sweeps = 100;
         (scene.stepper, scene.solver.method) = (stepper, method);
-        let mut simulation = start(&scene);
-        let mut energy = simulation.observables().kinetic_energy;
+        let mut run = start(&scene);
+        let mut energy = run.observables().kinetic_energy;
         let mut scale = energy;
         for _ in 0..100 {
-            let now = *simulation.step().expect("a finite state");
+            let now = *run.step().expect("a finite state");
             let works = now.normal_work + now.tangential_work + now.gravity_work;
             scale += works.abs();
             let off = (now.kinetic_energy - energy - works).abs();

@@ -1,16 +1,7 @@
 //! Borders that wrap: nothing depends on where they are, and nothing is lost across them.
 
-use super::{level, saved_and_read, straight, through_a_file};
-use crate::common::{
-    assert_close, at_rest_and_falling, every_way, fixed, moving, parameters, pressed_pile, random,
-    scene, start, take_steps,
-};
-use glam::DVec2;
-use rand::RngExt;
-use slump::scene::Scene;
-use slump::sim::{Remedies, Simulation, Stepper};
-use slump::solver::Method;
-use slump::world::{Boundary, Grain, Motion, Periodic, Physics};
+use super::{saved_and_read, through_a_file};
+use crate::common::*;
 
 /// The scene with a cell of this width whose left border is at `left`, and all discs moved by `shift`, m.
 pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Scene {
@@ -26,7 +17,7 @@ pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Sce
 /// Longest distance, m, of a grain in a run from where the same one is in another that was moved by `shift`.
 fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     let cell = one.world().periodic.or(other.world().periodic).expect("a cell");
-    let [one, other] = [one, other].map(|run| &run.world().grains.positions);
+    let [one, other] = [one, other].map(|run| run.places());
     let ways = one.iter().zip(other).map(|(one, other)| *one + shift * DVec2::X - *other);
     ways.map(|way| cell.shortest(way).length()).fold(0.0, f64::max)
 }
@@ -89,9 +80,8 @@ fn a_pair_that_meets_across_the_border_is_a_pair_that_meets_inside() {
                 vec![at(-0.0102, 0.0, 0.3), at(0.0102, 0.004, -0.1)],
             );
             (pair.stepper, pair.solver.method) = (stepper, method);
-            let mut run = start(&through_a_file(&in_cell(&pair, [-0.12, width], shift)));
-            take_steps(&mut run, 20);
-            let grains = &run.world().grains;
+            let run = after(&through_a_file(&in_cell(&pair, [-0.12, width], shift)), 20);
+            let grains = run.grains();
             assert!(grains.velocities[0].x < 0.29, "{stepper} {method} {shift}: they met");
             met.push((grains.velocities.clone(), grains.angular_velocities.clone()));
         }
@@ -117,7 +107,7 @@ fn gas(small: f64) -> Scene {
     });
     let mut scene =
         scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-4, 1.0, 0.0), grains.collect());
-    let ceiling = Boundary::HalfSpace { point: 0.1 * DVec2::Y, normal: DVec2::NEG_Y };
+    let ceiling = plane(0.1 * DVec2::Y, DVec2::NEG_Y);
     scene.boundaries = vec![level(), ceiling];
     scene.mean_diameter = diameter;
     scene.periodic = Some(Periodic::along_x([0.0, 0.1]));
@@ -129,14 +119,14 @@ fn the_momentum_of_a_gas_along_its_period_stays_and_no_grain_is_lost() {
     for small in [0.9, 0.15] {
         let mut run = start(&gas(small));
         let momentum = |run: &Simulation| -> f64 {
-            let grains = &run.world().grains;
+            let grains = run.grains();
             grains.masses.iter().zip(&grains.velocities).map(|(mass, v)| mass * v.x).sum()
         };
         let (before, mut crossings) = (momentum(&run), 0);
         for _ in 0..3000 {
-            let places = run.world().grains.positions.clone();
+            let places = run.grains().positions.clone();
             take_steps(&mut run, 1);
-            let now = &run.world().grains.positions;
+            let now = run.places();
             assert!(now.iter().all(|place| (0.0..0.1).contains(&place.x)));
             let jumps = places.iter().zip(now).filter(|(old, new)| (old.x - new.x).abs() > 0.05);
             crossings += jumps.count();
@@ -154,7 +144,7 @@ fn every_pair_in_touch_is_found_across_the_border_and_none_twice() {
         let mut run = start(&gas(small));
         let mut found_across = 0;
         for _ in 0..800 {
-            let grains = run.world().grains.clone();
+            let grains = run.grains().clone();
             take_steps(&mut run, 1);
             let mut expected = Vec::new();
             for i in 0..grains.len() {
@@ -189,8 +179,8 @@ fn numbers_of_grains_mean_nothing_across_the_border() {
     take_steps(&mut other, 100);
     let (count, run_cell) = (scene.grains.len(), scene.periodic.expect("a cell"));
     for k in 0..count {
-        let [one, other] = [(&one, k), (&other, count - 1 - k)]
-            .map(|(run, grain)| run.world().grains.positions[grain]);
+        let [one, other] =
+            [(&one, k), (&other, count - 1 - k)].map(|(run, grain)| run.place(grain));
         let off = run_cell.shortest(one - other).length();
         assert!(off < 1e-9 * scene.mean_diameter, "{one} {other}");
     }
@@ -215,8 +205,7 @@ pub(super) fn sliding(bond: f64) -> Scene {
 fn a_run_goes_on_from_a_file_bit_for_bit_across_a_crossing() {
     for stepper in Stepper::ALL {
         let scene = Scene { stepper: *stepper, ..sliding(5.0) };
-        let mut run = start(&scene);
-        take_steps(&mut run, 40);
+        let mut run = after(&scene, 40);
         let mut read = saved_and_read(&scene, &run).simulation;
         let before = run.world().clone();
         take_steps(&mut run, 60);
@@ -225,9 +214,8 @@ fn a_run_goes_on_from_a_file_bit_for_bit_across_a_crossing() {
         let jumps = |old: &[DVec2], new: &[DVec2]| {
             old.iter().zip(new).filter(|(old, new)| (old.x - new.x).abs() > 0.03).count()
         };
-        let discs = |run: &slump::world::World| {
-            run.fixed_discs.iter().map(|disc| disc.position).collect::<Vec<_>>()
-        };
+        let discs =
+            |run: &World| run.fixed_discs.iter().map(|disc| disc.position).collect::<Vec<_>>();
         assert!(jumps(&discs(&before), &discs(run.world())) > 0, "{stepper}: a disc crossed");
     }
 }

@@ -1,17 +1,9 @@
 //! Borders that wrap below and above, too: as those at the sides do, and both at once.
 
 use super::periodic::{at_rest_on_discs, in_cell, sliding};
-use super::{level, saved_and_read, straight, through_a_file};
-use crate::common::{
-    LINE, assert_close, every_way, moving, parameters, random, scene, start, take_steps,
-};
-use glam::DVec2;
-use rand::RngExt;
+use super::{saved_and_read, through_a_file};
+use crate::common::*;
 use slump::data::{FormatName, Recording, RunFacts};
-use slump::granular::measure;
-use slump::scene::Scene;
-use slump::sim::{Simulation, Stepper};
-use slump::world::{Boundary, Grain, Gravity, Motion, Periodic, Physics};
 
 /// Side of a square cell, m.
 const SIDE: f64 = 0.1;
@@ -48,9 +40,7 @@ fn a_scene_turned_by_a_right_angle_does_what_it_did() {
             for step in 0..60 {
                 take_steps(&mut one, 1);
                 take_steps(&mut other, 1);
-                for (one, other) in
-                    one.world().grains.positions.iter().zip(&other.world().grains.positions)
-                {
+                for (one, other) in one.places().iter().zip(other.places()) {
                     let off = one.perp().distance(*other) / scene.mean_diameter;
                     assert!(off < 1e-6, "{stepper} {method} {shift} {step}: {off} d");
                 }
@@ -79,7 +69,7 @@ fn gas(small: f64) -> Scene {
 }
 
 fn momentum(run: &Simulation) -> DVec2 {
-    let grains = &run.world().grains;
+    let grains = run.grains();
     grains.masses.iter().zip(&grains.velocities).map(|(mass, velocity)| *mass * *velocity).sum()
 }
 
@@ -91,9 +81,9 @@ fn a_gas_without_bounds_keeps_momentum_and_energy() {
         take_steps(&mut run, 1);
         let energy = run.observables().kinetic_energy;
         for _ in 0..3000 {
-            let places = run.world().grains.positions.clone();
+            let places = run.grains().positions.clone();
             take_steps(&mut run, 1);
-            let now = &run.world().grains.positions;
+            let now = run.places();
             assert!(now.iter().all(|place| place.cmpge(DVec2::ZERO).all()));
             assert!(now.iter().all(|place| place.cmplt(DVec2::splat(SIDE)).all()));
             for (old, new) in places.iter().zip(now) {
@@ -117,7 +107,7 @@ fn every_pair_in_touch_is_found_across_both_borders_and_none_twice() {
         let mut run = start(&gas(small));
         let mut found_across = [0; 3];
         for _ in 0..1500 {
-            let grains = run.world().grains.clone();
+            let grains = run.grains().clone();
             take_steps(&mut run, 1);
             let mut expected = Vec::new();
             for i in 0..grains.len() {
@@ -158,9 +148,8 @@ fn a_pair_that_meets_across_a_corner_is_a_pair_that_meets_inside() {
         let run = |shift: DVec2| {
             let mut scene = pair(shift);
             (scene.stepper, scene.solver.method) = (stepper, method);
-            let mut run = start(&through_a_file(&scene));
-            take_steps(&mut run, 20);
-            run.world().grains.clone()
+            let run = after(&through_a_file(&scene), 20);
+            run.grains().clone()
         };
         let inside = run(DVec2::splat(0.05));
         assert!(inside.velocities[0].x < 0.29, "{stepper} {method}: they met");
@@ -199,8 +188,7 @@ fn falling(bond: f64) -> Scene {
 fn a_run_goes_on_from_a_file_bit_for_bit_and_loses_no_grain_that_falls_round() {
     for stepper in Stepper::ALL {
         let scene = Scene { stepper: *stepper, ..falling(5.0) };
-        let mut run = start(&scene);
-        take_steps(&mut run, 400);
+        let mut run = after(&scene, 400);
         let mut read = saved_and_read(&scene, &run).simulation;
         take_steps(&mut run, 200);
         take_steps(&mut read, 200);
@@ -209,8 +197,7 @@ fn a_run_goes_on_from_a_file_bit_for_bit_and_loses_no_grain_that_falls_round() {
     }
     let mut still = falling(0.0);
     still.motions.clear();
-    let mut run = start(&still);
-    take_steps(&mut run, 600);
+    let run = after(&still, 600);
     assert_eq!(run.observables().lost_grains, 0, "nothing moves by itself");
 }
 
@@ -218,8 +205,7 @@ fn a_run_goes_on_from_a_file_bit_for_bit_and_loses_no_grain_that_falls_round() {
 fn measures_and_recordings_know_of_both_borders() {
     let mut scene = gas(0.9);
     scene.parameters.restitution = 0.5;
-    let mut run = start(&scene);
-    take_steps(&mut run, 50);
+    let run = after(&scene, 50);
     let moved = |by: DVec2| {
         let mut moment = run.moment();
         moment
@@ -286,7 +272,7 @@ fn cells_that_cannot_be_are_refused_in_one_sentence() {
         twins.grains = places.map(|place| Grain::at_rest(place, 0.1)).into();
         (twins.fixed_discs, twins.motions) = (vec![], vec![]);
         twins.periodic = None;
-        twins.simulation().expect("apart");
+        start(&twins);
         twins.periodic = Some(Periodic::along_both([0.0, 1.0], [0.0, 1.0]));
         let said = twins.simulation().map(|_| ()).expect_err("in one place").to_string();
         assert!(said.contains("from that of grains[0]"), "{said}");

@@ -1,15 +1,6 @@
 //! What comes together where borders wrap: bonds that circle, bounces under the law `range`, and gravity that leans.
 
-use super::level;
-use crate::common::{
-    DISTANCE_IN_DIAMETERS, assert_close, moving, parameters, random, scene, start, take_steps,
-};
-use glam::DVec2;
-use rand::RngExt;
-use slump::scene::Scene;
-use slump::sim::{Simulation, Stepper};
-use slump::solver::SolverSettings;
-use slump::world::{Periodic, Physics};
+use crate::common::*;
 
 /// Side of a square cell, m.
 const SIDE: f64 = 0.1;
@@ -17,7 +8,7 @@ const SQUARE: Periodic = Periodic::along_both([0.0, SIDE], [0.0, SIDE]);
 
 /// From grain 1 to the nearest image of grain 0, m.
 fn offset(run: &Simulation) -> DVec2 {
-    let (places, cell) = (&run.world().grains.positions, run.world().periodic.expect("a cell"));
+    let (places, cell) = (run.places(), run.world().periodic.expect("a cell"));
     cell.shortest(places[0] - places[1])
 }
 
@@ -77,7 +68,7 @@ fn grains_that_bounce_under_the_law_range_keep_their_momentum_across_borders() {
     gas.solver = SolverSettings { tolerance: 1e-8, max_sweeps: 2000, ..SolverSettings::default() };
     let mut run = start(&gas);
     let momentum = |run: &Simulation| -> DVec2 {
-        let grains = &run.world().grains;
+        let grains = run.grains();
         grains.masses.iter().zip(&grains.velocities).map(|(mass, v)| *mass * *v).sum()
     };
     let (before, energy) = (momentum(&run), run.observables().kinetic_energy);
@@ -116,7 +107,7 @@ fn a_disc_slides_down_a_slope_without_end_as_down_one_that_wraps() {
             [None, Some(cell)].map(|periodic| start(&on_a_slope(*stepper, degrees, periodic)));
         take_steps(&mut free, 800);
         take_steps(&mut wrapped, 800);
-        let [free, wrapped] = [&free, &wrapped].map(|run| &run.world().grains);
+        let [free, wrapped] = [&free, &wrapped].map(|run| run.grains());
         assert!(free.positions[0].x > 4.0 * SIDE, "{stepper}: {}", free.positions[0]);
         assert!(cell.wrap(free.positions[0]).distance(wrapped.positions[0]) < 1e-10, "{stepper}");
         assert!(free.velocities[0].distance(wrapped.velocities[0]) < 1e-10, "{stepper}");

@@ -1,10 +1,6 @@
 //! Motions that cannot be are refused in one sentence.
 
-use super::{belt, goes, level, straight};
-use crate::common::{G, LINE, fixed, parameters, scene};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::world::{Boundary, Grain, Motion, MotionCourse, Physics};
+use crate::common::*;
 
 fn with(motions: Vec<Motion>) -> Scene {
     let grain = Grain::at_rest(DVec2::Y, 0.1);
@@ -95,10 +91,10 @@ fn motions_off_the_x_axis_are_refused_on_a_line() {
     let mut scene = with(Vec::new());
     scene.physics = LINE;
     scene.grains[0].position = DVec2::ZERO;
-    scene.gravity = slump::world::Gravity::Uniform { acceleration: DVec2::ZERO };
-    scene.boundaries = vec![Boundary::HalfSpace { point: -DVec2::X, normal: DVec2::X }];
+    scene.gravity = Gravity::Uniform { acceleration: DVec2::ZERO };
+    scene.boundaries = vec![plane(-DVec2::X, DVec2::X)];
     scene.motions = vec![goes(&[0], straight(DVec2::X))];
-    scene.simulation().expect("along the axis");
+    start(&scene);
     for motion in [goes(&[0], straight(DVec2::ONE)), belt(&[0], 1.0)] {
         scene.motions = vec![motion];
         assert_eq!(

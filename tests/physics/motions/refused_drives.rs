@@ -1,12 +1,7 @@
 //! Drives that cannot be, and ways to step that know of none, are refused in one sentence.
 
 use super::driven::pressed;
-use super::straight;
-use crate::common::{every_way, start};
-use glam::DVec2;
-use slump::sim::Stepper;
-use slump::solver::Fallback;
-use slump::world::{Drive, Motion, MotionCourse};
+use crate::common::*;
 
 #[test]
 fn ways_to_step_that_know_of_no_driven_wall_are_refused() {

@@ -1,16 +1,8 @@
 //! Borders that shear: pairs across them are pairs like others, no place is marked by them, and what they would tear is
 //! refused.
 
-use super::{level, straight, through_a_file};
-use crate::common::{
-    assert_close, every_way, moving, parameters, random, scene, start, take_steps,
-};
-use glam::DVec2;
-use rand::RngExt;
-use slump::scene::Scene;
-use slump::sim::{Simulation, Stepper};
-use slump::solver::{METHODS, Method};
-use slump::world::{Motion, Periodic, Physics};
+use super::through_a_file;
+use crate::common::*;
 
 /// Width and height of the cell, m: neither is a multiple of the other.
 pub(super) const SIZE: DVec2 = DVec2::new(0.11, 0.1);
@@ -49,7 +41,7 @@ pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
 
 /// The velocity of grain `j` as grain `i` sees it, of the image that is nearest, m/s.
 fn relative_velocity(run: &Simulation, i: usize, j: usize) -> DVec2 {
-    let (grains, cell) = (&run.world().grains, run.world().periodic.expect("a cell"));
+    let (grains, cell) = (run.grains(), run.world().periodic.expect("a cell"));
     let above = ((grains.positions[i].y - grains.positions[j].y) / SIZE.y).round();
     let image = grains.velocities[j] + above * cell.shear_rate * SIZE.y * DVec2::X;
     image - grains.velocities[i]
@@ -71,8 +63,7 @@ fn a_pair_that_meets_across_a_border_that_slides_is_a_pair_that_meets_inside() {
             let run = |by: DVec2| {
                 let mut scene = pair(rate, by);
                 (scene.stepper, scene.solver.method) = (stepper, method);
-                let mut run = start(&through_a_file(&scene));
-                take_steps(&mut run, 20);
+                let run = after(&through_a_file(&scene), 20);
                 run
             };
             let inside = run(0.5 * SIZE);
@@ -84,12 +75,12 @@ fn a_pair_that_meets_across_a_border_that_slides_is_a_pair_that_meets_inside() {
                 let found = relative_velocity(&across, 0, 1);
                 assert!(found.distance(expected) < 1e-9, "{what}: {found} {expected}");
                 let [one, other] =
-                    [&inside, &across].map(|run| run.world().grains.angular_velocities.clone());
+                    [&inside, &across].map(|run| run.grains().angular_velocities.clone());
                 for (one, other) in one.iter().zip(&other) {
                     assert!((one - other).abs() < 1e-7, "{what}: {one} {other} rad/s");
                 }
                 let [one, other] = [&inside, &across].map(|run| {
-                    let places = &run.world().grains.positions;
+                    let places = run.places();
                     run.world().periodic.expect("a cell").shortest(places[0] - places[1])
                 });
                 assert!(one.distance(other) < 1e-10, "{what}: {one} {other}");
@@ -113,16 +104,15 @@ fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
     scene.periodic = Some(cell(rate));
     for (stepper, method) in ways().filter(|(stepper, _)| *stepper == Stepper::Moreau) {
         (scene.stepper, scene.solver.method) = (stepper, method);
-        let mut run = start(&scene);
-        take_steps(&mut run, 1);
-        let velocities = &run.world().grains.velocities;
+        let run = after(&scene, 1);
+        let velocities = run.velocities();
         // Both stop along y with P = 0.1 m each, so that μP = 0.02 m; the image of the first goes by with 2 m/s.
         let expected = [DVec2::new(-0.02, 0.0), DVec2::new(0.02, 0.0)];
         for (found, expected) in velocities.iter().zip(expected) {
             assert!(found.distance(expected) < 1e-12, "{method}: {found} {expected}");
         }
         let now = run.observables();
-        let mass = run.world().grains.masses[0];
+        let mass = run.grains().masses[0];
         // P_t times the speed of the image, and as much less what rubbing has taken.
         assert_close(
             now.border_work.expect("it shears"),
@@ -130,7 +120,7 @@ fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
             1e-12,
             "the border's work",
         );
-        let turned = run.world().grains.angular_velocities[0] * 0.01;
+        let turned = run.grains().angular_velocities[0] * 0.01;
         let slip = 2.0 - 0.5 * (2.0 * 0.02 + 2.0 * turned.abs());
         assert_close(-now.tangential_work, 0.02 * mass * slip, 1e-12, "what rubbing took");
     }
@@ -157,7 +147,7 @@ fn nothing_hangs_on_where_the_borders_are() {
         let one = run(DVec2::ZERO);
         for by in [DVec2::new(0.03, 0.0), DVec2::new(0.0, 0.043), DVec2::new(-0.07, 0.081)] {
             let other = run(by);
-            let at = |run: &Simulation, k: usize| run.world().grains.positions[k];
+            let at = |run: &Simulation, k: usize| run.place(k);
             let cell = one.world().periodic.expect("a cell");
             let mut farthest = 0f64;
             for k in 1..80 {
@@ -182,7 +172,7 @@ fn every_pair_in_touch_is_found_across_borders_that_slide_and_none_twice() {
     let mut run = start(&scene);
     let mut found_across = [0; 2];
     for _ in 0..1500 {
-        let (grains, cell) = (run.world().grains.clone(), run.world().periodic.expect("a cell"));
+        let (grains, cell) = (run.grains().clone(), run.world().periodic.expect("a cell"));
         take_steps(&mut run, 1);
         let mut expected = Vec::new();
         for i in 0..grains.len() {
@@ -220,15 +210,14 @@ fn cells_that_have_slid_by_a_width_are_cells_that_stand_straight() {
             let mut scene = plain.clone();
             (scene.stepper, scene.solver.method) = (stepper, method);
             scene.periodic = Some(Periodic { shift, ..cell(0.0) });
-            let mut run = start(&scene);
-            take_steps(&mut run, 40);
+            let run = after(&scene, 40);
             run
         };
         let [straight, slid, at_the_left] = [0.0, SIZE.x, -SIZE.x].map(run);
         assert_eq!(straight.observables().border_work, None);
         for other in [slid, at_the_left] {
-            let places = straight.world().grains.positions.iter();
-            for (one, other) in places.zip(&other.world().grains.positions) {
+            let places = straight.places().iter();
+            for (one, other) in places.zip(other.places()) {
                 assert!(one.distance(*other) < 1e-9, "{stepper} {method}: {one} {other}");
             }
             assert_eq!(other.observables().border_work, Some(0.0));

@@ -3,12 +3,8 @@
 
 use super::saved_and_read;
 use super::sheared::{SIZE, cell, gas, ways};
-use crate::common::{assert_close, moving, parameters, scene, start, take_steps, to_residual};
-use glam::DVec2;
+use crate::common::*;
 use slump::data::{FormatName, Recording, RunFacts};
-use slump::granular::measure;
-use slump::sim::{Remedies, Simulation, Stepper};
-use slump::world::Physics;
 
 #[test]
 fn momentum_less_that_of_the_shear_stays() {
@@ -18,15 +14,15 @@ fn momentum_less_that_of_the_shear_stays() {
         (scene.stepper, scene.parameters.time_step_secs) = (*stepper, 2e-4);
         let mut run = start(&scene);
         let momentum = |run: &Simulation| -> DVec2 {
-            let grains = &run.world().grains;
+            let grains = run.grains();
             let own = |k: usize| grains.velocities[k] - rate * grains.positions[k].y * DVec2::X;
             (0..grains.len()).map(|k| grains.masses[k] * own(k)).sum()
         };
         let (before, mut crossings) = (momentum(&run), 0);
         for _ in 0..500 {
-            let old = run.world().grains.positions.clone();
+            let old = run.grains().positions.clone();
             take_steps(&mut run, 1);
-            let now = &run.world().grains.positions;
+            let now = run.places();
             crossings += old
                 .iter()
                 .zip(now)
@@ -34,7 +30,7 @@ fn momentum_less_that_of_the_shear_stays() {
                 .count();
         }
         assert!(crossings > 10, "{stepper}: {crossings}");
-        let scale: f64 = run.world().grains.masses.iter().sum::<f64>() * rate * SIZE.y;
+        let scale: f64 = run.grains().masses.iter().sum::<f64>() * rate * SIZE.y;
         // Schemes move grains by other velocities than they end a substep with, or by places alone.
         let exact = [Stepper::Moreau, Stepper::Dem].contains(stepper);
         let allowed = if exact { 1e-12 } else { 2e-3 };
@@ -126,7 +122,7 @@ fn a_dense_flow_takes_the_profile_of_the_borders_from_rest() {
     scene.parameters.time_step_secs = 2e-4;
     let mut run = start(&scene);
     let slope = |run: &Simulation| {
-        let grains = &run.world().grains;
+        let grains = run.grains();
         let of = |k: usize| (grains.positions[k].y - 0.5 * SIZE.y, grains.velocities[k].x);
         let pairs: Vec<_> = (0..grains.len()).map(of).collect();
         let squares: f64 = pairs.iter().map(|(y, _)| y * y).sum();
@@ -154,13 +150,12 @@ fn a_flow_twice_as_fast_takes_the_same_way_and_bears_four_times_as_much() {
         }
         scene.parameters.time_step_secs = 2e-4 / factor;
         scene.solver = to_residual(1e-8);
-        let mut run = start(&scene);
-        take_steps(&mut run, 400);
+        let run = after(&scene, 400);
         run
     };
     let [one, other] = [1.0, 2.0].map(run);
     assert!(one.world().periodic.expect("a cell").shift != 0.0);
-    let places = one.world().grains.positions.iter().zip(&other.world().grains.positions);
+    let places = one.places().iter().zip(other.places());
     let farthest = places.map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);
     assert!(farthest < 1e-9, "{farthest} m");
     let [one, other] = [one, other].map(|run| measure(&run.moment()).pile);
@@ -173,8 +168,7 @@ fn a_run_goes_on_from_a_file_bit_for_bit() {
     for stepper in Stepper::ALL {
         let mut scene = gas(20.0, 0.3, 0.3);
         (scene.stepper, scene.parameters.bond) = (*stepper, 5.0);
-        let mut run = start(&scene);
-        take_steps(&mut run, 300);
+        let mut run = after(&scene, 300);
         let mut read = saved_and_read(&scene, &run).simulation;
         take_steps(&mut run, 150);
         take_steps(&mut read, 150);
@@ -189,8 +183,7 @@ fn measures_see_the_images_where_they_are() {
     for grain in &mut scene.grains {
         grain.radius = 0.0055;
     }
-    let mut run = start(&scene);
-    take_steps(&mut run, 137);
+    let run = after(&scene, 137);
     let cell = run.world().periodic.expect("a cell");
     assert!(cell.shift.abs() > 0.1 * SIZE.x, "{cell:?}");
     let moved = |by: DVec2| {
@@ -229,7 +222,7 @@ fn measures_see_the_images_where_they_are() {
         DVec2::new(number(words.next()), number(words.next()))
     };
     let places: Vec<DVec2> = rows.lines().skip(1).map(place).collect();
-    assert_eq!(places, run.world().grains.positions);
+    assert_eq!(places, run.grains().positions);
 }
 
 #[test]
@@ -251,7 +244,7 @@ fn an_image_that_slides_towards_discs_at_rest_is_found() {
             met = met.max(run.observables().contacts);
         }
         assert_eq!(met, 1, "{stepper}: they meet");
-        let speeds = &run.world().grains.velocities;
+        let speeds = run.velocities();
         assert!(speeds[0].length() > 1e-3 && speeds[1].length() > 1e-3, "{stepper}: {speeds:?}");
     }
 }

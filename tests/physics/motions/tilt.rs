@@ -2,16 +2,12 @@
 //! two steps, and a run that is saved knows of it.
 
 use super::saved_and_read;
-use crate::common::{at_rest_and_falling, every_way, start};
-use glam::DVec2;
-use slump::scene::{Scene, built_in};
-use slump::sim::Simulation;
-use slump::world::{Boundary, Gravity, GravityTurn, TurnCourse};
+use crate::common::*;
 
 /// What rests, falls and is bonded, on a floor.
 fn on_a_floor() -> Scene {
     let mut scene = at_rest_and_falling();
-    scene.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }];
+    scene.boundaries = vec![level()];
     scene
 }
 
@@ -21,13 +17,13 @@ fn tilted(scene: &Scene, degrees: f64) -> Scene {
     tilted
 }
 
-fn places(simulation: &Simulation) -> Vec<[u64; 2]> {
-    let positions = simulation.world().grains.positions.iter();
+fn places(run: &Simulation) -> Vec<[u64; 2]> {
+    let positions = run.places().iter();
     positions.map(|place| place.to_array().map(f64::to_bits)).collect()
 }
 
-fn step(simulation: &mut Simulation, steps: u64) {
-    simulation.take_steps(steps).expect("finite states");
+fn step(run: &mut Simulation, steps: u64) {
+    run.take_steps(steps).expect("finite states");
 }
 
 #[test]
@@ -51,26 +47,26 @@ fn a_tilted_world_is_bit_for_bit_the_one_whose_gravity_is_listed_so() {
 
 #[test]
 fn gravity_points_to_the_right_where_the_tilt_is_above_0_and_comes_back() {
-    let mut simulation = start(&on_a_floor());
-    let mut settings = *simulation.settings();
+    let mut run = start(&on_a_floor());
+    let mut settings = *run.settings();
     settings.parameters.tilt = 30.0;
-    simulation.change(settings).expect("sound settings");
-    let gravity = |simulation: &Simulation| simulation.world().gravity.acceleration(DVec2::ZERO);
+    run.change(settings).expect("sound settings");
+    let gravity = |run: &Simulation| run.world().gravity.acceleration(DVec2::ZERO);
     let g = gravity(&start(&on_a_floor())).length();
     let expected = DVec2::new(0.5 * g, -(0.75f64.sqrt()) * g);
-    assert!(gravity(&simulation).distance(expected) < 1e-12 * g);
+    assert!(gravity(&run).distance(expected) < 1e-12 * g);
     settings.parameters.tilt = 0.0;
-    simulation.change(settings).expect("sound settings");
-    step(&mut simulation, 20);
+    run.change(settings).expect("sound settings");
+    step(&mut run, 20);
     let mut level = start(&on_a_floor());
     step(&mut level, 20);
-    assert_eq!(places(&simulation), places(&level));
+    assert_eq!(places(&run), places(&level));
 }
 
 #[test]
 fn a_run_that_is_tilted_on_the_way_goes_on_from_its_file_bit_for_bit() {
     for scene in ["incline", "pile"].map(|name| built_in(name).expect("a scene")) {
-        let mut simulation = scene.simulation().expect("a sound scene");
+        let mut simulation = start(&scene);
         step(&mut simulation, 5);
         let mut settings = *simulation.settings();
         settings.parameters.tilt = -12.5;
@@ -104,7 +100,7 @@ fn a_tilt_adds_to_what_turns_by_itself() {
     for run in [&mut sum, &mut whole] {
         step(run, 20);
     }
-    let [one, other] = [&sum, &whole].map(|run| &run.world().grains.positions);
+    let [one, other] = [&sum, &whole].map(|run| run.places());
     let apart = one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);
     assert!(apart < 1e-12, "{apart} m");
 }

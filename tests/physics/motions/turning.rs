@@ -1,14 +1,6 @@
 //! Bodies that turn: a drum, and what falls out of it.
 
-use super::{goes, straight};
-use crate::common::{
-    G, UNTURNING, assert_close, fixed, parameters, random, scene, start, take_steps,
-};
-use glam::DVec2;
-use rand::RngExt;
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::world::{Boundary, Grain, Motion, MotionCourse, Physics};
+use crate::common::*;
 
 const MU: f64 = 0.5;
 
@@ -44,22 +36,22 @@ fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
                 vec![Grain::at_rest(place, radius)],
             )
         };
-        let mut simulation = start(&scene);
-        let angle = |simulation: &slump::sim::Simulation| {
-            let place = simulation.world().grains.positions[0];
+        let mut run = start(&scene);
+        let angle = |run: &Simulation| {
+            let place = run.place(0);
             place.x.atan2(-place.y)
         };
-        take_steps(&mut simulation, 500);
-        let first = angle(&simulation);
-        take_steps(&mut simulation, 1000);
-        let gone = angle(&simulation) - first;
+        take_steps(&mut run, 500);
+        let first = angle(&run);
+        take_steps(&mut run, 1000);
+        let gone = angle(&run) - first;
         // Corners of the drum turn the normal by 2π/2000, which a step meets late.
         assert_close(gone, rate * outer / (outer - radius), 1e-2, stepper.name());
-        take_steps(&mut simulation, 1500);
+        take_steps(&mut run, 1500);
         let (mut least, mut most) = (f64::INFINITY, 0f64);
         for _ in 0..2500 {
-            take_steps(&mut simulation, 1);
-            (least, most) = (least.min(angle(&simulation)), most.max(angle(&simulation)));
+            take_steps(&mut run, 1);
+            (least, most) = (least.min(angle(&run)), most.max(angle(&run)));
         }
         assert_close(0.5 * (least + most), MU.atan(), 1e-2, stepper.name());
         // No faster than the wall, at √(g/(R − r)·√(1 + μ²)).
@@ -90,19 +82,18 @@ fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
         };
         scene.solver.max_sweeps = 50;
         scene.solver.tolerance = 1e-4;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 1100);
-        let farthest = simulation.world().grains.positions.iter().map(|place| place.length());
+        let run = after(&scene, 1100);
+        let farthest = run.places().iter().map(|place| place.length());
         let farthest = farthest.fold(0.0, f64::max);
         assert!(farthest < outer, "{stepper}: {farthest} m from the axis");
-        assert_eq!(simulation.observables().lost_grains, 0, "{stepper}");
-        let Boundary::Polyline { points } = &simulation.world().boundaries[0] else {
+        assert_eq!(run.observables().lost_grains, 0, "{stepper}");
+        let Boundary::Polyline { points } = &run.world().boundaries[0] else {
             panic!("a polyline")
         };
         let Boundary::Polyline { points: begin } = drum(outer, 40) else { panic!("a polyline") };
         let turned = begin[7].angle_to(points[7]).rem_euclid(std::f64::consts::TAU);
         assert_close(turned, (rate * 1.1).rem_euclid(std::f64::consts::TAU), 1e-9, "angle");
-        assert_eq!(simulation.snapshot().surroundings.boundaries, simulation.world().boundaries);
+        assert_eq!(run.snapshot().surroundings.boundaries, run.world().boundaries);
     }
 }
 
@@ -118,9 +109,8 @@ fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
             ..scene(Physics::FULL, -G * DVec2::Y, parameters(0.0, 1e-3, 0.0, MU), vec![grain])
         };
         scene.duration_secs = 2.0;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, if lost == 1 { 1 } else { 1000 });
-        assert_eq!(simulation.observables().lost_grains, lost, "{speed} m/s");
+        let run = after(&scene, if lost == 1 { 1 } else { 1000 });
+        assert_eq!(run.observables().lost_grains, lost, "{speed} m/s");
     }
 }
 
@@ -141,12 +131,11 @@ fn discs_that_move_are_found_wherever_they_come_to() {
             ..scene(Physics::FULL, -G * DVec2::Y, parameters(0.0, 1e-3, 0.0, MU), vec![grain])
         };
         scene.fixed_discs = vec![fixed(DVec2::new(-1.5, 0.0), 0.05)];
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 2500);
-        let disc = simulation.world().fixed_discs[0].position;
+        let run = after(&scene, 2500);
+        let disc = run.world().fixed_discs[0].position;
         assert_close(disc.x, 0.5, 1e-12, "the disc has gone its way and stays");
-        assert_eq!(simulation.snapshot().surroundings.fixed_discs, simulation.world().fixed_discs);
-        let speed = simulation.world().grains.velocities[0].x;
+        assert_eq!(run.snapshot().surroundings.fixed_discs, run.world().fixed_discs);
+        let speed = run.velocity(0).x;
         let tolerance = match stepper {
             Stepper::Dem | Stepper::Avbd => 0.05,
             _ => 1e-9,

@@ -1,16 +1,7 @@
 //! Nothing depends on whether bodies go past an onlooker or the onlooker past them; on whether a wall is called a
 //! piston; on left and right.
 
-use super::{belt, goes, level, straight};
-use crate::common::{
-    assert_close, at_rest_and_falling, bits, every_way, fixed, parameters, pressed_pile, scene,
-    start,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::{Remedies, Stepper};
-use slump::solver::Method;
-use slump::world::{Boundary, Disc, Grain, Gravity, Motion, MotionCourse, Physics};
+use crate::common::*;
 
 const VELOCITY: DVec2 = DVec2::new(0.25, 0.15);
 
@@ -53,7 +44,7 @@ fn difference_of_views(scene: &Scene) -> f64 {
         still.step().expect("a finite state");
         moved.step().expect("a finite state");
         let way = still.time_secs() * VELOCITY;
-        let [one, other] = [&still, &moved].map(|run| &run.world().grains.positions);
+        let [one, other] = [&still, &moved].map(|run| run.places());
         let ways = one.iter().zip(other).map(|(one, other)| (*one + way).distance(*other));
         furthest = ways.fold(furthest, f64::max);
     }
@@ -147,9 +138,9 @@ fn of_all_kinds(mirror: bool) -> Scene {
     let at = |x: f64, y: f64| side(DVec2::new(x, y));
     let pivot = at(-0.02, 0.0);
     scene.boundaries = vec![
-        Boundary::HalfSpace { point: at(0.0, -2e-3), normal: at(0.0, 1.0) },
+        plane(at(0.0, -2e-3), at(0.0, 1.0)),
         Boundary::Segment { from: pivot, to: at(-0.022, 0.04) },
-        Boundary::HalfSpace { point: at(0.02, 0.0), normal: at(-1.0, 0.0) },
+        plane(at(0.02, 0.0), at(-1.0, 0.0)),
     ];
     let sine = MotionCourse::Sine { amplitude: at(1e-3, 5e-4), frequency_hz: 30.0, phase: 0.3 };
     let shaken = Motion { fixed_discs: (0..scene.fixed_discs.len()).collect(), ..goes(&[0], sine) };
@@ -174,7 +165,7 @@ fn a_mirrored_scene_goes_on_mirrored() {
         assert_eq!(one.observables().contacts, other.observables().contacts);
         assert!(worked[0] != 0.0, "{stepper}: surfaces work");
         assert_close(worked[0], worked[1], 1e-6, "their work");
-        let [one, other] = [&one, &other].map(|run| &run.world().grains);
+        let [one, other] = [&one, &other].map(|run| run.grains());
         for grain in 0..one.len() {
             let off = one.positions[grain].distance(mirrored(other.positions[grain]));
             assert!(off < 1e-10, "{stepper}, grain {grain}: off by {off} m");
@@ -194,7 +185,7 @@ fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
             let start_angle = DVec2::from_angle(-1.0);
             let boundary = match shape {
                 0 => Boundary::Segment { from: DVec2::ZERO, to: 2.0 * start_angle },
-                1 => Boundary::HalfSpace { point: DVec2::ZERO, normal: start_angle.perp() },
+                1 => plane(DVec2::ZERO, start_angle.perp()),
                 _ => Boundary::ConvexPolygon {
                     points: vec![
                         DVec2::ZERO,
@@ -213,15 +204,15 @@ fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
             };
             for stepper in [Stepper::Moreau, Stepper::Range] {
                 scene.stepper = stepper;
-                let mut simulation = start(&scene);
+                let mut run = start(&scene);
                 // Struck after (1 − angle of the disc as seen from the pivot)/rate; then it flies off.
                 let mut steps = 0;
-                while simulation.world().grains.velocities[0] == DVec2::ZERO {
-                    simulation.step().expect("a finite state");
+                while run.velocity(0) == DVec2::ZERO {
+                    run.step().expect("a finite state");
                     steps += 1;
                     assert!(steps < 6000, "the paddle comes");
                 }
-                let speed = simulation.world().grains.velocities[0].length();
+                let speed = run.velocity(0).length();
                 let touched = (arm * arm - radius * radius).sqrt();
                 let what = format!("shape {shape}, {stepper}, ρ = {restitution}");
                 assert_close(speed, (1.0 + restitution) * rate * touched, 1e-3, &what);

@@ -1,19 +1,14 @@
 //! Sweeps on many threads, colour by colour, against sweeps on one.
 
-use crate::common::{SMOOTH, UNTURNING, parameters, pressed_pile};
-use slump::contact::Impulse;
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::solver::{Method, Ordering, SolverSettings, StopTest};
-use slump::world::{FrictionCone, Grains, Physics};
+use crate::common::*;
 
 /// Sweeps, impulses and grains after three steps on so many threads.
 fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
-        let mut simulation = scene.simulation().expect("a proper scene");
-        let sweeps = [(); 3].map(|()| simulation.step().expect("a finite state").sweeps);
-        (sweeps, simulation.contacts().impulses().to_vec(), simulation.world().grains.clone())
+        let mut run = start(&scene);
+        let sweeps = [(); 3].map(|()| run.step().expect("a finite state").sweeps);
+        (sweeps, run.contacts().impulses().to_vec(), run.grains().clone())
     })
 }
 

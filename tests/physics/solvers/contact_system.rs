@@ -1,11 +1,6 @@
 //! The scaled form of a step's problem: what the gradient methods stand on.
 
-use crate::common::{LINE, SMOOTH, UNTURNING, parameters, pressed_pile, start};
-use slump::contact::ContactList;
-use slump::scene::{Scene, cradle};
-use slump::sim::ProblemVisitor;
-use slump::solver::{BodySystem, ContactSystem, Kinematics, Model, StepProblem, residual};
-use slump::world::{FrictionCone, Physics};
+use crate::common::*;
 
 /// A problem of every model, and how many contacts it has at least.
 fn scenes() -> Vec<(Scene, usize)> {

@@ -1,12 +1,7 @@
 //! The candidate search against trying every pair.
 
-use crate::common::{G, fixed, moving, parameters, random, scene, start};
-use glam::DVec2;
-use rand::RngExt;
+use crate::common::*;
 use rand_pcg::Pcg64;
-use slump::contact::{Candidates, ContactList, Impulse, Reach};
-use slump::scene::Scene;
-use slump::world::{Boundary, Disc, Grain, Grains, Gravity, Physics, World};
 
 /// All touching pairs, found by trying each. Boundaries must be half-spaces.
 fn every_pair(world: &World, gap_tolerance: f64) -> Vec<(u32, u32)> {
@@ -166,13 +161,13 @@ fn a_running_simulation_sees_every_contact_of_fast_grains() {
     };
     scene.mean_diameter = 0.9;
     scene.solver.max_sweeps = 20;
-    let mut simulation = start(&scene);
+    let mut run = start(&scene);
     let mut contacts = 0;
     for step in 0..400 {
-        let before = simulation.world().clone();
-        simulation.step().expect("a finite state");
+        let before = run.world().clone();
+        run.step().expect("a finite state");
         let expected = every_pair(&before, 0.0);
-        assert_eq!(found(simulation.contacts()), expected, "step {step}");
+        assert_eq!(found(run.contacts()), expected, "step {step}");
         contacts += expected.len();
     }
     assert!(contacts > 1000, "{contacts} contacts");

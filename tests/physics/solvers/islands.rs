@@ -1,13 +1,8 @@
 //! Heaps that do not touch: solved island by island, each is what it would be without the others.
 
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Simulation;
-use slump::solver::{Fallback, FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
-use slump::world::{Grain, Physics};
+use crate::common::*;
 
 use super::methods::SolveTwice;
-use crate::common::{G, bits, parameters, pressed_pile, scene, start, take_steps};
 
 const DIAMETER: f64 = 5e-3;
 
@@ -63,9 +58,8 @@ fn island_by_island(method: Method, stop: StopTest) -> SolverSettings {
 }
 
 fn after_steps(scene: &Scene, solver: SolverSettings, steps: usize) -> Simulation {
-    let mut simulation = start(&Scene { solver, ..scene.clone() });
-    take_steps(&mut simulation, steps);
-    simulation
+    let run = after(&Scene { solver, ..scene.clone() }, steps);
+    run
 }
 
 fn methods() -> impl Iterator<Item = Method> {
@@ -120,16 +114,16 @@ fn one_island_is_the_whole_to_the_last_bit() {
 fn where_each_island_passes_a_test_the_whole_does() {
     for stop in StopTest::ALL {
         let settings = SolverSettings { tolerance: 1e-4, ..island_by_island(Method::Nsgs, *stop) };
-        let mut simulation = start(&Scene { solver: settings, ..heaps(&SIZES) });
+        let mut run = start(&Scene { solver: settings, ..heaps(&SIZES) });
         let mut solved = 0;
         for _ in 0..20 {
             let one_sweep = SolverSettings { islands: false, max_sweeps: 1, ..settings };
-            let [by_islands, sweep] = simulation.next_problem(SolveTwice(settings, one_sweep));
+            let [by_islands, sweep] = run.next_problem(SolveTwice(settings, one_sweep));
             if by_islands.converged && by_islands.sweeps > 3 {
                 solved += 1;
                 assert!(sweep.converged, "{stop:?} {sweep:?} after {by_islands:?}");
             }
-            take_steps(&mut simulation, 1);
+            take_steps(&mut run, 1);
         }
         assert!(solved >= 5, "{stop:?}: {solved} of 20 steps to be asked about");
     }
@@ -168,8 +162,8 @@ fn an_island_that_is_not_solved_falls_back_alone() {
     let together = heaps(&sizes);
     // Before anything is there to start from, two grains take less than the others.
     let step = |scene: &Scene| {
-        let simulation = after_steps(scene, settings, 1);
-        (*simulation.observables(), bits(&simulation))
+        let run = after_steps(scene, settings, 1);
+        (*run.observables(), bits(&run))
     };
     let (all, moved) = step(&together);
     let alone = sizes.map(|heap| step(&heaps(&[heap])));

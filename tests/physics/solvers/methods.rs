@@ -1,13 +1,6 @@
 //! The methods against each other: one problem, one answer.
 
-use slump::contact::ContactList;
-use slump::scene::{NewPile, Scene, cradle, pile_of, settle};
-use slump::sim::{ProblemVisitor, Simulation};
-use slump::solver::{
-    Fallback, METHODS, Memory, Method, Model, Ordering, SolveReport, SolverSettings, StepProblem,
-    StopTest, residual, solve,
-};
-use slump::world::{FrictionCone, Physics};
+use crate::common::*;
 
 /// A small pile that has begun to fall.
 fn falling_pile(seed: u64) -> Scene {
@@ -54,8 +47,8 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
                 other.set_solver(solver).expect("proper settings");
                 let step = *other.step().expect("a finite state");
                 assert!(step.converged, "{method:?} {ordering:?}: {}", step.residual);
-                let expected = &by_sweeps.world().grains.velocities;
-                for (a, b) in expected.iter().zip(&other.world().grains.velocities) {
+                let expected = by_sweeps.velocities();
+                for (a, b) in expected.iter().zip(other.velocities()) {
                     fastest = fastest.max(a.length());
                     let allowed = 1e-6 * (tolerance / 1e-10) * fastest.max(1e-3);
                     assert!((*a - *b).length() < allowed, "{method:?} {ordering:?}: {b} for {a}");
@@ -69,11 +62,9 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
 
 /// The scene a few steps later.
 fn advanced(scene: &Scene) -> Scene {
-    let mut simulation = with(scene, Method::Nsgs, 1e-8);
-    for _ in 0..5 {
-        simulation.step().expect("a finite state");
-    }
-    let grains = &simulation.world().grains;
+    let mut run = with(scene, Method::Nsgs, 1e-8);
+    take_steps(&mut run, 5);
+    let grains = run.grains();
     Scene { grains: (0..grains.len()).map(|index| grains.grain(index)).collect(), ..scene.clone() }
 }
 
@@ -152,11 +143,11 @@ fn moments() -> Vec<Simulation> {
         scene.parameters.cone = cone;
         scene.physics.rotation = rotation;
         scene.parameters.bond = bond;
-        let mut simulation = with(&scene, Method::Newton, 1e-8);
+        let mut run = with(&scene, Method::Newton, 1e-8);
         for step in 1..=120 {
-            simulation.step().expect("a finite state");
+            run.step().expect("a finite state");
             if step % 20 == 0 {
-                moments.push(simulation.clone());
+                moments.push(run.clone());
             }
         }
     }
@@ -165,9 +156,9 @@ fn moments() -> Vec<Simulation> {
 
 /// The next problem of a moment, as a method with these settings gets it.
 fn next_with(moment: &Simulation, solver: SolverSettings) -> (SolveReport, f64) {
-    let mut simulation = moment.clone();
-    simulation.set_solver(solver).expect("proper settings");
-    simulation.next_problem(Solve(solver))
+    let mut run = moment.clone();
+    run.set_solver(solver).expect("proper settings");
+    run.next_problem(Solve(solver))
 }
 
 /// The residual that a method is asked for here: Jacobi's method creeps.
@@ -211,9 +202,9 @@ fn every_method_honours_every_stopping_test_and_the_limit() {
                     warm_start: false,
                     ..SolverSettings::default()
                 };
-                let mut simulation = moment.clone();
-                simulation.set_solver(settings).expect("proper settings");
-                let [first, again] = simulation.next_problem(SolveTwice(settings, settings));
+                let mut run = moment.clone();
+                run.set_solver(settings).expect("proper settings");
+                let [first, again] = run.next_problem(SolveTwice(settings, settings));
                 let name = format!("{} {stop:?}", info.name);
                 assert!(first.converged && again.converged, "{name}: {first:?}");
                 assert!(first.sweeps > 1, "{name}: {first:?}");
@@ -239,8 +230,8 @@ fn a_step_without_contacts_is_solved_by_every_method() {
     scene.grains.truncate(1);
     for info in METHODS.iter() {
         scene.solver.method = info.method;
-        let mut simulation = scene.simulation().expect("a proper scene");
-        let step = *simulation.step().expect("a finite state");
+        let mut run = start(&scene);
+        let step = *run.step().expect("a finite state");
         assert!(step.converged && step.sweeps == 0 && step.contacts == 0, "{}", info.name);
     }
 }
@@ -259,12 +250,12 @@ fn every_method_keeps_the_cradle_closed_where_the_exact_answer_is_closed() {
         scene.solver.method = info.method;
         scene.solver.tolerance = 1e-12;
         scene.parameters.time_step_secs = 5e-4;
-        let mut simulation = scene.simulation().expect("a proper scene");
+        let mut run = start(&scene);
         let mut met = false;
-        while simulation.time_secs() < scene.duration_secs {
-            met |= simulation.step().expect("a finite state").contacts == 2;
+        while run.time_secs() < scene.duration_secs {
+            met |= run.step().expect("a finite state").contacts == 2;
         }
-        let positions = &simulation.world().grains.positions;
+        let positions = run.places();
         let gap = positions[1].x - positions[0].x - scene.mean_diameter;
         assert!(met, "k reached the pair");
         assert!(gap < 1e-6, "{}: the bond is open by {gap} m", info.name);

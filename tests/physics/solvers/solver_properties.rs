@@ -4,18 +4,9 @@
 use std::cell::Cell;
 
 use crate::common::natural_map::{judge, natural_map};
-use crate::common::{parameters, pressed_pile, start};
-use glam::DVec2;
+use crate::common::*;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use slump::contact::Contact;
-use slump::scene::Scene;
-use slump::sim::Simulation;
-use slump::solver::{
-    Approach, Memory, Plane, ProblemNumbers, SolverSettings, SpinningPlane, StepModel, StepProblem,
-    StopTest, solve,
-};
-use slump::world::{FrictionCone, Grains, Parameters, Physics};
 
 /// Runs a property over `cases` scenes, the same ones every time.
 fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseError>) {
@@ -53,9 +44,9 @@ fn pile(
 }
 
 /// Takes a step; gives the grains before it.
-fn step(simulation: &mut Simulation) -> Grains {
-    let before = simulation.world().grains.clone();
-    simulation.step().expect("a finite state");
+fn step(run: &mut Simulation) -> Grains {
+    let before = run.grains().clone();
+    run.step().expect("a finite state");
     before
 }
 
@@ -63,21 +54,21 @@ fn step(simulation: &mut Simulation) -> Grains {
 fn the_residual_reported_is_that_of_the_natural_map() {
     let (converged, not_converged, contacts) = (Cell::new(0), Cell::new(0), Cell::new(0));
     for_random_piles(64, |scene| {
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         for _ in 0..4 {
-            let before = step(&mut simulation);
-            let (error, scale, outside) = natural_map(&simulation, &before);
-            let reported = simulation.observables().residual;
-            contacts.set(contacts.get() + simulation.observables().contacts);
+            let before = step(&mut run);
+            let (error, scale, outside) = natural_map(&run, &before);
+            let reported = run.observables().residual;
+            contacts.set(contacts.get() + run.observables().contacts);
             let off = (error / scale - reported).abs();
             prop_assert!(off < 1e-6 * reported + 1e-12, "{} for {reported}", error / scale);
             prop_assert!(outside < 1e-14 * scale, "{outside:e} outside the cone");
-            if simulation.observables().converged {
+            if run.observables().converged {
                 prop_assert!(error / scale <= 1e-7 * (1.0 + 1e-6) + 1e-12);
                 converged.set(converged.get() + 1);
             } else {
                 prop_assert!(reported > 1e-7);
-                let last = simulation.observables();
+                let last = run.observables();
                 prop_assert!(last.sweeps == 3000 || last.stalled, "{}", last.sweeps);
                 not_converged.set(not_converged.get() + 1);
             }
@@ -93,17 +84,17 @@ fn the_residual_reported_is_that_of_the_natural_map() {
 #[test]
 fn the_impulses_reported_are_those_that_moved_the_grains() {
     for_random_piles(32, |scene| {
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         for _ in 0..3 {
-            let before = step(&mut simulation);
-            let world = simulation.world();
+            let before = step(&mut run);
+            let world = run.world();
             let (count, dt) = (before.len(), scene.parameters.time_step_secs);
             let mut velocities = before.velocities.clone();
             let mut spins = before.angular_velocities.clone();
             for (k, velocity) in velocities.iter_mut().enumerate() {
                 *velocity += dt * world.gravity.acceleration(before.positions[k]);
             }
-            let list = simulation.contacts();
+            let list = run.contacts();
             for (contact, impulse) in list.contacts().iter().zip(list.impulses()) {
                 let tangent = contact.normal.perp();
                 let push = impulse.normal * contact.normal + impulse.tangential * tangent;
@@ -150,10 +141,10 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
     type Lean = StepModel<Plane, false>;
     for_random_piles(16, |mut scene| {
         scene.parameters.friction = 0.0;
-        let mut simulation = start(&scene);
-        step(&mut simulation);
-        simulation.step().expect("a finite state");
-        let (world, contacts) = (simulation.world(), simulation.contacts());
+        let mut run = start(&scene);
+        step(&mut run);
+        run.step().expect("a finite state");
+        let (world, contacts) = (run.world(), run.contacts());
         let mut full = StepProblem::<SpinningPlane>::default();
         let mut lean = StepProblem::<Plane>::default();
         let parameters = &scene.parameters;
@@ -190,11 +181,11 @@ fn physics_without_cohesion_is_bond_zero_bitwise() {
         let with = Scene { parameters: without.parameters, ..zero.clone() };
         let [mut without, mut zero, mut with] = [&without, &zero, &with].map(start);
         for _ in 0..5 {
-            for simulation in [&mut without, &mut zero, &mut with] {
-                step(simulation);
+            for run in [&mut without, &mut zero, &mut with] {
+                step(run);
             }
         }
-        prop_assert_eq!(&without.world().grains, &zero.world().grains);
+        prop_assert_eq!(without.grains(), zero.grains());
         prop_assert_eq!(without.contacts().impulses(), zero.contacts().impulses());
         prop_assert!(with.world().grains != zero.world().grains, "cohesion would have acted");
         Ok(())
@@ -208,16 +199,16 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
     // ends its step with v_n ≥ −ρ v_n^{n−1} but for the residual: |e_n| = m_n |v_n + ρ v_n^{n−1}|.
     let (old, new) = (Cell::new(0), Cell::new(0));
     for_random_piles(32, |scene| {
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let (dt, restitution) = (scene.parameters.time_step_secs, scene.parameters.restitution);
-        let mut earlier = step(&mut simulation);
-        let mut known: Vec<Contact> = simulation.contacts().contacts().to_vec();
+        let mut earlier = step(&mut run);
+        let mut known: Vec<Contact> = run.contacts().contacts().to_vec();
         for _ in 0..6 {
-            let before = step(&mut simulation);
-            let (_, scale, _) = natural_map(&simulation, &before);
-            let error = simulation.observables().residual * scale;
-            let contacts = simulation.contacts().contacts();
-            for (judged, contact) in judge(&simulation, &before).iter().zip(contacts) {
+            let before = step(&mut run);
+            let (_, scale, _) = natural_map(&run, &before);
+            let error = run.observables().residual * scale;
+            let contacts = run.contacts().contacts();
+            for (judged, contact) in judge(&run, &before).iter().zip(contacts) {
                 let lowest = -restitution * judged.before[0].max(0.0) - error / judged.normal_mass;
                 prop_assert!(judged.after[0] >= lowest - 1e-12, "{contact:?}");
                 let same = |c: &Contact| (c.grain, c.other) == (contact.grain, contact.other);

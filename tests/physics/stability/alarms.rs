@@ -1,21 +1,17 @@
 //! What a run says when it goes wrong.
 
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::scene::paper_pile;
+use crate::common::*;
 use slump::scene::stability::{cantilever, column, heap, mass_ratio, overlapped};
-use slump::sim::{AlarmKind, Stepper};
-use slump::solver::{Method, StopTest};
 
 /// The kinds of alarms of a run, and what they say.
 fn alarms(scene: &Scene, steps: u32) -> Vec<(AlarmKind, String)> {
-    let mut simulation = scene.simulation().expect("a sound scene");
+    let mut run = start(&scene);
     for _ in 0..steps {
-        if simulation.step().is_err() {
+        if run.step().is_err() {
             break;
         }
     }
-    let said = simulation.alarms().iter();
+    let said = run.alarms().iter();
     said.map(|alarm| (alarm.kind, alarm.message(&scene.settings()))).collect()
 }
 
@@ -53,7 +49,7 @@ fn a_state_that_is_not_finite_is_told_of_with_what_helps() {
     scene.stepper = Stepper::Dem;
     scene.parameters.substeps = 1;
     scene.parameters.time_step_secs = 1.0;
-    scene.gravity = slump::world::Gravity::Uniform { acceleration: DVec2::new(0.0, -1e150) };
+    scene.gravity = Gravity::Uniform { acceleration: DVec2::new(0.0, -1e150) };
     let said = alarms(&scene, 1000);
     let (_, words) =
         said.iter().find(|(kind, _)| *kind == AlarmKind::NotFinite).expect("it blows up");
@@ -77,7 +73,7 @@ fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
 fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not() {
     // Runs until bonds have broken, or for 0.1 s: what it says of breaks, and whether there were any.
     let run = |scene: &Scene| {
-        let mut simulation = scene.simulation().expect("a sound scene");
+        let mut simulation = start(&scene);
         let mut broken = 0.0;
         while simulation.time_secs() < 0.1 && broken == 0.0 {
             let step = simulation.step().expect("finite");

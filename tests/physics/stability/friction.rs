@@ -1,8 +1,7 @@
 //! Models of friction on what slides, against what theory says of each.
 
+use crate::common::*;
 use slump::scene::stability::{blow, dilatancy};
-use slump::sim::Simulation;
-use slump::solver::{FrictionModel, Method, SolverSettings, StopTest};
 
 fn settings(method: Method, friction_model: FrictionModel, model_solves: u32) -> SolverSettings {
     SolverSettings {
@@ -19,7 +18,7 @@ fn sliding(time_step_secs: f64, solver: SolverSettings) -> Simulation {
     let mut scene = dilatancy();
     scene.parameters.time_step_secs = time_step_secs;
     scene.solver = solver;
-    scene.simulation().expect("a sound scene")
+    start(&scene)
 }
 
 /// v₀, μ, g and d of the scene.
@@ -30,14 +29,14 @@ fn numbers() -> [f64; 4] {
 }
 
 /// The way from the start to where the disc has been still for long.
-fn way(simulation: &mut Simulation) -> glam::DVec2 {
+fn way(run: &mut Simulation) -> glam::DVec2 {
     let [speed, friction, gravity, _] = numbers();
-    let start = simulation.world().grains.positions[0];
-    while simulation.time_secs() < 1.5 * speed / (friction * gravity) {
-        simulation.step().expect("a finite state");
+    let start = run.place(0);
+    while run.time_secs() < 1.5 * speed / (friction * gravity) {
+        run.step().expect("a finite state");
     }
-    assert!(simulation.world().grains.velocities[0].length() < 1e-9, "it has stopped");
-    simulation.world().grains.positions[0] - start
+    assert!(run.velocity(0).length() < 1e-9, "it has stopped");
+    run.place(0) - start
 }
 
 /// Long steps and short ones; at some of them the disc stops within a step, not at its end.
@@ -73,22 +72,22 @@ fn associated_throws_what_slides_to_the_same_height_at_every_time_step() {
     let [speed, friction, gravity, diameter] = numbers();
     for time_step_secs in TIME_STEPS_SECS {
         let solver = settings(Method::InteriorPoint, FrictionModel::Associated, 1);
-        let mut simulation = sliding(time_step_secs, solver);
-        let level = simulation.world().grains.positions[0].y;
-        simulation.step().expect("a finite state");
-        let after = simulation.world().grains.velocities[0];
+        let mut run = sliding(time_step_secs, solver);
+        let level = run.place(0).y;
+        run.step().expect("a finite state");
+        let after = run.velocity(0);
         let along = (speed - friction * gravity * time_step_secs) / (1.0 + friction * friction);
         let right = glam::DVec2::new(along, friction * along);
         assert!((after - right).length() < 1e-9 * speed, "{after} for {right}");
-        let lift = simulation.world().grains.positions[0].y - level;
+        let lift = run.place(0).y - level;
         assert!((lift / (time_step_secs * friction * along) - 1.0).abs() < 1e-6, "{lift:e}");
 
         let (mut highest, mut expected, mut rising) = (lift, lift, after.y);
         while rising > 0.0 {
             rising -= gravity * time_step_secs;
             expected += (time_step_secs * rising).max(0.0);
-            simulation.step().expect("a finite state");
-            highest = highest.max(simulation.world().grains.positions[0].y - level);
+            run.step().expect("a finite state");
+            highest = highest.max(run.place(0).y - level);
         }
         assert!((highest / expected - 1.0).abs() < 1e-9, "{highest} for {expected}");
         assert!(highest > 0.6 * diameter, "{time_step_secs} s: {highest:e}");
@@ -113,8 +112,8 @@ fn desaxce_sinks_what_slides_by_the_way_of_a_step_times_friction() {
 }
 
 /// Speed of both discs along the floor, their total way along it, and whether the blow has come.
-fn along_the_floor(simulation: &Simulation) -> (f64, f64, bool) {
-    let grains = &simulation.world().grains;
+fn along_the_floor(run: &Simulation) -> (f64, f64, bool) {
+    let grains = run.grains();
     let mass: f64 = grains.masses.iter().sum();
     let mean = |of: &[glam::DVec2]| {
         of.iter().zip(&grains.masses).map(|(of, mass)| *mass * *of).sum::<glam::DVec2>() / mass
@@ -143,22 +142,20 @@ fn a_blow_on_what_slides_takes_speed_by_impulse_balance_and_tresca_is_a_step_lat
             let mut scene = scene.clone();
             scene.parameters.time_step_secs = time_step_secs;
             scene.solver = settings(method, model, solves);
-            let mut simulation = scene.simulation().expect("a sound scene");
+            let mut run = start(&scene);
             let mut steps = 0.0;
-            let start = along_the_floor(&simulation).1;
-            while !along_the_floor(&simulation).2 {
-                simulation.step().expect("a finite state");
+            let start = along_the_floor(&run).1;
+            while !along_the_floor(&run).2 {
+                run.step().expect("a finite state");
                 steps += 1.0;
                 assert!(steps < 100.0, "{what}: the blow has come");
             }
             assert!(steps > 1.0, "{what}: the floor's contact was there before the blow");
-            let at_the_blow = along_the_floor(&simulation).0;
+            let at_the_blow = along_the_floor(&run).0;
             let expected = before - (1.0 - steps_late) * taken;
             assert!((at_the_blow - expected).abs() < 1e-8, "{what}: {at_the_blow} for {expected}");
-            for _ in 0..10 {
-                simulation.step().expect("a finite state");
-            }
-            let (after, place, _) = along_the_floor(&simulation);
+            take_steps(&mut run, 10);
+            let (after, place, _) = along_the_floor(&run);
             assert!((after - (before - taken)).abs() < 1e-8, "{what}: {after}");
             let late = time_step_secs * taken * steps_late;
             let way = time_step_secs * ((steps + 10.0) * before - 11.0 * taken) + late;

@@ -1,18 +1,10 @@
 //! What each remedy does, and that it does nothing else.
 
-use glam::DVec2;
+use crate::common::*;
 use slump::scene::stability::{bounce, heap, overlapped, squeeze};
-use slump::scene::{Preset, Scene};
-use slump::sim::Remedies;
-use slump::sim::Simulation;
-use slump::world::Gravity;
 
 /// Overlap that pushing out leaves, in d.
 const LEFT: f64 = 2e-4;
-
-fn start(scene: &Scene) -> Simulation {
-    scene.simulation().expect("a sound scene")
-}
 
 #[test]
 fn there_is_no_remedy_unless_asked_for() {
@@ -28,18 +20,15 @@ fn there_is_no_remedy_unless_asked_for() {
 fn overlap_is_pushed_out_without_speed_and_down_to_what_is_left() {
     let mut scene = overlapped(0.3);
     scene.gravity = Gravity::Uniform { acceleration: DVec2::ZERO };
-    let mut simulation = start(&scene);
-    for _ in 0..200 {
-        simulation.step().expect("a finite state");
-    }
-    let stays = simulation.observables().max_overlap;
+    let run = after(&scene, 200);
+    let stays = run.observables().max_overlap;
     assert!((stays - 0.3).abs() < 1e-12, "without the remedy the overlap stays: {stays}");
 
     scene.remedies.push_out = true;
-    let mut simulation = start(&scene);
+    let mut run = start(&scene);
     let mut before = 0.3;
     for step in 0..200 {
-        let now = *simulation.step().expect("a finite state");
+        let now = *run.step().expect("a finite state");
         assert_eq!(now.kinetic_energy, 0.0, "step {step}");
         assert!(now.max_overlap <= before + 1e-12, "step {step}: {}", now.max_overlap);
         before = now.max_overlap;
@@ -57,8 +46,8 @@ fn a_step_that_bounces_contradict_is_solved_without_them() {
         scene.remedies.calm_unsolved = calm_unsolved;
         scene.remedies.sequential_impacts = sequential_impacts;
         let all = calm_unsolved || sequential_impacts;
-        let mut simulation = start(&scene);
-        let steps = (0..20).map(|_| simulation.step().expect("a finite state").converged);
+        let mut run = start(&scene);
+        let steps = (0..20).map(|_| run.step().expect("a finite state").converged);
         let solved = steps.filter(|converged| *converged).count();
         assert_eq!(solved == 20, all, "calm {calm_unsolved}: {solved} of 20 steps solved");
     }
@@ -69,12 +58,12 @@ fn a_step_in_pieces_is_one_step_that_keeps_the_balance_of_energy() {
     let mut scene = bounce(0.5);
     scene.parameters.time_step_secs = 0.02;
     scene.remedies.max_travel = 0.1;
-    let mut simulation = start(&scene);
+    let mut run = start(&scene);
     // What it weighs times how far it falls: all its energy.
-    let scale = simulation.observables().potential_energy;
+    let scale = run.observables().potential_energy;
     let (mut energy, mut touched) = (0.0, false);
     for step in 1..=30 {
-        let now = *simulation.step().expect("a finite state");
+        let now = *run.step().expect("a finite state");
         assert_eq!((now.step, now.time_step_secs), (step, 0.02));
         assert!((now.time_secs - 0.02 * step as f64).abs() < 1e-12);
         let change = now.kinetic_energy - energy;

@@ -1,9 +1,7 @@
 //! Many contacts: that the scenes are what they say, and at rest.
 
-use slump::scene::Scene;
+use crate::common::*;
 use slump::scene::stability::{heap_of, lattice};
-use slump::sim::Simulation;
-use slump::solver::{FrictionModel, Method, SolverSettings, StopTest};
 
 /// Speed that is left after a few certified steps, in √(g d).
 const STILL: f64 = 1e-7;
@@ -16,22 +14,22 @@ fn certified(mut scene: Scene) -> Simulation {
         friction_model: FrictionModel::Tresca,
         ..SolverSettings::default()
     };
-    scene.simulation().expect("a sound scene")
+    start(&scene)
 }
 
 /// Steps, each of them certified, to rest without a contact lost.
-fn stays(mut simulation: Simulation, what: &str) {
+fn stays(mut run: Simulation, what: &str) {
     let contacts = {
-        let row = *simulation.step().expect("a finite state");
+        let row = *run.step().expect("a finite state");
         assert!(row.converged && row.duality_gap.is_some(), "{what}");
         row.contacts
     };
     for _ in 0..5 {
-        let row = *simulation.step().expect("a finite state");
+        let row = *run.step().expect("a finite state");
         assert!(row.converged, "{what}");
         assert_eq!(row.contacts, contacts, "{what}");
     }
-    let world = simulation.world();
+    let world = run.world();
     let fastest = world.grains.velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
     let scale = (world.gravity.magnitude() * world.mean_diameter).sqrt();
     assert!(fastest < STILL * scale, "{what}: {fastest:e} m/s");
@@ -41,7 +39,7 @@ fn stays(mut simulation: Simulation, what: &str) {
 fn the_lattice_is_hyperstatic_and_at_rest_however_little_its_normals_are_off() {
     for perturbation in [1e-6, 1e-4, 1e-2] {
         let scene = lattice(37, 36, perturbation);
-        let mut first = scene.simulation().expect("a sound scene");
+        let mut first = start(&scene);
         let contacts = first.step().expect("a finite state").contacts;
         assert_eq!(scene.grains.len(), 1314);
         // Pairs in long and in short rows, 72 in each of 35 gaps between rows, the floor, and two walls.

@@ -1,12 +1,10 @@
 //! Borders that theory gives, against those that are measured.
 
-use slump::scene::Scene;
+use crate::common::*;
 use slump::scene::stability::{
     FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, breaking_bond_of_cantilever, cantilever,
     column_on_line, mass_ratio, thin_wall,
 };
-use slump::sim::{Simulation, Stepper};
-use slump::solver::SolverSettings;
 use slump::study::stability::contraction_of_column;
 
 /// Steps until a column sinks steadily: each leaves a tenth or less of the one before.
@@ -24,11 +22,8 @@ fn cold(sweeps: u32) -> SolverSettings {
 /// Steady speed of the last grain, in g Δt, where each step gets so many sweeps from nothing.
 fn sinking_speed(mut scene: Scene, sweeps: u32) -> f64 {
     scene.solver = cold(sweeps);
-    let mut simulation = scene.simulation().expect("a sound scene");
-    for _ in 0..STEADY {
-        simulation.step().expect("a finite state");
-    }
-    let speed = simulation.world().grains.velocities.last().expect("a grain").length();
+    let run = after(&scene, STEADY);
+    let speed = run.grains().velocities.last().expect("a grain").length();
     speed / (scene.gravity.magnitude() * scene.parameters.time_step_secs)
 }
 
@@ -75,11 +70,8 @@ fn a_disc_goes_through_a_wall_in_the_share_of_phases_that_geometry_gives() {
     for travel in [0.3, 0.45, 0.7, 1.0, 2.0, 5.0] {
         let through = (0..PHASES).filter(|phase| {
             let scene = thin_wall(travel, (f64::from(*phase) + 0.5) / f64::from(PHASES));
-            let mut simulation = scene.simulation().expect("a sound scene");
-            for _ in 0..((WALL_DISTANCE + 5.0) / travel) as u32 {
-                simulation.step().expect("a finite state");
-            }
-            simulation.world().grains.positions[0].x > WALL_DISTANCE * scene.mean_diameter
+            let run = after(&scene, ((WALL_DISTANCE + 5.0) / travel) as usize);
+            run.place(0).x > WALL_DISTANCE * scene.mean_diameter
         });
         let found = through.count() as f64 / f64::from(PHASES);
         let expected = (1.0f64 - 0.5 / travel).max(0.0);
@@ -96,12 +88,8 @@ fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     for count in [2, 3, 5, 20] {
         let scene = balls(count);
         let speed = scene.grains[0].velocity.x;
-        let mut simulation = scene.simulation().expect("a sound scene");
-        for _ in 0..100 {
-            simulation.step().expect("a finite state");
-        }
-        let velocities: Vec<f64> =
-            simulation.world().grains.velocities.iter().map(|v| v.x / speed).collect();
+        let run = after(&scene, 100);
+        let velocities: Vec<f64> = run.velocities().iter().map(|v| v.x / speed).collect();
         let shared = 2.0 / count as f64;
         assert!((velocities[0] - (shared - 1.0)).abs() < 1e-4, "{count}: {velocities:?}");
         for velocity in &velocities[1..] {
@@ -119,21 +107,21 @@ fn springs(part: f64) -> Simulation {
     scene.parameters.restitution = 0.5;
     scene.stepper = Stepper::Dem;
     scene.parameters.substeps = 1;
-    let critical = scene.simulation().expect("a sound scene").critical_time_step_secs();
+    let critical = start(&scene).critical_time_step_secs();
     scene.parameters.time_step_secs = part * critical.expect("springs have a critical step");
-    scene.simulation().expect("a sound scene")
+    start(&scene)
 }
 
 #[test]
 fn springs_blow_up_at_their_critical_time_step() {
     let stays_at_rest = |part: f64| {
-        let mut simulation = springs(part);
+        let mut run = springs(part);
         for _ in 0..20_000 {
-            if simulation.step().is_err() {
+            if run.step().is_err() {
                 return false;
             }
         }
-        let world = simulation.world();
+        let world = run.world();
         let fastest = world.grains.velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
         fastest < 1e-6 * (world.gravity.magnitude() * world.mean_diameter).sqrt()
     };
@@ -158,12 +146,9 @@ fn a_cantilever_without_friction_tears_at_the_bond_number_of_statics_at_every_ti
                 scene.parameters.time_step_secs = time_step_secs;
                 scene.solver.tolerance = 1e-9;
                 scene.solver.max_sweeps = 20_000;
-                let mut simulation = scene.simulation().expect("a sound scene");
-                for _ in 0..(0.1 / time_step_secs) as u32 {
-                    simulation.step().expect("a finite state");
-                }
+                let run = after(&scene, (0.1 / time_step_secs) as usize);
                 let bonds = 4 * length as u32;
-                let found = simulation.observables().contacts < bonds;
+                let found = run.observables().contacts < bonds;
                 assert_eq!(found, torn, "{length} discs, {part} of {right}, {time_step_secs} s");
             }
         }
@@ -174,11 +159,8 @@ fn a_cantilever_without_friction_tears_at_the_bond_number_of_statics_at_every_ti
 fn the_contacts_of_an_arch_carry_what_statics_says() {
     let mut scene = arch();
     scene.solver.tolerance = 1e-12;
-    let mut simulation = scene.simulation().expect("a sound scene");
-    for _ in 0..3 {
-        simulation.step().expect("a finite state");
-    }
-    let list = simulation.contacts();
+    let run = after(&scene, 3);
+    let list = run.contacts();
     assert_eq!(list.contacts().len(), 4);
     let spring = (2f64.sqrt() - 1.0) / (2f64.sqrt() + 3.0);
     for (contact, impulse) in list.contacts().iter().zip(list.impulses()) {

@@ -1,13 +1,6 @@
 //! The stepper `avbd`: what it is made for, and what it does not hold.
 
-use crate::common::schemes::{by, meeting, momentum, relative_velocity};
-use crate::common::{
-    G, LINE, SMOOTH, UNTURNING, assert_close, fixed, parameters, scene, start, take_steps,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::{Observables, Stepper};
-use slump::world::{Boundary, Grain, Physics};
+use crate::common::*;
 
 /// Discs on one another along x, the uppermost so many times as large as the others, on a fixed one.
 fn column(count: usize, ratio: f64) -> Scene {
@@ -25,12 +18,11 @@ fn column(count: usize, ratio: f64) -> Scene {
 
 #[test]
 fn a_disc_of_a_thousand_masses_rests_on_light_ones() {
-    let mut simulation = start(&column(4, 1000f64.sqrt()));
-    take_steps(&mut simulation, 3000);
-    let grains = &simulation.world().grains;
+    let run = after(&column(4, 1000f64.sqrt()), 3000);
+    let grains = run.grains();
     let mut carried: f64 = grains.masses.iter().sum();
-    let mut impulses = simulation.contacts().impulses().iter();
-    let of_pairs = simulation.contacts().contacts().iter().zip(impulses.by_ref());
+    let mut impulses = run.contacts().impulses().iter();
+    let of_pairs = run.contacts().contacts().iter().zip(impulses.by_ref());
     let mut forces: Vec<f64> = of_pairs.map(|(_, impulse)| impulse.normal / 1e-3).collect();
     forces.sort_by(|one, other| other.total_cmp(one));
     assert_eq!(forces.len(), 5);
@@ -45,11 +37,11 @@ fn a_disc_of_a_thousand_masses_rests_on_light_ones() {
 #[test]
 fn a_pair_that_meets_stays_together_and_keeps_its_momentum_as_far_as_iterations_get() {
     for physics in [LINE, SMOOTH, Physics::FULL] {
-        let mut simulation = start(&by(Stepper::Avbd, 0, meeting(physics, 0.5, 1e-3)));
-        let (before, carried) = (relative_velocity(&simulation), momentum(&simulation));
-        take_steps(&mut simulation, 2);
-        assert_eq!(simulation.observables().contacts, 1, "they met");
-        let (after, lost) = (relative_velocity(&simulation), momentum(&simulation) - carried);
+        let mut run = start(&by(Stepper::Avbd, 0, meeting(physics, 0.5, 1e-3)));
+        let (before, carried) = (relative_velocity(&run), momentum(&run));
+        take_steps(&mut run, 2);
+        assert_eq!(run.observables().contacts, 1, "they met");
+        let (after, lost) = (relative_velocity(&run), momentum(&run) - carried);
         assert!(after.length() < 1e-2 * before.length(), "{after} is left of {before}");
         assert!(lost.length() < 1e-2 * carried.length(), "{lost} of {carried} is lost");
     }
@@ -63,11 +55,11 @@ fn unexplained(before: f64, after: &Observables) -> f64 {
 
 #[test]
 fn the_energy_that_iterations_leave_unexplained_goes_as_a_column_comes_to_rest() {
-    let mut simulation = start(&column(9, 1.0));
+    let mut run = start(&column(9, 1.0));
     let mut left = Vec::new();
     for _ in 0..2000 {
-        let before = simulation.observables().kinetic_energy;
-        let after = simulation.step().expect("a finite state");
+        let before = run.observables().kinetic_energy;
+        let after = run.step().expect("a finite state");
         assert!(after.residual.is_finite(), "{after:?}");
         left.push(unexplained(before, after));
     }
@@ -83,12 +75,11 @@ fn a_disc_sticks_below_the_friction_angle_and_slides_above() {
         let down = DVec2::new(slope, -1.0).normalize();
         let disc = Grain::at_rest(DVec2::new(0.0, 0.1), 0.1);
         let mut pile = scene(UNTURNING, G * down, parameters(0.0, 1e-3, 0.0, mu), vec![disc]);
-        pile.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }];
-        let mut simulation = start(&by(Stepper::Avbd, 0, pile));
-        take_steps(&mut simulation, 200);
-        let velocity = simulation.world().grains.velocities[0].x;
-        take_steps(&mut simulation, 200);
-        let gained = simulation.world().grains.velocities[0].x - velocity;
+        pile.boundaries = vec![level()];
+        let mut run = after(&by(Stepper::Avbd, 0, pile), 200);
+        let velocity = run.velocity(0).x;
+        take_steps(&mut run, 200);
+        let gained = run.velocity(0).x - velocity;
         if sticks {
             assert!(gained.abs() < 1e-6, "it sticks: {gained:e} m/s");
         } else {

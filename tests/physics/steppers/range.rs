@@ -1,13 +1,6 @@
 //! The law `range` (`contact::range`): one bond by itself against its exact motion.
 
-use crate::common::{
-    DISTANCE_IN_DIAMETERS, G, LINE, SMOOTH, assert_close, fixed, moving, range, scene, start,
-    take_steps, tight,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::{AlarmKind, Simulation, Stepper};
-use slump::world::{Grain, Motion, MotionCourse, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
@@ -36,13 +29,13 @@ fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulat
 }
 
 /// v of a grain that has come as far as three bonds are long, or none where it stays at the disc.
-fn speed_far_away(mut simulation: Simulation) -> Option<f64> {
+fn speed_far_away(mut run: Simulation) -> Option<f64> {
     let far = 2.0 * RADIUS * (1.0 + 3.0 * DISTANCE_IN_DIAMETERS);
-    let steps = (0.1 / simulation.parameters().time_step_secs) as usize;
+    let steps = (0.1 / run.parameters().time_step_secs) as usize;
     for _ in 0..steps {
-        take_steps(&mut simulation, 1);
-        if simulation.world().grains.positions[0].x > far {
-            return Some(simulation.world().grains.velocities[0].x);
+        take_steps(&mut run, 1);
+        if run.place(0).x > far {
+            return Some(run.velocity(0).x);
         }
     }
     None
@@ -89,18 +82,18 @@ fn a_bond_that_holds_a_load_at_rest_asks_for_no_substeps_and_breaks_where_its_st
     let time_step_secs = 1e-3;
     // More than half of the strength, so that only standing still tells it from a bond that is about to break.
     let load = 0.75 * BOND * G;
-    let mut simulation = pair(time_step_secs, 0.3 * (2.0 * work()).sqrt(), load, LINE);
-    take_steps(&mut simulation, 1);
-    assert!(simulation.observables().sweeps > 4, "one in which a bond so loaded opens is cut");
-    take_steps(&mut simulation, 20);
-    assert!(simulation.observables().sweeps < 4, "one that stands is not");
+    let mut run = pair(time_step_secs, 0.3 * (2.0 * work()).sqrt(), load, LINE);
+    take_steps(&mut run, 1);
+    assert!(run.observables().sweeps > 4, "one in which a bond so loaded opens is cut");
+    take_steps(&mut run, 20);
+    assert!(run.observables().sweeps < 4, "one that stands is not");
 
     // C₀ in the grain's weight, which is its load.
-    let mut parameters = *simulation.parameters();
-    while parameters.bond > 0.5 && simulation.world().grains.velocities[0].x < 1e-3 {
+    let mut parameters = *run.parameters();
+    while parameters.bond > 0.5 && run.velocity(0).x < 1e-3 {
         parameters.bond *= 0.999;
-        simulation.set_parameters(parameters).expect("a Bond number");
-        take_steps(&mut simulation, 1);
+        run.set_parameters(parameters).expect("a Bond number");
+        take_steps(&mut run, 1);
     }
     let strength = parameters.bond;
     assert!((0.99..1.0).contains(&strength), "it let go at {strength} of its load");
@@ -110,16 +103,16 @@ fn a_bond_that_holds_a_load_at_rest_asks_for_no_substeps_and_breaks_where_its_st
 fn a_load_that_breaks_a_bond_gives_it_just_its_work() {
     for time_step_secs in TIME_STEPS {
         for factor in [1.1, 2.0, 5.0] {
-            let mut simulation = pair(time_step_secs, 0.0, factor * BOND * G, LINE);
-            while simulation.world().grains.positions[0].x < 3.0 * RADIUS {
-                take_steps(&mut simulation, 1);
+            let mut run = pair(time_step_secs, 0.0, factor * BOND * G, LINE);
+            while run.place(0).x < 3.0 * RADIUS {
+                take_steps(&mut run, 1);
             }
             // The bond pulls with C₀ until the pair has opened by δ_c, and no longer.
             let opened = DISTANCE_IN_DIAMETERS * 2.0 * RADIUS;
             let time = (2.0 * opened / ((factor - 1.0) * BOND * G)).sqrt();
-            let at = simulation.time_secs();
+            let at = run.time_secs();
             let free = factor * BOND * G * at - BOND * G * time;
-            let found = simulation.world().grains.velocities[0].x;
+            let found = run.velocity(0).x;
             assert_close(found, free, 1e-9, &format!("v at {factor}, Δt = {time_step_secs}"));
         }
     }
@@ -139,9 +132,9 @@ fn two_free_grains_part_by_the_energy_of_their_relative_motion() {
             let grains = grains.into_iter().map(weightless).collect();
             let parameters = range(BOND, time_step_secs);
             let scene = scene(LINE, DVec2::new(G, 0.0), parameters, grains);
-            let mut simulation = start(&Scene { stepper: Stepper::Range, ..scene });
-            take_steps(&mut simulation, (0.1 / time_step_secs) as usize);
-            let velocities = &simulation.world().grains.velocities;
+            let run =
+                after(&Scene { stepper: Stepper::Range, ..scene }, (0.1 / time_step_secs) as usize);
+            let velocities = run.velocities();
             let found = velocities[1].x - velocities[0].x;
             let expected = escape * (factor * factor - 1.0f64).max(0.0).sqrt();
             assert!((found - expected).abs() < 1e-9, "{factor}, Δt = {time_step_secs}: {found}");
@@ -158,11 +151,10 @@ fn overlap_is_pushed_out_and_moves_nothing() {
     for bond in [0.0, BOND] {
         let scene = scene(LINE, DVec2::new(G, 0.0), range(bond, 1e-3), grains.clone());
         let scene = Scene { stepper: Stepper::Range, ..scene };
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 60);
-        assert_eq!(simulation.observables().kinetic_energy, 0.0);
-        let gap = simulation.world().grains.positions[1].x - 2.0 * RADIUS;
-        let first = simulation.world().grains.positions[0].x;
+        let run = after(&scene, 60);
+        assert_eq!(run.observables().kinetic_energy, 0.0);
+        let gap = run.place(1).x - 2.0 * RADIUS;
+        let first = run.place(0).x;
         assert!((gap - first).abs() < 1e-9, "gap {:e}", gap - first);
     }
 }
@@ -172,12 +164,12 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
     for time_step_secs in TIME_STEPS {
         for factor in [0.5, 0.9, 1.1, 3.0] {
             let speed = factor * (2.0 * work()).sqrt();
-            let mut simulation = pair(time_step_secs, speed, 0.0, Physics::FULL);
-            let mass = simulation.world().grains.masses[0];
-            let begun = simulation.observables().kinetic_energy;
+            let mut run = pair(time_step_secs, speed, 0.0, Physics::FULL);
+            let mass = run.grains().masses[0];
+            let begun = run.observables().kinetic_energy;
             let (mut of_bonds, mut of_pushes, mut most) = (0.0, 0.0, 0f64);
             for _ in 0..(0.1 / time_step_secs) as u32 {
-                let now = *simulation.step().expect("finite");
+                let now = *run.step().expect("finite");
                 let [of_step, stored, broken] =
                     [now.bond_work, now.bond_energy, now.broken_bond_energy].map(Option::unwrap);
                 of_bonds += of_step;
@@ -189,10 +181,10 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
                 assert_close(sum, begun, 1e-9, &what);
                 assert!(of_pushes <= 1e-9 * begun, "{what}: pushes gave {of_pushes} J");
             }
-            let broken = simulation.observables().broken_bond_energy.unwrap();
+            let broken = run.observables().broken_bond_energy.unwrap();
             let kept = if factor > 1.0 { mass * work() } else { 0.0 };
             assert_close(broken, kept, 1e-9, "kept by the bond");
-            assert_eq!(simulation.observables().bond_energy, Some(0.0));
+            assert_eq!(run.observables().bond_energy, Some(0.0));
             // At short steps the way out is seen.
             let bond_time = (2.0 * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS / (BOND * G)).sqrt();
             if factor < 1.0 && time_step_secs < 0.2 * bond_time {
@@ -224,15 +216,14 @@ fn circling_pair_holds(
         ..moving(DVec2::new(x, 0.0), radius, DVec2::new(0.0, rate * x))
     };
     let grains = vec![at(-share * distance, RADIUS), at((1.0 - share) * distance, size * RADIUS)];
-    let mut simulation = start(&Scene {
-        stepper: Stepper::Range,
-        ..scene(physics, DVec2::new(0.0, -G), range(bond, time_step_secs), grains)
-    });
-    take_steps(
-        &mut simulation,
+    let run = after(
+        &Scene {
+            stepper: Stepper::Range,
+            ..scene(physics, DVec2::new(0.0, -G), range(bond, time_step_secs), grains)
+        },
         (4.0 * std::f64::consts::PI / (rate * time_step_secs)) as usize + 1,
     );
-    let [one, other] = [0, 1].map(|grain| simulation.world().grains.positions[grain]);
+    let [one, other] = [0, 1].map(|grain| run.place(grain));
     one.distance(other) < distance * 1.05
 }
 
@@ -266,20 +257,22 @@ fn a_grain_that_rides_on_a_moving_disc_does_not_circle_it() {
         let course = MotionCourse::Straight { direction, speed: disc_speed, travel: None };
         let of_disc = Motion { fixed_discs: vec![0], course: Some(course), ..Motion::default() };
         let grain = moving(DVec2::new(2.0 * RADIUS, 0.0), RADIUS, direction);
-        let mut simulation = start(&Scene {
-            fixed_discs: vec![fixed(DVec2::ZERO, RADIUS)],
-            motions: vec![of_disc],
-            stepper: Stepper::Range,
-            solver: tight(),
-            ..scene(
-                SMOOTH,
-                G * DVec2::X,
-                range(100.0, 5e-3),
-                vec![Grain { feels_gravity: false, ..grain }],
-            )
-        });
-        take_steps(&mut simulation, 3);
-        simulation.alarms().iter().any(|alarm| alarm.kind == AlarmKind::BreakUnseen)
+        let run = after(
+            &Scene {
+                fixed_discs: vec![fixed(DVec2::ZERO, RADIUS)],
+                motions: vec![of_disc],
+                stepper: Stepper::Range,
+                solver: tight(),
+                ..scene(
+                    SMOOTH,
+                    G * DVec2::X,
+                    range(100.0, 5e-3),
+                    vec![Grain { feels_gravity: false, ..grain }],
+                )
+            },
+            3,
+        );
+        run.alarms().iter().any(|alarm| alarm.kind == AlarmKind::BreakUnseen)
     };
     assert!(circles(0.0), "the situation: past a disc that rests it circles too fast for the step");
     assert!(!circles(1.0));

@@ -1,14 +1,6 @@
 //! Bounces under the law `range`, one after the other and many at once: a ball, a gas, a row of balls, a column.
 
-use crate::common::{
-    G, LINE, SMOOTH, assert_close, fixed, moving, parameters, random, range, ranged, start,
-    take_steps, tight, weightless,
-};
-use glam::DVec2;
-use rand::RngExt;
-use slump::scene::Scene;
-use slump::sim::{Simulation, Stepper};
-use slump::world::{Boundary, Grain, Parameters, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
@@ -18,16 +10,16 @@ fn apexes(time_step_secs: f64, restitution: f64, height: f64, count: usize) -> V
     let radius = 0.05;
     let grain = Grain::at_rest(DVec2::new(0.0, radius + height), radius);
     let numbers = parameters(0.0, time_step_secs, restitution, 0.5);
-    let mut simulation = start(&Scene {
-        boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }],
+    let mut run = start(&Scene {
+        boundaries: vec![level()],
         ..ranged(Physics::FULL, DVec2::new(0.0, -G), numbers, vec![grain])
     });
     let (mut found, mut highest, mut falls) = (Vec::new(), 0f64, true);
     while found.len() < count {
-        take_steps(&mut simulation, 1);
-        let now = simulation.world().grains.velocities[0].y;
-        let at = simulation.world().grains.positions[0].y - radius;
-        assert!(simulation.time_secs() < 60.0, "only {found:?}");
+        take_steps(&mut run, 1);
+        let now = run.velocity(0).y;
+        let at = run.place(0).y - radius;
+        assert!(run.time_secs() < 60.0, "only {found:?}");
         if falls && now > 0.0 {
             (falls, highest) = (false, at);
         } else if !falls && now < 0.0 {
@@ -93,18 +85,18 @@ fn a_gas_without_losses_keeps_its_energy() {
     for (time_step_secs, fill, steps) in
         [(1e-4, 0.3, 10_000), (1e-3, 0.3, 3000), (1e-3, 0.55, 3000), (5e-3, 0.3, 600)]
     {
-        let mut simulation = gas(50, fill, parameters(0.0, time_step_secs, 1.0, 0.0), 7);
-        let begun = simulation.observables().kinetic_energy;
+        let mut run = gas(50, fill, parameters(0.0, time_step_secs, 1.0, 0.0), 7);
+        let begun = run.observables().kinetic_energy;
         let mut pushed = 0;
         for _ in 0..steps {
-            let before = simulation.world().grains.velocities.clone();
-            take_steps(&mut simulation, 1);
-            let after = &simulation.world().grains.velocities;
+            let before = run.grains().velocities.clone();
+            take_steps(&mut run, 1);
+            let after = run.velocities();
             pushed += before.iter().zip(after).filter(|(before, after)| before != after).count();
         }
-        let ended = simulation.observables().kinetic_energy;
+        let ended = run.observables().kinetic_energy;
         assert_close(ended, begun, 1e-6, &format!("energy at Δt {time_step_secs}, filled {fill}"));
-        assert!(simulation.observables().max_overlap < 0.01, "at Δt {time_step_secs}");
+        assert!(run.observables().max_overlap < 0.01, "at Δt {time_step_secs}");
         assert!(pushed > 3000, "{pushed} grains were pushed");
     }
 }
@@ -128,9 +120,8 @@ fn cradle(gap: f64, restitution: f64, time_step_secs: f64, stepper: Stepper) -> 
         grains.collect(),
     );
     let solver = tight();
-    let mut simulation = start(&Scene { stepper, solver, ..scene });
-    take_steps(&mut simulation, (0.02 / time_step_secs) as usize);
-    simulation.world().grains.velocities.iter().map(|velocity| velocity.x).collect()
+    let run = after(&Scene { stepper, solver, ..scene }, (0.02 / time_step_secs) as usize);
+    run.velocities().iter().map(|velocity| velocity.x).collect()
 }
 
 #[test]
@@ -159,13 +150,15 @@ fn what_rests_does_not_bounce_and_what_falls_comes_to_rest() {
             });
             let numbers = Parameters { restitution: 0.5, ..range(bond, time_step_secs) };
             let grains = grains.collect();
-            let mut simulation = start(&Scene {
-                fixed_discs: vec![fixed(DVec2::new(0.0, RADIUS), RADIUS)],
-                ..ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains)
-            });
-            take_steps(&mut simulation, (1.0 / time_step_secs) as usize);
-            let now = simulation.observables();
-            let weight: f64 = simulation.world().grains.masses.iter().sum();
+            let run = after(
+                &Scene {
+                    fixed_discs: vec![fixed(DVec2::new(0.0, RADIUS), RADIUS)],
+                    ..ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains)
+                },
+                (1.0 / time_step_secs) as usize,
+            );
+            let now = run.observables();
+            let weight: f64 = run.grains().masses.iter().sum();
             assert!(now.kinetic_energy < 1e-9 * weight * G * RADIUS, "{}", now.kinetic_energy);
         }
     }

@@ -1,10 +1,6 @@
 //! The law `range` (`contact::range`): what holds of any pile.
 
-use crate::common::{G, pressed_pile, range, start, take_steps, tight};
-use slump::scene::{Scene, paper_pile};
-use slump::sim::Stepper;
-use slump::solver::{Method, SolverSettings, StopTest};
-use slump::world::Parameters;
+use crate::common::*;
 
 /// A pile that falls together and bonds.
 fn pile(bond: f64, time_step_secs: f64, method: Method) -> Scene {
@@ -21,12 +17,12 @@ fn pile(bond: f64, time_step_secs: f64, method: Method) -> Scene {
 fn the_energy_budget_of_a_pile_closes_and_overlap_goes() {
     for bond in [0.0, 10.0, 100.0] {
         for time_step_secs in [2e-4, 2e-3] {
-            let mut simulation = start(&pile(bond, time_step_secs, Method::Newton));
-            let mass: f64 = simulation.world().grains.masses.iter().sum();
-            let mut energy = simulation.observables().kinetic_energy;
+            let mut run = start(&pile(bond, time_step_secs, Method::Newton));
+            let mass: f64 = run.grains().masses.iter().sum();
+            let mut energy = run.observables().kinetic_energy;
             let steps = (0.1 / time_step_secs) as usize;
             for _ in 0..steps {
-                let now = *simulation.step().expect("finite");
+                let now = *run.step().expect("finite");
                 let work = now.normal_work + now.tangential_work + now.gravity_work;
                 let scale = energy
                     + now.normal_work.abs()
@@ -35,7 +31,7 @@ fn the_energy_budget_of_a_pile_closes_and_overlap_goes() {
                 assert!((now.kinetic_energy - energy - work).abs() <= 1e-10 * scale);
                 energy = now.kinetic_energy;
             }
-            let overlap = simulation.observables().mean_overlap;
+            let overlap = run.observables().mean_overlap;
             assert!(overlap < 1e-3, "Bond {bond}, Δt = {time_step_secs}: {overlap}");
         }
     }
@@ -53,17 +49,17 @@ fn bonds_of_a_collapsing_pile_keep_their_books_and_pushes_give_nothing() {
             tolerance: 1e-6,
             ..scene.solver
         };
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let (mut of_bonds, mut lost, mut raised) = (0.0, 0.0, 0.0);
         for _ in 0..(0.2 / time_step_secs) as u32 {
-            let now = *simulation.step().expect("finite");
+            let now = *run.step().expect("finite");
             let of_step = now.bond_work.expect("bonds");
             of_bonds += of_step;
             let of_pushes = now.normal_work - of_step;
             lost -= of_pushes.min(0.0);
             raised += of_pushes.max(0.0);
         }
-        let now = simulation.observables();
+        let now = run.observables();
         let (stored, broken) = (now.bond_energy.unwrap(), now.broken_bond_energy.unwrap());
         assert!(
             (of_bonds + stored + broken).abs() <= 1e-9 * broken,
@@ -78,9 +74,8 @@ fn bonds_of_a_collapsing_pile_keep_their_books_and_pushes_give_nothing() {
 fn the_paper_s_law_tells_nothing_of_bonds() {
     let mut scene = pile(10.0, 1e-3, Method::Newton);
     scene.stepper = Stepper::Moreau;
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 2);
-    let now = simulation.observables();
+    let run = after(&scene, 2);
+    let now = run.observables();
     assert_eq!((now.bond_work, now.bond_energy, now.broken_bond_energy), (None, None, None));
     assert!(!serde_json::to_string(now).expect("numbers").contains("bond_"));
 }
@@ -94,12 +89,12 @@ fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
         SolverSettings { method: Method::Newton, max_sweeps: 20_000, tolerance: 1e-9, ..tight() };
     let scene =
         Scene { stepper: Stepper::Range, solver, ..pressed_pile(60, 0.3, seed, parameters) };
-    let mut simulation = start(&scene);
+    let mut run = start(&scene);
     let mut counts = [0; 2];
     for _ in 0..MOMENTS {
-        take_steps(&mut simulation, 10);
+        take_steps(&mut run, 10);
         let [reference, found] = [Method::Newton, method].map(|method| {
-            let mut copy = simulation.clone();
+            let mut copy = run.clone();
             copy.set_solver(SolverSettings { method, ..solver }).expect("fine");
             take_steps(&mut copy, 1);
             copy
@@ -107,8 +102,7 @@ fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
         if !(found.observables().converged && reference.observables().converged) {
             continue;
         }
-        let [found, reference] =
-            [&found, &reference].map(|simulation| &simulation.world().grains.velocities);
+        let [found, reference] = [&found, &reference].map(|run| run.velocities());
         let off = found.iter().zip(reference).map(|(a, b)| (*a - *b).length());
         counts[0] += 1;
         counts[1] += u32::from(off.fold(0.0, f64::max) < 1e-5);
@@ -140,11 +134,9 @@ fn methods_agree_on_nearly_all_steps_with_bonds() {
 #[test]
 fn a_clone_and_a_second_run_go_on_bit_for_bit() {
     let scene = pile(20.0, 1e-3, Method::Newton);
-    let mut first = start(&scene);
-    take_steps(&mut first, 30);
+    let mut first = after(&scene, 30);
     let mut clone = first.clone();
-    let mut second = start(&scene);
-    take_steps(&mut second, 60);
+    let second = after(&scene, 60);
     take_steps(&mut first, 30);
     take_steps(&mut clone, 30);
     assert_eq!(first.world(), second.world());

@@ -1,14 +1,6 @@
 //! Shocks under the law `range` against exact motion: whatever Δt is, and wherever in a step bodies meet.
 
-use crate::common::schemes::{effective_mass, momentum, relative_velocity};
-use crate::common::{
-    DISTANCE_IN_DIAMETERS, G, LINE, SMOOTH, assert_close, moving, parameters, ranged, start,
-    take_steps, weightless,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Simulation;
-use slump::world::{Boundary, Grain, Parameters, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
@@ -44,8 +36,8 @@ fn two_discs_bounce_by_rho_at_any_time_step_phase_mass_ratio_and_slant() {
                             let numbers = parameters(0.0, time_step_secs, restitution, 0.2);
                             let gap = phase * speed * time_step_secs;
                             let what = [gap, aside, speed, size];
-                            let mut simulation = two(physics, numbers, what);
-                            check_bounce(&mut simulation, restitution, what);
+                            let mut run = two(physics, numbers, what);
+                            check_bounce(&mut run, restitution, what);
                             met += 1;
                         }
                     }
@@ -57,18 +49,14 @@ fn two_discs_bounce_by_rho_at_any_time_step_phase_mass_ratio_and_slant() {
 }
 
 /// Steps past a meeting of [`two`] and compares velocities with those of a shock at the exact place.
-fn check_bounce(
-    simulation: &mut Simulation,
-    restitution: f64,
-    [gap, aside, speed, size]: [f64; 4],
-) {
-    let (momentum_before, friction) = (momentum(simulation), simulation.parameters().friction);
-    let mass = effective_mass(simulation);
-    let physics = simulation.physics();
+fn check_bounce(run: &mut Simulation, restitution: f64, [gap, aside, speed, size]: [f64; 4]) {
+    let (momentum_before, friction) = (momentum(run), run.parameters().friction);
+    let mass = effective_mass(run);
+    let physics = run.physics();
     // From the second grain, which stands still until then, to the first.
     let normal = DVec2::new(-(1.0 - aside * aside).sqrt(), aside);
     let tangent = normal.perp();
-    let spin = RADIUS * simulation.world().grains.angular_velocities[0];
+    let spin = RADIUS * run.grains().angular_velocities[0];
     let before = DVec2::new(speed, 0.0);
     let lambda = -(1.0 + restitution) * before.dot(normal);
     let sliding = before.dot(tangent) - spin;
@@ -78,19 +66,19 @@ fn check_bounce(
     };
     let rubbing = (-sliding / compliance).clamp(-bound, bound);
     let expected = before + lambda * normal + rubbing * tangent;
-    let dt = simulation.parameters().time_step_secs;
-    take_steps(simulation, (gap / speed / dt) as usize + 2);
-    let found = -relative_velocity(simulation);
+    let dt = run.parameters().time_step_secs;
+    take_steps(run, (gap / speed / dt) as usize + 2);
+    let found = -relative_velocity(run);
     let what =
         format!("gap {gap:e}, aside {aside}, v {speed}, size {size}, ρ {restitution}, Δt {dt}");
     let off = (found - expected).length();
     assert!(off <= 1e-9 * speed, "{what}: {found} for {expected}");
-    let lost = (momentum(simulation) - momentum_before).length();
+    let lost = (momentum(run) - momentum_before).length();
     assert!(lost <= 1e-12 * mass * speed, "{what}: momentum {lost:e}");
     // Where it is tells when it bounced.
-    let way = simulation.time_secs() - gap / speed;
+    let way = run.time_secs() - gap / speed;
     let apart = RADIUS * (1.0 + size) * normal + way * expected;
-    let places = &simulation.world().grains.positions;
+    let places = run.places();
     let off = (places[0] - places[1] - apart).length();
     assert!(off <= 1e-6 * RADIUS + 1e-9 * apart.length(), "{what}: off by {off:e} m");
 }
@@ -106,13 +94,13 @@ fn a_bond_takes_its_work_from_a_bounce_or_all_there_is() {
                     let speed = factor * escape / restitution;
                     let gap = phase * speed * time_step_secs;
                     let numbers = parameters(BOND, time_step_secs, restitution, 0.5);
-                    let mut simulation = two(SMOOTH, numbers, [gap, 0.0, speed, 1.0]);
+                    let mut run = two(SMOOTH, numbers, [gap, 0.0, speed, 1.0]);
                     let what =
                         format!("{factor} of it, ρ {restitution}, Δt {time_step_secs}, {phase}");
-                    let begun = simulation.observables().kinetic_energy;
+                    let begun = run.observables().kinetic_energy;
                     let (mut pushes, mut bonds) = (0.0, 0.0);
                     for _ in 0..(0.1 / time_step_secs) as u32 + 3 {
-                        let now = *simulation.step().expect("finite");
+                        let now = *run.step().expect("finite");
                         let of_bonds = now.bond_work.expect("bonds");
                         bonds += of_bonds;
                         pushes += now.normal_work - of_bonds;
@@ -121,15 +109,13 @@ fn a_bond_takes_its_work_from_a_bounce_or_all_there_is() {
                             [now.bond_energy, now.broken_bond_energy].map(Option::unwrap);
                         assert!((bonds + stored + broken).abs() <= 1e-9 * begun, "{what}");
                     }
-                    let velocities = &simulation.world().grains.velocities;
+                    let velocities = run.velocities();
                     let found = velocities[1].x - velocities[0].x;
                     let squared = (factor * factor - 1.0) * escape * escape;
                     if factor > 1.0 {
                         assert_close(found, squared.sqrt(), 1e-9, &what);
                     } else {
-                        let apart = simulation.world().grains.positions[1].x
-                            - simulation.world().grains.positions[0].x
-                            - 2.0 * RADIUS;
+                        let apart = run.place(1).x - run.place(0).x - 2.0 * RADIUS;
                         assert!(apart < 0.2 * RADIUS, "{what}: held, but {apart} m apart");
                     }
                 }
@@ -144,22 +130,24 @@ fn a_wall_that_comes_throws_a_grain_off_by_its_own_speed() {
         for restitution in [0.0, 0.4, 1.0] {
             let grain =
                 weightless(moving(DVec2::new(1.03 * RADIUS, 0.0), RADIUS, DVec2::new(-0.2, 0.0)));
-            let mut simulation = start(&Scene {
-                boundaries: vec![Boundary::Piston {
-                    point: DVec2::ZERO,
-                    normal: DVec2::X,
-                    speed: 0.3,
-                    travel: 10.0,
-                }],
-                ..ranged(
-                    SMOOTH,
-                    DVec2::new(0.0, -G),
-                    parameters(0.0, time_step_secs, restitution, 0.0),
-                    vec![grain],
-                )
-            });
-            take_steps(&mut simulation, 3 + (1e-3 / time_step_secs) as usize);
-            let found = simulation.world().grains.velocities[0].x;
+            let run = after(
+                &Scene {
+                    boundaries: vec![Boundary::Piston {
+                        point: DVec2::ZERO,
+                        normal: DVec2::X,
+                        speed: 0.3,
+                        travel: 10.0,
+                    }],
+                    ..ranged(
+                        SMOOTH,
+                        DVec2::new(0.0, -G),
+                        parameters(0.0, time_step_secs, restitution, 0.0),
+                        vec![grain],
+                    )
+                },
+                3 + (1e-3 / time_step_secs) as usize,
+            );
+            let found = run.velocity(0).x;
             assert_close(found, 0.3 + restitution * 0.5, 1e-9, &format!("{time_step_secs}"));
         }
     }
@@ -175,9 +163,8 @@ fn what_passes_by_or_is_deflected_before_is_not_struck() {
             weightless(Grain::at_rest(DVec2::ZERO, RADIUS)),
         ];
         let numbers = parameters(0.0, time_step_secs, 1.0, 0.0);
-        let mut simulation = start(&ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains));
-        take_steps(&mut simulation, 3);
-        assert_eq!(simulation.world().grains.velocities, [DVec2::X, DVec2::ZERO]);
+        let run = after(&ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains), 3);
+        assert_eq!(run.grains().velocities, [DVec2::X, DVec2::ZERO]);
         // The first is on its way to the second, and the third hits it from below before.
         let up = DVec2::new(0.0, 1.0);
         let grains = vec![
@@ -189,9 +176,11 @@ fn what_passes_by_or_is_deflected_before_is_not_struck() {
                 DVec2::new(0.2, 0.0) + up,
             )),
         ];
-        let mut simulation = start(&ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains));
-        take_steps(&mut simulation, 1 + (2.0 * RADIUS / time_step_secs) as usize);
-        let velocities = &simulation.world().grains.velocities;
+        let run = after(
+            &ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains),
+            1 + (2.0 * RADIUS / time_step_secs) as usize,
+        );
+        let velocities = run.velocities();
         let energy: f64 = velocities.iter().map(|velocity| velocity.length_squared()).sum();
         let off = (velocities[0] - DVec2::new(0.2, 1.0)).length() + velocities[1].length();
         assert!(off < 0.2, "the first is deflected and the second is let be: {velocities:?}");

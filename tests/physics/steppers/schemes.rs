@@ -1,18 +1,7 @@
 //! The stepping schemes `tgs-soft` and `dem`: what each must get right by itself.
 
-use crate::common::schemes::{
-    ALL_SCHEMES, SCHEMES, by, effective_mass, meeting, momentum, relative_velocity,
-};
-use crate::common::{
-    G, LINE, SMOOTH, UNTURNING, assert_close, fixed, moving, parameters, pressed_pile, scene,
-    start, take_steps,
-};
-use glam::DVec2;
+use crate::common::*;
 use rayon::prelude::*;
-use slump::contact::ContactMemory;
-use slump::scene::{NewPile, Scene, paper_pile, pile_of, settle};
-use slump::sim::{Pull, Settings, Stepper};
-use slump::world::{Grain, Physics};
 
 #[test]
 fn soft_substeps_part_a_pair_with_the_restitution_that_is_asked_for() {
@@ -20,14 +9,14 @@ fn soft_substeps_part_a_pair_with_the_restitution_that_is_asked_for() {
         for restitution in [0.0, 0.1, 0.5, 1.0] {
             for substeps in [1, 4, 16] {
                 let scene = meeting(physics, restitution, 1e-3);
-                let mut simulation = start(&by(Stepper::TgsSoft, substeps, scene));
-                let (before, carried) = (relative_velocity(&simulation), momentum(&simulation));
-                take_steps(&mut simulation, 2);
-                assert_eq!(simulation.observables().contacts, 1, "they met");
-                let after = relative_velocity(&simulation);
+                let mut run = start(&by(Stepper::TgsSoft, substeps, scene));
+                let (before, carried) = (relative_velocity(&run), momentum(&run));
+                take_steps(&mut run, 2);
+                assert_eq!(run.observables().contacts, 1, "they met");
+                let after = relative_velocity(&run);
                 let off = (after + restitution * before).length();
                 assert!(off < 1e-12, "ρ {restitution}, {substeps} substeps: off by {off:e}");
-                assert!(momentum(&simulation).distance(carried) < 1e-12 * carried.length());
+                assert!(momentum(&run).distance(carried) < 1e-12 * carried.length());
             }
         }
     }
@@ -39,9 +28,8 @@ fn a_threshold_of_restitution_holds_for_soft_substeps() {
     for (threshold, parts) in [(90.0, true), (110.0, false)] {
         let mut scene = by(Stepper::TgsSoft, 0, meeting(LINE, 0.5, 1e-3));
         scene.parameters.restitution_threshold = threshold;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 2);
-        assert_eq!(relative_velocity(&simulation).x > 0.1, parts, "threshold {threshold}");
+        let run = after(&scene, 2);
+        assert_eq!(relative_velocity(&run).x > 0.1, parts, "threshold {threshold}");
     }
 }
 
@@ -67,8 +55,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
                 let run = |bond: f64| {
                     let mut scene = pulled(method, bond, dt, free);
                     scene.parameters.substeps = substeps;
-                    let mut simulation = start(&scene);
-                    take_steps(&mut simulation, (0.5 / dt) as usize);
+                    let simulation = after(&scene, (0.5 / dt) as usize);
                     simulation
                 };
                 let holds = |bond: f64| run(bond).observables().contacts == 1;
@@ -83,7 +70,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
                 assert!((found - 1.0).abs() < 2e-3, "{method:?}, Δt {dt}: C₀ of {found} weights");
 
                 let held = run(1.5);
-                let grains = &held.world().grains;
+                let grains = held.grains();
                 let mass = if free { effective_mass(&held) } else { grains.masses[0] };
                 let force = held.contacts().impulses()[0].normal / dt;
                 assert_close(force, -mass * G, 1e-6, "the force that holds it");
@@ -100,12 +87,11 @@ fn free_fall_is_that_of_symplectic_euler_with_the_substep() {
         for substeps in [0, 1, 7] {
             let grains = vec![Grain { angular_velocity: 3.0, ..moving(DVec2::X, 0.1, velocity) }];
             let scene = scene(Physics::FULL, -G * DVec2::Y, parameters(20.0, dt, 0.1, 0.5), grains);
-            let mut simulation = start(&by(method, substeps, scene));
-            take_steps(&mut simulation, count);
-            let n = f64::from(simulation.substeps()) * count as f64;
+            let run = after(&by(method, substeps, scene), count);
+            let n = f64::from(run.substeps()) * count as f64;
             let time = dt * count as f64;
             let way = time * velocity - DVec2::Y * 0.5 * G * time * time * (1.0 + 1.0 / n);
-            let grains = &simulation.world().grains;
+            let grains = run.grains();
             assert!((grains.positions[0] - DVec2::X - way).length() < 1e-11, "{method:?}");
             assert!((grains.velocities[0] - velocity + G * time * DVec2::Y).length() < 1e-11);
             assert!((grains.angles[0] - 3.0 * time).abs() < 1e-11);
@@ -123,12 +109,12 @@ fn every_step_closes_its_energy_budget() {
             (20.0, 0.0, SMOOTH),
         ] {
             let pile = pressed_pile(30, 0.1, 3, parameters(bond, 1e-3, 0.3, mu));
-            let mut simulation = start(&by(method, 0, Scene { physics, ..pile }));
-            simulation.set_pull(Some(Pull { grain: 29, target: DVec2::new(0.02, 0.05) }));
+            let mut run = start(&by(method, 0, Scene { physics, ..pile }));
+            run.set_pull(Some(Pull { grain: 29, target: DVec2::new(0.02, 0.05) }));
             let mut worked = 0.0;
             for _ in 0..100 {
-                let before = simulation.observables().kinetic_energy;
-                let after = *simulation.step().expect("a finite state");
+                let before = run.observables().kinetic_energy;
+                let after = *run.step().expect("a finite state");
                 let works = [after.gravity_work, after.normal_work, after.tangential_work];
                 let scale = before + works.iter().map(|work| work.abs()).sum::<f64>();
                 let off = (after.kinetic_energy - before - works.iter().sum::<f64>()).abs();
@@ -161,8 +147,7 @@ fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
         let mut pile = by(method, 0, paper_pile().expect("the shipped state"));
         pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
         let run = || {
-            let mut simulation = start(&pile);
-            take_steps(&mut simulation, 100);
+            let simulation = after(&pile, 100);
             simulation
         };
         let (mut one, other) = (run(), run());
@@ -179,14 +164,13 @@ fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
 #[test]
 fn what_a_scheme_remembers_is_for_itself_alone() {
     let pile = by(Stepper::Dem, 0, paper_pile().expect("the shipped state"));
-    let mut simulation = start(&pile);
-    take_steps(&mut simulation, 5);
+    let mut run = after(&pile, 5);
     let blank = |memory: &ContactMemory| *memory == ContactMemory::default();
-    assert!(!simulation.contacts().memories().iter().all(blank));
-    let settings = Settings { stepper: Stepper::Moreau, ..*simulation.settings() };
-    simulation.change(settings).expect("sound");
-    take_steps(&mut simulation, 1);
-    assert!(simulation.contacts().memories().iter().all(blank));
+    assert!(!run.contacts().memories().iter().all(blank));
+    let settings = Settings { stepper: Stepper::Moreau, ..*run.settings() };
+    run.change(settings).expect("sound");
+    take_steps(&mut run, 1);
+    assert!(run.contacts().memories().iter().all(blank));
 }
 
 /// Mean and standard error.
@@ -213,9 +197,8 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
         .collect();
     for method in ALL_SCHEMES {
         let slump = |pile: &Scene| {
-            let mut simulation = start(&by(method, 0, pile.clone()));
-            take_steps(&mut simulation, 1000);
-            simulation.observables().slump
+            let run = after(&by(method, 0, pile.clone()), 1000);
+            run.observables().slump
         };
         let slumps: Vec<f64> = states.par_iter().map(slump).collect();
         let pairs = slumps.iter().zip(contact_dynamics);

@@ -1,14 +1,6 @@
 //! The numbers of springs that are set and told: stiffness, damping ratio, contact time, work of fracture.
 
-use crate::common::schemes::{by, effective_mass, meeting, momentum, relative_velocity};
-use crate::common::{
-    DISTANCE_IN_DIAMETERS, G, LINE, SMOOTH, assert_close, fixed, moving, parameters, scene, start,
-    take_steps, weightless,
-};
-use glam::DVec2;
-use slump::scene::{Scene, paper_pile};
-use slump::sim::{Pull, Simulation, Stepper};
-use slump::world::{Grain, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 /// Overlap at which a bonded pair rests, in radii.
@@ -28,10 +20,9 @@ fn a_load_rests_at_the_overlap_that_the_stiffness_says() {
                 scene(LINE, -G * DVec2::X, parameters(bond, 1e-4, 0.1, 0.0), vec![grain]);
             scene.fixed_discs = vec![fixed(DVec2::ZERO, RADIUS)];
             scene.parameters.stiffness = stiffness;
-            let mut simulation = start(&by(Stepper::Dem, 0, scene));
-            take_steps(&mut simulation, 20_000);
-            let weight = simulation.world().grains.masses[0] * G;
-            let overlap = 2.0 * RADIUS - simulation.world().grains.positions[0].x;
+            let run = after(&by(Stepper::Dem, 0, scene), 20_000);
+            let weight = run.grains().masses[0] * G;
+            let overlap = 2.0 * RADIUS - run.place(0).x;
             assert_close(overlap, (1.0 + bond) * weight / stiffness, 1e-6, "overlap");
         }
     }
@@ -44,8 +35,8 @@ fn what_is_left_open_is_what_it_was_and_what_is_given_sets_the_substeps() {
         let mut scene = pile.clone();
         scene.parameters.stiffness = stiffness;
         scene.parameters.damping_ratio = damping_ratio;
-        let simulation = start(&scene);
-        (simulation.critical_time_step_secs().expect("springs"), simulation.substeps())
+        let run = start(&scene);
+        (run.critical_time_step_secs().expect("springs"), run.substeps())
     };
     let (secs, substeps) = critical(0.0, 0.0);
     let weight = 138f64.sqrt() * G * start(&pile).world().grains.masses.iter().sum::<f64>() / 138.0;
@@ -73,23 +64,23 @@ fn collision(physics: Physics, stiffness: f64, damping_ratio: f64, parts: f64) -
     let expected_restitution = (-damping_ratio * frequency * expected_secs).exp();
 
     scene.parameters.time_step_secs = expected_secs / parts;
-    let mut simulation = start(&scene);
-    let (before, carried) = (relative_velocity(&simulation), momentum(&simulation));
+    let mut run = start(&scene);
+    let (before, carried) = (relative_velocity(&run), momentum(&run));
     let (mut pushed, mut touched) = (0.0, false);
     loop {
-        take_steps(&mut simulation, 1);
-        let last = simulation.observables();
+        take_steps(&mut run, 1);
+        let last = run.observables();
         if last.contacts == 0 && touched {
             break;
         }
         touched |= last.contacts > 0;
-        if simulation.contacts().impulses().first().is_some_and(|impulse| impulse.normal > 0.0) {
+        if run.contacts().impulses().first().is_some_and(|impulse| impulse.normal > 0.0) {
             pushed += scene.parameters.time_step_secs;
         }
         assert!(last.step < 1_000_000, "they never parted");
     }
-    assert!(momentum(&simulation).distance(carried) < 1e-12 * carried.length());
-    let restitution = -relative_velocity(&simulation).dot(before) / before.length_squared();
+    assert!(momentum(&run).distance(carried) < 1e-12 * carried.length());
+    let restitution = -relative_velocity(&run).dot(before) / before.length_squared();
     [pushed, expected_secs, restitution, expected_restitution]
 }
 
@@ -115,10 +106,10 @@ fn the_contact_time_that_is_told_is_that_of_two_mean_grains() {
         let mut scene = pile.clone();
         scene.parameters.stiffness = 700.0;
         scene.parameters.damping_ratio = damping_ratio;
-        let simulation = start(&scene);
-        let mass = simulation.world().grains.masses.iter().sum::<f64>() / 138.0;
+        let run = start(&scene);
+        let mass = run.grains().masses.iter().sum::<f64>() / 138.0;
         let period = std::f64::consts::TAU * (0.5 * mass / 700.0).sqrt();
-        let told = simulation.contact_time_secs().expect("springs");
+        let told = run.contact_time_secs().expect("springs");
         assert_close(told, in_periods * period, 1e-8, &format!("ζ {damping_ratio}"));
     }
 }
@@ -127,14 +118,14 @@ fn the_contact_time_that_is_told_is_that_of_two_mean_grains() {
 /// until they are far apart (J), or none where they stay together.
 fn thrown(mut scene: Scene, speed: f64, until_secs: f64) -> Option<f64> {
     scene.grains[1].velocity.x = speed;
-    let mut simulation = start(&scene);
-    let mass = effective_mass(&simulation);
+    let mut run = start(&scene);
+    let mass = effective_mass(&run);
     let far = 2.0 * RADIUS * (1.0 + 3.0 * DISTANCE_IN_DIAMETERS);
-    while simulation.time_secs() < until_secs {
-        take_steps(&mut simulation, 1);
-        let positions = &simulation.world().grains.positions;
+    while run.time_secs() < until_secs {
+        take_steps(&mut run, 1);
+        let positions = run.places();
         if positions[1].x - positions[0].x > far {
-            let left = relative_velocity(&simulation).length_squared();
+            let left = relative_velocity(&run).length_squared();
             return Some(0.5 * mass * (speed * speed - left));
         }
     }
@@ -212,16 +203,16 @@ fn pulled_apart(damping_ratio: f64) -> [f64; 2] {
     scene.parameters.damping_ratio = damping_ratio;
     let unit = (mass / scene.parameters.stiffness).sqrt();
     scene.parameters.time_step_secs = 0.02 * unit;
-    let mut simulation: Simulation = start(&by(Stepper::Dem, 1, scene.clone()));
-    let (from, mut done) = (simulation.world().grains.positions[0], 0.0);
+    let mut run: Simulation = start(&by(Stepper::Dem, 1, scene.clone()));
+    let (from, mut done) = (run.place(0), 0.0);
     loop {
         // Far enough to pull with C₀ at the end: a diameter pulls with forty weights.
-        let part = simulation.time_secs() / (2000.0 * unit);
+        let part = run.time_secs() / (2000.0 * unit);
         let target = from + DVec2::X * part * 2.0 * RADIUS / 40.0;
-        simulation.set_pull(Some(Pull { grain: 0, target }));
-        done += simulation.step().expect("a finite state").normal_work;
+        run.set_pull(Some(Pull { grain: 0, target }));
+        done += run.step().expect("a finite state").normal_work;
         assert!(part < 1.5, "it never parted");
-        if simulation.observables().contacts == 0 && part > 0.5 {
+        if run.observables().contacts == 0 && part > 0.5 {
             return [-done, 0.5 * cohesion * cohesion / scene.parameters.stiffness];
         }
     }

@@ -1,30 +1,25 @@
 //! The stepping scheme `dem`: springs and dashpots, and the step at which they blow up.
 
-use crate::common::schemes::{by, effective_mass, meeting, momentum, relative_velocity};
-use crate::common::{G, LINE, SMOOTH, assert_close, start, take_steps};
-use glam::DVec2;
+use crate::common::*;
 use slump::error::Error;
-use slump::scene::{Scene, paper_pile};
-use slump::sim::{Simulation, SpringDashpot, Stepper};
-use slump::world::{Boundary, Physics};
 
-fn springs(simulation: &Simulation) -> SpringDashpot {
-    let physics = simulation.physics();
-    SpringDashpot::of(simulation.world(), physics.axes, simulation.parameters())
+fn springs(run: &Simulation) -> SpringDashpot {
+    let physics = run.physics();
+    SpringDashpot::of(run.world(), physics.axes, run.parameters())
 }
 
 /// Steps until two discs that meet have parted, and gives speed after over speed before.
 fn measured_restitution(scene: &Scene) -> f64 {
-    let mut simulation = start(scene);
-    let (before, carried) = (relative_velocity(&simulation), momentum(&simulation));
+    let mut run = start(scene);
+    let (before, carried) = (relative_velocity(&run), momentum(&run));
     let mut touched = false;
     for _ in 0..1_000_000 {
-        simulation.step().expect("a finite state");
-        let off = momentum(&simulation).distance(carried);
+        run.step().expect("a finite state");
+        let off = momentum(&run).distance(carried);
         assert!(off < 1e-12 * carried.length(), "momentum is kept");
-        let now = simulation.observables().contacts > 0;
+        let now = run.observables().contacts > 0;
         if touched && !now {
-            return -relative_velocity(&simulation).dot(before) / before.length_squared();
+            return -relative_velocity(&run).dot(before) / before.length_squared();
         }
         touched |= now;
     }
@@ -64,10 +59,10 @@ fn shakes_up(restitution: f64, dt_over_critical: f64) -> bool {
     scene.grains[0].velocity.x = 0.0;
     let push = 1e-3 * overlap * (springs.stiffness / mass).sqrt();
     scene.grains[1].velocity.x = push;
-    let mut simulation = start(&by(Stepper::Dem, 1, scene));
+    let mut run = start(&by(Stepper::Dem, 1, scene));
     (0..3000).any(|_| {
-        simulation.step().expect("a finite state");
-        relative_velocity(&simulation).length() > 10.0 * push
+        run.step().expect("a finite state");
+        relative_velocity(&run).length() > 10.0 * push
     })
 }
 
@@ -96,7 +91,7 @@ fn a_step_that_blows_up_ends_in_an_error() {
     // Between walls the disc cannot get away from its own energy.
     let mut scene = meeting(LINE, 0.5, 1e-3);
     scene.grains.truncate(1);
-    let wall = |x: f64| Boundary::HalfSpace { point: x * DVec2::X, normal: -x * DVec2::X };
+    let wall = |x: f64| plane(x * DVec2::X, -x * DVec2::X);
     scene.boundaries = vec![wall(-0.1499), wall(0.1499)];
     let critical = by(Stepper::Dem, 1, scene.clone()).simulation().expect("sound");
     let critical = critical.critical_time_step_secs().expect("springs");
@@ -117,8 +112,7 @@ fn a_step_that_blows_up_ends_in_an_error() {
     let Observed { kinetic, potential } = observed(&simulation);
     assert!(failed || kinetic > 10.0 * potential.abs(), "{kinetic} J");
     pile.parameters.substeps = 0;
-    let mut simulation = start(&pile);
-    take_steps(&mut simulation, 100);
+    let simulation = after(&pile, 100);
     let Observed { kinetic, potential } = observed(&simulation);
     assert!(kinetic < 0.5 * potential, "{kinetic} J of {potential} J");
 }
@@ -128,7 +122,7 @@ struct Observed {
     potential: f64,
 }
 
-fn observed(simulation: &Simulation) -> Observed {
-    let last = simulation.observables();
+fn observed(run: &Simulation) -> Observed {
+    let last = run.observables();
     Observed { kinetic: last.kinetic_energy, potential: last.potential_energy }
 }
