@@ -59,7 +59,6 @@ pub fn ranged(
     }
 }
 
-/// A grain in free flight.
 pub fn weightless(grain: Grain) -> Grain {
     Grain { feels_gravity: false, ..grain }
 }
@@ -69,17 +68,12 @@ pub fn tight() -> SolverSettings {
     to_residual(1e-12)
 }
 
-/// Gauss–Seidel to the given residual.
+pub fn solved_by(method: Method, tolerance: f64) -> SolverSettings {
+    SolverSettings { method, stop: StopTest::Residual, tolerance, ..SolverSettings::default() }
+}
+
 pub fn to_residual(tolerance: f64) -> SolverSettings {
-    SolverSettings {
-        method: Method::Nsgs,
-        ordering: Ordering::default(),
-        stop: StopTest::Residual,
-        tolerance,
-        max_sweeps: 20_000,
-        warm_start: true,
-        ..SolverSettings::default()
-    }
+    SolverSettings { max_sweeps: 20_000, ..solved_by(Method::Nsgs, tolerance) }
 }
 
 /// Grains under uniform gravity and nothing else.
@@ -127,7 +121,6 @@ pub fn every_way_that_balances() -> Vec<(Stepper, Method)> {
     every_way().into_iter().filter(|way| way.0 != Stepper::Avbd).collect()
 }
 
-/// A simulation of a scene that has no fault.
 pub fn start(scene: &Scene) -> Simulation {
     scene.simulation().expect("a proper scene")
 }
@@ -143,14 +136,12 @@ pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     (0..grains.len()).map(of).collect()
 }
 
-/// Takes `count` steps.
 pub fn take_steps(simulation: &mut Simulation, count: usize) {
     for _ in 0..count {
         simulation.step().expect("a finite state");
     }
 }
 
-/// A disc with a velocity.
 pub fn moving(position: DVec2, radius: f64, velocity: DVec2) -> Grain {
     Grain { velocity, ..Grain::at_rest(position, radius) }
 }
@@ -166,7 +157,6 @@ pub fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
     );
 }
 
-/// A generator with a seed.
 pub fn random(seed: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed)
 }
@@ -220,47 +210,38 @@ pub fn at_rest_and_falling() -> Scene {
     scene
 }
 
-/// A fixed disc.
 pub fn fixed(position: DVec2, radius: f64) -> Disc {
     Disc { position, radius }
 }
 
-/// A half-space.
 pub fn plane(point: DVec2, normal: DVec2) -> Boundary {
     Boundary::HalfSpace { point, normal }
 }
 
-/// The level y = 0.
 pub fn level() -> Boundary {
     plane(DVec2::ZERO, DVec2::Y)
 }
 
-/// Boundaries that go this way.
 pub fn goes(boundaries: &[usize], course: MotionCourse) -> Motion {
     Motion { boundaries: boundaries.to_vec(), course: Some(course), ..Motion::default() }
 }
 
-/// Fixed discs that go this way.
 pub fn discs_go(count: usize, course: MotionCourse) -> Motion {
     Motion { fixed_discs: (0..count).collect(), course: Some(course), ..Motion::default() }
 }
 
-/// Boundaries with a belt.
 pub fn belt(boundaries: &[usize], surface_speed: f64) -> Motion {
     Motion { boundaries: boundaries.to_vec(), surface_speed, ..Motion::default() }
 }
 
-/// Straight on, without end.
 pub fn straight(velocity: DVec2) -> MotionCourse {
     MotionCourse::Straight { direction: velocity, speed: velocity.length(), travel: None }
 }
 
-/// Round a pivot, without end.
 pub fn round(pivot: DVec2, rate: f64) -> MotionCourse {
     MotionCourse::Rotation { pivot, rate, travel: None }
 }
 
-/// A run of a scene after so many steps.
 pub fn after(scene: &Scene, steps: usize) -> Simulation {
     let mut run = start(scene);
     take_steps(&mut run, steps);
@@ -299,7 +280,6 @@ pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
     (after, off, before + after.kinetic_energy + sizes)
 }
 
-/// Short ways to look at the grains of a run.
 pub trait Look {
     fn grains(&self) -> &Grains;
 
@@ -331,7 +311,6 @@ impl Look for Simulation {
     }
 }
 
-/// Longest distance of two of a kind.
 pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
     one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max)
 }
@@ -342,7 +321,6 @@ pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
 /// Those, and the one whose bodies are moved a little past their impulses.
 pub const ALL_SCHEMES: [Stepper; 3] = [Stepper::TgsSoft, Stepper::Avbd, Stepper::Dem];
 
-/// The same scene, stepped this way with so many substeps.
 pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {
     scene.parameters.substeps = substeps;
     Scene { stepper, ..scene }
@@ -364,14 +342,50 @@ pub fn relative_velocity(simulation: &Simulation) -> DVec2 {
     velocities[1] - velocities[0]
 }
 
-/// Sum of all grains' momenta, kg·m/s.
 pub fn momentum(simulation: &Simulation) -> DVec2 {
     let grains = &simulation.world().grains;
     grains.masses.iter().zip(&grains.velocities).map(|(&mass, &velocity)| mass * velocity).sum()
 }
 
-/// m_ij of the first two grains.
 pub fn effective_mass(simulation: &Simulation) -> f64 {
     let masses = &simulation.world().grains.masses;
     1.0 / (1.0 / masses[0] + 1.0 / masses[1])
+}
+
+/// Fails unless a sentence is this one, or begins so where an ellipsis ends what is expected.
+#[track_caller]
+pub fn assert_said(said: &str, expected: &str) {
+    match expected.strip_suffix('…') {
+        Some(begin) => assert!(said.starts_with(begin), "{said}\nbegins not as\n{expected}"),
+        None => assert_eq!(said, expected),
+    }
+}
+
+/// A change that spoils a scene, and the sentence that it is refused with then.
+pub type Refusal<'a> = (&'a str, &'a dyn Fn(&mut Scene));
+
+/// Holds the refusals of a scene that is spoilt in each of these ways against what is expected.
+#[track_caller]
+pub fn refuses(good: &Scene, cases: &[Refusal]) {
+    for (expected, spoil) in cases {
+        let mut scene = good.clone();
+        spoil(&mut scene);
+        assert_said(&refused(&scene), expected);
+    }
+}
+
+/// Bodies and rows of a step's problem in a model.
+pub type Problem<M> = StepProblem<<M as Model>::Kinematics>;
+
+/// Holds a property to so many random inputs, the same ones every time.
+pub fn for_random<S: proptest::strategy::Strategy>(
+    cases: u32,
+    inputs: S,
+    property: impl Fn(S::Value) -> Result<(), proptest::test_runner::TestCaseError>,
+) {
+    use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+    let config = Config { cases, failure_persistence: None, ..Config::default() };
+    let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let mut runner = TestRunner::new_with_rng(config, random);
+    runner.run(&inputs, property).unwrap_or_else(|failure| panic!("{failure}"));
 }

@@ -5,7 +5,6 @@ use std::cell::Cell;
 
 use crate::common::*;
 
-/// The system's allocator, counting.
 struct Counting;
 
 thread_local! {

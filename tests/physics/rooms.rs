@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::common::*;
+use crate::program::*;
 use slump::config::read_scene;
 use slump::setting::{About, Kind, Value};
 
@@ -39,7 +40,7 @@ fn course(pile: &Scene, settings: Settings) -> Option<String> {
     Some(format!("{:?}{:?}{:?}", grains.positions, grains.velocities, run.observables()))
 }
 
-/// Whether a setting changes anything, or can only be what it is.
+/// True if a setting changes anything, or can only be what it is.
 fn matters(about: &About, stepper: Stepper) -> bool {
     let mut taken = 0;
     for pile in piles() {
@@ -77,7 +78,7 @@ fn a_setting_that_a_stepper_reads_and_a_remedy_that_it_takes_change_its_steps() 
 #[test]
 fn scene_files_that_do_not_know_the_newest_settings_are_read() {
     let hourglass = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/hourglass.toml");
-    let text = std::fs::read_to_string(&hourglass).expect("it is there");
+    let text = read(&hourglass);
     assert!(!text.contains("substeps") && !text.contains("remedies"), "it is older than they are");
     read_scene(&hourglass).expect("a sound scene");
 }

@@ -7,13 +7,7 @@ use super::piles::CONVEX;
 use crate::common::natural_map::judge;
 
 fn by_interior_point(model: FrictionModel, tolerance: f64) -> SolverSettings {
-    SolverSettings {
-        method: Method::InteriorPoint,
-        stop: StopTest::Residual,
-        tolerance,
-        friction_model: model,
-        ..SolverSettings::default()
-    }
+    SolverSettings { friction_model: model, ..solved_by(Method::InteriorPoint, tolerance) }
 }
 
 fn falling(model: FrictionModel, bond: f64, time_step_secs: f64, restitution: f64) -> Simulation {

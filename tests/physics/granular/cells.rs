@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use crate::common::*;
 
-use super::by_hand::{among, box_walls, disc, discs};
 use super::packings::triangular_discs;
+use super::packings::{among, box_walls, disc, discs};
 
 const EXACT: f64 = 1e-12;
 

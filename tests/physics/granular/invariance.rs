@@ -4,21 +4,17 @@ use std::sync::Arc;
 
 use crate::common::*;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use rand::seq::SliceRandom;
 
-use super::by_hand::{among, disc, discs, lean, touch};
+use super::packings::{among, disc, discs, lean, touch};
 
 const CASES: u32 = 64;
 const FLOOR: usize = 0;
 
 fn for_random_moments(property: impl Fn(u64, Moment) -> Result<(), TestCaseError>) {
-    let config = Config { cases: CASES, failure_persistence: None, ..Config::default() };
-    let mut runner =
-        TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
-    let run = |(seed, count)| property(seed, heap(seed, count));
-    let inputs = (any::<u64>(), 1usize..60);
-    runner.run(&inputs, run).unwrap_or_else(|failure| panic!("{failure}"));
+    for_random(CASES, (any::<u64>(), 1usize..60), |(seed, count)| {
+        property(seed, heap(seed, count))
+    });
 }
 
 /// Discs at random over a floor and some fixed discs, with forces at random where they overlap, one of them lost.
@@ -78,20 +74,11 @@ fn mapped(
         Boundary::Segment { from, to } => Boundary::Segment { from: place(from), to: place(to) },
         ref other => panic!("{other:?}"),
     };
-    let Surroundings { centre_of_attraction, mean_diameter, gravity_magnitude, .. } =
-        *moment.surroundings;
-    let discs = &moment.surroundings.fixed_discs;
+    let discs = moment.surroundings.fixed_discs.iter();
     mapped.surroundings = Arc::new(Surroundings {
-        fixed_discs: discs
-            .iter()
-            .map(|disc| Disc { position: place(disc.position), ..*disc })
-            .collect(),
+        fixed_discs: discs.map(|disc| Disc { position: place(disc.position), ..*disc }).collect(),
         boundaries: moment.surroundings.boundaries.iter().map(boundary).collect(),
-        centre_of_attraction,
-        periodic: None,
-        mean_diameter,
-        gravity_magnitude,
-        moving: Vec::new(),
+        ..(*moment.surroundings).clone()
     });
     mapped
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::common::*;
 use slump::config::read_scene;
 
-use super::by_hand::box_walls;
+use super::packings::box_walls;
 
 const RADIUS: f64 = 0.1;
 

@@ -48,7 +48,6 @@ fn bits(run: &Simulation, grains: std::ops::Range<usize>) -> Vec<[u64; 6]> {
     grains.map(of_grain).collect()
 }
 
-/// A place far above the heap.
 fn far(radius: f64) -> Disc {
     Disc { position: RADIUS * DVec2::new(3.0, 60.0), radius }
 }

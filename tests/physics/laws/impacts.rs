@@ -1,9 +1,9 @@
 //! Shocks through touching grains, one after the other: what is known exactly, and what always holds.
 
-use crate::common::*;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use slump::scene::stability::{bounce, heap};
+
+use crate::common::*;
 
 const RADIUS: f64 = 0.05;
 /// Overlap of grains that touch, in diameters.
@@ -30,11 +30,6 @@ fn energy(run: &Simulation) -> f64 {
     let grains = run.grains();
     let squares = grains.velocities.iter().map(|velocity| velocity.length_squared());
     0.5 * grains.masses.iter().zip(squares).map(|(mass, squared)| mass * squared).sum::<f64>()
-}
-
-fn momentum(run: &Simulation) -> DVec2 {
-    let grains = run.grains();
-    grains.masses.iter().zip(&grains.velocities).map(|(&mass, &velocity)| mass * velocity).sum()
 }
 
 /// Velocities along `axis` after a step.
@@ -161,9 +156,6 @@ fn crowd(restitution: f64, count: usize, seed: u64) -> Scene {
 
 #[test]
 fn shocks_keep_the_momentum_and_never_gain_energy() {
-    let config = Config { cases: 128, failure_persistence: None, ..Config::default() };
-    let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    let mut runner = TestRunner::new_with_rng(config, random);
     let restitution = prop_oneof![1 => Just(1.0), 1 => Just(0.0), 4 => 0.0..1.0];
     let all = (restitution, 2usize..=40, any::<u64>());
     let run = |(restitution, count, seed)| {
@@ -182,7 +174,7 @@ fn shocks_keep_the_momentum_and_never_gain_energy() {
         }
         Ok(())
     };
-    runner.run(&all, run).unwrap_or_else(|failure| panic!("{failure}"));
+    for_random(128, all, run);
 }
 
 #[test]
@@ -267,13 +259,100 @@ fn a_pile_whose_shocks_are_followed_closes_its_energy_budget() {
     let mut run = start(&scene);
     let mut shocks = 0.0;
     for _ in 0..100 {
-        let before = run.observables().kinetic_energy;
-        let after = *run.step().expect("a finite state");
-        let works = [after.gravity_work, after.normal_work, after.tangential_work];
-        let off = (after.kinetic_energy - before - works.iter().sum::<f64>()).abs();
-        let scale = before + after.kinetic_energy + works.iter().map(|w| w.abs()).sum::<f64>();
+        let (after, off, scale) = balance(&mut run);
         assert!(off <= 1e-11 * scale, "step {}: off by {off:e}", after.step);
         shocks += after.normal_work.min(0.0);
     }
     assert!(shocks < 0.0, "there were shocks");
+}
+
+const DT: f64 = 1e-3;
+const WALL_SPEED: f64 = 0.2;
+
+/// A wall along the y axis that comes from the left, from `distance` before the disc at the origin.
+fn pushed(physics: Physics, restitution: f64, distance: f64, travel: f64) -> Scene {
+    let grains = vec![Grain::at_rest(DVec2::ZERO, RADIUS)];
+    let point = DVec2::new(-RADIUS - distance, 0.0);
+    Scene {
+        boundaries: vec![Boundary::Piston { point, normal: DVec2::X, speed: WALL_SPEED, travel }],
+        ..scene(physics, DVec2::ZERO, parameters(0.0, DT, restitution, 0.5), grains)
+    }
+}
+
+fn wall(run: &Simulation) -> f64 {
+    match run.world().boundaries[0] {
+        Boundary::Piston { point, .. } => point.x,
+        _ => panic!("the wall is a piston"),
+    }
+}
+
+#[test]
+fn a_wall_hits_a_disc_at_rest_as_a_moving_disc_hits_a_wall() {
+    for physics in [LINE, Physics::FULL] {
+        for restitution in [0.0, 0.5, 1.0] {
+            // From further than any list of near pairs reaches.
+            let run = after(&pushed(physics, restitution, 20.0 * RADIUS, 10.0), 10_000);
+            let expected = (1.0 + restitution) * WALL_SPEED;
+            let speed = run.velocity(0).x;
+            assert_close(speed, expected, 1e-12, "speed after the wall came");
+        }
+    }
+}
+
+#[test]
+fn a_wall_goes_its_way_to_the_end_and_no_further_and_is_shown_where_it_is() {
+    let travel = 10.3 * DT * WALL_SPEED;
+    let mut run = start(&pushed(LINE, 0.0, 0.0, travel));
+    let begin = wall(&run);
+    take_steps(&mut run, 10);
+    assert_close(wall(&run) - begin, 10.0 * DT * WALL_SPEED, 1e-12, "way in ten steps");
+    take_steps(&mut run, 10);
+    assert_close(wall(&run) - begin, travel, 1e-12, "way in the end");
+    assert_eq!(run.snapshot().surroundings.boundaries, run.world().boundaries);
+    assert!(run.place(0).x > travel, "the disc flies on");
+}
+
+#[test]
+fn a_grain_that_follows_a_wall_on_its_way_back_is_not_lost() {
+    let mut scene = pushed(Physics::FULL, 0.0, 0.0, 10.0);
+    scene.gravity = Gravity::Uniform { acceleration: DVec2::new(-9.8, 0.0) };
+    if let Boundary::Piston { speed, .. } = &mut scene.boundaries[0] {
+        *speed = -20.0 * WALL_SPEED;
+    }
+    let run = after(&scene, 1000);
+    let place = run.place(0).x;
+    assert!(place < -30.0 * RADIUS, "it falls after the wall, {place} m");
+    let lost = |alarm: &Alarm| alarm.kind == AlarmKind::GrainLost;
+    assert!(!run.alarms().iter().any(lost));
+}
+
+#[test]
+fn a_wall_that_cannot_be_is_refused_with_its_field() {
+    for (speed, travel) in [(f64::NAN, 1.0), (f64::INFINITY, 1.0), (1.0, -1.0), (1.0, f64::NAN)] {
+        let mut scene = pushed(LINE, 0.0, 0.0, travel);
+        if let Boundary::Piston { speed: of_wall, .. } = &mut scene.boundaries[0] {
+            *of_wall = speed;
+        }
+        let said = scene.simulation().expect_err("no such wall").to_string();
+        assert!(said.starts_with("boundaries[0] is speed"), "{said}");
+    }
+}
+
+/// Each shock runs through the row and leaves its last ball not yet struck with 2V; in the end no
+/// contact closes, and every ball has it.
+#[test]
+fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
+    for balls in 1..=4 {
+        let place = |ball: usize| DVec2::new(2.0 * RADIUS * ball as f64, 0.0);
+        let mut scene = pushed(LINE, 1.0, 0.0, 10.0);
+        let row = (0..balls).map(|ball| Grain::at_rest(place(ball), RADIUS));
+        scene.grains = row.collect();
+        // Wherever rounding has put the last digit, they touch.
+        scene.gap_tolerance = 1e-9;
+        scene.remedies = Remedies { sequential_impacts: true, ..Remedies::default() };
+        let run = after(&scene, 1);
+        for velocity in run.velocities() {
+            assert_close(velocity.x, 2.0 * WALL_SPEED, 1e-9, "speed after the wall came");
+        }
+    }
 }

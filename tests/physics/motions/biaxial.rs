@@ -48,7 +48,6 @@ fn walls_that_press_a_packing_at_rest_carry_each_its_force() {
     }
 }
 
-/// σ_yy/σ_xx of a run as it is now.
 fn stress_ratio(run: &Simulation) -> f64 {
     let pile = slump::granular::measure(&run.moment()).pile;
     pile.stress_yy / pile.stress_xx

@@ -3,7 +3,6 @@
 use super::{saved_and_read, through_a_file};
 use crate::common::*;
 
-/// Methods that know of such walls.
 fn methods() -> impl Iterator<Item = Method> {
     METHODS.iter().filter(|info| info.takes_drives).map(|info| info.method)
 }
@@ -17,11 +16,14 @@ pub(super) fn driven(boundaries: &[usize], drive: Drive) -> Motion {
     Motion { boundaries: boundaries.to_vec(), drive: Some(drive), ..Motion::default() }
 }
 
+pub(super) fn drive_of(scene: &mut Scene) -> &mut Drive {
+    scene.motions[0].drive.as_mut().expect("a drive")
+}
+
 pub(super) fn drive(run: &Simulation) -> &Drive {
     run.world().motions[0].drive.as_ref().expect("it is driven")
 }
 
-/// The level, and one upside down above.
 fn between(height: f64) -> Vec<Boundary> {
     vec![level(), plane(height * DVec2::Y, DVec2::NEG_Y)]
 }
@@ -62,7 +64,7 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
             let mut scene = pressed(1.0);
             scene.grains.truncate(grains);
             let of_grain = std::f64::consts::PI * 1e-4;
-            scene.motions[0].drive.as_mut().expect("a drive").mass = mass_ratio * of_grain;
+            drive_of(&mut scene).mass = mass_ratio * of_grain;
             (scene.solver.method, scene.solver.tolerance) = (method, 1e-10);
             let run = after(&through_a_file(&scene), 40);
             let what = format!("{method}, {mass_ratio}");
@@ -90,7 +92,7 @@ fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
     };
     // Σ Δt V over steps, the first of which ends with V = FΔt/M.
     assert_close(point.y, 0.5 * 1.5 * 0.1 * 0.101, 1e-12, "the way");
-    scene.motions[0].drive.as_mut().expect("a drive").damping = 60.0;
+    drive_of(&mut scene).damping = 60.0;
     let run = after(&scene, 1000);
     assert_close(drive(&run).speed, 3.0 / 60.0, 1e-9, "F/c");
 }
@@ -259,4 +261,176 @@ fn a_motion_of_another_wall_stays_what_it_was() {
     take_steps(&mut alone, 200);
     take_steps(&mut with, 200);
     assert_eq!(alone.world().grains, with.world().grains);
+}
+
+/// Steppers that move driven walls, with methods that solve for them.
+fn ways() -> impl Iterator<Item = (Stepper, Method)> {
+    let methods = |stepper: Stepper| {
+        let takes = METHODS.iter().filter(|info| info.takes_drives);
+        takes.take(if stepper.uses_method() { METHODS.len() } else { 1 })
+    };
+    let steppers = Stepper::ALL.iter().copied().filter(|stepper| stepper.info().takes_drives);
+    steppers.flat_map(move |stepper| methods(stepper).map(move |info| (stepper, info.method)))
+}
+
+/// Two pistons on columns that jump: one from above with damping, and one from the side.
+fn jumping(mass: f64) -> Scene {
+    let mut scene = pressed(mass);
+    for (k, grain) in (0..).zip(&mut scene.grains) {
+        grain.velocity = 0.3 * DVec2::from_angle(2.4 * f64::from(k));
+    }
+    let damped = Drive { damping: 0.3, speed: 0.2, ..by_force(DVec2::NEG_Y, 2.0, mass) };
+    scene.periodic = None;
+    scene.boundaries.push(plane(-0.02 * DVec2::X, DVec2::X));
+    scene.boundaries.push(plane(0.22 * DVec2::X, DVec2::NEG_X));
+    scene.motions =
+        vec![driven(&[1], damped), driven(&[2], by_force(DVec2::new(1.0, 0.1), 1.0, 3.0 * mass))];
+    scene.parameters.restitution = 0.4;
+    scene
+}
+
+#[test]
+fn energy_of_grains_and_driven_walls_changes_by_what_contacts_took_and_forces_gave() {
+    for (stepper, method) in ways() {
+        for mass in [0.003, 0.1] {
+            let mut scene = jumping(mass);
+            (scene.stepper, scene.solver.method, scene.solver.tolerance) = (stepper, method, 1e-6);
+            scene.solver.max_sweeps = 300;
+            let mut run = start(&scene);
+            let of = |run: &Simulation| {
+                let now = run.observables();
+                now.kinetic_energy + now.drive_energy.expect("walls are driven")
+            };
+            let (first, mut given) = (of(&run), 0.0);
+            assert_close(
+                run.observables().drive_energy.expect("driven"),
+                0.02 * mass,
+                1e-12,
+                "½MV²",
+            );
+            for step in 0..150 {
+                let before = of(&run);
+                take_steps(&mut run, 1);
+                let now = run.observables();
+                let of_drives = now.drive_work.expect("walls are driven");
+                let works = now.normal_work + now.tangential_work - now.wall_work;
+                let off = of(&run) - before - works - now.gravity_work - of_drives;
+                assert!(
+                    off.abs() < 1e-13 + 1e-12 * first,
+                    "{stepper} {method} {mass} {step}: {off} J"
+                );
+                given += of_drives.abs();
+            }
+            assert!(given > 0.05 * first, "{stepper} {method}: {given} J of {first} J");
+        }
+    }
+}
+
+#[test]
+fn a_piston_on_soft_contacts_carries_its_pressure_however_light_it_is() {
+    for mass_ratio in [0.01, 1.0, 100.0] {
+        let mut scene = pressed(mass_ratio * std::f64::consts::PI * 1e-4);
+        scene.stepper = Stepper::TgsSoft;
+        let mut run = after(&scene, 1500);
+        let mut mean = 0.0;
+        for _ in 0..100 {
+            take_steps(&mut run, 1);
+            mean += carried(&run, 1) / 100.0;
+        }
+        assert_close(mean, 10.0, 1e-3, &format!("the force of a piston of {mass_ratio}"));
+        // It trembles by less than what gravity gives in a step.
+        assert!(drive(&run).speed.abs() < 9.8e-3, "{mass_ratio}: {:?}", drive(&run));
+    }
+}
+
+#[test]
+fn under_the_law_range_a_piston_carries_its_pressure_and_catches_what_hits_it() {
+    let of_grain = std::f64::consts::PI * 1e-4;
+    for mass_ratio in [0.01, 1.0, 100.0] {
+        let mut scene = pressed(mass_ratio * of_grain);
+        (scene.stepper, scene.parameters.restitution) = (Stepper::Range, 0.5);
+        let run = after(&scene, 60);
+        assert_close(carried(&run, 1), 10.0, 1e-6, &format!("a piston of {mass_ratio}"));
+        scene.grains.truncate(1);
+        scene.grains[0].feels_gravity = false;
+        scene.grains[0].velocity = DVec2::Y;
+        scene.grains[0].position.y = 0.0488;
+        scene.motions = vec![driven(&[1], by_force(DVec2::NEG_Y, 0.0, mass_ratio * of_grain))];
+        let run = after(&scene, 4);
+        let (grain, wall) = (run.velocity(0).y, -drive(&run).speed);
+        assert_close(grain + mass_ratio * wall, 1.0, 1e-12, "momentum");
+        assert_close(wall, grain, 1e-9, "they go on together");
+    }
+}
+
+#[test]
+fn a_grain_and_a_wall_of_a_mass_part_as_two_free_bodies_do_under_soft_contacts() {
+    let of_grain = std::f64::consts::PI * 1e-4;
+    for mass_ratio in [0.1, 1.0, 10.0] {
+        let mut scene = pressed(mass_ratio * of_grain);
+        scene.grains.truncate(1);
+        scene.grains[0].feels_gravity = false;
+        scene.grains[0].velocity = DVec2::Y;
+        scene.grains[0].position.y = 0.0499;
+        scene.motions = vec![driven(&[1], by_force(DVec2::NEG_Y, 0.0, mass_ratio * of_grain))];
+        (scene.stepper, scene.parameters.restitution) = (Stepper::TgsSoft, 0.5);
+        let run = after(&scene, 4);
+        let (grain, wall) = (run.velocity(0).y, -drive(&run).speed);
+        assert_close(grain + mass_ratio * wall, 1.0, 1e-12, "momentum");
+        assert_close(wall - grain, 0.5, 1e-6, "restitution");
+    }
+}
+
+/// The same under springs, with the weight of a grain as the force of a contact, and ten thousand times its stiffness.
+fn on_springs(mass: f64) -> Scene {
+    let mut scene = pressed(mass);
+    scene.stepper = Stepper::Dem;
+    (scene.parameters.stiffness, scene.parameters.damping_ratio) = (2e4, 0.3);
+    scene
+}
+
+#[test]
+fn a_piston_on_springs_carries_its_pressure_and_its_energy_balances() {
+    let scene = on_springs(0.01);
+    let mut run = start(&scene);
+    let substep = scene.parameters.time_step_secs / f64::from(run.substeps());
+    let height = |run: &Simulation| match run.world().boundaries[1] {
+        Boundary::HalfSpace { point, .. } => point.y,
+        _ => panic!("it stays one"),
+    };
+    for step in 0..1500 {
+        let (before, from) = (drive(&run).clone(), height(&run));
+        take_steps(&mut run, 1);
+        let now = drive(&run);
+        // Substeps go on with the speed of their end, and their work is that of the mean speed.
+        let way = from - height(&run) - 0.5 * substep * (now.speed - before.speed);
+        let change = now.kinetic_energy() - before.kinetic_energy();
+        let found = 10.0 * way - run.observables().wall_work;
+        assert!((change - found).abs() < 1e-12, "step {step}: {change} {found} J");
+    }
+    assert_close(carried(&run, 1), 10.0, 1e-6, "the force");
+    assert!(drive(&run).speed.abs() < 1e-7, "{:?}", drive(&run));
+}
+
+#[test]
+fn a_wall_on_springs_that_is_lighter_than_its_grains_may_swing_up() {
+    // Five contacts of 2e4 N/m, without dashpots: h < 2 √(M/5k).
+    let fastest = |part: f64| {
+        let mut scene = on_springs(0.01);
+        scene.parameters.damping_ratio = 1e-9;
+        let substep = scene.parameters.time_step_secs / f64::from(start(&scene).substeps());
+        let mass = 5.0 * 2e4 * (0.5 * substep / part).powi(2);
+        scene.motions[0].drive.as_mut().expect("a drive").mass = mass;
+        let mut run = start(&scene);
+        let mut fastest = 0f64;
+        for _ in 0..100 {
+            let _ = run.step();
+            fastest = fastest.max(drive(&run).speed.abs());
+        }
+        (fastest, mass)
+    };
+    let ((calm, heavy), (wild, light)) = (fastest(0.3), fastest(3.0));
+    // It falls through no gap, so that its speed is that of a swing about its load.
+    assert!(calm < 10.0 / (5.0 * 2e4 * heavy).sqrt() * 10.0, "{calm} m/s of {heavy} kg");
+    assert!(wild > 10.0 * calm * (heavy / light).sqrt(), "{wild} m/s of {light} kg, {calm} m/s");
 }

@@ -1,6 +1,6 @@
 //! Gravity that turns: what falls freely, what a box that is tilted lets slide, and the budget of energy.
 
-use super::through_a_file;
+use super::{saved_and_read, through_a_file};
 use crate::common::*;
 
 const DT: f64 = 1e-3;
@@ -70,61 +70,103 @@ fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
     }
 }
 
+/// What rests, falls and is bonded, on a floor.
+fn on_a_floor() -> Scene {
+    let mut scene = at_rest_and_falling();
+    scene.boundaries = vec![level()];
+    scene
+}
+
+fn tilted(scene: &Scene, degrees: f64) -> Scene {
+    let mut tilted = scene.clone();
+    tilted.parameters.tilt = degrees;
+    tilted
+}
+
+fn places(run: &Simulation) -> Vec<[u64; 2]> {
+    let positions = run.places().iter();
+    positions.map(|place| place.to_array().map(f64::to_bits)).collect()
+}
+
+fn step(run: &mut Simulation, steps: u64) {
+    run.take_steps(steps).expect("finite states");
+}
+
 #[test]
-fn the_budget_of_energy_is_closed_under_gravity_that_turns() {
-    for (stepper, method) in every_way_that_balances() {
-        let mut scene = pressed_pile(40, 0.3, 5, parameters(2.0, DT, 0.3, 0.5));
-        scene.gravity_turn = evenly(3.0);
-        scene.solver.max_sweeps = 100;
+fn a_tilted_world_is_bit_for_bit_the_one_whose_gravity_is_listed_so() {
+    let Gravity::Uniform { acceleration } = on_a_floor().gravity else { panic!("not uniform") };
+    for (stepper, method) in every_way() {
+        let mut scene = on_a_floor();
         (scene.stepper, scene.solver.method) = (stepper, method);
-        let mut run = start(&scene);
-        let mut energy = run.observables().kinetic_energy;
-        let mut scale = energy;
-        for _ in 0..100 {
-            let now = *run.step().expect("a finite state");
-            let works = now.normal_work + now.tangential_work + now.gravity_work;
-            scale += works.abs();
-            let off = (now.kinetic_energy - energy - works).abs();
-            assert!(off < 1e-10 * scale, "{stepper}, {method}: off by {off} J");
-            energy = now.kinetic_energy;
+        let mut listed = scene.clone();
+        let turn = DVec2::from_angle(20f64.to_radians());
+        listed.gravity = Gravity::Uniform { acceleration: turn.rotate(acceleration) };
+        let [mut one, mut other, mut level] = [&tilted(&scene, 20.0), &listed, &scene].map(start);
+        assert_eq!(one.observables().potential_energy, other.observables().potential_energy);
+        for run in [&mut one, &mut other, &mut level] {
+            step(run, 30);
         }
+        assert_eq!(places(&one), places(&other), "{stepper}, {method}");
+        assert_ne!(places(&one), places(&level), "{stepper}, {method}");
     }
 }
 
 #[test]
-fn gravity_that_cannot_turn_so_is_refused() {
-    let refused = |change: &dyn Fn(&mut Scene), expected: &str| {
-        let grain = Grain::at_rest(DVec2::ZERO, 0.1);
-        let mut scene = Scene {
-            gravity_turn: evenly(RATE),
-            ..scene(Physics::FULL, -G * DVec2::Y, parameters(0.0, DT, 0.0, 0.5), vec![grain])
-        };
-        change(&mut scene);
-        let said = scene.simulation().map(|_| ()).expect_err("no such gravity").to_string();
-        assert_eq!(said, expected);
-    };
-    refused(
-        &|scene| scene.gravity = Gravity::Attraction { centre: DVec2::ZERO, magnitude: 1.0 },
-        "gravity_turn is given, but must be left out where gravity is not uniform",
-    );
-    refused(
-        &|scene| scene.physics = crate::common::LINE,
-        "gravity_turn is given, but must be left out where physics.axes is 1",
-    );
-    refused(
-        &|scene| scene.gravity_turn = evenly(f64::INFINITY),
-        "gravity_turn.course.rate is inf, but must be finite",
-    );
-    let table = |times: [f64; 2], angles: [f64; 2]| {
-        let course = TurnCourse::Table { times_secs: times.into(), angles: angles.into() };
+fn gravity_points_to_the_right_where_the_tilt_is_above_0_and_comes_back() {
+    let mut run = start(&on_a_floor());
+    let mut settings = *run.settings();
+    settings.parameters.tilt = 30.0;
+    run.change(settings).expect("sound settings");
+    let gravity = |run: &Simulation| run.world().gravity.acceleration(DVec2::ZERO);
+    let g = gravity(&start(&on_a_floor())).length();
+    let expected = DVec2::new(0.5 * g, -(0.75f64.sqrt()) * g);
+    assert!(gravity(&run).distance(expected) < 1e-12 * g);
+    settings.parameters.tilt = 0.0;
+    run.change(settings).expect("sound settings");
+    step(&mut run, 20);
+    let mut level = start(&on_a_floor());
+    step(&mut level, 20);
+    assert_eq!(places(&run), places(&level));
+}
+
+#[test]
+fn a_run_that_is_tilted_on_the_way_goes_on_from_its_file_bit_for_bit() {
+    for scene in ["incline", "pile"].map(|name| built_in(name).expect("a scene")) {
+        let mut simulation = start(&scene);
+        step(&mut simulation, 5);
+        let mut settings = *simulation.settings();
+        settings.parameters.tilt = -12.5;
+        simulation.change(settings).expect("sound settings");
+        step(&mut simulation, 5);
+        let read = saved_and_read(&scene, &simulation);
+        let mut again = read.simulation.clone();
+        for run in [&mut simulation, &mut again] {
+            step(run, 10);
+        }
+        assert_eq!(places(&simulation), places(&again));
+        // A new start from there has the scene's own turn, and the tilt as a setting.
+        let start = read.as_start();
+        assert_eq!(start.parameters.tilt, -12.5);
+        assert_eq!(start.gravity, read.scene.gravity);
+        assert_eq!(start.gravity_turn.is_some(), read.scene.gravity_turn.is_some());
+    }
+}
+
+#[test]
+fn a_tilt_adds_to_what_turns_by_itself() {
+    let mut scene = on_a_floor();
+    let turn = |angle: f64| {
+        let course = TurnCourse::Table { times_secs: vec![0.0], angles: vec![angle] };
         Some(GravityTurn { course, elapsed_secs: 0.0 })
     };
-    refused(
-        &|scene| scene.gravity_turn = table([1.0, 0.5], [0.0, 1.0]),
-        "gravity_turn.course.times_secs[1] is 0.5, but must be finite, and above the time before it",
-    );
-    refused(
-        &|scene| scene.gravity_turn = table([0.0, 0.5], [0.0, f64::NAN]),
-        "gravity_turn.course.angles[1] is not finite, but must be finite",
-    );
+    scene.gravity_turn = turn(0.25);
+    let mut sum = start(&tilted(&scene, 0.5f64.to_degrees()));
+    scene.gravity_turn = turn(0.75);
+    let mut whole = start(&scene);
+    for run in [&mut sum, &mut whole] {
+        step(run, 20);
+    }
+    let [one, other] = [&sum, &whole].map(|run| run.places());
+    let apart = one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);
+    assert!(apart < 1e-12, "{apart} m");
 }

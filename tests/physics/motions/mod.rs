@@ -1,23 +1,14 @@
 //! Bodies that move by themselves, and gravity that turns: what their surfaces do to grains, that nothing depends on who moves, and that
 //! energy, momentum, restart and mirror know of it.
 
-mod balance;
-mod belts;
 mod biaxial;
-mod borders;
 mod driven;
-mod driven_energy;
-mod driven_on_springs;
 mod gravity;
+mod images;
 mod periodic;
-mod periodic_both;
-mod periodic_corners;
 mod refusals;
-mod refused_drives;
 mod sheared;
-mod sheared_flow;
-mod tilt;
-mod turning;
+mod surfaces;
 mod views;
 
 use crate::common::*;

@@ -18,7 +18,13 @@ fn on_a_floor(shape: usize) -> Scene {
             vec![Boundary::Polyline { points: vec![at(-far, 0.0), at(0.0003, 0.0), at(far, 0.0)] }]
         }
         2 => vec![Boundary::ConvexPolygon { points: corners }],
-        _ => Vec::new(),
+        3 => Vec::new(),
+        _ => vec![Boundary::Piston {
+            point: DVec2::ZERO,
+            normal: DVec2::Y,
+            speed: 0.0,
+            travel: f64::from(u32::MAX),
+        }],
     };
     if shape == 3 {
         // Each grain stands on a disc of its own.
@@ -30,24 +36,28 @@ fn on_a_floor(shape: usize) -> Scene {
 
 /// Longest distance of a grain from where the other view has it in any step, in d.
 fn difference_of_views(scene: &Scene) -> f64 {
-    let mut seen = scene.clone();
-    seen.motions = vec![Motion {
-        boundaries: (0..scene.boundaries.len()).collect(),
-        fixed_discs: (0..scene.fixed_discs.len()).collect(),
-        course: Some(straight(VELOCITY)),
-        ..Motion::default()
-    }];
-    seen.grains.iter_mut().for_each(|grain| grain.velocity += VELOCITY);
+    let (mut seen, mut velocity) = (scene.clone(), VELOCITY);
+    if let Some(Boundary::Piston { speed, .. }) = seen.boundaries.first_mut() {
+        (*speed, velocity) = (0.2, 0.2 * DVec2::Y);
+    } else {
+        seen.motions = vec![Motion {
+            boundaries: (0..scene.boundaries.len()).collect(),
+            ..discs_go(scene.fixed_discs.len(), straight(VELOCITY))
+        }];
+    }
+    seen.grains.iter_mut().for_each(|grain| grain.velocity += velocity);
     let [mut still, mut moved] = [scene, &seen].map(start);
-    let mut furthest = 0f64;
+    let (mut furthest, mut landed) = (0f64, false);
     for _ in 0..150 {
         still.step().expect("a finite state");
         moved.step().expect("a finite state");
-        let way = still.time_secs() * VELOCITY;
+        let way = still.time_secs() * velocity;
         let [one, other] = [&still, &moved].map(|run| run.places());
         let ways = one.iter().zip(other).map(|(one, other)| (*one + way).distance(*other));
         furthest = ways.fold(furthest, f64::max);
+        landed |= still.place(3).y < 0.51 * scene.mean_diameter;
     }
+    assert!(landed, "the disc that falls gets to the floor");
     assert_eq!(moved.observables().lost_grains, 0);
     furthest / scene.mean_diameter
 }
@@ -55,12 +65,13 @@ fn difference_of_views(scene: &Scene) -> f64 {
 #[test]
 fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
     let mut differences = Vec::new();
-    for shape in 0..4 {
+    for shape in 0..5 {
         let mut scene = on_a_floor(shape);
         for (stepper, method) in every_way() {
             (scene.stepper, scene.solver.method) = (stepper, method);
             for push_out in [false, true] {
-                if push_out && (stepper != Stepper::Moreau || method != Method::Nsgs) {
+                if push_out && (stepper != Stepper::Moreau || (method != Method::Nsgs && shape < 4))
+                {
                     continue;
                 }
                 scene.remedies = Remedies { push_out, ..Remedies::default() };

@@ -104,11 +104,7 @@ struct Solve(SolverSettings);
 impl ProblemVisitor for Solve {
     type Output = (SolveReport, f64);
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Self::Output {
+    fn visit<M: Model>(self, problem: &mut Problem<M>, _: &ContactList) -> Self::Output {
         let report = solve::<M>(problem, &mut Memory::default(), &self.0);
         (report, residual::<M>(problem))
     }
@@ -120,11 +116,7 @@ pub struct SolveTwice(pub SolverSettings, pub SolverSettings);
 impl ProblemVisitor for SolveTwice {
     type Output = [SolveReport; 2];
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Self::Output {
+    fn visit<M: Model>(self, problem: &mut Problem<M>, _: &ContactList) -> Self::Output {
         let mut memory = Memory::default();
         [self.0, self.1].map(|settings| solve::<M>(problem, &mut memory, &settings))
     }

@@ -110,7 +110,6 @@ fn a_grain_that_falls_out_of_the_world_is_told_of() {
     let steps = (secs / scene.parameters.time_step_secs) as u32;
     let said = alarms(&scene, steps);
     assert!(said.iter().any(|(kind, _)| *kind == AlarmKind::GrainLost), "{said:?}");
-
     // Through the ground: too deep for any contact to bring it back.
     let mut scene = column(1);
     scene.grains[0].position.y = -1.5 * scene.mean_diameter;

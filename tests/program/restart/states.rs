@@ -1,15 +1,10 @@
 //! States in memory: every scene, stepper, method and remedy.
 
-use glam::DVec2;
 use rayon::prelude::*;
-use slump::scene::{SCENES, Scene, built_in};
 use slump::setting::{Group, Kind, Value};
-use slump::sim::{AlarmKind, Pull, REMEDIES, Remedies, Remedy, Settings, Simulation, Stepper};
-use slump::solver::{FrictionModel, Method, SolverSettings};
-use slump::world::{Boundary, GravityTurn, Motion, MotionCourse, TurnCourse};
 
-use super::{bytes_of, read};
-use crate::common::{every_way, parameters, pressed_pile, start};
+use super::{bytes_of, read_back};
+use crate::common::*;
 
 /// Steps before a state is saved, and after it.
 const STEPS: usize = 4;
@@ -38,7 +33,7 @@ fn goes_on_with(
     change: impl Fn(&mut Simulation),
 ) -> Simulation {
     let saved = bytes_of(scene, simulation);
-    let mut state = read(&saved);
+    let mut state = read_back(&saved);
     assert!(state.to_bytes().expect("bytes") == saved, "{what}: saved again it is another file");
     assert_eq!(
         format!("{:?}", state.simulation.snapshot()),
@@ -225,7 +220,7 @@ fn bodies_on_their_way_go_on() {
         let worlds = [simulation.world(), end.world()];
         assert_ne!(worlds[0].fixed_discs, worlds[1].fixed_discs, "{what}: and go on moving");
         // What is left of the way is in the file, and all that a new start from there takes.
-        let mut anew = start(&read(&bytes_of(&scene, &simulation)).as_start());
+        let mut anew = start(&read_back(&bytes_of(&scene, &simulation)).as_start());
         let begin = anew.world().boundaries.clone();
         anew.take_steps(20).expect("finite states");
         assert_eq!(begin, simulation.world().boundaries, "{what}");
@@ -285,6 +280,6 @@ fn pictures_come_at_the_steps_that_they_would_have_come_at() {
     simulation.change(settings).expect("sound settings");
     assert_eq!([0.0, 0.010, 0.018, 0.022].map(|secs| simulation.step_at(secs)), [10, 10, 12, 13]);
     simulation.take_steps(1).expect("a finite state");
-    let read = read(&bytes_of(&scene, &simulation)).simulation;
+    let read = read_back(&bytes_of(&scene, &simulation)).simulation;
     assert_eq!(read.step_at(0.0225), simulation.step_at(0.0225));
 }
