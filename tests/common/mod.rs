@@ -389,3 +389,14 @@ pub fn for_random<S: proptest::strategy::Strategy>(
     let mut runner = TestRunner::new_with_rng(config, random);
     runner.run(&inputs, property).unwrap_or_else(|failure| panic!("{failure}"));
 }
+
+/// Halves a stretch so many times: up to where something holds that holds at `low` and does not at `high`.
+#[track_caller]
+pub fn border(mut low: f64, mut high: f64, halvings: u32, holds: impl Fn(f64) -> bool) -> f64 {
+    assert!(holds(low) && !holds(high), "the border is between {low} and {high}");
+    for _ in 0..halvings {
+        let middle = 0.5 * (low + high);
+        *(if holds(middle) { &mut low } else { &mut high }) = middle;
+    }
+    low
+}

@@ -9,23 +9,18 @@ fn collapse() -> Scene {
     scene
 }
 
-fn run(scene: &Scene, steps: usize) -> Simulation {
-    let simulation = after(scene, steps);
-    simulation
-}
-
 #[test]
 fn a_run_repeats_bitwise_alone_and_in_pools_of_threads() {
-    let first = run(&collapse(), 200);
+    let first = after(&collapse(), 200);
     assert!(first.observables().slump > 0.02, "the pile has moved");
-    let again = run(&collapse(), 200);
+    let again = after(&collapse(), 200);
     assert!(bits(&first) == bits(&again));
     assert_eq!(first.observables(), again.observables());
     for threads in [1, 4] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let runs: Vec<Simulation> = pool.install(|| {
             use rayon::prelude::*;
-            (0..3).into_par_iter().map(|_| run(&collapse(), 200)).collect()
+            (0..3).into_par_iter().map(|_| after(&collapse(), 200)).collect()
         });
         for inside in runs {
             assert!(bits(&first) == bits(&inside), "{threads} threads");
@@ -56,8 +51,8 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
         if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {
             continue;
         }
-        let shared = run(&scene, 3);
-        let by_one = alone.install(|| run(&scene, 3));
+        let shared = after(&scene, 3);
+        let by_one = alone.install(|| after(&scene, 3));
         let what = format!("{stepper} {}", method.name());
         assert!(
             shared.contacts().contacts().len() > 9_000,
@@ -71,15 +66,37 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
 }
 
 #[test]
-fn a_clone_goes_on_as_the_original_does() {
-    // Steps 50 … 250 build the candidate list anew at times that depend on the past.
-    let mut original = run(&collapse(), 50);
-    let mut clone = original.clone();
-    take_steps(&mut original, 200);
-    take_steps(&mut clone, 200);
-    assert!(bits(&original) == bits(&clone));
-    assert_eq!(original.contacts().impulses(), clone.contacts().impulses());
-    assert_eq!(original.observables(), clone.observables());
+fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
+    let ranged = Parameters { restitution: 0.1, restitution_threshold: 2.0, ..range(20.0, 1e-3) };
+    let bonded = Scene {
+        stepper: Stepper::Range,
+        solver: SolverSettings { max_sweeps: 20_000, ..solved_by(Method::Newton, 1e-8) },
+        ..pressed_pile(60, 0.3, 5, ranged)
+    };
+    let by_scheme = |stepper: Stepper| {
+        let mut pile = by(stepper, 0, paper_pile().expect("the shipped state"));
+        pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
+        (pile, 100, 20)
+    };
+    // Steps 50 … 250 of the first build the candidate list anew at times that depend on the past.
+    let runs = ALL_SCHEMES.map(by_scheme);
+    for (scene, before, later) in [(collapse(), 50, 200), (bonded, 30, 30)].into_iter().chain(runs)
+    {
+        let stepper = scene.stepper;
+        let (mut one, other) = (after(&scene, before), after(&scene, before));
+        assert!(one.observables().slump.abs() > 1e-3, "{stepper}: it moves");
+        assert!(
+            bits(&one) == bits(&other) && one.observables() == other.observables(),
+            "{stepper}"
+        );
+        let mut clone = one.clone();
+        take_steps(&mut one, later);
+        take_steps(&mut clone, later);
+        assert!(bits(&one) == bits(&clone), "{stepper}");
+        assert_eq!(one.world(), clone.world(), "{stepper}");
+        assert_eq!(one.contacts().impulses(), clone.contacts().impulses(), "{stepper}");
+        assert_eq!(one.observables(), clone.observables(), "{stepper}");
+    }
 }
 
 /// A pile with overlaps, solved far enough that only the scene's symmetry decides.
@@ -102,7 +119,7 @@ fn a_moved_scene_moves_alike() {
         there.grains.iter_mut().for_each(|grain| grain.position += shift);
         there.fixed_discs.iter_mut().for_each(|disc| disc.position += shift);
         // A few steps: a pile is chaotic, and roundings grow.
-        let (here, there) = (run(&here, 5), run(&there, 5));
+        let (here, there) = (after(&here, 5), after(&there, 5));
         let (a, b) = (here.grains(), there.grains());
         assert!(here.observables().contacts > 60, "{}", here.observables().contacts);
         assert!(here.observables().kinetic_energy > 1e-7, "{}", here.observables().kinetic_energy);
@@ -117,7 +134,7 @@ fn a_mirrored_scene_moves_mirrored() {
     let mirror = |vector: DVec2| DVec2::new(-vector.x, vector.y);
     for bond in [0.0, 20.0] {
         let mut scene = pressed(bond);
-        let right = run(&scene, 30);
+        let right = after(&scene, 30);
         for grain in &mut scene.grains {
             grain.position = mirror(grain.position);
             grain.velocity = mirror(grain.velocity);
@@ -126,7 +143,7 @@ fn a_mirrored_scene_moves_mirrored() {
         scene.fixed_discs.iter_mut().for_each(|disc: &mut Disc| {
             disc.position = mirror(disc.position);
         });
-        let left = run(&scene, 30);
+        let left = after(&scene, 30);
         let (a, b) = (right.grains(), left.grains());
         // No operation of a step knows left from right, so not even roundings differ.
         assert_eq!(largest_distance(&a.positions, &b.positions, mirror), 0.0);
@@ -143,11 +160,11 @@ fn renumbered_grains_move_alike_where_the_solution_is_unique() {
     for bond in [0.0, 20.0] {
         let mut scene = Scene { physics: SMOOTH, solver: tight(), ..pressed(bond) };
         scene.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
-        let forth = run(&scene, 5);
+        let forth = after(&scene, 5);
         assert!(forth.observables().converged && forth.observables().contacts > 60);
         scene.grains.reverse();
         scene.fixed_discs.reverse();
-        let back = run(&scene, 5);
+        let back = after(&scene, 5);
         let mut velocities = back.grains().velocities.clone();
         velocities.reverse();
         let off = largest_distance(forth.velocities(), &velocities, |v| v);

@@ -80,27 +80,6 @@ fn the_overlap_alone_changes_the_angular_momentum() {
     assert!(explained.abs() < 2e-3 * scale, "{explained:e} of {scale:e}");
 }
 
-#[test]
-fn free_fall_is_that_of_symplectic_euler() {
-    let gravity = DVec2::new(1.5, -G);
-    let velocity = DVec2::new(-0.7, 2.0);
-    for physics in [LINE, SMOOTH, Physics::FULL] {
-        let mask = if physics.axes == 1 { DVec2::X } else { DVec2::ONE };
-        let (dt, count) = (1e-3, 1000);
-        let grains =
-            vec![Grain { angular_velocity: 3.0, ..moving(DVec2::X, 0.1, mask * velocity) }];
-        let run =
-            after(&scene(physics, mask * gravity, parameters(20.0, dt, 0.1, 0.5), grains), count);
-        let (n, grains) = (count as f64, run.grains());
-        let fallen = mask * (velocity + n * dt * gravity);
-        let way = mask * (n * dt * velocity + 0.5 * n * (n + 1.0) * dt * dt * gravity);
-        assert!(grains.velocities[0].distance(fallen) < 1e-12 * fallen.length());
-        assert!((grains.positions[0] - DVec2::X).distance(way) < 1e-12 * way.length());
-        let turned = if physics.rotation { 3.0 * n * dt } else { 0.0 };
-        assert!((grains.angles[0] - turned).abs() < 1e-12);
-    }
-}
-
 /// Steps and checks the budget of each: ΔKE = gravity's work + contacts' works.
 fn check_budget(run: &mut Simulation, count: usize) {
     let mut contacts = 0;

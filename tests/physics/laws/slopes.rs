@@ -114,10 +114,8 @@ fn a_vertex_of_a_nearly_flat_polyline_is_not_felt() {
     for kink in [-tilt, tilt] {
         let points = [DVec2::new(-1.0, 0.0), DVec2::new(0.5, 0.0), DVec2::new(20.0, 19.5 * kink)];
         let bent = Boundary::Polyline { points: points.to_vec() };
-        let mut on_bent = start(&on_level(Physics::FULL, 0.2, MU, bent));
-        let mut on_level = start(&on_level(Physics::FULL, 0.2, MU, levels().remove(0).1));
-        take_steps(&mut on_bent, 2000);
-        take_steps(&mut on_level, 2000);
+        let on_bent = after(&on_level(Physics::FULL, 0.2, MU, bent), 2000);
+        let on_level = after(&on_level(Physics::FULL, 0.2, MU, levels().remove(0).1), 2000);
         let [a, b] = [&on_bent, &on_level].map(|run| run.grains().clone());
         assert!(a.positions[0].x > 2.0, "it rolled over the vertex");
         let off = a.velocities[0].distance(b.velocities[0]);
@@ -164,7 +162,7 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
     }
 }
 
-/// A disc on a level half-space, under a gravity that leans by `slope` = tanθ.
+/// The disc on a half-space, with cohesion, by a scheme.
 fn on_slope(
     stepper: Stepper,
     physics: Physics,
@@ -172,14 +170,9 @@ fn on_slope(
     bond: f64,
     cone: FrictionCone,
 ) -> Scene {
-    let radius = 0.1;
-    let grain = Grain::at_rest(DVec2::new(0.0, radius * (1.0 - 1e-10)), radius);
-    let gravity = G * DVec2::new(slope, -1.0).normalize();
-    let mut parameters = parameters(bond, 1e-3, 0.1, 0.3);
-    parameters.cone = cone;
-    let level = level();
-    let scene = scene(physics, gravity, parameters, vec![grain]);
-    by(stepper, 0, Scene { boundaries: vec![level], ..scene })
+    let mut scene = by(stepper, 0, on_level(physics, slope, MU, level()));
+    scene.parameters = Parameters { bond, cone, restitution: 0.1, ..scene.parameters };
+    scene
 }
 
 /// Its velocity and its acceleration once it lies on the slope.
@@ -194,7 +187,7 @@ fn slides(scene: &Scene) -> (f64, f64) {
 
 #[test]
 fn friction_keeps_to_coulombs_cone() {
-    let mu = 0.3;
+    let mu = MU;
     for method in SCHEMES {
         let shifted = FrictionCone::Shifted;
         let (velocity, _) = slides(&on_slope(method, UNTURNING, 0.999 * mu, 0.0, shifted));

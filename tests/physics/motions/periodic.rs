@@ -272,8 +272,7 @@ fn a_disc_rolls_over_a_floor_that_ends_at_the_borders_as_over_one_without_end() 
         let mut scene = scene(Physics::FULL, gravity, parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
         scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
         scene.boundaries = vec![floor];
-        let run = after(&scene, 400);
-        run
+        after(&scene, 400)
     };
     let [one, other] = [floor, level()].map(run);
     let [one, other] = [&one, &other].map(|run| run.place(0));

@@ -124,8 +124,7 @@ fn cells_that_have_slid_by_a_width_are_cells_that_stand_straight() {
             let mut scene = plain.clone();
             (scene.stepper, scene.solver.method) = (stepper, method);
             scene.periodic = Some(Periodic { shift, ..cell(0.0) });
-            let run = after(&scene, 40);
-            run
+            after(&scene, 40)
         };
         let [straight, slid, at_the_left] = [0.0, SIZE.x, -SIZE.x].map(run);
         assert_eq!(straight.observables().border_work, None);
@@ -276,8 +275,7 @@ fn a_flow_twice_as_fast_takes_the_same_way_and_bears_four_times_as_much() {
         }
         scene.parameters.time_step_secs = 2e-4 / factor;
         scene.solver = to_residual(1e-8);
-        let run = after(&scene, 400);
-        run
+        after(&scene, 400)
     };
     let [one, other] = [1.0, 2.0].map(run);
     assert!(one.world().periodic.expect("a cell").shift != 0.0);

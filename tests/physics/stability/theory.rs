@@ -126,12 +126,7 @@ fn springs_blow_up_at_their_critical_time_step() {
         let fastest = world.grains.velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
         fastest < 1e-6 * (world.gravity.magnitude() * world.mean_diameter).sqrt()
     };
-    let (mut low, mut high) = (0.8, 1.25);
-    assert!(stays_at_rest(low) && !stays_at_rest(high), "the border is searched around theory");
-    for _ in 0..7 {
-        let middle = 0.5 * (low + high);
-        *(if stays_at_rest(middle) { &mut low } else { &mut high }) = middle;
-    }
+    let low = border(0.8, 1.25, 7, stays_at_rest);
     assert!((0.995..1.03).contains(&low), "stable up to {low} of the critical time step");
 }
 

@@ -397,15 +397,3 @@ fn methods_agree_on_nearly_all_steps_with_bonds() {
         }
     }
 }
-
-#[test]
-fn a_clone_and_a_second_run_go_on_bit_for_bit() {
-    let scene = pile(20.0, 1e-3, Method::Newton);
-    let mut first = after(&scene, 30);
-    let mut clone = first.clone();
-    let second = after(&scene, 60);
-    take_steps(&mut first, 30);
-    take_steps(&mut clone, 30);
-    assert_eq!(first.world(), second.world());
-    assert_eq!(clone.world(), second.world());
-}

@@ -56,18 +56,11 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
                 let run = |bond: f64| {
                     let mut scene = pulled(method, bond, dt, free);
                     scene.parameters.substeps = substeps;
-                    let simulation = after(&scene, (0.5 / dt) as usize);
-                    simulation
+                    after(&scene, (0.5 / dt) as usize)
                 };
                 let holds = |bond: f64| run(bond).observables().contacts == 1;
-                let (mut opens_at, mut holds_at) = (0.5, 2.0);
-                assert!(!holds(opens_at) && holds(holds_at));
-                for _ in 0..9 {
-                    let bond = 0.5 * (opens_at + holds_at);
-                    *(if holds(bond) { &mut holds_at } else { &mut opens_at }) = bond;
-                }
                 // The pull is m_ij g, C₀ is Bond·m_ij·g.
-                let found = 0.5 * (opens_at + holds_at);
+                let found = border(0.5, 2.0, 9, |bond| !holds(bond));
                 assert!((found - 1.0).abs() < 2e-3, "{method:?}, Δt {dt}: C₀ of {found} weights");
 
                 let held = run(1.5);
@@ -83,20 +76,25 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
 
 #[test]
 fn free_fall_is_that_of_symplectic_euler_with_the_substep() {
-    let (dt, count, velocity) = (1e-3, 300, DVec2::new(-0.7, 2.0));
-    for method in ALL_SCHEMES {
-        for substeps in [0, 1, 7] {
-            let grains = vec![Grain { angular_velocity: 3.0, ..moving(DVec2::X, 0.1, velocity) }];
-            let scene = scene(Physics::FULL, -G * DVec2::Y, parameters(20.0, dt, 0.1, 0.5), grains);
-            let run = after(&by(method, substeps, scene), count);
-            let n = f64::from(run.substeps()) * count as f64;
-            let time = dt * count as f64;
-            let way = time * velocity - DVec2::Y * 0.5 * G * time * time * (1.0 + 1.0 / n);
-            let grains = run.grains();
-            assert!((grains.positions[0] - DVec2::X - way).length() < 1e-11, "{method:?}");
-            assert!((grains.velocities[0] - velocity + G * time * DVec2::Y).length() < 1e-11);
-            assert!((grains.angles[0] - 3.0 * time).abs() < 1e-11);
-        }
+    let (dt, count, velocity) = (1e-3, 1000, DVec2::new(-0.7, 2.0));
+    let of_moreau = [LINE, SMOOTH, Physics::FULL].map(|physics| (Stepper::Moreau, 0, physics));
+    let of_scheme = |scheme| [0, 1, 7].map(|substeps| (scheme, substeps, Physics::FULL));
+    let ways = of_moreau.into_iter().chain(ALL_SCHEMES.into_iter().flat_map(of_scheme));
+    for (stepper, substeps, physics) in ways {
+        let what = format!("{stepper}, {substeps} substeps, {physics:?}");
+        let mask = if physics.axes == 1 { DVec2::X } else { DVec2::ONE };
+        let (gravity, velocity) = (mask * DVec2::new(1.5, -G), mask * velocity);
+        let grains = vec![Grain { angular_velocity: 3.0, ..moving(DVec2::X, 0.1, velocity) }];
+        let scene = scene(physics, gravity, parameters(20.0, dt, 0.1, 0.5), grains);
+        let run = after(&by(stepper, substeps, scene), count);
+        let n = f64::from(run.substeps()) * count as f64;
+        let time = dt * count as f64;
+        let fallen = velocity + time * gravity;
+        let way = time * velocity + 0.5 * time * time * (1.0 + 1.0 / n) * gravity;
+        assert!(run.velocity(0).distance(fallen) < 1e-12 * fallen.length(), "{what}");
+        assert!((run.place(0) - DVec2::X).distance(way) < 1e-12 * way.length(), "{what}");
+        let turned = if physics.rotation { 3.0 * time } else { 0.0 };
+        assert!((run.grains().angles[0] - turned).abs() < 1e-11, "{what}");
     }
 }
 
@@ -136,26 +134,6 @@ fn the_substeps_left_to_the_scheme_are_stable_and_counted() {
     let substeps = dem.substeps();
     assert_eq!(dem.step().expect("a finite state").sweeps, substeps);
     assert_eq!(start(&pile).substeps(), 1);
-}
-
-#[test]
-fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
-    for method in ALL_SCHEMES {
-        let mut pile = by(method, 0, paper_pile().expect("the shipped state"));
-        pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
-        let run = || {
-            let simulation = after(&pile, 100);
-            simulation
-        };
-        let (mut one, other) = (run(), run());
-        assert!(one.observables().slump > 0.01, "it moves");
-        assert_eq!(one.world().grains, other.world().grains);
-        assert_eq!(one.observables(), other.observables());
-        let mut clone = one.clone();
-        take_steps(&mut one, 20);
-        take_steps(&mut clone, 20);
-        assert_eq!(one.world().grains, clone.world().grains);
-    }
 }
 
 #[test]

@@ -10,20 +10,22 @@ fn springs(run: &Simulation) -> SpringDashpot {
     SpringDashpot::of(run.world(), physics.axes, run.parameters())
 }
 
-/// Steps until two discs that meet have parted, and gives speed after over speed before.
-fn measured_restitution(scene: &Scene) -> f64 {
+/// Steps until two discs that meet have parted: for how long they pushed, s, and speed after over speed before.
+fn until_parted(scene: &Scene) -> [f64; 2] {
     let mut run = start(scene);
     let (before, carried) = (relative_velocity(&run), momentum(&run));
-    let mut touched = false;
+    let (mut pushed, mut touched) = (0.0, false);
     for _ in 0..1_000_000 {
-        run.step().expect("a finite state");
-        let off = momentum(&run).distance(carried);
-        assert!(off < 1e-12 * carried.length(), "momentum is kept");
+        take_steps(&mut run, 1);
+        assert!(momentum(&run).distance(carried) < 1e-12 * carried.length(), "momentum is kept");
         let now = run.observables().contacts > 0;
         if touched && !now {
-            return -relative_velocity(&run).dot(before) / before.length_squared();
+            return [pushed, -relative_velocity(&run).dot(before) / before.length_squared()];
         }
         touched |= now;
+        if run.contacts().impulses().first().is_some_and(|impulse| impulse.normal > 0.0) {
+            pushed += scene.parameters.time_step_secs;
+        }
     }
     panic!("they never parted");
 }
@@ -38,7 +40,7 @@ fn springs_and_dashpots_give_the_restitution_that_is_asked_for() {
             let critical = springs(&probe).critical_time_step_secs(effective_mass(&probe), 1.0);
             let mut errors = [200.0, 800.0].map(|parts| {
                 let scene = by(Stepper::Dem, 1, meeting(physics, restitution, critical / parts));
-                measured_restitution(&scene) - expected
+                until_parted(&scene)[1] - expected
             });
             println!("ρ {restitution}: off by {errors:?}");
             // First order in h: a quarter of h, about a quarter of the error.
@@ -71,14 +73,8 @@ fn shakes_up(restitution: f64, dt_over_critical: f64) -> bool {
 #[test]
 fn a_pair_of_elements_blows_up_above_its_critical_step_and_not_below() {
     for restitution in [0.0, 0.1, 0.5, 1.0] {
-        let (mut stable, mut unstable) = (0.5, 2.0);
-        assert!(!shakes_up(restitution, stable) && shakes_up(restitution, unstable));
-        for _ in 0..8 {
-            let middle = 0.5 * (stable + unstable);
-            let place = if shakes_up(restitution, middle) { &mut unstable } else { &mut stable };
-            *place = middle;
-        }
-        println!("ρ {restitution}: {stable} to {unstable} of the critical step");
+        let stable = border(0.5, 2.0, 8, |part| !shakes_up(restitution, part));
+        println!("ρ {restitution}: {stable} of the critical step");
         assert!((stable - 1.0).abs() < 0.02, "ρ {restitution}: {stable} of the critical step");
     }
     // Without damping the critical step is 2/ω.
@@ -107,26 +103,17 @@ fn a_step_that_blows_up_ends_in_an_error() {
         }
     }
     // A pile blows up too, and comes to an end without a panic, finite or not.
+    let energies = |now: &Observables| [now.kinetic_energy, now.potential_energy];
     let mut pile = by(Stepper::Dem, 1, paper_pile().expect("the shipped state"));
     pile.parameters.time_step_secs = 2e-3;
     let mut simulation = start(&pile);
     let failed = (0..200).any(|_| simulation.step().is_err());
-    let Observed { kinetic, potential } = observed(&simulation);
+    let [kinetic, potential] = energies(simulation.observables());
     assert!(failed || kinetic > 10.0 * potential.abs(), "{kinetic} J");
     pile.parameters.substeps = 0;
     let simulation = after(&pile, 100);
-    let Observed { kinetic, potential } = observed(&simulation);
+    let [kinetic, potential] = energies(simulation.observables());
     assert!(kinetic < 0.5 * potential, "{kinetic} J of {potential} J");
-}
-
-struct Observed {
-    kinetic: f64,
-    potential: f64,
-}
-
-fn observed(run: &Simulation) -> Observed {
-    let last = run.observables();
-    Observed { kinetic: last.kinetic_energy, potential: last.potential_energy }
 }
 
 const RADIUS: f64 = 2.5e-3;
@@ -191,23 +178,7 @@ fn collision(physics: Physics, stiffness: f64, damping_ratio: f64, parts: f64) -
     let expected_restitution = (-damping_ratio * frequency * expected_secs).exp();
 
     scene.parameters.time_step_secs = expected_secs / parts;
-    let mut run = start(&scene);
-    let (before, carried) = (relative_velocity(&run), momentum(&run));
-    let (mut pushed, mut touched) = (0.0, false);
-    loop {
-        take_steps(&mut run, 1);
-        let last = run.observables();
-        if last.contacts == 0 && touched {
-            break;
-        }
-        touched |= last.contacts > 0;
-        if run.contacts().impulses().first().is_some_and(|impulse| impulse.normal > 0.0) {
-            pushed += scene.parameters.time_step_secs;
-        }
-        assert!(last.step < 1_000_000, "they never parted");
-    }
-    assert!(momentum(&run).distance(carried) < 1e-12 * carried.length());
-    let restitution = -relative_velocity(&run).dot(before) / before.length_squared();
+    let [pushed, restitution] = until_parted(&scene);
     [pushed, expected_secs, restitution, expected_restitution]
 }
 
