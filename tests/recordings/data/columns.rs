@@ -1,8 +1,9 @@
 //! What columns hold: every number of the moments, bit for bit.
 
-use slump::granular::measure;
+use slump::granular::{GrainMeasures, measure};
 use slump::scene::SCENES;
 use slump::sim::{ContactState, GrainState, Moment, Observables, OtherBody, Stepper};
+use slump::world::Disc;
 
 use super::tables::{Cell, Columns, csv, metadata, number, parquet, parts, steps};
 use super::*;
@@ -163,18 +164,18 @@ fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
     }
 }
 
-/// Rows of columns, in any order of the columns.
-struct Rows(Columns);
+type Row = Vec<(&'static str, Cell)>;
 
-impl Rows {
-    fn add(&mut self, cells: Vec<(&str, Cell)>) {
-        for (name, cell) in cells {
-            self.0.entry(name.to_owned()).or_default().push(cell);
-        }
+/// Columns of rows, in any order of the columns.
+fn columns(rows: impl IntoIterator<Item = Row>) -> Columns {
+    let mut columns = Columns::new();
+    for (name, cell) in rows.into_iter().flatten() {
+        columns.entry(name.to_owned()).or_default().push(cell);
     }
+    columns
 }
 
-pub fn word(word: &str) -> Cell {
+fn word(word: &str) -> Cell {
     Cell::Word(word.to_owned())
 }
 
@@ -182,7 +183,7 @@ fn optional(number: Option<f64>) -> Cell {
     number.map_or(Cell::Nothing, Cell::from)
 }
 
-fn grain_cells(moment: &Moment, id: usize, grain: &GrainState) -> Vec<(&'static str, Cell)> {
+fn grain_cells(moment: &Moment, id: usize, grain: &GrainState) -> Row {
     vec![
         ("step", Cell::Whole(moment.observables.step)),
         ("time", moment.observables.time_secs.into()),
@@ -199,13 +200,10 @@ fn grain_cells(moment: &Moment, id: usize, grain: &GrainState) -> Vec<(&'static 
     ]
 }
 
-pub fn grains(moments: &[Moment]) -> Columns {
-    let mut rows = Rows(Columns::new());
-    for moment in moments {
-        for (id, grain) in moment.grains.iter().enumerate() {
-            rows.add(grain_cells(moment, id, grain));
-        }
-        for (index, disc) in moment.surroundings.fixed_discs.iter().enumerate() {
+fn grains(moments: &[Moment]) -> Columns {
+    columns(moments.iter().flat_map(|moment| {
+        let of_grain = |(id, grain)| grain_cells(moment, id, grain);
+        let of_disc = |(id, disc): (usize, &Disc)| {
             let still = GrainState {
                 position: disc.position,
                 radius: disc.radius,
@@ -215,21 +213,17 @@ pub fn grains(moments: &[Moment]) -> Columns {
                 lost: false,
                 ..moment.grains[0]
             };
-            let mut cells = grain_cells(moment, moment.grains.len() + index, &still);
-            for (name, cell) in &mut cells {
-                match *name {
-                    "mass" => *cell = Cell::Nothing,
-                    "kind" => *cell = word("fixed"),
-                    _ => {}
-                }
-            }
-            rows.add(cells);
-        }
-    }
-    rows.0
+            let mut cells = grain_cells(moment, moment.grains.len() + id, &still);
+            cells.retain(|(name, _)| !["mass", "kind"].contains(name));
+            cells.extend([("mass", Cell::Nothing), ("kind", word("fixed"))]);
+            cells
+        };
+        let fixed = moment.surroundings.fixed_discs.iter().enumerate().map(of_disc);
+        moment.grains.iter().enumerate().map(of_grain).chain(fixed).collect::<Vec<_>>()
+    }))
 }
 
-fn contact_cells(moment: &Moment, contact: &ContactState) -> Vec<(&'static str, Cell)> {
+fn contact_cells(moment: &Moment, contact: &ContactState) -> Row {
     let discs = moment.grains.len() + moment.surroundings.fixed_discs.len();
     let (id, kind, name) = match contact.other {
         OtherBody::Grain(index) => (index as usize, "grain", String::new()),
@@ -268,27 +262,22 @@ fn contact_cells(moment: &Moment, contact: &ContactState) -> Vec<(&'static str, 
     ]
 }
 
-pub fn contacts(moments: &[Moment]) -> Columns {
-    let mut rows = Rows(Columns::new());
-    for moment in moments {
-        moment.contacts.iter().for_each(|contact| rows.add(contact_cells(moment, contact)));
-    }
-    rows.0
+fn contacts(moments: &[Moment]) -> Columns {
+    let of = |moment| move |contact| contact_cells(moment, contact);
+    columns(moments.iter().flat_map(|moment| moment.contacts.iter().map(of(moment))))
 }
 
-pub fn observables(all: &[Observables]) -> Columns {
-    let mut rows = Rows(Columns::new());
-    for row in all {
-        let Observables { step, time_secs, time_step_secs, residual, slump, converged, .. } = *row;
-        rows.add(vec![
-            ("step", Cell::Whole(step)),
-            ("time", time_secs.into()),
-            ("time_step", time_step_secs.into()),
+fn observables(all: &[Observables]) -> Columns {
+    columns(all.iter().map(|row| {
+        vec![
+            ("step", Cell::Whole(row.step)),
+            ("time", row.time_secs.into()),
+            ("time_step", row.time_step_secs.into()),
             ("sweeps", Cell::Whole(row.sweeps.into())),
             ("factorisations", Cell::Whole(row.factorisations.into())),
-            ("converged", Cell::Flag(converged)),
+            ("converged", Cell::Flag(row.converged)),
             ("stalled", Cell::Flag(row.stalled)),
-            ("residual", residual.into()),
+            ("residual", row.residual.into()),
             ("model_residual", optional(row.model_residual)),
             ("duality_gap", optional(row.duality_gap)),
             ("fell_back", optional(row.fell_back.map(|fell_back| u8::from(fell_back).into()))),
@@ -305,26 +294,23 @@ pub fn observables(all: &[Observables]) -> Columns {
             ("drive_work", optional(row.drive_work)),
             ("border_work", optional(row.border_work)),
             ("gravity_work", row.gravity_work.into()),
-            ("slump", slump.into()),
+            ("slump", row.slump.into()),
             ("bond_work", optional(row.bond_work)),
             ("bond_energy", optional(row.bond_energy)),
             ("broken_bond_energy", optional(row.broken_bond_energy)),
             ("lost_grains", Cell::Whole(row.lost_grains.into())),
-        ]);
-    }
-    rows.0
+        ]
+    }))
 }
 
 fn measured(number: f64) -> Cell {
     optional((!number.is_nan()).then_some(number))
 }
 
-/// Columns of grains that are measured.
-pub fn grain_measures(moments: &[Moment]) -> Columns {
-    let mut rows = Rows(Columns::new());
-    for moment in moments {
-        for of_grain in measure(moment).grains {
-            rows.add(vec![
+fn grain_measures(moments: &[Moment]) -> Columns {
+    columns(moments.iter().flat_map(|moment| {
+        let of_grain = |of_grain: GrainMeasures| {
+            vec![
                 ("coordination", f64::from(of_grain.coordination).into()),
                 ("rattler", Cell::Flag(of_grain.rattler)),
                 ("pressure", measured(of_grain.pressure)),
@@ -332,22 +318,19 @@ pub fn grain_measures(moments: &[Moment]) -> Columns {
                 ("stress_xy", measured(of_grain.stress_xy)),
                 ("cell_area", measured(of_grain.cell_area)),
                 ("solid_fraction", measured(of_grain.solid_fraction)),
-            ]);
-        }
-        for _ in &moment.surroundings.fixed_discs {
-            let names = ["coordination", "rattler", "pressure", "deviator", "stress_xy"];
-            let names = names.into_iter().chain(["cell_area", "solid_fraction"]);
-            rows.add(names.map(|name| (name, Cell::Nothing)).collect());
-        }
-    }
-    rows.0
+            ]
+        };
+        let mut rows: Vec<Row> = measure(moment).grains.into_iter().map(of_grain).collect();
+        let nothing: Row = rows[0].iter().map(|(name, _)| (*name, Cell::Nothing)).collect();
+        rows.extend(vec![nothing; moment.surroundings.fixed_discs.len()]);
+        rows
+    }))
 }
 
-pub fn measures(moments: &[Moment]) -> Columns {
-    let mut rows = Rows(Columns::new());
-    for moment in moments {
+fn measures(moments: &[Moment]) -> Columns {
+    columns(moments.iter().map(|moment| {
         let pile = measure(moment).pile;
-        rows.add(vec![
+        vec![
             ("step", Cell::Whole(moment.observables.step)),
             ("time", moment.observables.time_secs.into()),
             ("grains", Cell::Whole(pile.grains.into())),
@@ -358,17 +341,16 @@ pub fn measures(moments: &[Moment]) -> Columns {
             ("rattlers", Cell::Whole(pile.rattlers.into())),
             ("solid_fraction_cells", measured(pile.solid_fraction_cells)),
             ("strong_share", measured(pile.strong_share)),
-        ]);
-    }
-    rows.0
+        ]
+    }))
 }
 
-pub fn histograms(moments: &[Moment]) -> Columns {
-    let mut rows = Rows(Columns::new());
+fn histograms(moments: &[Moment]) -> Columns {
+    let mut rows = Vec::new();
     for moment in moments {
         for histogram in measure(moment).histograms {
             for (bin, &count) in histogram.counts.iter().enumerate() {
-                rows.add(vec![
+                rows.push(vec![
                     ("step", Cell::Whole(moment.observables.step)),
                     ("time", moment.observables.time_secs.into()),
                     ("quantity", word(histogram.quantity)),
@@ -380,5 +362,5 @@ pub fn histograms(moments: &[Moment]) -> Columns {
             }
         }
     }
-    rows.0
+    columns(rows)
 }
