@@ -400,3 +400,22 @@ pub fn border(mut low: f64, mut high: f64, halvings: u32, holds: impl Fn(f64) ->
     }
     low
 }
+
+/// Each of some with each of others.
+pub fn pairs<A: Clone, B: Clone>(
+    some: impl IntoIterator<Item = A>,
+    others: impl IntoIterator<Item = B>,
+) -> Vec<(A, B)> {
+    let others: Vec<B> = others.into_iter().collect();
+    let with_others = |one: A| others.clone().into_iter().map(move |other| (one.clone(), other));
+    some.into_iter().flat_map(with_others).collect()
+}
+
+/// The same of three kinds.
+pub fn triples<A: Clone, B: Clone, C: Clone>(
+    some: impl IntoIterator<Item = A>,
+    others: impl IntoIterator<Item = B>,
+    more: impl IntoIterator<Item = C>,
+) -> Vec<(A, B, C)> {
+    pairs(pairs(some, others), more).into_iter().map(|((a, b), c)| (a, b, c)).collect()
+}

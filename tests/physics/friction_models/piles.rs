@@ -9,26 +9,22 @@ pub const CONVEX: [FrictionModel; 3] =
 /// Piles under every convex model, with both cones where the model takes them.
 fn piles(count: usize, bond: f64, speed: f64, dt: f64) -> Vec<Scene> {
     let mut all = Vec::new();
-    for model in CONVEX {
-        for restitution in [0.0, 0.9] {
-            for cone in FrictionCone::ALL {
-                if model != FrictionModel::Tresca && *cone == FrictionCone::Compressive {
-                    continue;
-                }
-                for physics in [UNTURNING, Physics::FULL] {
-                    let parameters = parameters(bond, dt, restitution, MU_OF_PILES);
-                    let mut pile = pressed_pile(count, speed, 11, parameters);
-                    (pile.physics, pile.parameters.cone) = (physics, *cone);
-                    if !physics.rotation {
-                        pile.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
-                    }
-                    pile.solver.friction_model = model;
-                    (pile.solver.tolerance, pile.solver.max_sweeps) = (1e-11, 300_000);
-                    for method in [Method::Nsgs, Method::InteriorPoint] {
-                        pile.solver.method = method;
-                        all.push(pile.clone());
-                    }
-                }
+    for (model, restitution, cone) in triples(CONVEX, [0.0, 0.9], FrictionCone::ALL) {
+        if model != FrictionModel::Tresca && *cone == FrictionCone::Compressive {
+            continue;
+        }
+        for physics in [UNTURNING, Physics::FULL] {
+            let parameters = parameters(bond, dt, restitution, MU_OF_PILES);
+            let mut pile = pressed_pile(count, speed, 11, parameters);
+            (pile.physics, pile.parameters.cone) = (physics, *cone);
+            if !physics.rotation {
+                pile.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
+            }
+            pile.solver.friction_model = model;
+            (pile.solver.tolerance, pile.solver.max_sweeps) = (1e-11, 300_000);
+            for method in [Method::Nsgs, Method::InteriorPoint] {
+                pile.solver.method = method;
+                all.push(pile.clone());
             }
         }
     }
@@ -153,29 +149,30 @@ fn pile(method: Method, fallback: Fallback, cone: FrictionCone) -> Simulation {
 
 #[test]
 fn a_step_that_is_not_solved_falls_back_on_one_that_is_and_says_so() {
-    for cone in FrictionCone::ALL {
-        for method in [Method::Nsgs, Method::Nncg, Method::Newton, Method::InteriorPoint] {
-            let what = format!("{method}, {cone}");
-            let mut run = pile(method, Fallback::Tresca, *cone);
-            let (mut fell_back, mut solved) = (0, 0);
-            for _ in 0..60 {
-                let row = *run.step().expect("a finite state");
-                let told = row.fell_back.expect("it could fall back");
-                let of_model = row.model_residual.expect("a residual of what was solved");
-                let gap = row.duality_gap.expect("a gap");
-                if told {
-                    fell_back += 1;
-                    assert!(!row.converged && of_model <= 1e-8, "{what}: {of_model:e}");
-                    assert!((-1e-14..1e-3).contains(&gap), "{what}: {gap:e}");
-                    assert!(row.factorisations > 0, "{what}");
-                } else {
-                    solved += 1;
-                    assert!(row.converged, "{what}: neither");
-                    assert_eq!((of_model, gap), (row.residual, f64::INFINITY), "{what}");
-                }
+    for (cone, method) in pairs(
+        FrictionCone::ALL,
+        [Method::Nsgs, Method::Nncg, Method::Newton, Method::InteriorPoint],
+    ) {
+        let what = format!("{method}, {cone}");
+        let mut run = pile(method, Fallback::Tresca, *cone);
+        let (mut fell_back, mut solved) = (0, 0);
+        for _ in 0..60 {
+            let row = *run.step().expect("a finite state");
+            let told = row.fell_back.expect("it could fall back");
+            let of_model = row.model_residual.expect("a residual of what was solved");
+            let gap = row.duality_gap.expect("a gap");
+            if told {
+                fell_back += 1;
+                assert!(!row.converged && of_model <= 1e-8, "{what}: {of_model:e}");
+                assert!((-1e-14..1e-3).contains(&gap), "{what}: {gap:e}");
+                assert!(row.factorisations > 0, "{what}");
+            } else {
+                solved += 1;
+                assert!(row.converged, "{what}: neither");
+                assert_eq!((of_model, gap), (row.residual, f64::INFINITY), "{what}");
             }
-            assert!(fell_back > 10, "{what}: {fell_back} fell back, {solved} were solved");
         }
+        assert!(fell_back > 10, "{what}: {fell_back} fell back, {solved} were solved");
     }
 }
 

@@ -35,19 +35,17 @@ fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64;
     let step = (high - low) / f64::from(steps);
     let beyond = steps / 8;
     let mut areas = vec![[0.0; 2]; grains.len()];
-    for row in -beyond..steps + beyond {
-        for column in -beyond..steps + beyond {
-            let point = low + step * (DVec2::new(f64::from(column), f64::from(row)) + 0.5);
-            if !(point.cmpgt(room[0]).all() && point.cmplt(room[1]).all()) {
-                continue;
-            }
-            let in_box = (0..steps).contains(&row) && (0..steps).contains(&column);
-            if let Some([inside, everywhere]) =
-                owner(point, &all, largest_power).and_then(|index| areas.get_mut(index))
-            {
-                *everywhere += step.x * step.y;
-                *inside += if in_box { step.x * step.y } else { 0.0 };
-            }
+    for (row, column) in pairs(-beyond..steps + beyond, -beyond..steps + beyond) {
+        let point = low + step * (DVec2::new(f64::from(column), f64::from(row)) + 0.5);
+        if !(point.cmpgt(room[0]).all() && point.cmplt(room[1]).all()) {
+            continue;
+        }
+        let in_box = (0..steps).contains(&row) && (0..steps).contains(&column);
+        if let Some([inside, everywhere]) =
+            owner(point, &all, largest_power).and_then(|index| areas.get_mut(index))
+        {
+            *everywhere += step.x * step.y;
+            *inside += if in_box { step.x * step.y } else { 0.0 };
         }
     }
     areas

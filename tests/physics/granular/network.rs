@@ -109,7 +109,7 @@ fn on_a_slope_discs_slip_where_friction_is_below_a_third_of_its_tangent() {
 }
 
 /// Pairs of discs that touch with these forces.
-fn pairs(forces: &[f64]) -> Moment {
+fn pairs_under(forces: &[f64]) -> Moment {
     let place = |k: usize, x: f64| disc(RADIUS * DVec2::new(x, 8.0 * k as f64), RADIUS);
     let mut moment =
         discs((0..forces.len()).flat_map(|k| [place(k, 0.0), place(k, 2.0)]).collect());
@@ -132,7 +132,7 @@ fn filled(histogram: &Histogram) -> Vec<(f64, u64)> {
 
 #[test]
 fn moments_of_forces_are_those_of_their_ratios_to_the_mean() {
-    let pile = PileMeasures::of(&pairs(&[1.0, 2.0, 3.0, 6.0, -3.0, 0.0]));
+    let pile = PileMeasures::of(&pairs_under(&[1.0, 2.0, 3.0, 6.0, -3.0, 0.0]));
     // What bears nothing does not count: five contacts with ⟨|N|⟩ = 3.
     assert_close(pile.mean_normal_force, 3.0, EXACT, "⟨|N|⟩");
     assert_close(pile.normal_force_second_moment, 59.0 / 45.0, EXACT, "⟨f²⟩");
@@ -148,7 +148,7 @@ fn exponential_forces_have_the_moments_and_the_histogram_of_an_exponential() {
     let count = 4000;
     let forces: Vec<f64> =
         (0..count).map(|k| -7.0 * (1.0 - (f64::from(k) + 0.5) / f64::from(count)).ln()).collect();
-    let moment = pairs(&forces);
+    let moment = pairs_under(&forces);
     let pile = PileMeasures::of(&moment);
     assert_close(pile.mean_normal_force, 7.0, 1e-3, "⟨N⟩");
     assert_close(pile.normal_force_second_moment, 2.0, 1e-2, "⟨f²⟩");
@@ -168,14 +168,12 @@ fn directions_of_a_triangular_packing_fall_into_three_bins() {
     let mut moment = triangular_discs(8, 8);
     let centres: Vec<DVec2> = moment.grains.iter().map(|grain| grain.position).collect();
     let mut along_rows = 0;
-    for i in 0..centres.len() {
-        for j in 0..centres.len() {
-            // In either order of the pair the axis is the same.
-            let ends = if (i + j) % 2 == 0 { [i, j] } else { [j, i] };
-            if i < j && centres[i].distance(centres[j]) < 2.0001 * RADIUS {
-                along_rows += u64::from(centres[i].y == centres[j].y);
-                touch(&mut moment, ends, [1.0, 0.0]);
-            }
+    for (i, j) in pairs(0..centres.len(), 0..centres.len()) {
+        // In either order of the pair the axis is the same.
+        let ends = if (i + j) % 2 == 0 { [i, j] } else { [j, i] };
+        if i < j && centres[i].distance(centres[j]) < 2.0001 * RADIUS {
+            along_rows += u64::from(centres[i].y == centres[j].y);
+            touch(&mut moment, ends, [1.0, 0.0]);
         }
     }
     // Up to the right and up to the left in turn have one more: there are seven steps from row to row.
@@ -194,7 +192,7 @@ fn directions_of_a_triangular_packing_fall_into_three_bins() {
 fn what_lies_beyond_the_bins_is_in_the_outermost() {
     let mut forces = vec![1.0; 20];
     forces.extend([100.0, -100.0]);
-    let mut moment = pairs(&forces);
+    let mut moment = pairs_under(&forces);
     let overlaps = [-1e-3, 0.0, 3e-8, 1.1e-7, 1.5e-4, 0.011, 0.03, 0.2];
     let overlaps = overlaps.into_iter().chain(std::iter::repeat(3e-4));
     for (contact, overlap) in moment.contacts.iter_mut().zip(overlaps) {

@@ -175,39 +175,37 @@ fn speed_of_hand() -> f64 {
 
 #[test]
 fn a_wall_that_is_drawn_hits_grains_with_its_speed_and_stays_where_it_was_drawn() {
-    for &stepper in Stepper::ALL {
-        for restitution in [0.0, 0.8] {
-            let scene = before_a_wall(stepper, restitution);
-            let Ok(mut run) = scene.simulation() else { continue };
-            let place = |run: &Simulation| place_of(&run.world().boundaries[0]);
-            let goal = place(&run) + DVec2::new(3.5 * RADIUS, 0.0);
-            run.edit(&Edit::Draw { boundary: 0, to: goal }).expect("a wall");
-            let way_secs = 3.5 * RADIUS / speed_of_hand();
-            let steps = (1.2 * way_secs / 1e-4) as usize;
-            let mut fastest_wall = 0f64;
-            for _ in 0..steps {
-                let before = place(&run);
-                run.step().expect("a finite state");
-                fastest_wall = fastest_wall.max(place(&run).distance(before) / 1e-4);
-            }
-            assert!((fastest_wall - speed_of_hand()).abs() < 1e-9, "{stepper:?}: {fastest_wall}");
-            assert!(place(&run).distance(goal) < 1e-12, "{stepper:?}");
-            // The grain was at rest, so it leaves a heavy wall at (1 + ρ) times its speed.
-            let speed = run.velocity(0).x;
-            let rebound = if stepper == Stepper::Avbd { 0.0 } else { restitution };
-            let expected = (1.0 + rebound) * speed_of_hand();
-            // Springs and many substeps come near to it.
-            let tolerance = if stepper == Stepper::Moreau { 1e-9 } else { 0.06 };
-            assert!(
-                (speed / expected - 1.0).abs() < tolerance,
-                "{stepper:?}, {restitution}: {speed} {expected}"
-            );
-            run.edit(&Edit::LetGo).expect("a hand");
-            let there = place(&run);
-            take_steps(&mut run, 50);
-            assert_eq!(place(&run), there, "{stepper:?}: at rest once it is let go");
-            assert!(run.world().motions.is_empty(), "{stepper:?}");
+    for (&stepper, restitution) in pairs(Stepper::ALL, [0.0, 0.8]) {
+        let scene = before_a_wall(stepper, restitution);
+        let Ok(mut run) = scene.simulation() else { continue };
+        let place = |run: &Simulation| place_of(&run.world().boundaries[0]);
+        let goal = place(&run) + DVec2::new(3.5 * RADIUS, 0.0);
+        run.edit(&Edit::Draw { boundary: 0, to: goal }).expect("a wall");
+        let way_secs = 3.5 * RADIUS / speed_of_hand();
+        let steps = (1.2 * way_secs / 1e-4) as usize;
+        let mut fastest_wall = 0f64;
+        for _ in 0..steps {
+            let before = place(&run);
+            run.step().expect("a finite state");
+            fastest_wall = fastest_wall.max(place(&run).distance(before) / 1e-4);
         }
+        assert!((fastest_wall - speed_of_hand()).abs() < 1e-9, "{stepper:?}: {fastest_wall}");
+        assert!(place(&run).distance(goal) < 1e-12, "{stepper:?}");
+        // The grain was at rest, so it leaves a heavy wall at (1 + ρ) times its speed.
+        let speed = run.velocity(0).x;
+        let rebound = if stepper == Stepper::Avbd { 0.0 } else { restitution };
+        let expected = (1.0 + rebound) * speed_of_hand();
+        // Springs and many substeps come near to it.
+        let tolerance = if stepper == Stepper::Moreau { 1e-9 } else { 0.06 };
+        assert!(
+            (speed / expected - 1.0).abs() < tolerance,
+            "{stepper:?}, {restitution}: {speed} {expected}"
+        );
+        run.edit(&Edit::LetGo).expect("a hand");
+        let there = place(&run);
+        take_steps(&mut run, 50);
+        assert_eq!(place(&run), there, "{stepper:?}: at rest once it is let go");
+        assert!(run.world().motions.is_empty(), "{stepper:?}");
     }
 }
 

@@ -117,31 +117,25 @@ const NEAR: f64 = 1e-4;
 
 #[test]
 fn a_chain_holds_while_no_contact_carries_more_than_its_cohesion() {
-    for dt in TIME_STEPS {
-        for physics in [LINE, SMOOTH, Physics::FULL] {
-            for n in [1, 2, 4, 7] {
-                let bond = breaking_bond(n) * (1.0 + NEAR);
-                let mut run = chain(n, bond, dt, physics);
-                take_steps(&mut run, 50);
-                assert_eq!(run.observables().contacts, n as u32, "Δt {dt}, n {n}");
-                let mass = run.grains().masses[0];
-                for (contact, impulse) in
-                    run.contacts().contacts().iter().zip(run.contacts().impulses())
-                {
-                    // Grain indices rise downward; a contact's lower disc is the one whose number
-                    // is larger, or the only one.
-                    let lower = if contact.other as usize >= n { 0 } else { contact.other };
-                    let weight = (n - lower as usize) as f64 * mass * G;
-                    let force = impulse.normal / dt;
-                    assert!(
-                        (force + weight).abs() < 1e-8 * n as f64 * mass * G,
-                        "Δt {dt}, n {n}: the contact above grain {lower} carries {force}"
-                    );
-                }
-                for velocity in run.velocities() {
-                    assert!(velocity.length() < 1e-8 * G * dt, "Δt {dt}, n {n}: hangs still");
-                }
-            }
+    for (dt, physics, n) in triples(TIME_STEPS, [LINE, SMOOTH, Physics::FULL], [1, 2, 4, 7]) {
+        let bond = breaking_bond(n) * (1.0 + NEAR);
+        let mut run = chain(n, bond, dt, physics);
+        take_steps(&mut run, 50);
+        assert_eq!(run.observables().contacts, n as u32, "Δt {dt}, n {n}");
+        let mass = run.grains().masses[0];
+        for (contact, impulse) in run.contacts().contacts().iter().zip(run.contacts().impulses()) {
+            // Grain indices rise downward; a contact's lower disc is the one whose number
+            // is larger, or the only one.
+            let lower = if contact.other as usize >= n { 0 } else { contact.other };
+            let weight = (n - lower as usize) as f64 * mass * G;
+            let force = impulse.normal / dt;
+            assert!(
+                (force + weight).abs() < 1e-8 * n as f64 * mass * G,
+                "Δt {dt}, n {n}: the contact above grain {lower} carries {force}"
+            );
+        }
+        for velocity in run.velocities() {
+            assert!(velocity.length() < 1e-8 * G * dt, "Δt {dt}, n {n}: hangs still");
         }
     }
 }

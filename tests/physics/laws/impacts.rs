@@ -40,21 +40,21 @@ fn after_a_step(scene: &Scene, axis: DVec2) -> Vec<f64> {
 
 #[test]
 fn as_many_balls_leave_newtons_cradle_as_have_struck_it() {
-    for (physics, axis) in [(LINE, DVec2::X), (SMOOTH, DVec2::new(0.6, 0.8))] {
-        for count in 2..=20 {
-            for strikers in 1..=3.min(count - 1) {
-                let speed = |ball: usize| if ball < strikers { SPEED } else { 0.0 };
-                let velocities: Vec<f64> = (0..count).map(speed).collect();
-                let mut scene = struck(physics, 1.0, row_of(axis, &velocities));
-                for robust in [false, true] {
-                    if robust {
-                        Preset::Robust.apply(&mut scene);
-                    }
-                    let after = after_a_step(&scene, axis);
-                    for (ball, expected) in (0..count).rev().map(speed).enumerate() {
-                        let off = (after[ball] - expected).abs();
-                        assert!(off < 1e-10, "{strikers} of {count}, ball {ball}: {after:?}");
-                    }
+    for ((physics, axis), count) in
+        pairs([(LINE, DVec2::X), (SMOOTH, DVec2::new(0.6, 0.8))], 2..=20)
+    {
+        for strikers in 1..=3.min(count - 1) {
+            let speed = |ball: usize| if ball < strikers { SPEED } else { 0.0 };
+            let velocities: Vec<f64> = (0..count).map(speed).collect();
+            let mut scene = struck(physics, 1.0, row_of(axis, &velocities));
+            for robust in [false, true] {
+                if robust {
+                    Preset::Robust.apply(&mut scene);
+                }
+                let after = after_a_step(&scene, axis);
+                for (ball, expected) in (0..count).rev().map(speed).enumerate() {
+                    let off = (after[ball] - expected).abs();
+                    assert!(off < 1e-10, "{strikers} of {count}, ball {ball}: {after:?}");
                 }
             }
         }
@@ -179,23 +179,21 @@ fn shocks_keep_the_momentum_and_never_gain_energy() {
 
 #[test]
 fn with_friction_and_spins_none_of_these_shocks_gains_energy() {
-    for seed in 0..60 {
-        for restitution in [0.5, 1.0] {
-            let mut scene = crowd(restitution, 36, seed);
-            let mut random = random(seed);
-            scene.physics = Physics::FULL;
-            scene.parameters.friction = 0.5;
-            scene.solver.tolerance = 1e-10;
-            for grain in &mut scene.grains {
-                grain.angular_velocity = 40.0 * random.random_range(-1.0..=1.0);
-            }
-            let mut run = start(&scene);
-            for _ in 0..5 {
-                let before = run.observables().kinetic_energy;
-                let after = *run.step().expect("a finite state");
-                let grown = after.kinetic_energy / before - 1.0;
-                assert!(grown < 1e-6, "seed {seed}, ρ {restitution}: {grown:e}");
-            }
+    for (seed, restitution) in pairs(0..60, [0.5, 1.0]) {
+        let mut scene = crowd(restitution, 36, seed);
+        let mut random = random(seed);
+        scene.physics = Physics::FULL;
+        scene.parameters.friction = 0.5;
+        scene.solver.tolerance = 1e-10;
+        for grain in &mut scene.grains {
+            grain.angular_velocity = 40.0 * random.random_range(-1.0..=1.0);
+        }
+        let mut run = start(&scene);
+        for _ in 0..5 {
+            let before = run.observables().kinetic_energy;
+            let after = *run.step().expect("a finite state");
+            let grown = after.kinetic_energy / before - 1.0;
+            assert!(grown < 1e-6, "seed {seed}, ρ {restitution}: {grown:e}");
         }
     }
 }
@@ -288,14 +286,12 @@ fn wall(run: &Simulation) -> f64 {
 
 #[test]
 fn a_wall_hits_a_disc_at_rest_as_a_moving_disc_hits_a_wall() {
-    for physics in [LINE, Physics::FULL] {
-        for restitution in [0.0, 0.5, 1.0] {
-            // From further than any list of near pairs reaches.
-            let run = after(&pushed(physics, restitution, 20.0 * RADIUS, 10.0), 10_000);
-            let expected = (1.0 + restitution) * WALL_SPEED;
-            let speed = run.velocity(0).x;
-            assert_close(speed, expected, 1e-12, "speed after the wall came");
-        }
+    for (physics, restitution) in pairs([LINE, Physics::FULL], [0.0, 0.5, 1.0]) {
+        // From further than any list of near pairs reaches.
+        let run = after(&pushed(physics, restitution, 20.0 * RADIUS, 10.0), 10_000);
+        let expected = (1.0 + restitution) * WALL_SPEED;
+        let speed = run.velocity(0).x;
+        assert_close(speed, expected, 1e-12, "speed after the wall came");
     }
 }
 

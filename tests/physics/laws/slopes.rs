@@ -86,25 +86,25 @@ fn cohesion_steepens_the_threshold_with_the_shifted_cone_alone() {
 
 #[test]
 fn a_disc_rolls_without_slip_up_to_three_mu_and_with_slip_above() {
-    for (name, level) in levels() {
-        for slope in [0.1, MU, 3.0 * MU * (1.0 - 1e-6), 3.0 * MU * (1.0 + 1e-6), 2.0] {
-            let run = after(&on_level(Physics::FULL, slope, MU, level.clone()), 500);
-            let (along, onto) = acceleration(slope);
-            let grains = run.grains();
-            let secs = 500.0 * DT;
-            let spin = -RADIUS * grains.angular_velocities[0];
-            let (speed, expected_spin) = if slope < 3.0 * MU {
-                (along * secs * 2.0 / 3.0, along * secs * 2.0 / 3.0)
-            } else {
-                ((along - MU * onto) * secs, 2.0 * MU * onto * secs)
-            };
-            assert_close(grains.velocities[0].x, speed, 1e-10, &format!("{name}, tanθ {slope}"));
-            assert_close(spin, expected_spin, 1e-10, &format!("{name}: spin at tanθ {slope}"));
-            assert!(grains.positions[0].x > 0.05, "{name}: got past the polyline's vertex");
-            let turned = -RADIUS * grains.angles[0];
-            let way = grains.positions[0].x;
-            assert_eq!((turned - way).abs() < 1e-9 * way, slope < 3.0 * MU, "{name}: no slip");
-        }
+    for ((name, level), slope) in
+        pairs(levels(), [0.1, MU, 3.0 * MU * (1.0 - 1e-6), 3.0 * MU * (1.0 + 1e-6), 2.0])
+    {
+        let run = after(&on_level(Physics::FULL, slope, MU, level.clone()), 500);
+        let (along, onto) = acceleration(slope);
+        let grains = run.grains();
+        let secs = 500.0 * DT;
+        let spin = -RADIUS * grains.angular_velocities[0];
+        let (speed, expected_spin) = if slope < 3.0 * MU {
+            (along * secs * 2.0 / 3.0, along * secs * 2.0 / 3.0)
+        } else {
+            ((along - MU * onto) * secs, 2.0 * MU * onto * secs)
+        };
+        assert_close(grains.velocities[0].x, speed, 1e-10, &format!("{name}, tanθ {slope}"));
+        assert_close(spin, expected_spin, 1e-10, &format!("{name}: spin at tanθ {slope}"));
+        assert!(grains.positions[0].x > 0.05, "{name}: got past the polyline's vertex");
+        let turned = -RADIUS * grains.angles[0];
+        let way = grains.positions[0].x;
+        assert_eq!((turned - way).abs() < 1e-9 * way, slope < 3.0 * MU, "{name}: no slip");
     }
 }
 

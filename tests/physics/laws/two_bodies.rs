@@ -12,6 +12,7 @@
 use crate::common::*;
 
 /// What a contact between i and another body, with normal `direction`, starts from.
+#[derive(Clone)]
 struct Case {
     parameters: Parameters,
     velocity: f64,
@@ -26,16 +27,12 @@ const OVERLAP: f64 = 1e-9;
 
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for bond in [0.0, 3.0, 50.0] {
-        for time_step_secs in [1e-5, 1e-3, 1e-2] {
-            for restitution in [0.0, 0.2, 1.0] {
-                for velocity in [-1.0, -1e-3, 1e-4, 0.05, 2.0] {
-                    for pressing in [-1.0, 0.0, 1.0] {
-                        let parameters = parameters(bond, time_step_secs, restitution, 0.5);
-                        cases.push(Case { parameters, velocity, pressing });
-                    }
-                }
-            }
+    for (bond, time_step_secs, restitution) in
+        triples([0.0, 3.0, 50.0], [1e-5, 1e-3, 1e-2], [0.0, 0.2, 1.0])
+    {
+        for (velocity, pressing) in pairs([-1.0, -1e-3, 1e-4, 0.05, 2.0], [-1.0, 0.0, 1.0]) {
+            let parameters = parameters(bond, time_step_secs, restitution, 0.5);
+            cases.push(Case { parameters, velocity, pressing });
         }
     }
     cases
@@ -127,11 +124,9 @@ fn one_contact_bounces_closes_again_or_opens_as_in_section_2_2() {
 #[test]
 fn friction_and_rotation_change_nothing_head_on() {
     // Along an axis the tangential velocity is exactly 0.
-    for case in cases() {
-        for direction in [DVec2::Y, -DVec2::X] {
-            check(&case, &against_fixed(&case, Physics::FULL, direction), direction);
-            check(&case, &free_pair(&case, Physics::FULL, direction), direction);
-        }
+    for (case, direction) in pairs(cases(), [DVec2::Y, -DVec2::X]) {
+        check(&case, &against_fixed(&case, Physics::FULL, direction), direction);
+        check(&case, &free_pair(&case, Physics::FULL, direction), direction);
     }
 }
 
@@ -153,36 +148,32 @@ fn pulled(bond: f64, dt: f64, physics: Physics, free: bool) -> Scene {
 
 #[test]
 fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
-    for dt in TIME_STEPS {
-        for physics in [LINE, SMOOTH, Physics::FULL] {
-            for free in [false, true] {
-                let relative = |run: &Simulation| {
-                    let velocities = run.velocities();
-                    velocities[0] - velocities.get(1).copied().unwrap_or_default()
-                };
+    for (dt, physics, free) in triples(TIME_STEPS, [LINE, SMOOTH, Physics::FULL], [false, true]) {
+        let relative = |run: &Simulation| {
+            let velocities = run.velocities();
+            velocities[0] - velocities.get(1).copied().unwrap_or_default()
+        };
 
-                let holding = after(&pulled(1.0 + 1e-6, dt, physics, free), 100);
-                assert_eq!(holding.observables().contacts, 1, "Δt {dt}: held");
-                assert!(relative(&holding).length() < 1e-12 * G * dt, "Δt {dt}: held still");
-                let mass = holding.grains().masses[0];
-                let share = if free { holding.grains().masses[1] } else { f64::INFINITY };
-                let pull = G / (1.0 / mass + 1.0 / share);
-                let impulse = holding.contacts().impulses()[0].normal;
-                assert_close(impulse / dt, -pull, 1e-11, "the force in the contact");
+        let holding = after(&pulled(1.0 + 1e-6, dt, physics, free), 100);
+        assert_eq!(holding.observables().contacts, 1, "Δt {dt}: held");
+        assert!(relative(&holding).length() < 1e-12 * G * dt, "Δt {dt}: held still");
+        let mass = holding.grains().masses[0];
+        let share = if free { holding.grains().masses[1] } else { f64::INFINITY };
+        let pull = G / (1.0 / mass + 1.0 / share);
+        let impulse = holding.contacts().impulses()[0].normal;
+        assert_close(impulse / dt, -pull, 1e-11, "the force in the contact");
 
-                let mut opening = start(&pulled(1.0 - 1e-6, dt, physics, free));
-                opening.step().expect("a finite state");
-                let speed = relative(&opening).length();
-                assert_close(speed, 1e-6 * G * dt, 1e-8, "the speed it opens with");
-                // The overlap is gone after √(2·OVERLAP / 1e-6 g) at the latest.
-                let mut steps = 0.02 / dt;
-                while opening.observables().contacts > 0 && steps > 0.0 {
-                    opening.step().expect("a finite state");
-                    steps -= 1.0;
-                }
-                assert_eq!(opening.observables().contacts, 0, "Δt {dt}: opens for good");
-            }
+        let mut opening = start(&pulled(1.0 - 1e-6, dt, physics, free));
+        opening.step().expect("a finite state");
+        let speed = relative(&opening).length();
+        assert_close(speed, 1e-6 * G * dt, 1e-8, "the speed it opens with");
+        // The overlap is gone after √(2·OVERLAP / 1e-6 g) at the latest.
+        let mut steps = 0.02 / dt;
+        while opening.observables().contacts > 0 && steps > 0.0 {
+            opening.step().expect("a finite state");
+            steps -= 1.0;
         }
+        assert_eq!(opening.observables().contacts, 0, "Δt {dt}: opens for good");
     }
 }
 

@@ -101,33 +101,31 @@ fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
 fn a_grain_that_hits_a_wall_of_a_mass_gets_the_impulse_of_both_masses() {
     let (radius, mass) = (0.1, 0.7);
     let of_grain = std::f64::consts::PI * radius * radius;
-    for method in methods() {
-        for restitution in [0.0, 0.5, 1.0] {
-            let parameters = parameters(0.0, 1e-4, restitution, 0.0);
-            let grain = moving(DVec2::new(0.0, 0.10001), radius, -2.0 * DVec2::Y);
-            let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters, vec![grain]);
-            scene.solver.method = method;
-            // A disc that goes along y alone, hit askew: its guide takes what is across.
-            let normal = DVec2::new(0.6, 0.8);
-            scene.fixed_discs = vec![fixed(scene.grains[0].position - 0.2 * normal, 0.1)];
-            let disc = by_force(DVec2::Y, 0.0, mass);
-            scene.motions =
-                vec![Motion { fixed_discs: vec![0], drive: Some(disc), ..Motion::default() }];
-            let run = after(&scene, 3);
-            // 1/m_eff = 1/m + n_y²/M; the approach is 2 n_y.
-            let effective = 1.0 / (1.0 / of_grain + 0.64 / mass);
-            let impulse = (1.0 + restitution) * effective * 1.6;
-            let what = format!("{method}, {restitution}");
-            let expected = -2.0 * DVec2::Y + impulse / of_grain * normal;
-            let found = run.velocity(0);
-            // The way of the first step turns the normal.
-            assert!(found.distance(expected) < 1e-2, "{what}: {found} {expected}");
-            let momentum = of_grain * found.y + mass * drive(&run).speed;
-            assert_close(momentum, -2.0 * of_grain, 1e-12, &what);
-            let energy = 0.5 * of_grain * found.length_squared() + drive(&run).kinetic_energy();
-            if restitution == 1.0 {
-                assert_close(energy, 2.0 * of_grain, 1e-12, &what);
-            }
+    for (method, restitution) in pairs(methods(), [0.0, 0.5, 1.0]) {
+        let parameters = parameters(0.0, 1e-4, restitution, 0.0);
+        let grain = moving(DVec2::new(0.0, 0.10001), radius, -2.0 * DVec2::Y);
+        let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters, vec![grain]);
+        scene.solver.method = method;
+        // A disc that goes along y alone, hit askew: its guide takes what is across.
+        let normal = DVec2::new(0.6, 0.8);
+        scene.fixed_discs = vec![fixed(scene.grains[0].position - 0.2 * normal, 0.1)];
+        let disc = by_force(DVec2::Y, 0.0, mass);
+        scene.motions =
+            vec![Motion { fixed_discs: vec![0], drive: Some(disc), ..Motion::default() }];
+        let run = after(&scene, 3);
+        // 1/m_eff = 1/m + n_y²/M; the approach is 2 n_y.
+        let effective = 1.0 / (1.0 / of_grain + 0.64 / mass);
+        let impulse = (1.0 + restitution) * effective * 1.6;
+        let what = format!("{method}, {restitution}");
+        let expected = -2.0 * DVec2::Y + impulse / of_grain * normal;
+        let found = run.velocity(0);
+        // The way of the first step turns the normal.
+        assert!(found.distance(expected) < 1e-2, "{what}: {found} {expected}");
+        let momentum = of_grain * found.y + mass * drive(&run).speed;
+        assert_close(momentum, -2.0 * of_grain, 1e-12, &what);
+        let energy = 0.5 * of_grain * found.length_squared() + drive(&run).kinetic_energy();
+        if restitution == 1.0 {
+            assert_close(energy, 2.0 * of_grain, 1e-12, &what);
         }
     }
 }
@@ -190,42 +188,40 @@ fn sheared(mass: f64) -> Scene {
 
 #[test]
 fn energy_and_momentum_of_a_driven_wall_balance_in_every_step() {
-    for method in methods() {
-        for mass in [1e-4, 0.05] {
-            let mut scene = sheared(mass);
-            (scene.solver.method, scene.solver.tolerance) = (method, 1e-6);
-            scene.solver.max_sweeps = 500;
-            // The level takes part in no wall's work, and the plate's along x is not the drive's.
-            let mut run = start(&scene);
-            let (mut turned, mut moved) = (0.0, 0f64);
-            for step in 0..120 {
-                let before = drive(&run).clone();
-                take_steps(&mut run, 1);
-                let (now, observables) = (drive(&run), run.observables());
-                let secs = scene.parameters.time_step_secs;
-                let mut push = DVec2::ZERO;
-                for contact in &run.moment().contacts {
-                    if matches!(contact.other, OtherBody::FixedDisc(_)) {
-                        push -= contact.force();
-                    }
+    for (method, mass) in pairs(methods(), [1e-4, 0.05]) {
+        let mut scene = sheared(mass);
+        (scene.solver.method, scene.solver.tolerance) = (method, 1e-6);
+        scene.solver.max_sweeps = 500;
+        // The level takes part in no wall's work, and the plate's along x is not the drive's.
+        let mut run = start(&scene);
+        let (mut turned, mut moved) = (0.0, 0f64);
+        for step in 0..120 {
+            let before = drive(&run).clone();
+            take_steps(&mut run, 1);
+            let (now, observables) = (drive(&run), run.observables());
+            let secs = scene.parameters.time_step_secs;
+            let mut push = DVec2::ZERO;
+            for contact in &run.moment().contacts {
+                if matches!(contact.other, OtherBody::FixedDisc(_)) {
+                    push -= contact.force();
                 }
-                let along = push.dot(DVec2::NEG_Y);
-                let what = format!("{method}, {mass} kg, step {step}");
-                let change = mass * (now.speed - before.speed);
-                let found = secs * (2.0 - 0.2 * now.speed + along);
-                assert!((change - found).abs() < 1e-12, "{what}: {change} {found} N s");
-                let mean = 0.5 * (now.speed + before.speed);
-                let by_walls = -secs * (along * mean + push.x * 0.1);
-                let off = (observables.wall_work - by_walls).abs();
-                assert!(off < 1e-12, "{what}: {off} J of {by_walls}");
-                let energy = now.kinetic_energy() - before.kinetic_energy();
-                let given = secs * (2.0 - 0.2 * now.speed) * mean + secs * along * mean;
-                assert!((energy - given).abs() < 1e-12, "{what}: {energy} {given} J");
-                turned += by_walls.abs();
-                moved = moved.max(now.speed.abs());
             }
-            assert!(turned > 1e-4 && moved > 1e-2, "{method}: {turned} J, {moved} m/s");
+            let along = push.dot(DVec2::NEG_Y);
+            let what = format!("{method}, {mass} kg, step {step}");
+            let change = mass * (now.speed - before.speed);
+            let found = secs * (2.0 - 0.2 * now.speed + along);
+            assert!((change - found).abs() < 1e-12, "{what}: {change} {found} N s");
+            let mean = 0.5 * (now.speed + before.speed);
+            let by_walls = -secs * (along * mean + push.x * 0.1);
+            let off = (observables.wall_work - by_walls).abs();
+            assert!(off < 1e-12, "{what}: {off} J of {by_walls}");
+            let energy = now.kinetic_energy() - before.kinetic_energy();
+            let given = secs * (2.0 - 0.2 * now.speed) * mean + secs * along * mean;
+            assert!((energy - given).abs() < 1e-12, "{what}: {energy} {given} J");
+            turned += by_walls.abs();
+            moved = moved.max(now.speed.abs());
         }
+        assert!(turned > 1e-4 && moved > 1e-2, "{method}: {turned} J, {moved} m/s");
     }
 }
 
@@ -291,38 +287,28 @@ fn jumping(mass: f64) -> Scene {
 
 #[test]
 fn energy_of_grains_and_driven_walls_changes_by_what_contacts_took_and_forces_gave() {
-    for (stepper, method) in ways() {
-        for mass in [0.003, 0.1] {
-            let mut scene = jumping(mass);
-            (scene.stepper, scene.solver.method, scene.solver.tolerance) = (stepper, method, 1e-6);
-            scene.solver.max_sweeps = 300;
-            let mut run = start(&scene);
-            let of = |run: &Simulation| {
-                let now = run.observables();
-                now.kinetic_energy + now.drive_energy.expect("walls are driven")
-            };
-            let (first, mut given) = (of(&run), 0.0);
-            assert_close(
-                run.observables().drive_energy.expect("driven"),
-                0.02 * mass,
-                1e-12,
-                "½MV²",
-            );
-            for step in 0..150 {
-                let before = of(&run);
-                take_steps(&mut run, 1);
-                let now = run.observables();
-                let of_drives = now.drive_work.expect("walls are driven");
-                let works = now.normal_work + now.tangential_work - now.wall_work;
-                let off = of(&run) - before - works - now.gravity_work - of_drives;
-                assert!(
-                    off.abs() < 1e-13 + 1e-12 * first,
-                    "{stepper} {method} {mass} {step}: {off} J"
-                );
-                given += of_drives.abs();
-            }
-            assert!(given > 0.05 * first, "{stepper} {method}: {given} J of {first} J");
+    for ((stepper, method), mass) in pairs(ways(), [0.003, 0.1]) {
+        let mut scene = jumping(mass);
+        (scene.stepper, scene.solver.method, scene.solver.tolerance) = (stepper, method, 1e-6);
+        scene.solver.max_sweeps = 300;
+        let mut run = start(&scene);
+        let of = |run: &Simulation| {
+            let now = run.observables();
+            now.kinetic_energy + now.drive_energy.expect("walls are driven")
+        };
+        let (first, mut given) = (of(&run), 0.0);
+        assert_close(run.observables().drive_energy.expect("driven"), 0.02 * mass, 1e-12, "½MV²");
+        for step in 0..150 {
+            let before = of(&run);
+            take_steps(&mut run, 1);
+            let now = run.observables();
+            let of_drives = now.drive_work.expect("walls are driven");
+            let works = now.normal_work + now.tangential_work - now.wall_work;
+            let off = of(&run) - before - works - now.gravity_work - of_drives;
+            assert!(off.abs() < 1e-13 + 1e-12 * first, "{stepper} {method} {mass} {step}: {off} J");
+            given += of_drives.abs();
         }
+        assert!(given > 0.05 * first, "{stepper} {method}: {given} J of {first} J");
     }
 }
 

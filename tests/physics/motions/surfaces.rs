@@ -40,49 +40,50 @@ fn on_belt(physics: Physics, boundary: Boundary, motion: Motion) -> Scene {
 
 #[test]
 fn a_disc_on_a_belt_is_pulled_along_by_friction_until_it_goes_with_it() {
-    for (name, boundary, motion) in belts() {
-        for (physics, end) in [(UNTURNING, SPEED), (Physics::FULL, SPEED / 3.0)] {
-            let mut scene = on_belt(physics, boundary.clone(), motion.clone());
-            for (stepper, method) in every_way_that_balances() {
-                (scene.stepper, scene.solver.method) = (stepper, method);
-                let what = format!("{name}, {stepper}, {method}");
-                let mut run = start(&through_a_file(&scene));
-                let slipping = (0.5 * end / (MU * G * DT)) as usize;
-                take_steps(&mut run, slipping);
-                let speed = run.velocity(0).x;
-                let expected = MU * G * DT * slipping as f64;
-                // The springs of the smooth method have not settled yet.
-                let tolerance = if stepper == Stepper::Dem { 0.1 } else { 1e-9 };
-                assert_close(speed, expected, tolerance, &what);
-                let mut of_walls = 0.0;
-                let mut run = start(&scene);
-                for _ in 0..1500 {
-                    of_walls += run.step().expect("a finite state").wall_work;
-                }
-                let grains = run.grains();
-                assert_close(grains.velocities[0].x, end, 1e-9, &what);
-                let spin = RADIUS * grains.angular_velocities[0];
-                assert!((spin - (SPEED - end)).abs() < 1e-9, "{what}: rω {spin}");
-                // All that the belt gave went by friction, whose impulse is mv, at the speed of the belt.
-                let expected = grains.masses[0] * end * SPEED;
-                assert_close(of_walls, expected, 1e-9, &what);
+    for ((name, boundary, motion), (physics, end)) in
+        pairs(belts(), [(UNTURNING, SPEED), (Physics::FULL, SPEED / 3.0)])
+    {
+        let mut scene = on_belt(physics, boundary.clone(), motion.clone());
+        for (stepper, method) in every_way_that_balances() {
+            (scene.stepper, scene.solver.method) = (stepper, method);
+            let what = format!("{name}, {stepper}, {method}");
+            let mut run = start(&through_a_file(&scene));
+            let slipping = (0.5 * end / (MU * G * DT)) as usize;
+            take_steps(&mut run, slipping);
+            let speed = run.velocity(0).x;
+            let expected = MU * G * DT * slipping as f64;
+            // The springs of the smooth method have not settled yet.
+            let tolerance = if stepper == Stepper::Dem { 0.1 } else { 1e-9 };
+            assert_close(speed, expected, tolerance, &what);
+            let mut of_walls = 0.0;
+            let mut run = start(&scene);
+            for _ in 0..1500 {
+                of_walls += run.step().expect("a finite state").wall_work;
             }
+            let grains = run.grains();
+            assert_close(grains.velocities[0].x, end, 1e-9, &what);
+            let spin = RADIUS * grains.angular_velocities[0];
+            assert!((spin - (SPEED - end)).abs() < 1e-9, "{what}: rω {spin}");
+            // All that the belt gave went by friction, whose impulse is mv, at the speed of the belt.
+            let expected = grains.masses[0] * end * SPEED;
+            assert_close(of_walls, expected, 1e-9, &what);
         }
     }
 }
 
 #[test]
 fn models_of_friction_see_the_belt() {
-    for model in [FrictionModel::Tresca, FrictionModel::Desaxce] {
-        for method in [Method::Nsgs, Method::InteriorPoint] {
-            let mut scene = on_belt(Physics::FULL, level(), belt(&[0], -SPEED));
-            (scene.solver.friction_model, scene.solver.method) = (model, method);
-            scene.solver.model_solves = 4;
-            scene.solver.tolerance = 1e-9;
-            let run = after(&scene, 400);
-            let speed = run.velocity(0).x;
-            assert_close(speed, SPEED / 3.0, 1e-3, &format!("{model}, {method}"));
-        }
+    for (model, method) in pairs(
+        [FrictionModel::Tresca, FrictionModel::Desaxce],
+        [Method::Nsgs, Method::InteriorPoint],
+    ) {
+        let mut scene = on_belt(Physics::FULL, level(), belt(&[0], -SPEED));
+        (scene.solver.friction_model, scene.solver.method) = (model, method);
+        scene.solver.model_solves = 4;
+        scene.solver.tolerance = 1e-9;
+        let run = after(&scene, 400);
+        let speed = run.velocity(0).x;
+        assert_close(speed, SPEED / 3.0, 1e-3, &format!("{model}, {method}"));
     }
 }
 

@@ -111,22 +111,20 @@ fn pressed(normal: DVec2, as_pistons: bool) -> Scene {
 
 #[test]
 fn a_piston_is_a_half_space_with_a_motion_to_the_last_bit() {
-    for normal in [DVec2::X, DVec2::new(0.8, 0.31)] {
-        for (stepper, method) in every_way() {
-            let [mut piston, mut motion] = [true, false].map(|as_pistons| {
-                let mut scene = pressed(normal, as_pistons);
-                (scene.stepper, scene.solver.method) = (stepper, method);
-                start(&scene)
-            });
-            let mut worked = 0.0;
-            for step in 0..40 {
-                worked += piston.step().expect("a finite state").wall_work.abs();
-                motion.step().expect("a finite state");
-                assert_eq!(bits(&piston), bits(&motion), "{stepper}, {method}, step {step}");
-                assert_eq!(piston.observables(), motion.observables());
-            }
-            assert!(worked > 0.0, "{stepper}, {method}: the walls pressed");
+    for (normal, (stepper, method)) in pairs([DVec2::X, DVec2::new(0.8, 0.31)], every_way()) {
+        let [mut piston, mut motion] = [true, false].map(|as_pistons| {
+            let mut scene = pressed(normal, as_pistons);
+            (scene.stepper, scene.solver.method) = (stepper, method);
+            start(&scene)
+        });
+        let mut worked = 0.0;
+        for step in 0..40 {
+            worked += piston.step().expect("a finite state").wall_work.abs();
+            motion.step().expect("a finite state");
+            assert_eq!(bits(&piston), bits(&motion), "{stepper}, {method}, step {step}");
+            assert_eq!(piston.observables(), motion.observables());
         }
+        assert!(worked > 0.0, "{stepper}, {method}: the walls pressed");
     }
 }
 
@@ -190,46 +188,44 @@ fn a_mirrored_scene_goes_on_mirrored() {
 #[test]
 fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
     let (radius, arm, rate) = (0.05, 1.0, 2.0);
-    for restitution in [0.0, 0.5, 1.0] {
-        for shape in 0..3 {
-            let grain = Grain::at_rest(DVec2::new(arm, 0.0), radius);
-            let start_angle = DVec2::from_angle(-1.0);
-            let boundary = match shape {
-                0 => Boundary::Segment { from: DVec2::ZERO, to: 2.0 * start_angle },
-                1 => plane(DVec2::ZERO, start_angle.perp()),
-                _ => Boundary::ConvexPolygon {
-                    points: vec![
-                        DVec2::ZERO,
-                        2.0 * (start_angle - 0.1 * start_angle.perp()),
-                        2.0 * start_angle,
-                    ],
-                },
-            };
-            let physics = Physics { friction: false, rotation: false, ..Physics::FULL };
-            let rotation = MotionCourse::Rotation { pivot: DVec2::ZERO, rate, travel: None };
-            let mut scene = Scene {
-                boundaries: vec![boundary],
-                motions: vec![goes(&[0], rotation)],
-                gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
-                ..scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), vec![grain])
-            };
-            for stepper in [Stepper::Moreau, Stepper::Range] {
-                scene.stepper = stepper;
-                let mut run = start(&scene);
-                // Struck after (1 − angle of the disc as seen from the pivot)/rate; then it flies off.
-                let mut steps = 0;
-                while run.velocity(0) == DVec2::ZERO {
-                    run.step().expect("a finite state");
-                    steps += 1;
-                    assert!(steps < 6000, "the paddle comes");
-                }
-                let speed = run.velocity(0).length();
-                let touched = (arm * arm - radius * radius).sqrt();
-                let what = format!("shape {shape}, {stepper}, ρ = {restitution}");
-                assert_close(speed, (1.0 + restitution) * rate * touched, 1e-3, &what);
-                let angle = rate * 1e-4 * f64::from(steps);
-                assert_close(angle, 1.0 - (radius / arm).asin(), 1e-3, &what);
+    for (restitution, shape) in pairs([0.0, 0.5, 1.0], 0..3) {
+        let grain = Grain::at_rest(DVec2::new(arm, 0.0), radius);
+        let start_angle = DVec2::from_angle(-1.0);
+        let boundary = match shape {
+            0 => Boundary::Segment { from: DVec2::ZERO, to: 2.0 * start_angle },
+            1 => plane(DVec2::ZERO, start_angle.perp()),
+            _ => Boundary::ConvexPolygon {
+                points: vec![
+                    DVec2::ZERO,
+                    2.0 * (start_angle - 0.1 * start_angle.perp()),
+                    2.0 * start_angle,
+                ],
+            },
+        };
+        let physics = Physics { friction: false, rotation: false, ..Physics::FULL };
+        let rotation = MotionCourse::Rotation { pivot: DVec2::ZERO, rate, travel: None };
+        let mut scene = Scene {
+            boundaries: vec![boundary],
+            motions: vec![goes(&[0], rotation)],
+            gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
+            ..scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), vec![grain])
+        };
+        for stepper in [Stepper::Moreau, Stepper::Range] {
+            scene.stepper = stepper;
+            let mut run = start(&scene);
+            // Struck after (1 − angle of the disc as seen from the pivot)/rate; then it flies off.
+            let mut steps = 0;
+            while run.velocity(0) == DVec2::ZERO {
+                run.step().expect("a finite state");
+                steps += 1;
+                assert!(steps < 6000, "the paddle comes");
             }
+            let speed = run.velocity(0).length();
+            let touched = (arm * arm - radius * radius).sqrt();
+            let what = format!("shape {shape}, {stepper}, ρ = {restitution}");
+            assert_close(speed, (1.0 + restitution) * rate * touched, 1e-3, &what);
+            let angle = rate * 1e-4 * f64::from(steps);
+            assert_close(angle, 1.0 - (radius / arm).asin(), 1e-3, &what);
         }
     }
 }

@@ -86,38 +86,38 @@ fn random_world(kind: usize, origin: DVec2, random: &mut Pcg64) -> World {
 #[test]
 fn no_contact_is_missed_or_invented_while_discs_move() {
     let mut random = random(3);
-    for origin in [DVec2::ZERO, DVec2::new(-4.0, -4.0), DVec2::new(3e5, -7e6)] {
-        for kind in 0..3 {
-            for (skin, gap_tolerance) in [(0.2, 0.0), (0.05, 1e-3)] {
-                let mut world = random_world(kind, origin, &mut random);
-                let mut candidates =
-                    Candidates::new(&world, Reach { skin, gap_tolerance }).expect("proper shapes");
-                let mut contacts = ContactList::default();
-                let (mut builds, mut changes) = (0, 0);
-                for step in 0..60 {
-                    // From crawling to leaps over several diameters.
-                    let largest = skin * 10f64.powf(random.random_range(-2.0..1.5));
-                    let only = (step % 3 == 0).then(|| random.random_range(0..160));
-                    for (k, position) in world.grains.positions.iter_mut().enumerate() {
-                        let mut along = || largest * random.random_range(-1.0..1.0);
-                        let way = DVec2::new(along(), along());
-                        if only.is_none_or(|only| only == k) {
-                            *position += way;
-                        }
-                    }
-                    let before = found(&contacts);
-                    let built = candidates.update::<2>(&world);
-                    contacts.detect::<2>(&world, &candidates);
-                    let expected = every_pair(&world, gap_tolerance);
-                    assert_eq!(found(&contacts), expected, "kind {kind}, {origin}, step {step}");
-                    check_impulses(&mut contacts, &before);
-                    builds += u32::from(built);
-                    changes += u32::from(!built && before != expected);
+    for (origin, kind, (skin, gap_tolerance)) in triples(
+        [DVec2::ZERO, DVec2::new(-4.0, -4.0), DVec2::new(3e5, -7e6)],
+        0..3,
+        [(0.2, 0.0), (0.05, 1e-3)],
+    ) {
+        let mut world = random_world(kind, origin, &mut random);
+        let mut candidates =
+            Candidates::new(&world, Reach { skin, gap_tolerance }).expect("proper shapes");
+        let mut contacts = ContactList::default();
+        let (mut builds, mut changes) = (0, 0);
+        for step in 0..60 {
+            // From crawling to leaps over several diameters.
+            let largest = skin * 10f64.powf(random.random_range(-2.0..1.5));
+            let only = (step % 3 == 0).then(|| random.random_range(0..160));
+            for (k, position) in world.grains.positions.iter_mut().enumerate() {
+                let mut along = || largest * random.random_range(-1.0..1.0);
+                let way = DVec2::new(along(), along());
+                if only.is_none_or(|only| only == k) {
+                    *position += way;
                 }
-                assert!((5..60).contains(&builds), "built {builds} times");
-                assert!(changes > 3, "contacts came and went on the same list {changes} times");
             }
+            let before = found(&contacts);
+            let built = candidates.update::<2>(&world);
+            contacts.detect::<2>(&world, &candidates);
+            let expected = every_pair(&world, gap_tolerance);
+            assert_eq!(found(&contacts), expected, "kind {kind}, {origin}, step {step}");
+            check_impulses(&mut contacts, &before);
+            builds += u32::from(built);
+            changes += u32::from(!built && before != expected);
         }
+        assert!((5..60).contains(&builds), "built {builds} times");
+        assert!(changes > 3, "contacts came and went on the same list {changes} times");
     }
 }
 

@@ -70,15 +70,13 @@ fn methods() -> impl Iterator<Item = Method> {
 fn each_heap_moves_bitwise_as_it_would_alone() {
     let together = heaps(&SIZES);
     let mut felt = 0;
-    for method in methods() {
-        for stop in [StopTest::RelativeChange, StopTest::Residual] {
-            let settings = island_by_island(method, stop);
-            let all = bits(&after_steps(&together, settings, 40));
-            let alone = SIZES.map(|heap| bits(&after_steps(&heaps(&[heap]), settings, 40)));
-            assert!(all == alone.concat(), "{method} {stop:?}");
-            let whole = SolverSettings { islands: false, ..settings };
-            felt += u32::from(bits(&after_steps(&together, whole, 40)) != all);
-        }
+    for (method, stop) in pairs(methods(), [StopTest::RelativeChange, StopTest::Residual]) {
+        let settings = island_by_island(method, stop);
+        let all = bits(&after_steps(&together, settings, 40));
+        let alone = SIZES.map(|heap| bits(&after_steps(&heaps(&[heap]), settings, 40)));
+        assert!(all == alone.concat(), "{method} {stop:?}");
+        let whole = SolverSettings { islands: false, ..settings };
+        felt += u32::from(bits(&after_steps(&together, whole, 40)) != all);
     }
     assert!(felt >= 12, "heaps felt each other's tests in {felt} of 16 ways that know no islands");
 }
@@ -131,23 +129,24 @@ fn where_each_island_passes_a_test_the_whole_does() {
 
 #[test]
 fn models_of_friction_are_solved_island_by_island() {
-    for model in [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce] {
-        for method in [Method::InteriorPoint, Method::Nsgs] {
-            let settings = SolverSettings {
-                friction_model: model,
-                model_solves: if model == FrictionModel::Associated { 1 } else { 3 },
-                tolerance: if method == Method::Nsgs { 1e-4 } else { 1e-6 },
-                max_sweeps: 20_000,
-                ..island_by_island(method, StopTest::Residual)
-            };
-            let all = after_steps(&heaps(&SIZES), settings, 20);
-            let alone = SIZES.map(|heap| bits(&after_steps(&heaps(&[heap]), settings, 20)));
-            assert!(bits(&all) == alone.concat(), "{model} {method}");
-            let step = all.observables();
-            let left = step.model_residual.expect("a residual of the model");
-            assert!(step.converged && left <= settings.tolerance, "{model} {method}: {step:?}");
-            assert!(step.duality_gap.is_some_and(|gap| gap < 1e-2), "{model} {method}: {step:?}");
-        }
+    for (model, method) in pairs(
+        [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce],
+        [Method::InteriorPoint, Method::Nsgs],
+    ) {
+        let settings = SolverSettings {
+            friction_model: model,
+            model_solves: if model == FrictionModel::Associated { 1 } else { 3 },
+            tolerance: if method == Method::Nsgs { 1e-4 } else { 1e-6 },
+            max_sweeps: 20_000,
+            ..island_by_island(method, StopTest::Residual)
+        };
+        let all = after_steps(&heaps(&SIZES), settings, 20);
+        let alone = SIZES.map(|heap| bits(&after_steps(&heaps(&[heap]), settings, 20)));
+        assert!(bits(&all) == alone.concat(), "{model} {method}");
+        let step = all.observables();
+        let left = step.model_residual.expect("a residual of the model");
+        assert!(step.converged && left <= settings.tolerance, "{model} {method}: {step:?}");
+        assert!(step.duality_gap.is_some_and(|gap| gap < 1e-2), "{model} {method}: {step:?}");
     }
 }
 

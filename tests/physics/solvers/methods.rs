@@ -179,39 +179,36 @@ fn every_method_solves_nearly_all_steps_of_moving_piles() {
 #[test]
 fn every_method_honours_every_stopping_test_and_the_limit() {
     let moments = moments();
-    for moment in moments.iter().step_by(5) {
-        for info in METHODS.iter() {
-            for (stop, tolerance) in [
-                (StopTest::RelativeChange, 1e-5),
-                (StopTest::ImpulsePerMass, 1e-4),
-                (StopTest::Residual, 1e-4),
-            ] {
-                let settings = SolverSettings {
-                    method: info.method,
-                    stop,
-                    tolerance,
-                    max_sweeps: 100_000,
-                    warm_start: false,
-                    ..SolverSettings::default()
-                };
-                let mut run = moment.clone();
-                run.set_solver(settings).expect("proper settings");
-                let [first, again] = run.next_problem(SolveTwice(settings, settings));
-                let name = format!("{} {stop:?}", info.name);
-                assert!(first.converged && again.converged, "{name}: {first:?}");
-                assert!(first.sweeps > 1, "{name}: {first:?}");
-                if stop == StopTest::Residual {
-                    let most = first.sweeps.div_ceil(4);
-                    assert!(again.sweeps <= most, "a warm start, {name}: {again:?}, {first:?}");
-                }
-                // What a step falls back on has a limit of its own.
-                let fallback = Fallback::None;
-                let hasty =
-                    SolverSettings { tolerance: 1e-14, max_sweeps: 5, fallback, ..settings };
-                let (report, residual) = next_with(moment, hasty);
-                assert!(!report.converged && report.sweeps <= 5, "{name}: {report:?}");
-                assert!(residual <= 1.0, "{name}: {residual}");
+    for (moment, info) in pairs(moments.iter().step_by(5), METHODS.iter()) {
+        for (stop, tolerance) in [
+            (StopTest::RelativeChange, 1e-5),
+            (StopTest::ImpulsePerMass, 1e-4),
+            (StopTest::Residual, 1e-4),
+        ] {
+            let settings = SolverSettings {
+                method: info.method,
+                stop,
+                tolerance,
+                max_sweeps: 100_000,
+                warm_start: false,
+                ..SolverSettings::default()
+            };
+            let mut run = moment.clone();
+            run.set_solver(settings).expect("proper settings");
+            let [first, again] = run.next_problem(SolveTwice(settings, settings));
+            let name = format!("{} {stop:?}", info.name);
+            assert!(first.converged && again.converged, "{name}: {first:?}");
+            assert!(first.sweeps > 1, "{name}: {first:?}");
+            if stop == StopTest::Residual {
+                let most = first.sweeps.div_ceil(4);
+                assert!(again.sweeps <= most, "a warm start, {name}: {again:?}, {first:?}");
             }
+            // What a step falls back on has a limit of its own.
+            let fallback = Fallback::None;
+            let hasty = SolverSettings { tolerance: 1e-14, max_sweeps: 5, fallback, ..settings };
+            let (report, residual) = next_with(moment, hasty);
+            assert!(!report.converged && report.sweeps <= 5, "{name}: {report:?}");
+            assert!(residual <= 1.0, "{name}: {residual}");
         }
     }
 }

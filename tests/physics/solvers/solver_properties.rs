@@ -234,12 +234,13 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
 /// A problem of every model, and how many contacts it has at least.
 fn scenes() -> Vec<(Scene, usize)> {
     let mut scenes = Vec::new();
-    for physics in [SMOOTH, UNTURNING, Physics::FULL] {
-        for cone in [FrictionCone::Shifted, FrictionCone::Compressive] {
-            let mut scene = pressed_pile(40, 0.1, 3, parameters(10.0, 1e-3, 0.3, 0.4));
-            (scene.physics, scene.parameters.cone) = (physics, cone);
-            scenes.push((scene, 60));
-        }
+    for (physics, cone) in pairs(
+        [SMOOTH, UNTURNING, Physics::FULL],
+        [FrictionCone::Shifted, FrictionCone::Compressive],
+    ) {
+        let mut scene = pressed_pile(40, 0.1, 3, parameters(10.0, 1e-3, 0.3, 0.4));
+        (scene.physics, scene.parameters.cone) = (physics, cone);
+        scenes.push((scene, 60));
     }
     let mut line = cradle();
     line.grains[2].position.x = line.grains[0].position.x - 0.999 * line.mean_diameter;

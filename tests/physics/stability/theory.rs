@@ -134,19 +134,19 @@ fn springs_blow_up_at_their_critical_time_step() {
 fn a_cantilever_without_friction_tears_at_the_bond_number_of_statics_at_every_time_step() {
     for length in [2, 4, 6] {
         let right = breaking_bond_of_cantilever(length);
-        for (part, torn) in [(0.99, true), (1.01, false)] {
-            for time_step_secs in [2e-4, 1e-3, 1e-2] {
-                let mut scene = cantilever(length);
-                scene.parameters.friction = 0.0;
-                scene.parameters.bond = part * right;
-                scene.parameters.time_step_secs = time_step_secs;
-                scene.solver.tolerance = 1e-9;
-                scene.solver.max_sweeps = 20_000;
-                let run = after(&scene, (0.1 / time_step_secs) as usize);
-                let bonds = 4 * length as u32;
-                let found = run.observables().contacts < bonds;
-                assert_eq!(found, torn, "{length} discs, {part} of {right}, {time_step_secs} s");
-            }
+        for ((part, torn), time_step_secs) in
+            pairs([(0.99, true), (1.01, false)], [2e-4, 1e-3, 1e-2])
+        {
+            let mut scene = cantilever(length);
+            scene.parameters.friction = 0.0;
+            scene.parameters.bond = part * right;
+            scene.parameters.time_step_secs = time_step_secs;
+            scene.solver.tolerance = 1e-9;
+            scene.solver.max_sweeps = 20_000;
+            let run = after(&scene, (0.1 / time_step_secs) as usize);
+            let bonds = 4 * length as u32;
+            let found = run.observables().contacts < bonds;
+            assert_eq!(found, torn, "{length} discs, {part} of {right}, {time_step_secs} s");
         }
     }
 }
@@ -209,18 +209,16 @@ fn what_slides_keeps_its_level_and_stops_where_the_sum_of_its_steps_says() {
         (Method::Nsgs, FrictionModel::Tresca),
         (Method::InteriorPoint, FrictionModel::Tresca),
     ];
-    for (method, model) in ways {
-        for time_step_secs in TIME_STEPS_SECS {
-            let what = format!("{method}, {model}, {time_step_secs} s");
-            let found = way(&mut sliding(time_step_secs, settings(method, model, 1)));
-            let slowing = friction * gravity * time_step_secs;
-            let steps = (speed / slowing).floor();
-            let sum = time_step_secs * (steps * speed - 0.5 * slowing * steps * (steps + 1.0));
-            assert!((found.x / sum - 1.0).abs() < 1e-9, "{what}: {} for {sum}", found.x);
-            assert!(found.y.abs() < 1e-11 * diameter, "{what}: lifted by {:e}", found.y);
-            let short = speed * speed / (2.0 * friction * gravity) - sum;
-            assert!((0.0..=0.5 * speed * time_step_secs).contains(&short), "{what}: {short}");
-        }
+    for ((method, model), time_step_secs) in pairs(ways, TIME_STEPS_SECS) {
+        let what = format!("{method}, {model}, {time_step_secs} s");
+        let found = way(&mut sliding(time_step_secs, settings(method, model, 1)));
+        let slowing = friction * gravity * time_step_secs;
+        let steps = (speed / slowing).floor();
+        let sum = time_step_secs * (steps * speed - 0.5 * slowing * steps * (steps + 1.0));
+        assert!((found.x / sum - 1.0).abs() < 1e-9, "{what}: {} for {sum}", found.x);
+        assert!(found.y.abs() < 1e-11 * diameter, "{what}: lifted by {:e}", found.y);
+        let short = speed * speed / (2.0 * friction * gravity) - sum;
+        assert!((0.0..=0.5 * speed * time_step_secs).contains(&short), "{what}: {short}");
     }
 }
 
@@ -293,30 +291,28 @@ fn a_blow_on_what_slides_takes_speed_by_impulse_balance_and_tresca_is_a_step_lat
         (Method::Nsgs, FrictionModel::Tresca, 1, 1.0),
         (Method::InteriorPoint, FrictionModel::Tresca, 2, 0.0),
     ];
-    for time_step_secs in [1e-4, 1e-3, 5e-3] {
-        for (method, model, solves, steps_late) in ways {
-            let what = format!("{method}, {model}, {solves} solves, {time_step_secs} s");
-            let mut scene = scene.clone();
-            scene.parameters.time_step_secs = time_step_secs;
-            scene.solver = settings(method, model, solves);
-            let mut run = start(&scene);
-            let mut steps = 0.0;
-            let start = along_the_floor(&run).1;
-            while !along_the_floor(&run).2 {
-                run.step().expect("a finite state");
-                steps += 1.0;
-                assert!(steps < 100.0, "{what}: the blow has come");
-            }
-            assert!(steps > 1.0, "{what}: the floor's contact was there before the blow");
-            let at_the_blow = along_the_floor(&run).0;
-            let expected = before - (1.0 - steps_late) * taken;
-            assert!((at_the_blow - expected).abs() < 1e-8, "{what}: {at_the_blow} for {expected}");
-            take_steps(&mut run, 10);
-            let (after, place, _) = along_the_floor(&run);
-            assert!((after - (before - taken)).abs() < 1e-8, "{what}: {after}");
-            let late = time_step_secs * taken * steps_late;
-            let way = time_step_secs * ((steps + 10.0) * before - 11.0 * taken) + late;
-            assert!((place - start - way).abs() < 1e-9, "{what}: {} for {way}", place - start);
+    for (time_step_secs, (method, model, solves, steps_late)) in pairs([1e-4, 1e-3, 5e-3], ways) {
+        let what = format!("{method}, {model}, {solves} solves, {time_step_secs} s");
+        let mut scene = scene.clone();
+        scene.parameters.time_step_secs = time_step_secs;
+        scene.solver = settings(method, model, solves);
+        let mut run = start(&scene);
+        let mut steps = 0.0;
+        let start = along_the_floor(&run).1;
+        while !along_the_floor(&run).2 {
+            run.step().expect("a finite state");
+            steps += 1.0;
+            assert!(steps < 100.0, "{what}: the blow has come");
         }
+        assert!(steps > 1.0, "{what}: the floor's contact was there before the blow");
+        let at_the_blow = along_the_floor(&run).0;
+        let expected = before - (1.0 - steps_late) * taken;
+        assert!((at_the_blow - expected).abs() < 1e-8, "{what}: {at_the_blow} for {expected}");
+        take_steps(&mut run, 10);
+        let (after, place, _) = along_the_floor(&run);
+        assert!((after - (before - taken)).abs() < 1e-8, "{what}: {after}");
+        let late = time_step_secs * taken * steps_late;
+        let way = time_step_secs * ((steps + 10.0) * before - 11.0 * taken) + late;
+        assert!((place - start - way).abs() < 1e-9, "{what}: {} for {way}", place - start);
     }
 }

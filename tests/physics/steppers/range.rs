@@ -49,19 +49,17 @@ fn work() -> f64 {
 #[test]
 fn a_pair_thrown_apart_parts_above_the_escape_speed_and_has_lost_the_bonds_work() {
     let escape = (2.0 * work()).sqrt();
-    for physics in [LINE, SMOOTH, Physics::FULL] {
-        for time_step_secs in TIME_STEPS {
-            for factor in [1.001, 1.1, 1.5, 3.0, 10.0] {
-                let speed = factor * escape;
-                let found = speed_far_away(pair(time_step_secs, speed, 0.0, physics))
-                    .unwrap_or_else(|| panic!("held at {factor} of it, Δt = {time_step_secs}"));
-                let lost = 0.5 * (speed * speed - found * found);
-                assert_close(lost, work(), 1e-9, &format!("work at {factor}, {time_step_secs} s"));
-            }
-            for factor in [0.1, 0.5, 0.9, 0.999] {
-                let left = speed_far_away(pair(time_step_secs, factor * escape, 0.0, physics));
-                assert_eq!(left, None, "at {factor} of the escape speed, Δt = {time_step_secs}");
-            }
+    for (physics, time_step_secs) in pairs([LINE, SMOOTH, Physics::FULL], TIME_STEPS) {
+        for factor in [1.001, 1.1, 1.5, 3.0, 10.0] {
+            let speed = factor * escape;
+            let found = speed_far_away(pair(time_step_secs, speed, 0.0, physics))
+                .unwrap_or_else(|| panic!("held at {factor} of it, Δt = {time_step_secs}"));
+            let lost = 0.5 * (speed * speed - found * found);
+            assert_close(lost, work(), 1e-9, &format!("work at {factor}, {time_step_secs} s"));
+        }
+        for factor in [0.1, 0.5, 0.9, 0.999] {
+            let left = speed_far_away(pair(time_step_secs, factor * escape, 0.0, physics));
+            assert_eq!(left, None, "at {factor} of the escape speed, Δt = {time_step_secs}");
         }
     }
 }
@@ -100,44 +98,40 @@ fn a_bond_that_holds_a_load_at_rest_asks_for_no_substeps_and_breaks_where_its_st
 
 #[test]
 fn a_load_that_breaks_a_bond_gives_it_just_its_work() {
-    for time_step_secs in TIME_STEPS {
-        for factor in [1.1, 2.0, 5.0] {
-            let mut run = pair(time_step_secs, 0.0, factor * BOND * G, LINE);
-            while run.place(0).x < 3.0 * RADIUS {
-                take_steps(&mut run, 1);
-            }
-            // The bond pulls with C₀ until the pair has opened by δ_c, and no longer.
-            let opened = DISTANCE_IN_DIAMETERS * 2.0 * RADIUS;
-            let time = (2.0 * opened / ((factor - 1.0) * BOND * G)).sqrt();
-            let at = run.time_secs();
-            let free = factor * BOND * G * at - BOND * G * time;
-            let found = run.velocity(0).x;
-            assert_close(found, free, 1e-9, &format!("v at {factor}, Δt = {time_step_secs}"));
+    for (time_step_secs, factor) in pairs(TIME_STEPS, [1.1, 2.0, 5.0]) {
+        let mut run = pair(time_step_secs, 0.0, factor * BOND * G, LINE);
+        while run.place(0).x < 3.0 * RADIUS {
+            take_steps(&mut run, 1);
         }
+        // The bond pulls with C₀ until the pair has opened by δ_c, and no longer.
+        let opened = DISTANCE_IN_DIAMETERS * 2.0 * RADIUS;
+        let time = (2.0 * opened / ((factor - 1.0) * BOND * G)).sqrt();
+        let at = run.time_secs();
+        let free = factor * BOND * G * at - BOND * G * time;
+        let found = run.velocity(0).x;
+        assert_close(found, free, 1e-9, &format!("v at {factor}, Δt = {time_step_secs}"));
     }
 }
 
 #[test]
 fn two_free_grains_part_by_the_energy_of_their_relative_motion() {
     let escape = (2.0 * work()).sqrt();
-    for time_step_secs in TIME_STEPS {
-        for factor in [0.8, 1.3] {
-            let second = DVec2::new(2.0 * RADIUS, 0.0);
-            let grains = [
-                moving(DVec2::ZERO, RADIUS, DVec2::ZERO),
-                moving(second, RADIUS, DVec2::new(factor * escape, 0.0)),
-            ];
-            let weightless = |grain| Grain { feels_gravity: false, ..grain };
-            let grains = grains.into_iter().map(weightless).collect();
-            let parameters = range(BOND, time_step_secs);
-            let scene = scene(LINE, DVec2::new(G, 0.0), parameters, grains);
-            let run =
-                after(&Scene { stepper: Stepper::Range, ..scene }, (0.1 / time_step_secs) as usize);
-            let velocities = run.velocities();
-            let found = velocities[1].x - velocities[0].x;
-            let expected = escape * (factor * factor - 1.0f64).max(0.0).sqrt();
-            assert!((found - expected).abs() < 1e-9, "{factor}, Δt = {time_step_secs}: {found}");
-        }
+    for (time_step_secs, factor) in pairs(TIME_STEPS, [0.8, 1.3]) {
+        let second = DVec2::new(2.0 * RADIUS, 0.0);
+        let grains = [
+            moving(DVec2::ZERO, RADIUS, DVec2::ZERO),
+            moving(second, RADIUS, DVec2::new(factor * escape, 0.0)),
+        ];
+        let weightless = |grain| Grain { feels_gravity: false, ..grain };
+        let grains = grains.into_iter().map(weightless).collect();
+        let parameters = range(BOND, time_step_secs);
+        let scene = scene(LINE, DVec2::new(G, 0.0), parameters, grains);
+        let run =
+            after(&Scene { stepper: Stepper::Range, ..scene }, (0.1 / time_step_secs) as usize);
+        let velocities = run.velocities();
+        let found = velocities[1].x - velocities[0].x;
+        let expected = escape * (factor * factor - 1.0f64).max(0.0).sqrt();
+        assert!((found - expected).abs() < 1e-9, "{factor}, Δt = {time_step_secs}: {found}");
     }
 }
 
@@ -160,35 +154,33 @@ fn overlap_is_pushed_out_and_moves_nothing() {
 
 #[test]
 fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
-    for time_step_secs in TIME_STEPS {
-        for factor in [0.5, 0.9, 1.1, 3.0] {
-            let speed = factor * (2.0 * work()).sqrt();
-            let mut run = pair(time_step_secs, speed, 0.0, Physics::FULL);
-            let mass = run.grains().masses[0];
-            let begun = run.observables().kinetic_energy;
-            let (mut of_bonds, mut of_pushes, mut most) = (0.0, 0.0, 0f64);
-            for _ in 0..(0.1 / time_step_secs) as u32 {
-                let now = *run.step().expect("finite");
-                let [of_step, stored, broken] =
-                    [now.bond_work, now.bond_energy, now.broken_bond_energy].map(Option::unwrap);
-                of_bonds += of_step;
-                of_pushes += now.normal_work - of_step;
-                most = most.max(stored);
-                let what = format!("{factor} of the escape speed, Δt = {time_step_secs}");
-                assert!((of_bonds + stored + broken).abs() <= 1e-9 * begun, "{what}");
-                let sum = now.kinetic_energy - of_bonds - of_pushes;
-                assert_close(sum, begun, 1e-9, &what);
-                assert!(of_pushes <= 1e-9 * begun, "{what}: pushes gave {of_pushes} J");
-            }
-            let broken = run.observables().broken_bond_energy.unwrap();
-            let kept = if factor > 1.0 { mass * work() } else { 0.0 };
-            assert_close(broken, kept, 1e-9, "kept by the bond");
-            assert_eq!(run.observables().bond_energy, Some(0.0));
-            // At short steps the way out is seen.
-            let bond_time = (2.0 * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS / (BOND * G)).sqrt();
-            if factor < 1.0 && time_step_secs < 0.2 * bond_time {
-                assert!(most > 0.8 * begun, "stored {most} of {begun} J");
-            }
+    for (time_step_secs, factor) in pairs(TIME_STEPS, [0.5, 0.9, 1.1, 3.0]) {
+        let speed = factor * (2.0 * work()).sqrt();
+        let mut run = pair(time_step_secs, speed, 0.0, Physics::FULL);
+        let mass = run.grains().masses[0];
+        let begun = run.observables().kinetic_energy;
+        let (mut of_bonds, mut of_pushes, mut most) = (0.0, 0.0, 0f64);
+        for _ in 0..(0.1 / time_step_secs) as u32 {
+            let now = *run.step().expect("finite");
+            let [of_step, stored, broken] =
+                [now.bond_work, now.bond_energy, now.broken_bond_energy].map(Option::unwrap);
+            of_bonds += of_step;
+            of_pushes += now.normal_work - of_step;
+            most = most.max(stored);
+            let what = format!("{factor} of the escape speed, Δt = {time_step_secs}");
+            assert!((of_bonds + stored + broken).abs() <= 1e-9 * begun, "{what}");
+            let sum = now.kinetic_energy - of_bonds - of_pushes;
+            assert_close(sum, begun, 1e-9, &what);
+            assert!(of_pushes <= 1e-9 * begun, "{what}: pushes gave {of_pushes} J");
+        }
+        let broken = run.observables().broken_bond_energy.unwrap();
+        let kept = if factor > 1.0 { mass * work() } else { 0.0 };
+        assert_close(broken, kept, 1e-9, "kept by the bond");
+        assert_eq!(run.observables().bond_energy, Some(0.0));
+        // At short steps the way out is seen.
+        let bond_time = (2.0 * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS / (BOND * G)).sqrt();
+        if factor < 1.0 && time_step_secs < 0.2 * bond_time {
+            assert!(most > 0.8 * begun, "stored {most} of {begun} J");
         }
     }
 }
@@ -290,17 +282,15 @@ fn pile(bond: f64, time_step_secs: f64, method: Method) -> Scene {
 
 #[test]
 fn the_energy_budget_of_a_pile_closes_and_overlap_goes() {
-    for bond in [0.0, 10.0, 100.0] {
-        for time_step_secs in [2e-4, 2e-3] {
-            let mut run = start(&pile(bond, time_step_secs, Method::Newton));
-            let mass: f64 = run.grains().masses.iter().sum();
-            for _ in 0..(0.1 / time_step_secs) as usize {
-                let (_, off, scale) = balance(&mut run);
-                assert!(off <= 1e-10 * (scale + mass * (G * time_step_secs).powi(2)));
-            }
-            let overlap = run.observables().mean_overlap;
-            assert!(overlap < 1e-3, "Bond {bond}, Δt = {time_step_secs}: {overlap}");
+    for (bond, time_step_secs) in pairs([0.0, 10.0, 100.0], [2e-4, 2e-3]) {
+        let mut run = start(&pile(bond, time_step_secs, Method::Newton));
+        let mass: f64 = run.grains().masses.iter().sum();
+        for _ in 0..(0.1 / time_step_secs) as usize {
+            let (_, off, scale) = balance(&mut run);
+            assert!(off <= 1e-10 * (scale + mass * (G * time_step_secs).powi(2)));
         }
+        let overlap = run.observables().mean_overlap;
+        assert!(overlap < 1e-3, "Bond {bond}, Δt = {time_step_secs}: {overlap}");
     }
 }
 
@@ -385,15 +375,14 @@ const MOMENTS: u32 = 12;
 /// law has next to none alike.
 #[test]
 fn methods_agree_on_nearly_all_steps_with_bonds() {
-    for method in [Method::Nsgs, Method::Nncg, Method::NsgsParallel] {
-        for (friction, least_share) in [(0.0, 0.95), (0.5, 0.8)] {
-            let counts = (1..=8).map(|seed| solved_and_alike(seed, friction, method));
-            let [solved, alike] =
-                counts.fold([0; 2], |sum, more| [0, 1].map(|at| sum[at] + more[at]));
-            // What is left unsolved within the sweeps allowed tells nothing of agreement.
-            assert!(2 * solved > 8 * MOMENTS, "{method:?}, μ = {friction}: {solved} solved");
-            let share = f64::from(alike) / f64::from(solved);
-            assert!(share >= least_share, "{method:?}, μ = {friction}: {alike} of {solved} alike");
-        }
+    for (method, (friction, least_share)) in
+        pairs([Method::Nsgs, Method::Nncg, Method::NsgsParallel], [(0.0, 0.95), (0.5, 0.8)])
+    {
+        let counts = (1..=8).map(|seed| solved_and_alike(seed, friction, method));
+        let [solved, alike] = counts.fold([0; 2], |sum, more| [0, 1].map(|at| sum[at] + more[at]));
+        // What is left unsolved within the sweeps allowed tells nothing of agreement.
+        assert!(2 * solved > 8 * MOMENTS, "{method:?}, μ = {friction}: {solved} solved");
+        let share = f64::from(alike) / f64::from(solved);
+        assert!(share >= least_share, "{method:?}, μ = {friction}: {alike} of {solved} alike");
     }
 }

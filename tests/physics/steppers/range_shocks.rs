@@ -28,20 +28,19 @@ fn two_discs_bounce_by_rho_at_any_time_step_phase_mass_ratio_and_slant() {
     for (physics, asides) in
         [(LINE, &[0.0][..]), (SMOOTH, &[0.0, 0.3, -0.8, 0.99]), (Physics::FULL, &[0.0, 0.5, -0.95])]
     {
-        for &aside in asides {
-            for time_step_secs in TIME_STEPS {
-                for restitution in [0.0, 0.3, 0.8, 1.0] {
-                    for (size, speed) in [(1.0, 0.1), (1.7, 0.1), (0.3, 2.0)] {
-                        for phase in [1e-9, 0.11, 0.37, 0.5, 0.93, 1.0 - 1e-9, 1.4] {
-                            let numbers = parameters(0.0, time_step_secs, restitution, 0.2);
-                            let gap = phase * speed * time_step_secs;
-                            let what = [gap, aside, speed, size];
-                            let mut run = two(physics, numbers, what);
-                            check_bounce(&mut run, restitution, what);
-                            met += 1;
-                        }
-                    }
-                }
+        for (&aside, time_step_secs, restitution) in
+            triples(asides, TIME_STEPS, [0.0, 0.3, 0.8, 1.0])
+        {
+            for ((size, speed), phase) in pairs(
+                [(1.0, 0.1), (1.7, 0.1), (0.3, 2.0)],
+                [1e-9, 0.11, 0.37, 0.5, 0.93, 1.0 - 1e-9, 1.4],
+            ) {
+                let numbers = parameters(0.0, time_step_secs, restitution, 0.2);
+                let gap = phase * speed * time_step_secs;
+                let what = [gap, aside, speed, size];
+                let mut run = two(physics, numbers, what);
+                check_bounce(&mut run, restitution, what);
+                met += 1;
             }
         }
     }
@@ -87,38 +86,35 @@ fn check_bounce(run: &mut Simulation, restitution: f64, [gap, aside, speed, size
 fn a_bond_takes_its_work_from_a_bounce_or_all_there_is() {
     let work = BOND * G * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS;
     let escape = (2.0 * work).sqrt();
-    for time_step_secs in TIME_STEPS {
-        for restitution in [0.3, 0.8, 1.0] {
-            for factor in [0.5, 0.95, 1.05, 2.0, 10.0] {
-                for phase in [0.01, 0.3, 0.77, 0.99] {
-                    let speed = factor * escape / restitution;
-                    let gap = phase * speed * time_step_secs;
-                    let numbers = parameters(BOND, time_step_secs, restitution, 0.5);
-                    let mut run = two(SMOOTH, numbers, [gap, 0.0, speed, 1.0]);
-                    let what =
-                        format!("{factor} of it, ρ {restitution}, Δt {time_step_secs}, {phase}");
-                    let begun = run.observables().kinetic_energy;
-                    let (mut pushes, mut bonds) = (0.0, 0.0);
-                    for _ in 0..(0.1 / time_step_secs) as u32 + 3 {
-                        let now = *run.step().expect("finite");
-                        let of_bonds = now.bond_work.expect("bonds");
-                        bonds += of_bonds;
-                        pushes += now.normal_work - of_bonds;
-                        assert!(pushes <= 1e-9 * begun, "{what}: pushes gave {pushes:e}");
-                        let [stored, broken] =
-                            [now.bond_energy, now.broken_bond_energy].map(Option::unwrap);
-                        assert!((bonds + stored + broken).abs() <= 1e-9 * begun, "{what}");
-                    }
-                    let velocities = run.velocities();
-                    let found = velocities[1].x - velocities[0].x;
-                    let squared = (factor * factor - 1.0) * escape * escape;
-                    if factor > 1.0 {
-                        assert_close(found, squared.sqrt(), 1e-9, &what);
-                    } else {
-                        let apart = run.place(1).x - run.place(0).x - 2.0 * RADIUS;
-                        assert!(apart < 0.2 * RADIUS, "{what}: held, but {apart} m apart");
-                    }
-                }
+    for (time_step_secs, restitution, factor) in
+        triples(TIME_STEPS, [0.3, 0.8, 1.0], [0.5, 0.95, 1.05, 2.0, 10.0])
+    {
+        for phase in [0.01, 0.3, 0.77, 0.99] {
+            let speed = factor * escape / restitution;
+            let gap = phase * speed * time_step_secs;
+            let numbers = parameters(BOND, time_step_secs, restitution, 0.5);
+            let mut run = two(SMOOTH, numbers, [gap, 0.0, speed, 1.0]);
+            let what = format!("{factor} of it, ρ {restitution}, Δt {time_step_secs}, {phase}");
+            let begun = run.observables().kinetic_energy;
+            let (mut pushes, mut bonds) = (0.0, 0.0);
+            for _ in 0..(0.1 / time_step_secs) as u32 + 3 {
+                let now = *run.step().expect("finite");
+                let of_bonds = now.bond_work.expect("bonds");
+                bonds += of_bonds;
+                pushes += now.normal_work - of_bonds;
+                assert!(pushes <= 1e-9 * begun, "{what}: pushes gave {pushes:e}");
+                let [stored, broken] =
+                    [now.bond_energy, now.broken_bond_energy].map(Option::unwrap);
+                assert!((bonds + stored + broken).abs() <= 1e-9 * begun, "{what}");
+            }
+            let velocities = run.velocities();
+            let found = velocities[1].x - velocities[0].x;
+            let squared = (factor * factor - 1.0) * escape * escape;
+            if factor > 1.0 {
+                assert_close(found, squared.sqrt(), 1e-9, &what);
+            } else {
+                let apart = run.place(1).x - run.place(0).x - 2.0 * RADIUS;
+                assert!(apart < 0.2 * RADIUS, "{what}: held, but {apart} m apart");
             }
         }
     }
@@ -126,30 +122,28 @@ fn a_bond_takes_its_work_from_a_bounce_or_all_there_is() {
 
 #[test]
 fn a_wall_that_comes_throws_a_grain_off_by_its_own_speed() {
-    for time_step_secs in TIME_STEPS {
-        for restitution in [0.0, 0.4, 1.0] {
-            let grain =
-                weightless(moving(DVec2::new(1.03 * RADIUS, 0.0), RADIUS, DVec2::new(-0.2, 0.0)));
-            let run = after(
-                &Scene {
-                    boundaries: vec![Boundary::Piston {
-                        point: DVec2::ZERO,
-                        normal: DVec2::X,
-                        speed: 0.3,
-                        travel: 10.0,
-                    }],
-                    ..ranged(
-                        SMOOTH,
-                        DVec2::new(0.0, -G),
-                        parameters(0.0, time_step_secs, restitution, 0.0),
-                        vec![grain],
-                    )
-                },
-                3 + (1e-3 / time_step_secs) as usize,
-            );
-            let found = run.velocity(0).x;
-            assert_close(found, 0.3 + restitution * 0.5, 1e-9, &format!("{time_step_secs}"));
-        }
+    for (time_step_secs, restitution) in pairs(TIME_STEPS, [0.0, 0.4, 1.0]) {
+        let grain =
+            weightless(moving(DVec2::new(1.03 * RADIUS, 0.0), RADIUS, DVec2::new(-0.2, 0.0)));
+        let run = after(
+            &Scene {
+                boundaries: vec![Boundary::Piston {
+                    point: DVec2::ZERO,
+                    normal: DVec2::X,
+                    speed: 0.3,
+                    travel: 10.0,
+                }],
+                ..ranged(
+                    SMOOTH,
+                    DVec2::new(0.0, -G),
+                    parameters(0.0, time_step_secs, restitution, 0.0),
+                    vec![grain],
+                )
+            },
+            3 + (1e-3 / time_step_secs) as usize,
+        );
+        let found = run.velocity(0).x;
+        assert_close(found, 0.3 + restitution * 0.5, 1e-9, &format!("{time_step_secs}"));
     }
 }
 
@@ -216,22 +210,22 @@ fn apexes(time_step_secs: f64, restitution: f64, height: f64, count: usize) -> V
 
 #[test]
 fn apexes_of_a_ball_follow_the_squares_of_rho() {
-    for time_step_secs in [1e-4, 1e-3, 3e-3, 5e-3, 1e-2] {
-        for (restitution, count) in [(0.5, 3), (0.7, 5), (0.9, 12), (1.0, 20)] {
-            for height in [0.3, 0.41] {
-                let mut ideal = height;
-                for (bounce, found) in
-                    apexes(time_step_secs, restitution, height, count).into_iter().enumerate()
-                {
-                    ideal *= restitution * restitution;
-                    // Between two steps the ball comes up to gΔt²/8 higher than they show.
-                    let allowed = 0.125 * G * time_step_secs.powi(2) + 1e-9 * height;
-                    let below = ideal - found;
-                    let what = format!("Δt {time_step_secs}, ρ {restitution}, bounce {bounce}");
-                    assert!(below >= -1e-9 * height, "{what}: {found} for {ideal}");
-                    assert!(below <= allowed, "{what}: {found} for {ideal}, {below:e} lower");
-                }
-            }
+    for (time_step_secs, (restitution, count), height) in triples(
+        [1e-4, 1e-3, 3e-3, 5e-3, 1e-2],
+        [(0.5, 3), (0.7, 5), (0.9, 12), (1.0, 20)],
+        [0.3, 0.41],
+    ) {
+        let mut ideal = height;
+        for (bounce, found) in
+            apexes(time_step_secs, restitution, height, count).into_iter().enumerate()
+        {
+            ideal *= restitution * restitution;
+            // Between two steps the ball comes up to gΔt²/8 higher than they show.
+            let allowed = 0.125 * G * time_step_secs.powi(2) + 1e-9 * height;
+            let below = ideal - found;
+            let what = format!("Δt {time_step_secs}, ρ {restitution}, bounce {bounce}");
+            assert!(below >= -1e-9 * height, "{what}: {found} for {ideal}");
+            assert!(below <= allowed, "{what}: {found} for {ideal}, {below:e} lower");
         }
     }
 }
@@ -326,23 +320,21 @@ fn a_row_of_balls_with_gaps_hands_the_shock_on_and_one_without_flies_off_as_unde
 
 #[test]
 fn what_rests_does_not_bounce_and_what_falls_comes_to_rest() {
-    for time_step_secs in [1e-4, 1e-3, 5e-3] {
-        for bond in [0.0, BOND] {
-            let grains = (0..4).map(|level| {
-                Grain::at_rest(DVec2::new(0.0, (3.1 + 2.2 * level as f64) * RADIUS), RADIUS)
-            });
-            let numbers = Parameters { restitution: 0.5, ..range(bond, time_step_secs) };
-            let grains = grains.collect();
-            let run = after(
-                &Scene {
-                    fixed_discs: vec![fixed(DVec2::new(0.0, RADIUS), RADIUS)],
-                    ..ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains)
-                },
-                (1.0 / time_step_secs) as usize,
-            );
-            let now = run.observables();
-            let weight: f64 = run.grains().masses.iter().sum();
-            assert!(now.kinetic_energy < 1e-9 * weight * G * RADIUS, "{}", now.kinetic_energy);
-        }
+    for (time_step_secs, bond) in pairs([1e-4, 1e-3, 5e-3], [0.0, BOND]) {
+        let grains = (0..4).map(|level| {
+            Grain::at_rest(DVec2::new(0.0, (3.1 + 2.2 * level as f64) * RADIUS), RADIUS)
+        });
+        let numbers = Parameters { restitution: 0.5, ..range(bond, time_step_secs) };
+        let grains = grains.collect();
+        let run = after(
+            &Scene {
+                fixed_discs: vec![fixed(DVec2::new(0.0, RADIUS), RADIUS)],
+                ..ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains)
+            },
+            (1.0 / time_step_secs) as usize,
+        );
+        let now = run.observables();
+        let weight: f64 = run.grains().masses.iter().sum();
+        assert!(now.kinetic_energy < 1e-9 * weight * G * RADIUS, "{}", now.kinetic_energy);
     }
 }

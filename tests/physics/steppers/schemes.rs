@@ -6,20 +6,18 @@ use crate::common::*;
 
 #[test]
 fn soft_substeps_part_a_pair_with_the_restitution_that_is_asked_for() {
-    for physics in [LINE, SMOOTH, Physics::FULL] {
-        for restitution in [0.0, 0.1, 0.5, 1.0] {
-            for substeps in [1, 4, 16] {
-                let scene = meeting(physics, restitution, 1e-3);
-                let mut run = start(&by(Stepper::TgsSoft, substeps, scene));
-                let (before, carried) = (relative_velocity(&run), momentum(&run));
-                take_steps(&mut run, 2);
-                assert_eq!(run.observables().contacts, 1, "they met");
-                let after = relative_velocity(&run);
-                let off = (after + restitution * before).length();
-                assert!(off < 1e-12, "ρ {restitution}, {substeps} substeps: off by {off:e}");
-                assert!(momentum(&run).distance(carried) < 1e-12 * carried.length());
-            }
-        }
+    for (physics, restitution, substeps) in
+        triples([LINE, SMOOTH, Physics::FULL], [0.0, 0.1, 0.5, 1.0], [1, 4, 16])
+    {
+        let scene = meeting(physics, restitution, 1e-3);
+        let mut run = start(&by(Stepper::TgsSoft, substeps, scene));
+        let (before, carried) = (relative_velocity(&run), momentum(&run));
+        take_steps(&mut run, 2);
+        assert_eq!(run.observables().contacts, 1, "they met");
+        let after = relative_velocity(&run);
+        let off = (after + restitution * before).length();
+        assert!(off < 1e-12, "ρ {restitution}, {substeps} substeps: off by {off:e}");
+        assert!(momentum(&run).distance(carried) < 1e-12 * carried.length());
     }
 }
 

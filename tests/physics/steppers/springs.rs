@@ -127,18 +127,15 @@ fn stiffness(bond: f64, mass: f64) -> f64 {
 
 #[test]
 fn a_load_rests_at_the_overlap_that_the_stiffness_says() {
-    for bond in [0.0, 20.0] {
-        for stiffness in [30.0, 1e4] {
-            let grain = Grain::at_rest(DVec2::new(2.0 * RADIUS, 0.0), RADIUS);
-            let mut scene =
-                scene(LINE, -G * DVec2::X, parameters(bond, 1e-4, 0.1, 0.0), vec![grain]);
-            scene.fixed_discs = vec![fixed(DVec2::ZERO, RADIUS)];
-            scene.parameters.stiffness = stiffness;
-            let run = after(&by(Stepper::Dem, 0, scene), 20_000);
-            let weight = run.grains().masses[0] * G;
-            let overlap = 2.0 * RADIUS - run.place(0).x;
-            assert_close(overlap, (1.0 + bond) * weight / stiffness, 1e-6, "overlap");
-        }
+    for (bond, stiffness) in pairs([0.0, 20.0], [30.0, 1e4]) {
+        let grain = Grain::at_rest(DVec2::new(2.0 * RADIUS, 0.0), RADIUS);
+        let mut scene = scene(LINE, -G * DVec2::X, parameters(bond, 1e-4, 0.1, 0.0), vec![grain]);
+        scene.fixed_discs = vec![fixed(DVec2::ZERO, RADIUS)];
+        scene.parameters.stiffness = stiffness;
+        let run = after(&by(Stepper::Dem, 0, scene), 20_000);
+        let weight = run.grains().masses[0] * G;
+        let overlap = 2.0 * RADIUS - run.place(0).x;
+        assert_close(overlap, (1.0 + bond) * weight / stiffness, 1e-6, "overlap");
     }
 }
 
@@ -184,16 +181,14 @@ fn collision(physics: Physics, stiffness: f64, damping_ratio: f64, parts: f64) -
 
 #[test]
 fn two_discs_push_each_other_for_the_contact_time_and_part_as_the_damping_ratio_says() {
-    for physics in [LINE, SMOOTH] {
-        for stiffness in [50.0, 2e4] {
-            for damping_ratio in [1e-3, 0.2, 0.9, 1.5, 4.0] {
-                let [secs, expected_secs, restitution, expected] =
-                    collision(physics, stiffness, damping_ratio, 4000.0);
-                let what = format!("ζ {damping_ratio}, k {stiffness}");
-                assert_close(secs, expected_secs, 2e-3, &format!("contact time at {what}"));
-                assert!((restitution - expected).abs() < 2e-3, "{what}: {restitution}, {expected}");
-            }
-        }
+    for (physics, stiffness, damping_ratio) in
+        triples([LINE, SMOOTH], [50.0, 2e4], [1e-3, 0.2, 0.9, 1.5, 4.0])
+    {
+        let [secs, expected_secs, restitution, expected] =
+            collision(physics, stiffness, damping_ratio, 4000.0);
+        let what = format!("ζ {damping_ratio}, k {stiffness}");
+        assert_close(secs, expected_secs, 2e-3, &format!("contact time at {what}"));
+        assert!((restitution - expected).abs() < 2e-3, "{what}: {restitution}, {expected}");
     }
 }
 

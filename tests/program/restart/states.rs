@@ -115,22 +115,14 @@ fn what_a_way_to_step_remembers_is_lost_or_kept_as_without_the_file() {
     for (from, _) in every_way() {
         let mut simulation = start(&Scene { stepper: from, ..scene.clone() });
         simulation.take_steps(6).expect("finite states");
-        for &to in Stepper::ALL {
-            for method in [Method::Newton, Method::NsgsParallel] {
-                goes_on_with(
-                    &scene,
-                    &simulation,
-                    STEPS,
-                    &format!("{from} to {to}"),
-                    |simulation| {
-                        let mut settings = Settings { stepper: to, ..*simulation.settings() };
-                        settings.parameters.bond = 50.0;
-                        settings.parameters.time_step_secs = 7e-4;
-                        settings.solver.method = method;
-                        simulation.change(settings).expect("sound settings");
-                    },
-                );
-            }
+        for (&to, method) in pairs(Stepper::ALL, [Method::Newton, Method::NsgsParallel]) {
+            goes_on_with(&scene, &simulation, STEPS, &format!("{from} to {to}"), |simulation| {
+                let mut settings = Settings { stepper: to, ..*simulation.settings() };
+                settings.parameters.bond = 50.0;
+                settings.parameters.time_step_secs = 7e-4;
+                settings.solver.method = method;
+                simulation.change(settings).expect("sound settings");
+            });
         }
     }
 }

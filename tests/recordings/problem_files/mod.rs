@@ -202,38 +202,34 @@ fn velocities_are_those_that_siconos_finds() {
 #[test]
 fn methods_on_w_solve_contacts_that_couple_normal_and_tangent() {
     let mut random = random(5);
-    for cone in [FrictionCone::Shifted, FrictionCone::Compressive] {
-        for _ in 0..20 {
-            let contacts = 12;
-            let size = 2 * contacts;
-            let degrees = 30;
-            let gradients: Vec<f64> =
-                (0..size * degrees).map(|_| random.random_range(-1.0..1.0)).collect();
-            let mut matrix = Triplets::default();
-            for row in 0..size {
-                for col in 0..size {
-                    let pick = |index: usize| &gradients[index * degrees..(index + 1) * degrees];
-                    let value = pick(row).iter().zip(pick(col)).map(|(a, b)| a * b).sum();
-                    matrix.row.push(row as u32);
-                    matrix.col.push(col as u32);
-                    matrix.val.push(value);
-                }
-            }
-            let mut list = |count: usize, from: f64, to: f64| -> Vec<f64> {
-                (0..count).map(|_| random.random_range(from..to)).collect()
-            };
-            let q = list(size, -1.0, 1.0);
-            let friction = list(contacts, 0.0, 0.6);
-            let cohesion = list(contacts, 0.0, 0.1);
-            let problem =
-                DelassusProblem::new(&matrix, &q, &friction, &cohesion, cone).expect("a problem");
-            for method in [Method::Nsgs, Method::Nncg, Method::Apgd, Method::Jacobi] {
-                let mut problem = problem.clone();
-                let settings = settings(method, 1e-11);
-                let report = solve_delassus(&mut problem, &settings).expect("a method on W");
-                let left = problem.residual();
-                assert!(report.converged && left <= 1e-11, "{cone:?}, {method:?}: {left:e}");
-            }
+    for (cone, _) in pairs([FrictionCone::Shifted, FrictionCone::Compressive], 0..20) {
+        let contacts = 12;
+        let size = 2 * contacts;
+        let degrees = 30;
+        let gradients: Vec<f64> =
+            (0..size * degrees).map(|_| random.random_range(-1.0..1.0)).collect();
+        let mut matrix = Triplets::default();
+        for (row, col) in pairs(0..size, 0..size) {
+            let pick = |index: usize| &gradients[index * degrees..(index + 1) * degrees];
+            let value = pick(row).iter().zip(pick(col)).map(|(a, b)| a * b).sum();
+            matrix.row.push(row as u32);
+            matrix.col.push(col as u32);
+            matrix.val.push(value);
+        }
+        let mut list = |count: usize, from: f64, to: f64| -> Vec<f64> {
+            (0..count).map(|_| random.random_range(from..to)).collect()
+        };
+        let q = list(size, -1.0, 1.0);
+        let friction = list(contacts, 0.0, 0.6);
+        let cohesion = list(contacts, 0.0, 0.1);
+        let problem =
+            DelassusProblem::new(&matrix, &q, &friction, &cohesion, cone).expect("a problem");
+        for method in [Method::Nsgs, Method::Nncg, Method::Apgd, Method::Jacobi] {
+            let mut problem = problem.clone();
+            let settings = settings(method, 1e-11);
+            let report = solve_delassus(&mut problem, &settings).expect("a method on W");
+            let left = problem.residual();
+            assert!(report.converged && left <= 1e-11, "{cone:?}, {method:?}: {left:e}");
         }
     }
 }
