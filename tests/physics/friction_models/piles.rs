@@ -181,13 +181,7 @@ fn auto_falls_back_unless_told_not_to_and_others_do_where_told() {
     let told = |method, fallback| {
         let mut run = pile(method, fallback, FrictionCone::Shifted);
         take_steps(&mut run, 30);
-        let places: Vec<_> = run
-            .world()
-            .grains
-            .positions
-            .iter()
-            .map(|place| place.to_array().map(f64::to_bits))
-            .collect();
+        let places = bits(&run);
         (run.observables().fell_back.is_some(), places)
     };
     let auto = told(Method::Auto, Fallback::OfMethod);

@@ -26,26 +26,14 @@ fn heap() -> Scene {
 
 /// The heap stepped in each way that knows it.
 fn in_every_way() -> Vec<(String, Scene)> {
-    let of = |(stepper, method): (Stepper, Method)| {
-        let mut scene = heap();
-        (scene.stepper, scene.solver.method) = (stepper, method);
-        scene.solver.max_sweeps = 200;
-        (format!("{stepper:?}, {method:?}"), scene)
-    };
-    let all = every_way().into_iter().map(of);
-    all.filter(|(_, scene)| scene.simulation().is_ok()).collect()
+    let mut heap = heap();
+    heap.solver.max_sweeps = 200;
+    in_each_way(&heap, every_way()).filter(|(_, scene)| scene.simulation().is_ok()).collect()
 }
 
 /// Where some grains are and how they go, to the last bit.
 fn bits(run: &Simulation, grains: std::ops::Range<usize>) -> Vec<[u64; 6]> {
-    let of = run.grains();
-    let of_grain = |index: usize| {
-        let (at, velocity) = (of.positions[index], of.velocities[index]);
-        let numbers =
-            [at.x, at.y, velocity.x, velocity.y, of.angles[index], of.angular_velocities[index]];
-        numbers.map(f64::to_bits)
-    };
-    grains.map(of_grain).collect()
+    crate::common::bits(run)[grains].to_vec()
 }
 
 fn far(radius: f64) -> Disc {

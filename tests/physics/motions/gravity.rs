@@ -83,15 +83,6 @@ fn tilted(scene: &Scene, degrees: f64) -> Scene {
     tilted
 }
 
-fn places(run: &Simulation) -> Vec<[u64; 2]> {
-    let positions = run.places().iter();
-    positions.map(|place| place.to_array().map(f64::to_bits)).collect()
-}
-
-fn step(run: &mut Simulation, steps: u64) {
-    run.take_steps(steps).expect("finite states");
-}
-
 #[test]
 fn a_tilted_world_is_bit_for_bit_the_one_whose_gravity_is_listed_so() {
     let Gravity::Uniform { acceleration } = on_a_floor().gravity else { panic!("not uniform") };
@@ -104,10 +95,10 @@ fn a_tilted_world_is_bit_for_bit_the_one_whose_gravity_is_listed_so() {
         let [mut one, mut other, mut level] = [&tilted(&scene, 20.0), &listed, &scene].map(start);
         assert_eq!(one.observables().potential_energy, other.observables().potential_energy);
         for run in [&mut one, &mut other, &mut level] {
-            step(run, 30);
+            take_steps(run, 30);
         }
-        assert_eq!(places(&one), places(&other), "{stepper}, {method}");
-        assert_ne!(places(&one), places(&level), "{stepper}, {method}");
+        assert_eq!(bits(&one), bits(&other), "{stepper}, {method}");
+        assert_ne!(bits(&one), bits(&level), "{stepper}, {method}");
     }
 }
 
@@ -123,27 +114,27 @@ fn gravity_points_to_the_right_where_the_tilt_is_above_0_and_comes_back() {
     assert!(gravity(&run).distance(expected) < 1e-12 * g);
     settings.parameters.tilt = 0.0;
     run.change(settings).expect("sound settings");
-    step(&mut run, 20);
+    take_steps(&mut run, 20);
     let mut level = start(&on_a_floor());
-    step(&mut level, 20);
-    assert_eq!(places(&run), places(&level));
+    take_steps(&mut level, 20);
+    assert_eq!(bits(&run), bits(&level));
 }
 
 #[test]
 fn a_run_that_is_tilted_on_the_way_goes_on_from_its_file_bit_for_bit() {
     for scene in ["incline", "pile"].map(|name| built_in(name).expect("a scene")) {
         let mut simulation = start(&scene);
-        step(&mut simulation, 5);
+        take_steps(&mut simulation, 5);
         let mut settings = *simulation.settings();
         settings.parameters.tilt = -12.5;
         simulation.change(settings).expect("sound settings");
-        step(&mut simulation, 5);
+        take_steps(&mut simulation, 5);
         let read = saved_and_read(&scene, &simulation);
         let mut again = read.simulation.clone();
         for run in [&mut simulation, &mut again] {
-            step(run, 10);
+            take_steps(run, 10);
         }
-        assert_eq!(places(&simulation), places(&again));
+        assert_eq!(bits(&simulation), bits(&again));
         // A new start from there has the scene's own turn, and the tilt as a setting.
         let start = read.as_start();
         assert_eq!(start.parameters.tilt, -12.5);
@@ -164,7 +155,7 @@ fn a_tilt_adds_to_what_turns_by_itself() {
     scene.gravity_turn = turn(0.75);
     let mut whole = start(&scene);
     for run in [&mut sum, &mut whole] {
-        step(run, 20);
+        take_steps(run, 20);
     }
     let [one, other] = [&sum, &whole].map(|run| run.places());
     let apart = one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);

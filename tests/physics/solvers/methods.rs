@@ -70,15 +70,7 @@ fn advanced(scene: &Scene) -> Scene {
 
 #[test]
 fn newton_solves_nearly_all_steps_of_a_moving_pile_in_less_than_half_the_sweeps() {
-    for (seed, cone, rotation) in [
-        (3, FrictionCone::Shifted, true),
-        (4, FrictionCone::Compressive, true),
-        (5, FrictionCone::Shifted, false),
-    ] {
-        let mut scene = falling_pile(seed);
-        scene.parameters.cone = cone;
-        scene.physics.rotation = rotation;
-        scene.parameters.bond = 10.0;
+    for (cone, rotation, scene) in moving_piles().into_iter().take(3) {
         let run = |method| {
             let mut simulation = with(&scene, method, 1e-8);
             let (mut unsolved, mut sweeps) = (0, 0);
@@ -122,25 +114,30 @@ impl ProblemVisitor for SolveTwice {
     }
 }
 
-/// Moments of moving piles of every kind of physics.
+/// Piles of every kind of physics that have begun to fall; the last is without cohesion.
+fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
+    let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
+    let kinds = [
+        (3, shifted, true, 10.0),
+        (4, compressive, true, 10.0),
+        (5, shifted, false, 10.0),
+        (6, shifted, true, 0.0),
+    ];
+    kinds.map(|(seed, cone, rotation, bond)| {
+        let mut scene = falling_pile(seed);
+        scene.physics.rotation = rotation;
+        scene.parameters = Parameters { cone, bond, ..scene.parameters };
+        (cone, rotation, scene)
+    })
+}
+
 fn moments() -> Vec<Simulation> {
     let mut moments = Vec::new();
-    for (seed, cone, rotation, bond) in [
-        (3, FrictionCone::Shifted, true, 10.0),
-        (4, FrictionCone::Compressive, true, 10.0),
-        (5, FrictionCone::Shifted, false, 10.0),
-        (6, FrictionCone::Shifted, true, 0.0),
-    ] {
-        let mut scene = falling_pile(seed);
-        scene.parameters.cone = cone;
-        scene.physics.rotation = rotation;
-        scene.parameters.bond = bond;
+    for (_, _, scene) in moving_piles() {
         let mut run = with(&scene, Method::Newton, 1e-8);
-        for step in 1..=120 {
-            run.step().expect("a finite state");
-            if step % 20 == 0 {
-                moments.push(run.clone());
-            }
+        for _ in 0..6 {
+            take_steps(&mut run, 20);
+            moments.push(run.clone());
         }
     }
     moments
