@@ -19,8 +19,10 @@ fn study(folder: &Path, text: &str) -> PathBuf {
     path
 }
 
-fn sweep(study: &Path, out: &Path, more: &[&str]) -> Output {
-    run(slump("sweep").arg(study).arg("--out").arg(out).args(more))
+fn sweep(study: &Path, out: &Path, more: &[&str]) -> Command {
+    let mut command = slump("sweep");
+    command.arg(study).arg("--out").arg(out).args(more);
+    command
 }
 
 fn runs(out: &Path) -> String {
@@ -29,7 +31,7 @@ fn runs(out: &Path) -> String {
 
 fn in_one_go(folder: &Path, study: &Path) -> String {
     let out = folder.join("whole");
-    assert!(sweep(study, &out, &[]).status.success());
+    succeed(&mut sweep(study, &out, &[]));
     runs(&out)
 }
 
@@ -51,9 +53,8 @@ fn a_killed_sweep_goes_on_where_it_stopped_and_comes_to_the_same() {
     // As a kill in the middle of a line leaves it.
     write(&journal, [&bytes(&journal)[..], b"{\"key\":\"0123"].concat());
 
-    let again = sweep(&study, &out, &[]);
-    assert!(again.status.success(), "{}", said(&again));
-    assert!(said(&again).contains(&format!("{kept} of 24 runs were there")), "{}", said(&again));
+    let again = succeed(&mut sweep(&study, &out, &[]));
+    assert!(again.contains(&format!("{kept} of 24 runs were there")), "{again}");
     assert_eq!(lines(), 24, "no run twice, no half line");
     assert_eq!(runs(&out), in_one_go(folder.path(), &study));
 }
@@ -63,17 +64,19 @@ fn parts_in_any_order_join_to_the_whole_bit_for_bit() {
     let folder = folder();
     let study = study(folder.path(), &CRADLES.replace("2e-5", "2e-4"));
     let (one, other) = (folder.path().join("one"), folder.path().join("other"));
-    let merge = |parts: &[&Path]| run(slump("sweep merge").arg(&study).args(parts));
-    assert!(sweep(&study, &one, &["--shard", "3/3"]).status.success());
-    assert!(sweep(&study, &other, &["--shard", "1/3"]).status.success());
-    let early = merge(&[&one, &other]);
-    assert_eq!(early.status.code(), Some(2));
-    assert!(said(&early).contains("16 of 24 runs"), "{}", said(&early));
-    assert!(sweep(&study, &one, &["--shard", "2/3"]).status.success());
+    let merge = |parts: &[&Path]| {
+        let mut command = slump("sweep merge");
+        command.arg(&study).args(parts);
+        command
+    };
+    succeed(&mut sweep(&study, &one, &["--shard", "3/3"]));
+    succeed(&mut sweep(&study, &other, &["--shard", "1/3"]));
+    let early = failure(&mut merge(&[&one, &other]));
+    assert!(early.contains("16 of 24 runs"), "{early}");
+    succeed(&mut sweep(&study, &one, &["--shard", "2/3"]));
     // A repeated part harms nothing.
-    assert!(sweep(&study, &one, &["--shard", "3/3"]).status.success());
-    let merged = merge(&[&one, &other]);
-    assert!(merged.status.success(), "{}", said(&merged));
+    succeed(&mut sweep(&study, &one, &["--shard", "3/3"]));
+    succeed(&mut merge(&[&one, &other]));
     assert_eq!(runs(&one), in_one_go(folder.path(), &study));
     let header = runs(&one).lines().next().expect("a header").to_owned();
     for column in ["run", "key", "start", "bond", "dt", "tolerance", "slump", "first_gap"] {
@@ -87,14 +90,13 @@ fn another_study_is_refused_and_redone_only_when_asked() {
     let small = CRADLES.replace("2e-5", "5e-4");
     let first = study(folder.path(), &small);
     let out = folder.path().join("out");
-    assert!(sweep(&first, &out, &[]).status.success());
+    succeed(&mut sweep(&first, &out, &[]));
     let before = runs(&out);
     let changed = study(folder.path(), &small.replace("7.5", "7.6"));
-    let refused = sweep(&changed, &out, &[]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(said(&refused).contains("holds 24 runs of study cradles"), "{}", said(&refused));
+    let refused = failure(&mut sweep(&changed, &out, &[]));
+    assert!(refused.contains("holds 24 runs of study cradles"), "{refused}");
     assert_eq!(runs(&out), before, "a refusal changes nothing");
-    assert!(sweep(&changed, &out, &["--redo"]).status.success());
+    succeed(&mut sweep(&changed, &out, &["--redo"]));
     assert_ne!(runs(&out), before);
     assert_eq!(runs(&out), in_one_go(folder.path(), &changed));
 }
@@ -126,7 +128,7 @@ grains = [0]
     assert_eq!(course.lines().count(), 1 + 6, "a row at 0, 0.01, … 0.05 s");
     // The states lie there now: the second pass reads what the first one settled.
     std::fs::remove_file(out.join("runs.jsonl")).expect("the journal");
-    assert!(sweep(&study, &out, &[]).status.success());
+    succeed(&mut sweep(&study, &out, &[]));
     assert_eq!(runs(&out), whole);
 }
 
@@ -155,19 +157,16 @@ fn a_bad_study_file_is_refused_in_a_sentence_that_names_the_field() {
         ("name = ".to_owned(), "line 1"),
     ];
     for (text, expected) in cases {
-        let output = sweep(&study(folder.path(), &text), &out, &[]);
-        let said = said(&output);
-        assert_eq!(output.status.code(), Some(2), "{text}: {said}");
-        assert_eq!(said.trim_end().lines().count(), 1, "{text}: {said}");
+        let said = sentence(&mut sweep(&study(folder.path(), &text), &out, &[]));
         assert!(said.contains(expected), "{text}: {said}");
         assert!(!out.exists(), "{text} was refused, but a folder is there");
     }
     let sound = study(folder.path(), CRADLES);
     for shard in ["0/3", "4/3", "1", "a/b"] {
-        let said = said(&sweep(&sound, &out, &["--shard", shard]));
+        let said = failure(&mut sweep(&sound, &out, &["--shard", shard]));
         assert!(said.contains(&format!("shard is {shard}, but must be k/n")), "{said}");
     }
-    assert!(said(&sweep(Path::new("none.toml"), &out, &[])).contains("No such file"));
+    assert!(failure(&mut sweep(Path::new("none.toml"), &out, &[])).contains("No such file"));
 }
 
 /// Three short runs with a course each.
@@ -215,13 +214,12 @@ fn a_damaged_record_is_named_and_computed_anew() {
         bytes[place] ^= bits;
         write(&journal, &bytes);
         std::fs::remove_file(out.join("runs.csv")).expect("the table");
-        let output = sweep(&study, &out, &[]);
-        assert!(output.status.success(), "byte {place}: {}", said(&output));
-        let named = said(&output).matches("runs.jsonl: line ").count();
-        assert!((1..=2).contains(&named), "byte {place}: {}", said(&output));
+        let output = succeed(&mut sweep(&study, &out, &[]));
+        let named = output.matches("runs.jsonl: line ").count();
+        assert!((1..=2).contains(&named), "byte {place}: {}", output);
         assert_eq!(runs(&out), whole, "byte {place}");
-        let again = sweep(&study, &out, &[]);
-        assert!(!said(&again).contains("damaged"), "told of once: {}", said(&again));
+        let again = said(&run(&mut sweep(&study, &out, &[])));
+        assert!(!again.contains("damaged"), "told of once: {}", again);
     }
 }
 
@@ -238,9 +236,9 @@ fn a_damaged_state_is_named_and_settled_anew() {
     bytes[digit] ^= 1;
     write(&state, bytes);
     std::fs::remove_file(out.join("runs.jsonl")).expect("the journal");
-    let output = sweep(&study, &out, &[]);
-    assert!(output.status.success() && said(&output).contains("is damaged"), "{}", said(&output));
-    assert!(said(&output).contains("states"), "{}", said(&output));
+    let output = succeed(&mut sweep(&study, &out, &[]));
+    assert!(output.contains("is damaged"), "{output}");
+    assert!(output.contains("states"), "{output}");
     assert_eq!((runs(&out), read(&state)), (whole, sound));
 }
 
@@ -250,8 +248,8 @@ fn deleted_courses_are_made_again() {
     let course = files(&out.join("series")).remove(1);
     let before = bytes(&course);
     std::fs::remove_file(&course).expect("it was there");
-    let output = sweep(&study, &out, &[]);
-    assert!(said(&output).contains("2 of 3 runs were there"), "{}", said(&output));
+    let output = said(&run(&mut sweep(&study, &out, &[])));
+    assert!(output.contains("2 of 3 runs were there"), "{output}");
     assert_eq!((runs(&out), std::fs::read(&course).ok()), (whole, Some(before)));
 }
 
@@ -268,16 +266,16 @@ fn a_course_that_was_edited_is_named_and_computed_anew() {
     let text = String::from_utf8(before[2].clone()).expect("UTF-8");
     let (shorter, _) = text.trim_end().rsplit_once('\n').expect("rows");
     write(&courses[2], format!("{shorter}\n"));
-    let output = sweep(&study, &out, &[]);
-    assert!(said(&output).contains("1 of 3 runs were there"), "{}", said(&output));
+    let output = said(&run(&mut sweep(&study, &out, &[])));
+    assert!(output.contains("1 of 3 runs were there"), "{output}");
     for (number, course) in courses.iter().enumerate() {
-        let named = said(&output).contains(&format!("{}: is damaged", course.display()));
-        assert_eq!(named, number != 1, "{}", said(&output));
+        let named = output.contains(&format!("{}: is damaged", course.display()));
+        assert_eq!(named, number != 1, "{output}");
         assert_eq!(std::fs::read(course).ok().as_ref(), before.get(number), "course {number}");
     }
     assert_eq!(runs(&out), whole);
-    let again = sweep(&study, &out, &[]);
-    assert!(said(&again).contains("3 of 3 runs were there"), "{}", said(&again));
+    let again = said(&run(&mut sweep(&study, &out, &[])));
+    assert!(again.contains("3 of 3 runs were there"), "{again}");
 }
 
 #[test]
@@ -286,10 +284,8 @@ fn redo_works_on_what_cannot_be_read() {
     for name in ["study.json", "runs.jsonl"] {
         write(out.join(name), b"\xff\x00{\"checksum\"\n\n");
     }
-    let refused = sweep(&study, &out, &[]);
-    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
-    let redone = sweep(&study, &out, &["--redo"]);
-    assert!(redone.status.success(), "{}", said(&redone));
+    failure(&mut sweep(&study, &out, &[]));
+    succeed(&mut sweep(&study, &out, &["--redo"]));
     assert_eq!(runs(&out), whole);
     // Two sound records that say different things of one run.
     let journal = out.join("runs.jsonl");
@@ -300,11 +296,9 @@ fn redo_works_on_what_cannot_be_read() {
     let checksum = &blake3::hash(record.as_bytes()).to_hex()[..16];
     let other = format!("{{\"checksum\":\"{checksum}\",\"record\":{record}}}\n");
     write(&journal, text.clone() + &other);
-    let refused = sweep(&study, &out, &[]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(said(&refused).contains("came out otherwise before"), "{}", said(&refused));
-    let redone = sweep(&study, &out, &["--redo"]);
-    assert!(redone.status.success(), "{}", said(&redone));
+    let refused = failure(&mut sweep(&study, &out, &[]));
+    assert!(refused.contains("came out otherwise before"), "{refused}");
+    succeed(&mut sweep(&study, &out, &["--redo"]));
     assert_eq!(runs(&out), whole);
 }
 
@@ -322,7 +316,7 @@ fn a_redo_that_is_killed_leaves_one_study_and_never_a_mixture() {
     let out = folder.path().join("out");
     let mut found = [0, 0];
     for round in 0..12u64 {
-        assert!(sweep(&old.0, &out, &["--redo"]).status.success());
+        succeed(&mut sweep(&old.0, &out, &["--redo"]));
         let mut redo = slump("sweep --redo --out");
         redo.arg(&out).arg(&new.0).stderr(Stdio::null()).stdout(Stdio::null());
         let mut child = redo.spawn().expect("it starts");
@@ -337,7 +331,7 @@ fn a_redo_that_is_killed_leaves_one_study_and_never_a_mixture() {
         if let Ok(left) = std::fs::read_to_string(out.join("runs.csv")) {
             assert_eq!(&left, table, "round {round}: the other study's table");
         }
-        assert!(sweep(file, &out, &[]).status.success(), "round {round}");
+        succeed(&mut sweep(file, &out, &[]));
         assert_eq!(&runs(&out), table, "round {round}");
     }
     assert!(found[0] > 0 && found[1] > 0, "killed before and after the change: {found:?}");
@@ -355,11 +349,10 @@ fn a_redo_takes_the_folder_over_only_once_the_old_table_is_gone() {
     std::fs::remove_file(out.join("runs.csv")).expect("a table");
     std::fs::create_dir(out.join("runs.csv")).expect("a folder in its place");
     let new = study(folder.path(), &SHORT.replace("short", "other"));
-    let stopped = sweep(&new, &out, &["--redo"]);
-    assert_eq!(stopped.status.code(), Some(2), "{}", said(&stopped));
+    failure(&mut sweep(&new, &out, &["--redo"]));
     assert_eq!(label(), before, "the new study's label beside the old one's table");
     std::fs::remove_dir(out.join("runs.csv")).expect("a folder");
-    assert!(sweep(&new, &out, &["--redo"]).status.success());
+    succeed(&mut sweep(&new, &out, &["--redo"]));
     assert!(label().contains("\"other\""));
 }
 
@@ -379,9 +372,8 @@ substeps = 1
 ";
     let study = study(folder.path(), text);
     let out = folder.path().join("out");
-    let first = sweep(&study, &out, &[]);
-    assert!(first.status.success(), "{}", said(&first));
-    assert!(said(&first).contains("2 of 2 runs raised alarms ("), "{}", said(&first));
+    let first = succeed(&mut sweep(&study, &out, &[]));
+    assert!(first.contains("2 of 2 runs raised alarms ("), "{first}");
     let table = runs(&out);
     let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().expect("a header");
@@ -396,8 +388,7 @@ substeps = 1
         assert_ne!(row[column("unconverged_steps")], "0", "{table}");
         assert_eq!(row[column("lost_grains")], "0", "{table}");
     }
-    let again = sweep(&study, &out, &[]);
-    assert!(again.status.success(), "{}", said(&again));
-    assert!(said(&again).contains("2 of 2 runs were there"), "{}", said(&again));
+    let again = succeed(&mut sweep(&study, &out, &[]));
+    assert!(again.contains("2 of 2 runs were there"), "{again}");
     assert_eq!(runs(&out), table);
 }
