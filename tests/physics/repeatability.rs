@@ -76,19 +76,18 @@ fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
     let by_scheme = |stepper: Stepper| {
         let mut pile = by(stepper, 0, paper_pile().expect("the shipped state"));
         pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
-        (pile, 100, 20)
+        (pile, 100, 20, 0.01)
     };
     // Steps 50 … 250 of the first build the candidate list anew at times that depend on the past.
     let runs = ALL_SCHEMES.map(by_scheme);
-    for (scene, before, later) in [(collapse(), 50, 200), (bonded, 30, 30)].into_iter().chain(runs)
+    for (scene, before, later, least) in
+        [(collapse(), 50, 200, 0.0), (bonded, 30, 30, -1.0)].into_iter().chain(runs)
     {
         let stepper = scene.stepper;
         let (mut one, other) = (after(&scene, before), after(&scene, before));
-        assert!(one.observables().slump.abs() > 1e-3, "{stepper}: it moves");
-        assert!(
-            bits(&one) == bits(&other) && one.observables() == other.observables(),
-            "{stepper}"
-        );
+        assert!(one.observables().slump > least, "{stepper}: it moves");
+        assert!(bits(&one) == bits(&other), "{stepper}");
+        assert_eq!(one.observables(), other.observables(), "{stepper}");
         let mut clone = one.clone();
         take_steps(&mut one, later);
         take_steps(&mut clone, later);

@@ -74,12 +74,13 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
 
 #[test]
 fn free_fall_is_that_of_symplectic_euler_with_the_substep() {
-    let (dt, count, velocity) = (1e-3, 1000, DVec2::new(-0.7, 2.0));
+    let (dt, velocity) = (1e-3, DVec2::new(-0.7, 2.0));
     let of_moreau = [LINE, SMOOTH, Physics::FULL].map(|physics| (Stepper::Moreau, 0, physics));
     let of_scheme = |scheme| [0, 1, 7].map(|substeps| (scheme, substeps, Physics::FULL));
     let ways = of_moreau.into_iter().chain(ALL_SCHEMES.into_iter().flat_map(of_scheme));
     for (stepper, substeps, physics) in ways {
         let what = format!("{stepper}, {substeps} substeps, {physics:?}");
+        let count = if stepper == Stepper::Moreau { 1000 } else { 300 };
         let mask = if physics.axes == 1 { DVec2::X } else { DVec2::ONE };
         let (gravity, velocity) = (mask * DVec2::new(1.5, -G), mask * velocity);
         let grains = vec![Grain { angular_velocity: 3.0, ..moving(DVec2::X, 0.1, velocity) }];
@@ -89,8 +90,8 @@ fn free_fall_is_that_of_symplectic_euler_with_the_substep() {
         let time = dt * count as f64;
         let fallen = velocity + time * gravity;
         let way = time * velocity + 0.5 * time * time * (1.0 + 1.0 / n) * gravity;
-        assert!(run.velocity(0).distance(fallen) < 1e-12 * fallen.length(), "{what}");
-        assert!((run.place(0) - DVec2::X).distance(way) < 1e-12 * way.length(), "{what}");
+        assert!(run.velocity(0).distance(fallen) < 1e-11, "{what}");
+        assert!((run.place(0) - DVec2::X).distance(way) < 1e-11, "{what}");
         let turned = if physics.rotation { 3.0 * time } else { 0.0 };
         assert!((run.grains().angles[0] - turned).abs() < 1e-11, "{what}");
     }
