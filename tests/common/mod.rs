@@ -107,6 +107,15 @@ pub fn scene(
     }
 }
 
+/// Grains that fall with g.
+pub fn under_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
+    scene(Physics::FULL, -G * DVec2::Y, parameters, grains)
+}
+
+pub fn without_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
+    scene(Physics::FULL, DVec2::ZERO, parameters, grains)
+}
+
 /// Every stepper, with every method where it takes one.
 pub fn every_way() -> Vec<(Stepper, Method)> {
     let of = |&stepper: &Stepper| {
@@ -186,10 +195,7 @@ pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters)
             }
         })
         .collect();
-    Scene {
-        fixed_discs: rough_base(columns as f64 + 2.0, diameter),
-        ..scene(Physics::FULL, DVec2::new(0.0, -G), parameters, grains)
-    }
+    Scene { fixed_discs: rough_base(columns as f64 + 2.0, diameter), ..under_g(parameters, grains) }
 }
 
 /// Logs at rest, and beside them a spinning disc that falls on the floor, one that has to be pushed out

@@ -44,8 +44,7 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
     };
     for (stepper, method) in every_way() {
         let parameters = parameters(20.0, 1e-3, 0.3, 0.5);
-        let mut scene =
-            scene(Physics::FULL, -G * DVec2::Y, parameters, (0..110 * 160).map(at).collect());
+        let mut scene = under_g(parameters, (0..110 * 160).map(at).collect());
         (scene.stepper, scene.solver.method, scene.solver.max_sweeps) = (stepper, method, 3);
         // What a direct method does is its own; three steps of it would take the time of all the others.
         if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {
@@ -179,9 +178,7 @@ fn chain() -> Scene {
     Scene {
         fixed_discs: vec![fixed(DVec2::ZERO, radius)],
         solver: to_residual(1e-11),
-        ..scene(
-            Physics::FULL,
-            -G * DVec2::Y,
+        ..under_g(
             parameters(50.0, 1e-3, 0.1, 0.5),
             (1..=12).map(|k| Grain::at_rest(place(k), radius)).collect(),
         )

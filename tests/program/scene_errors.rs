@@ -8,7 +8,7 @@ use crate::program::*;
 
 fn good() -> Scene {
     let grains = vec![Grain::at_rest(DVec2::Y, 0.1), Grain::at_rest(2.0 * DVec2::Y, 0.1)];
-    scene(Physics::FULL, -G * DVec2::Y, parameters(20.0, 1e-3, 0.1, 0.5), grains)
+    under_g(parameters(20.0, 1e-3, 0.1, 0.5), grains)
 }
 
 /// Spoils a good scene and compares the message.

@@ -158,12 +158,7 @@ fn two_bodies(model: FrictionModel, solves: u32) -> Simulation {
     let above = Grain::at_rest(below.position + 1.998 * RADIUS * direction, RADIUS);
     let mut scene = Scene {
         boundaries: vec![level()],
-        ..scene(
-            Physics::FULL,
-            DVec2::new(0.0, -G),
-            parameters(0.0, DT, 0.0, MU),
-            vec![below, above],
-        )
+        ..under_g(parameters(0.0, DT, 0.0, MU), vec![below, above])
     };
     scene.solver.friction_model = model;
     scene.solver.model_solves = solves;
@@ -199,12 +194,8 @@ fn more_solves_a_step_lead_to_coulombs_law() {
 fn a_fixed_disc_holds_by_friction_as_a_grain_does() {
     // Between two fixed discs, held by friction on both sides alone: a wedge that Coulomb's law holds.
     for &model in FrictionModel::ALL {
-        let mut scene = scene(
-            Physics::FULL,
-            DVec2::new(0.0, -G),
-            parameters(3.0, DT, 0.0, 2.0),
-            vec![Grain::at_rest(DVec2::ZERO, RADIUS)],
-        );
+        let mut scene =
+            under_g(parameters(3.0, DT, 0.0, 2.0), vec![Grain::at_rest(DVec2::ZERO, RADIUS)]);
         scene.fixed_discs =
             [-1.0, 1.0].map(|side| fixed(DVec2::new(side * 1.999 * RADIUS, 0.0), RADIUS)).to_vec();
         scene.solver.friction_model = model;

@@ -171,8 +171,7 @@ fn a_falling_disc_lands_in_touch_and_rests() {
     for bond in [0.0, 5.0] {
         let grain = Grain::at_rest(0.5 * DVec2::Y, 0.05);
         let grains = vec![grain];
-        let mut fall =
-            scene(Physics::FULL, -G * DVec2::Y, parameters(bond, 5e-3, 0.0, 0.5), grains);
+        let mut fall = under_g(parameters(bond, 5e-3, 0.0, 0.5), grains);
         fall.boundaries = vec![level()];
         fall.remedies.speculative = true;
         let mut run = start(&fall);
@@ -193,8 +192,7 @@ fn cohesion_does_not_pull_across_a_gap() {
         moving(DVec2::ZERO, 0.05, DVec2::ZERO),
         moving(DVec2::new(0.1 + 1e-3, 0.0), 0.05, DVec2::new(-0.5, 0.0)),
     ];
-    let mut scene =
-        scene(Physics::FULL, DVec2::new(0.0, -G), parameters(50.0, 1e-3, 0.0, 0.5), pair);
+    let mut scene = under_g(parameters(50.0, 1e-3, 0.0, 0.5), pair);
     scene.remedies.speculative = true;
     let mut run = after(&scene, 1);
     assert_eq!((run.observables().contacts, run.observables().tensile_contacts), (0, 0));

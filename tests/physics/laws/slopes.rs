@@ -134,12 +134,7 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
         let place = reach * (1.0 - 1e-9) * DVec2::new(start_angle.sin(), start_angle.cos());
         let scene = Scene {
             fixed_discs: vec![fixed(DVec2::ZERO, other)],
-            ..scene(
-                Physics::FULL,
-                DVec2::new(0.0, -G),
-                parameters(0.0, dt, 0.0, 1e3),
-                vec![Grain::at_rest(place, RADIUS)],
-            )
+            ..under_g(parameters(0.0, dt, 0.0, 1e3), vec![Grain::at_rest(place, RADIUS)])
         };
         let mut run = start(&scene);
         let (mut cosine, mut touched) = (1.0, 0);

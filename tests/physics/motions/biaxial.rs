@@ -15,7 +15,7 @@ fn pressed_together(seed: u64) -> Scene {
     };
     let grains = (0..36).map(grain).collect();
     let parameters = parameters(0.0, 1e-3, 0.0, 0.3);
-    let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters, grains);
+    let mut scene = without_g(parameters, grains);
     let wall =
         |x: f64, y: f64, normal: DVec2| Boundary::HalfSpace { point: DVec2::new(x, y), normal };
     scene.boundaries = vec![

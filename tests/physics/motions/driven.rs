@@ -82,7 +82,7 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
 #[test]
 fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
     let grain = Grain::at_rest(-10.0 * DVec2::Y, 0.1);
-    let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
+    let mut scene = without_g(parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
     scene.boundaries = vec![plane(DVec2::ZERO, DVec2::NEG_Y)];
     scene.motions = vec![driven(&[0], by_force(DVec2::Y, 3.0, 2.0))];
     let run = after(&scene, 100);
@@ -104,7 +104,7 @@ fn a_grain_that_hits_a_wall_of_a_mass_gets_the_impulse_of_both_masses() {
     for (method, restitution) in pairs(methods(), [0.0, 0.5, 1.0]) {
         let parameters = parameters(0.0, 1e-4, restitution, 0.0);
         let grain = moving(DVec2::new(0.0, 0.10001), radius, -2.0 * DVec2::Y);
-        let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters, vec![grain]);
+        let mut scene = without_g(parameters, vec![grain]);
         scene.solver.method = method;
         // A disc that goes along y alone, hit askew: its guide takes what is across.
         let normal = DVec2::new(0.6, 0.8);
@@ -169,8 +169,7 @@ fn sheared(mass: f64) -> Scene {
         let place = DVec2::new(0.011 * f64::from(k % 6), 0.0051 + 0.0101 * f64::from(k / 6));
         Grain::at_rest(place, 0.005 * (0.9 + 0.1 * (0.618 * f64::from(k)).fract()))
     });
-    let mut scene =
-        scene(Physics::FULL, -9.8 * DVec2::Y, parameters(0.0, 5e-4, 0.3, 0.5), grains.collect());
+    let mut scene = under_g(parameters(0.0, 5e-4, 0.3, 0.5), grains.collect());
     scene.boundaries = vec![level()];
     scene.fixed_discs =
         (0..6).map(|k| fixed(DVec2::new(0.011 * f64::from(k), 0.046), 0.005)).collect();
@@ -242,12 +241,7 @@ fn a_run_with_a_driven_wall_goes_on_from_a_file_bit_for_bit() {
 fn a_motion_of_another_wall_stays_what_it_was() {
     // A driven wall that nothing touches changes no bit of a scene.
     let grain = |x: f64| moving(DVec2::new(x, 0.02), 0.01, DVec2::new(0.3, -0.2));
-    let mut scene = scene(
-        Physics::FULL,
-        -9.8 * DVec2::Y,
-        parameters(0.0, 1e-3, 0.4, 0.5),
-        vec![grain(0.0), grain(0.021)],
-    );
+    let mut scene = under_g(parameters(0.0, 1e-3, 0.4, 0.5), vec![grain(0.0), grain(0.021)]);
     scene.solver = tight();
     scene.boundaries = between(5.0);
     scene.motions = vec![goes(&[0], straight(DVec2::new(0.1, 0.02)))];

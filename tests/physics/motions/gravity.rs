@@ -18,7 +18,7 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
         let scene = Scene {
             stepper,
             gravity_turn: evenly(RATE),
-            ..scene(Physics::FULL, -G * DVec2::Y, parameters(0.0, DT, 0.0, 0.5), vec![grain])
+            ..under_g(parameters(0.0, DT, 0.0, 0.5), vec![grain])
         };
         let mut run = start(&through_a_file(&scene));
         let mut work = 0.0;

@@ -17,7 +17,7 @@ pub(super) fn gas(small: f64, all_round: bool) -> Scene {
         moving(0.01 * place, 0.005 * if k % 3 == 0 { small } else { 0.95 }, velocity)
     });
     let numbers = parameters(0.0, 1e-4, 1.0, 0.0);
-    let mut scene = scene(Physics::FULL, DVec2::ZERO, numbers, grains.collect());
+    let mut scene = without_g(numbers, grains.collect());
     scene.mean_diameter = 0.01;
     scene.periodic = Some(if all_round { SQUARE } else { Periodic::along_x([0.0, SIDE]) });
     if !all_round {
@@ -133,7 +133,7 @@ fn a_pair_that_meets_across_a_border_is_a_pair_that_meets_inside() {
                 };
                 let discs = vec![disc(-0.0073, -0.0071, 0.3), disc(0.0073, 0.0072, -0.1)];
                 let numbers = parameters(0.0, 1e-3, 0.5, 0.4);
-                let mut pair = scene(Physics::FULL, DVec2::ZERO, numbers, discs);
+                let mut pair = without_g(numbers, discs);
                 for grain in pair.grains.iter_mut().filter(|_| !slides) {
                     grain.position = periodic.wrap(grain.position);
                 }

@@ -129,9 +129,7 @@ fn offset(run: &Simulation) -> DVec2 {
 fn a_bonded_pair_that_circles_does_so_wherever_it_is_in_the_cell() {
     // A pull that the iterations have not come to loses its bond.
     for stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Avbd) {
-        let mut pair = scene(
-            Physics::FULL,
-            -9.8 * DVec2::Y,
+        let mut pair = under_g(
             parameters(20.0, 2e-4, 0.5, 0.5),
             vec![
                 moving(DVec2::new(-0.00999, 0.0), 0.01, DVec2::new(0.2, 0.35)),
@@ -174,7 +172,7 @@ fn grains_that_bounce_under_the_law_range_keep_their_momentum_across_borders() {
         moving(place, 0.0055, DVec2::new(component(), component()))
     });
     let parameters = parameters(5.0, 5e-4, 0.9, 0.3);
-    let mut gas = scene(Physics::FULL, -9.8 * DVec2::Y, parameters, grains.collect());
+    let mut gas = under_g(parameters, grains.collect());
     gas.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
     gas.parameters.debonding_distance = DISTANCE_IN_DIAMETERS;
     (gas.stepper, gas.periodic) = (Stepper::Range, Some(SQUARE));
@@ -195,8 +193,7 @@ fn grains_that_bounce_under_the_law_range_keep_their_momentum_across_borders() {
 /// A disc on a level under gravity that leans to the right, in a cell or not.
 fn on_a_slope(stepper: Stepper, tilt: f64, periodic: Option<Periodic>) -> Scene {
     let disc = moving(DVec2::new(0.05, 0.01), 0.01, DVec2::ZERO);
-    let mut scene =
-        scene(Physics::FULL, -9.8 * DVec2::Y, parameters(0.0, 5e-4, 0.0, 0.1), vec![disc]);
+    let mut scene = under_g(parameters(0.0, 5e-4, 0.0, 0.1), vec![disc]);
     (scene.stepper, scene.boundaries, scene.periodic) = (stepper, vec![level()], periodic);
     scene.parameters.tilt = tilt;
     scene.gap_tolerance = 1e-8;
@@ -208,9 +205,9 @@ fn a_disc_slides_down_a_slope_without_end_as_down_one_that_wraps() {
     let cell = Periodic::along_x([0.0, SIDE]);
     let degrees = 40.0f64;
     let (sin, cos) = degrees.to_radians().sin_cos();
-    for stepper in Stepper::ALL {
+    for &stepper in Stepper::ALL {
         let [mut free, mut wrapped] =
-            [None, Some(cell)].map(|periodic| start(&on_a_slope(*stepper, degrees, periodic)));
+            [None, Some(cell)].map(|periodic| start(&on_a_slope(stepper, degrees, periodic)));
         take_steps(&mut free, 800);
         take_steps(&mut wrapped, 800);
         let [free, wrapped] = [&free, &wrapped].map(|run| run.grains());
@@ -219,7 +216,7 @@ fn a_disc_slides_down_a_slope_without_end_as_down_one_that_wraps() {
         assert!(free.velocities[0].distance(wrapped.velocities[0]) < 1e-10, "{stepper}");
         // It slides, as tan 40° is above 3 μ.
         let expected = 9.8 * (sin - 0.1 * cos) * 0.4;
-        let tolerance = if *stepper == Stepper::Avbd { 2e-2 } else { 2e-3 };
+        let tolerance = if stepper == Stepper::Avbd { 2e-2 } else { 2e-3 };
         assert_close(wrapped.velocities[0].x, expected, tolerance, stepper.name());
         assert!(wrapped.angular_velocities[0] < 0.0, "{stepper}: it rolls as well");
     }
@@ -230,8 +227,7 @@ fn a_wall_at_the_border_that_a_grain_goes_through_across_it_is_told_of() {
     let wall = |x: f64| Boundary::Segment { from: DVec2::new(x, -1.0), to: DVec2::new(x, 1.0) };
     let grain = moving(DVec2::new(0.995, 0.0), 0.002, 40.0 * DVec2::X);
     let of = |boundaries: Vec<Boundary>| {
-        let mut scene =
-            scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-3, 0.0, 0.0), vec![grain.clone()]);
+        let mut scene = without_g(parameters(0.0, 1e-3, 0.0, 0.0), vec![grain.clone()]);
         scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
         scene.boundaries = boundaries;
         scene
@@ -251,8 +247,7 @@ fn a_wall_at_the_border_that_a_grain_goes_through_across_it_is_told_of() {
 fn a_disc_hits_a_wall_beyond_the_border() {
     for (from, speed, wall) in [(0.89, 1.0, 0.02), (0.11, -1.0, 0.98)] {
         let grain = moving(DVec2::new(from, 0.0), 0.1, speed * DVec2::X);
-        let mut scene =
-            scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-3, 0.5, 0.0), vec![grain]);
+        let mut scene = without_g(parameters(0.0, 1e-3, 0.5, 0.0), vec![grain]);
         scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
         let ends = [-1.0, 1.0].map(|y| DVec2::new(wall, y));
         scene.boundaries = vec![Boundary::Segment { from: ends[0], to: ends[1] }];

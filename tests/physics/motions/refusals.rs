@@ -21,7 +21,7 @@ fn with(motions: Vec<Motion>) -> Scene {
 }
 
 fn of_one(grain: Grain, friction: f64) -> Scene {
-    scene(Physics::FULL, -G * DVec2::Y, parameters(0.0, 1e-3, 0.0, friction), vec![grain])
+    under_g(parameters(0.0, 1e-3, 0.0, friction), vec![grain])
 }
 
 #[track_caller]

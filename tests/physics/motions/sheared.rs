@@ -32,7 +32,7 @@ pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
     let drift: DVec2 = grains.iter().map(|grain| grain.velocity).sum::<DVec2>() / 80.0;
     grains.iter_mut().for_each(|grain| grain.velocity.y -= drift.y);
     let parameters = parameters(0.0, 1e-4, restitution, friction);
-    let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters, grains);
+    let mut scene = without_g(parameters, grains);
     scene.solver.tolerance = 1e-10;
     scene.periodic = Some(cell(shear_rate));
     scene
@@ -43,9 +43,7 @@ fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
     // Side by side across the border and at rest each: what rubs them is the sliding of the border alone, until
     // friction's impulse μP or the slip's own mass, m_t U, is used up.
     let discs = [DVec2::new(0.055, 0.0099), DVec2::new(0.055, SIZE.y - 0.0099)];
-    let mut scene = scene(
-        Physics::FULL,
-        DVec2::ZERO,
+    let mut scene = without_g(
         parameters(0.0, 1e-4, 0.0, 0.2),
         vec![moving(discs[0], 0.01, -0.1 * DVec2::Y), moving(discs[1], 0.01, 0.1 * DVec2::Y)],
     );
@@ -77,9 +75,9 @@ fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
 
 #[test]
 fn nothing_hangs_on_where_the_borders_are() {
-    for stepper in Stepper::ALL {
+    for &stepper in Stepper::ALL {
         let mut scene = gas(10.0, 0.5, 0.3);
-        scene.stepper = *stepper;
+        scene.stepper = stepper;
         let run = |by: DVec2| {
             let mut scene = scene.clone();
             for grain in &mut scene.grains {
@@ -290,12 +288,12 @@ fn a_flow_twice_as_fast_takes_the_same_way_and_bears_four_times_as_much() {
 #[test]
 fn an_image_that_slides_towards_discs_at_rest_is_found() {
     // Both rest, so that nothing but the border's way says that the pairs that were near are no longer those.
-    for stepper in Stepper::ALL {
+    for &stepper in Stepper::ALL {
         let at = |x: f64, y: f64| moving(DVec2::new(x, y), 0.01, DVec2::ZERO);
         let grains = vec![at(0.03, 0.005), at(0.08, SIZE.y - 0.005)];
         let parameters = parameters(0.0, 1e-4, 0.0, 0.2);
-        let mut scene = scene(Physics::FULL, DVec2::ZERO, parameters, grains);
-        (scene.stepper, scene.periodic) = (*stepper, Some(cell(1.0)));
+        let mut scene = without_g(parameters, grains);
+        (scene.stepper, scene.periodic) = (stepper, Some(cell(1.0)));
         let mut run = start(&scene);
         // The image goes 0.1 m/s, and after a third of a second it has gone three centimetres and meets the other.
         take_steps(&mut run, 2000);

@@ -147,10 +147,10 @@ fn turns(rate: f64) -> MotionCourse {
 #[test]
 fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     let (outer, radius, rate) = (1.0, 0.1, 0.2);
-    for stepper in Stepper::ALL {
+    for &stepper in Stepper::ALL {
         let place = DVec2::new(0.0, -(outer - radius) + 1e-6);
         let scene = Scene {
-            stepper: *stepper,
+            stepper,
             boundaries: vec![drum(outer, 2000)],
             motions: vec![goes(&[0], turns(rate))],
             ..scene(
@@ -198,17 +198,12 @@ fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
             Grain::at_rest(0.0105 * place, radius)
         })
         .collect();
-    for stepper in Stepper::ALL {
+    for &stepper in Stepper::ALL {
         let mut scene = Scene {
-            stepper: *stepper,
+            stepper,
             boundaries: vec![drum(outer, 40)],
             motions: vec![goes(&[0], turns(rate))],
-            ..scene(
-                Physics::FULL,
-                -G * DVec2::Y,
-                parameters(0.0, 1e-3, 0.1, MU_OF_DRUM),
-                grains.clone(),
-            )
+            ..under_g(parameters(0.0, 1e-3, 0.1, MU_OF_DRUM), grains.clone())
         };
         scene.solver.max_sweeps = 50;
         scene.solver.tolerance = 1e-4;
@@ -236,12 +231,7 @@ fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
         let mut scene = Scene {
             boundaries: vec![floor.clone()],
             motions: vec![goes(&[0], straight(speed * DVec2::Y))],
-            ..scene(
-                Physics::FULL,
-                -G * DVec2::Y,
-                parameters(0.0, 1e-3, 0.0, MU_OF_DRUM),
-                vec![grain],
-            )
+            ..under_g(parameters(0.0, 1e-3, 0.0, MU_OF_DRUM), vec![grain])
         };
         scene.duration_secs = 2.0;
         let run = after(&scene, if lost == 1 { 1 } else { 1000 });
@@ -252,23 +242,18 @@ fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
 /// Fixed discs far outside of any list of near pairs come to a grain and push it before them.
 #[test]
 fn discs_that_move_are_found_wherever_they_come_to() {
-    for stepper in Stepper::ALL {
+    for &stepper in Stepper::ALL {
         let grain = Grain { feels_gravity: false, ..Grain::at_rest(DVec2::ZERO, 0.05) };
         let travel = Some(2.0);
         let course = MotionCourse::Straight { direction: DVec2::X, speed: 1.0, travel };
         let mut scene = Scene {
-            stepper: *stepper,
+            stepper,
             motions: vec![Motion {
                 fixed_discs: vec![0],
                 course: Some(course),
                 ..Motion::default()
             }],
-            ..scene(
-                Physics::FULL,
-                -G * DVec2::Y,
-                parameters(0.0, 1e-3, 0.0, MU_OF_DRUM),
-                vec![grain],
-            )
+            ..under_g(parameters(0.0, 1e-3, 0.0, MU_OF_DRUM), vec![grain])
         };
         scene.fixed_discs = vec![fixed(DVec2::new(-1.5, 0.0), 0.05)];
         let run = after(&scene, 2500);

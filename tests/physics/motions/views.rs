@@ -163,9 +163,9 @@ fn of_all_kinds(mirror: bool) -> Scene {
 
 #[test]
 fn a_mirrored_scene_goes_on_mirrored() {
-    for stepper in Stepper::ALL {
+    for &stepper in Stepper::ALL {
         let [mut one, mut other] =
-            [false, true].map(|mirror| start(&Scene { stepper: *stepper, ..of_all_kinds(mirror) }));
+            [false, true].map(|mirror| start(&Scene { stepper, ..of_all_kinds(mirror) }));
         let mut worked = [0.0; 2];
         for _ in 0..60 {
             worked[0] += one.step().expect("a finite state").wall_work;

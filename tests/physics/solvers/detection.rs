@@ -158,7 +158,7 @@ fn a_running_simulation_sees_every_contact_of_fast_grains() {
             wall(DVec2::new(-1.0, 0.0), DVec2::X),
             wall(DVec2::new(16.0, 0.0), -DVec2::X),
         ],
-        ..scene(Physics::FULL, -G * DVec2::Y, parameters(2.0, 3e-3, 0.8, 0.3), grains)
+        ..under_g(parameters(2.0, 3e-3, 0.8, 0.3), grains)
     };
     scene.mean_diameter = 0.9;
     scene.solver.max_sweeps = 20;

@@ -39,7 +39,7 @@ fn lattice() -> Scene {
         ..Grain::at_rest(0.99 * DIAMETER * place(k), 0.5 * DIAMETER)
     });
     let grains = grains.collect();
-    scene(Physics::FULL, DVec2::new(0.0, -G), parameters(10.0, 1e-3, 0.1, 0.5), grains)
+    under_g(parameters(10.0, 1e-3, 0.1, 0.5), grains)
 }
 
 const SIZES: [(usize, usize); 3] = [(0, 30), (1, 8), (2, 20)];

@@ -41,7 +41,7 @@ fn pulled(stepper: Stepper, bond: f64, dt: f64, free: bool) -> Scene {
         grains.push(Grain { feels_gravity: false, ..Grain::at_rest(DVec2::ZERO, other) });
     }
     let fixed_discs = if free { Vec::new() } else { vec![fixed(DVec2::ZERO, other)] };
-    let scene = scene(Physics::FULL, -G * DVec2::Y, parameters(bond, dt, 0.2, 0.5), grains);
+    let scene = under_g(parameters(bond, dt, 0.2, 0.5), grains);
     by(stepper, 0, Scene { fixed_discs, ..scene })
 }
 
