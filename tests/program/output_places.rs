@@ -198,8 +198,7 @@ fn work_goes_on_when_stderr_goes_away() {
     assert!(sweep(&["--shard", "1/2"]).success());
     // Now it has something to say: that some runs were there.
     assert!(sweep(&[]).success());
-    let rows = read(out.join("runs.csv"));
-    assert_eq!(rows.lines().count(), 1 + 3);
+    assert_eq!(read(out.join("runs.csv")).lines().count(), 1 + 3);
 }
 
 #[test]

@@ -44,8 +44,7 @@ fn nothing_else_in(out: &Path) {
     let known = |name: &&String| {
         !name.starts_with("frame_") && !["manifest.json", "observables.csv"].contains(&&***name)
     };
-    let names = names_in(out);
-    assert_eq!(names.iter().find(known), None);
+    assert_eq!(names_in(out).iter().find(known), None);
 }
 
 #[test]
@@ -156,8 +155,7 @@ fn a_full_disk_leaves_whole_rows_and_pictures_and_the_animation_so_far() {
     );
     let pictures = pictures_in(folder.path()) as u64;
     assert!(pictures > 3 && rows + 64 >= 40 * (pictures - 1), "{pictures} pictures, {rows} rows");
-    let manifest = manifest(folder.path());
-    assert_eq!(manifest["runs"][0]["ended"], "failed");
+    assert_eq!(manifest(folder.path())["runs"][0]["ended"], "failed");
     nothing_else_in(folder.path());
 
     let gif = folder.path().join("cradle.gif");

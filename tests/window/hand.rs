@@ -72,8 +72,7 @@ fn a_grain_that_finds_no_room_is_refused_with_a_notice() {
     let edit = Edit::Add(slump::world::Disc { position: DVec2::new(0.0, top), radius: 0.0125 });
     robot.send(Command::Edit(0, edit));
     assert_eq!(count(&robot), grains);
-    let told = robot.notice();
-    assert_eq!(told, "place of a new grain is on another one, but must be free");
+    assert_eq!(robot.notice(), "place of a new grain is on another one, but must be free");
 }
 
 #[test]
@@ -215,8 +214,7 @@ fn a_click_pins_a_grain_and_another_lets_it_go() {
         robot.button(at, false);
         assert_eq!(robot.state().mouse.pinned, expected);
         robot.harness.step();
-        let listed = robot.harness.query_by_label("Unpin").is_some();
-        assert_eq!(listed, expected.is_some());
+        assert_eq!(robot.harness.query_by_label("Unpin").is_some(), expected.is_some());
         robot.frames(40);
     }
 }

@@ -8,8 +8,7 @@ fn any_quantity_is_plotted_against_any_other() {
     robot.clicks(&["Step", "y over x"]);
     assert!(robot.state().preferences.chosen_plot.on);
     robot.harness.step();
-    let title = "kinetic energy (J) against slump";
-    assert!(robot.harness.query_by_label(title).is_some());
+    assert!(robot.harness.query_by_label("kinetic energy (J) against slump").is_some());
     robot.click("log y");
     assert_eq!(robot.state().preferences.chosen_plot.logarithmic, [false, true]);
 }
@@ -66,8 +65,7 @@ fn a_refusal_moves_no_control() {
     let before = place(&robot);
     robot.type_number("Bond", "-1");
     robot.harness.step();
-    let said = robot.harness.query_by_label_contains("bond is -1");
-    assert!(said.is_some(), "the refusal is told");
+    assert!(robot.harness.query_by_label_contains("bond is -1").is_some(), "the refusal is told");
     assert_eq!(place(&robot), before);
 }
 

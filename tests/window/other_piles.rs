@@ -153,8 +153,7 @@ fn grains_are_seen_as_they_rain_and_the_world_before_comes_back() {
         state.frame.loading.as_ref().and_then(|loading| loading.preview.clone())
     };
     robot.until("the rain", |state| preview(state).is_some());
-    let first = preview(robot.state()).expect("the rain");
-    assert_eq!(first.snapshot.grains.len(), 400);
+    assert_eq!(preview(robot.state()).expect("the rain").snapshot.grains.len(), 400);
     robot.until("grains that have fallen", |state| {
         preview(state).is_some_and(|now| now.snapshot.observables.time_secs > 0.05)
     });

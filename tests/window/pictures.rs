@@ -19,8 +19,7 @@ fn check(robot: &mut Robot, name: &str) {
     if std::env::var_os("SLUMP_BLESS").is_some() {
         save_small(&actual, name, FilterType::Adaptive);
     }
-    let complaint = complaint(&actual, name, "window", TOLERANCE);
-    assert_eq!(complaint, None);
+    assert_eq!(complaint(&actual, name, "window", TOLERANCE), None);
 }
 
 #[test]

@@ -54,8 +54,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     robot.take_steps(5);
     let path = written(&mut robot, |robot| robot.key(egui::Key::S), "png");
     assert_eq!(name(&path), "slump-pile-bond35-dt2e-3-0.0100s.png");
-    let notice = robot.notice();
-    assert_eq!(notice, format!("Saved {}", path.display()), "the whole path");
+    assert_eq!(robot.notice(), format!("Saved {}", path.display()), "the whole path");
     let (texts, size) = texts(&path);
     assert_eq!(size, [640, 400]);
     assert!(texts["Settings"].contains("--bond 35 --dt 0.002"), "{texts:?}");

@@ -43,8 +43,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     assert_eq!(robot.steps(), 60);
     robot.take_steps(30);
     assert_eq!(robot.bits(), uninterrupted);
-    let again = curve_of(&robot);
-    assert_eq!(again, curve);
+    assert_eq!(curve_of(&robot), curve);
 }
 
 #[test]
@@ -81,8 +80,7 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
 
     robot.command_key(egui::Key::Z);
     robot.settle();
-    let again = curve_of(&robot);
-    assert_eq!(again, curve);
+    assert_eq!(curve_of(&robot), curve);
     let past = robot.state().frame.past.clone();
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
     // What is undone can be done again, as often as one likes.

@@ -67,8 +67,7 @@ fn the_tour_goes_on_at_its_place() {
     let mut again = Robot::open_saved(&path);
     assert!(again.state().touring);
     assert_eq!(again.state().preferences.tour.at, 2);
-    let before = robot.state().preferences.speed;
-    assert_eq!(again.state().preferences.speed, before);
+    assert_eq!(again.state().preferences.speed, robot.state().preferences.speed);
     again.click("Leave");
     assert!(!again.state().touring);
 }
@@ -262,8 +261,7 @@ fn a_hand_that_pulls_is_not_saved() {
     robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
     robot.take_steps(3);
     assert!(robot.world().controls.pull.is_some());
-    let state = SavedState::open(&saved(&mut robot)).expect("a state");
-    assert_eq!(state.simulation.pull(), None);
+    assert_eq!(SavedState::open(&saved(&mut robot)).expect("a state").simulation.pull(), None);
 }
 
 #[test]
@@ -285,8 +283,7 @@ fn a_state_that_is_saved_can_be_opened_and_is_a_run_of_its_own() {
     assert_eq!((robot.steps(), robot.bits()), (25, before), "reset goes back to the file");
     // Sums over all steps since t = 0 go along.
     robot.take_steps(1);
-    let state = SavedState::open(&saved(&mut robot)).expect("a state");
-    assert_eq!(state.tally.steps, 26);
+    assert_eq!(SavedState::open(&saved(&mut robot)).expect("a state").tally.steps, 26);
 }
 
 #[test]

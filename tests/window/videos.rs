@@ -69,8 +69,7 @@ fn a_video_that_is_stopped_leaves_nothing_and_the_run_goes_on_meanwhile() {
     robot.take_steps(3);
     assert!(robot.state().is_writing() && robot.steps() == before + 3, "the run goes on");
     robot.click("Stop video");
-    let told = robot.written();
-    assert_eq!(told, "Stopped: there is no video");
+    assert_eq!(robot.written(), "Stopped: there is no video");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
     assert!(robot.harness.query_by_label("Save video").is_some(), "another can be asked for");
 }
@@ -168,7 +167,6 @@ fn an_animation_that_is_stopped_leaves_nothing() {
     robot.take_steps(300);
     robot.state_mut().preferences.video_speed = 0.01;
     robot.clicks(&["Save GIF", "Stop GIF"]);
-    let told = robot.written();
-    assert_eq!(told, "Stopped: there is no GIF");
+    assert_eq!(robot.written(), "Stopped: there is no GIF");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
 }

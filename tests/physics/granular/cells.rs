@@ -97,8 +97,7 @@ fn fixed_discs_and_walls_take_their_room() {
     let grains: Vec<_> = scattered(300, 5).into_iter().filter(inside).collect();
     let base: Vec<Disc> = (0..10).map(|k| fixed(DVec2::new(f64::from(k), 0.2), 0.4)).collect();
     let room = [DVec2::ZERO, DVec2::new(9.0, 7.0)];
-    let moment = among(discs(grains), box_walls(room[0], room[1]), base);
-    assert_counted(&moment, room);
+    assert_counted(&among(discs(grains), box_walls(room[0], room[1]), base), room);
 }
 
 #[test]

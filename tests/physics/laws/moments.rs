@@ -160,8 +160,7 @@ fn a_run_tells_of_stalled_steps_in_its_manifest_and_on_stderr() {
     let said = succeed(slump(line).arg(folder.path()));
     assert!(said.contains("5 of 5 steps did not reach tolerance"), "{said}");
     assert!(said.contains("5 of them stalled"), "{said}");
-    let manifest = manifest(folder.path());
-    assert_eq!(manifest["runs"][0]["tally"]["stalled_steps"], 5);
+    assert_eq!(manifest(folder.path())["runs"][0]["tally"]["stalled_steps"], 5);
     let rows = read(folder.path().join("observables.csv"));
     let header = rows.lines().next().expect("a header");
     let column = header.split(',').position(|name| name == "stalled").expect("a column");

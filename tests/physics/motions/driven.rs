@@ -93,8 +93,7 @@ fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
     // Σ Δt V over steps, the first of which ends with V = FΔt/M.
     assert_close(point.y, 0.5 * 1.5 * 0.1 * 0.101, 1e-12, "the way");
     drive_of(&mut scene).damping = 60.0;
-    let run = after(&scene, 1000);
-    assert_close(drive(&run).speed, 3.0 / 60.0, 1e-9, "F/c");
+    assert_close(drive(&after(&scene, 1000)).speed, 3.0 / 60.0, 1e-9, "F/c");
 }
 
 #[test]

@@ -65,8 +65,7 @@ fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
         take_steps(&mut run, 1100);
         // g (sin θ − μ cos θ) since tan θ = μ, at 0.65 s: evenly rising until 0.7 s.
         let push = G * (above.sin() - mu * above.cos());
-        let speed = run.velocity(0).x;
-        assert_close(speed, push * (1.0 + 0.025), 5e-3, &what);
+        assert_close(run.velocity(0).x, push * (1.0 + 0.025), 5e-3, &what);
     }
 }
 
@@ -110,8 +109,7 @@ fn gravity_points_to_the_right_where_the_tilt_is_above_0_and_comes_back() {
     run.change(settings).expect("sound settings");
     let gravity = |run: &Simulation| run.world().gravity.acceleration(DVec2::ZERO);
     let g = gravity(&start(&on_a_floor())).length();
-    let expected = DVec2::new(0.5 * g, -(0.75f64.sqrt()) * g);
-    assert!(gravity(&run).distance(expected) < 1e-12 * g);
+    assert!(gravity(&run).distance(DVec2::new(0.5 * g, -(0.75f64.sqrt()) * g)) < 1e-12 * g);
     settings.parameters.tilt = 0.0;
     run.change(settings).expect("sound settings");
     take_steps(&mut run, 20);

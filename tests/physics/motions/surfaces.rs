@@ -82,8 +82,7 @@ fn models_of_friction_see_the_belt() {
         scene.solver.model_solves = 4;
         scene.solver.tolerance = 1e-9;
         let run = after(&scene, 400);
-        let speed = run.velocity(0).x;
-        assert_close(speed, SPEED / 3.0, 1e-3, &format!("{model}, {method}"));
+        assert_close(run.velocity(0).x, SPEED / 3.0, 1e-3, &format!("{model}, {method}"));
     }
 }
 

@@ -27,8 +27,7 @@ fn a_threshold_of_restitution_holds_for_soft_substeps() {
     for (threshold, parts) in [(90.0, true), (110.0, false)] {
         let mut scene = by(Stepper::TgsSoft, 0, meeting(LINE, 0.5, 1e-3));
         scene.parameters.restitution_threshold = threshold;
-        let run = after(&scene, 2);
-        assert_eq!(relative_velocity(&run).x > 0.1, parts, "threshold {threshold}");
+        assert_eq!(relative_velocity(&after(&scene, 2)).x > 0.1, parts, "threshold {threshold}");
     }
 }
 

@@ -102,8 +102,7 @@ fn a_chart_of_stored_points_looks_as_it_did() {
     let sheet = sheet();
     // What a sheet writes is what it was read from.
     let written = String::from_utf8(sheet.to_csv().expect("CSV")).expect("UTF-8");
-    let read = read(stored("chart.csv"));
-    assert_eq!(written, read);
+    assert_eq!(written, read(stored("chart.csv")));
     let bytes = png(&sheet, "slump reproduce").expect("a picture");
     let golden = stored("chart.png");
     if std::env::var_os("SLUMP_BLESS").is_some() {

@@ -147,6 +147,5 @@ fn a_state_is_written_and_read_as_a_file() {
     assert!(SavedState::is_in(&path) && !SavedState::is_in(folder.path()));
     let mut state = SavedState::open(&path).expect("a state");
     state.tally = Tally { steps: 3, largest_residual: f64::INFINITY, ..Tally::default() };
-    let again = read_back(&state.to_bytes().expect("bytes"));
-    assert_eq!(again.tally, state.tally);
+    assert_eq!(read_back(&state.to_bytes().expect("bytes")).tally, state.tally);
 }

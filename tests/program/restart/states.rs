@@ -156,8 +156,7 @@ fn a_spring_that_pulls_and_walls_that_move_go_on() {
     assert_ne!(*simulation.snapshot().surroundings, *surroundings, "the walls have moved");
     let pulled = simulation.observables().gravity_work;
     assert!(pulled != 0.0, "the spring works");
-    let end = goes_on(&scene, &simulation, 20, "pulled");
-    assert_eq!(end.pull(), simulation.pull());
+    assert_eq!(goes_on(&scene, &simulation, 20, "pulled").pull(), simulation.pull());
 }
 
 /// A pile on a shaken base, beside a plate that turns back and forth, a wall on its way along a table, a
