@@ -59,7 +59,7 @@ fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let drift = 0.3 * direction;
     let j = scene.fixed_discs.remove(0);
     scene.grains[0].velocity += drift;
-    scene.grains.push(Grain { feels_gravity: false, ..moving(j.position, j.radius, drift) });
+    scene.grains.push(weightless(moving(j.position, j.radius, drift)));
     scene
 }
 
@@ -141,7 +141,7 @@ fn pulled(bond: f64, dt: f64, physics: Physics, free: bool) -> Scene {
     let mut scene = against_fixed(&case, physics, direction);
     if free {
         let j = scene.fixed_discs.remove(0);
-        scene.grains.push(Grain { feels_gravity: false, ..Grain::at_rest(j.position, j.radius) });
+        scene.grains.push(weightless(Grain::at_rest(j.position, j.radius)));
     }
     scene
 }

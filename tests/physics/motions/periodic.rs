@@ -91,11 +91,7 @@ pub(super) fn sliding(bond: f64) -> Scene {
     let (left, count) = (scene.fixed_discs[0].position.x, scene.fixed_discs.len());
     let width = count as f64 * 2.0 * scene.fixed_discs[0].radius;
     scene.periodic = Some(Periodic::along_x([left, left + width]));
-    scene.motions = vec![Motion {
-        fixed_discs: (0..count).collect(),
-        course: Some(straight(0.4 * DVec2::X)),
-        ..Motion::default()
-    }];
+    scene.motions = vec![discs_go(count, straight(0.4 * DVec2::X))];
     scene
 }
 

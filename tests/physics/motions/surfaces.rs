@@ -94,32 +94,20 @@ fn a_belt_goes_round_a_segment_and_a_disc_that_turns_is_a_belt() {
         let mut scene = on_belt(UNTURNING, segment.clone(), belt(&[0], SPEED));
         scene.grains[0].position.y *= sign;
         scene.gravity = Gravity::Uniform { acceleration: DVec2::new(0.0, -G * sign) };
-        let simulation = after(&scene, 50);
-        let speed = simulation.velocity(0).x;
-        assert_close(
-            speed,
-            -sign * MU * G * 50.0 * DT,
-            1e-9,
-            "to the left above, to the right below",
-        );
+        let expected = -sign * MU * G * 50.0 * DT;
+        let speed = after(&scene, 50).velocity(0).x;
+        assert_close(speed, expected, 1e-9, "to the left above, to the right below");
     }
     let large = 2.0;
     let disc = |motion: Motion| {
         let mut scene = on_belt(Physics::FULL, level(), motion);
         scene.boundaries.clear();
-        scene.fixed_discs = vec![crate::common::fixed(DVec2::new(0.0, -large), large)];
-        start(&scene)
+        scene.fixed_discs = vec![fixed(DVec2::new(0.0, -large), large)];
+        after(&scene, 100)
     };
-    let turning = MotionCourse::Rotation {
-        pivot: DVec2::new(0.0, -large),
-        rate: SPEED / large,
-        travel: None,
-    };
-    let of_disc = Motion { fixed_discs: vec![0], ..Motion::default() };
-    let mut turns = disc(Motion { course: Some(turning), ..of_disc.clone() });
-    let mut goes_round = disc(Motion { surface_speed: SPEED, ..of_disc });
-    take_steps(&mut turns, 100);
-    take_steps(&mut goes_round, 100);
+    let turns = disc(discs_go(1, round(DVec2::new(0.0, -large), SPEED / large)));
+    let goes_round =
+        disc(Motion { fixed_discs: vec![0], surface_speed: SPEED, ..Motion::default() });
     let [one, other] = [&turns, &goes_round].map(|run| run.place(0));
     assert!(one.x < -0.01, "it was pulled along: {one}");
     assert!(one.distance(other) < 1e-9, "{one} and {other}");
@@ -136,10 +124,6 @@ fn drum(radius: f64, sides: usize) -> Boundary {
     Boundary::Polyline { points: (0..=sides).map(corner).collect() }
 }
 
-fn turns(rate: f64) -> MotionCourse {
-    MotionCourse::Rotation { pivot: DVec2::ZERO, rate, travel: None }
-}
-
 /// A disc that cannot turn sticks to the wall and goes with the point that it touches: with ΩR/(R − r) about the axis,
 /// until tan φ = μ. From there on it slides, as a pendulum about that angle would swing: the friction that draws it on
 /// does not change with the slip.
@@ -151,7 +135,7 @@ fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
         let scene = Scene {
             stepper,
             boundaries: vec![drum(outer, 2000)],
-            motions: vec![goes(&[0], turns(rate))],
+            motions: vec![goes(&[0], round(DVec2::ZERO, rate))],
             ..scene(
                 UNTURNING,
                 -G * DVec2::Y,
@@ -201,15 +185,14 @@ fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
         let mut scene = Scene {
             stepper,
             boundaries: vec![drum(outer, 40)],
-            motions: vec![goes(&[0], turns(rate))],
+            motions: vec![goes(&[0], round(DVec2::ZERO, rate))],
             ..under_g(parameters(0.0, 1e-3, 0.1, MU_OF_DRUM), grains.clone())
         };
         scene.solver.max_sweeps = 50;
         scene.solver.tolerance = 1e-4;
         let run = after(&scene, 1100);
-        let farthest = run.places().iter().map(|place| place.length());
-        let farthest = farthest.fold(0.0, f64::max);
-        assert!(farthest < outer, "{stepper}: {farthest} m from the axis");
+        let far = run.places().iter().map(|place| place.length()).fold(0.0, f64::max);
+        assert!(far < outer, "{stepper}: {far} m from the axis");
         assert_eq!(run.observables().lost_grains, 0, "{stepper}");
         let Boundary::Polyline { points } = &run.world().boundaries[0] else {
             panic!("a polyline")
@@ -242,16 +225,12 @@ fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
 #[test]
 fn discs_that_move_are_found_wherever_they_come_to() {
     for &stepper in Stepper::ALL {
-        let grain = Grain { feels_gravity: false, ..Grain::at_rest(DVec2::ZERO, 0.05) };
+        let grain = weightless(Grain::at_rest(DVec2::ZERO, 0.05));
         let travel = Some(2.0);
         let course = MotionCourse::Straight { direction: DVec2::X, speed: 1.0, travel };
         let mut scene = Scene {
             stepper,
-            motions: vec![Motion {
-                fixed_discs: vec![0],
-                course: Some(course),
-                ..Motion::default()
-            }],
+            motions: vec![discs_go(1, course)],
             ..under_g(parameters(0.0, 1e-3, 0.0, MU_OF_DRUM), vec![grain])
         };
         scene.fixed_discs = vec![fixed(DVec2::new(-1.5, 0.0), 0.05)];
@@ -260,10 +239,8 @@ fn discs_that_move_are_found_wherever_they_come_to() {
         assert_close(disc.x, 0.5, 1e-12, "the disc has gone its way and stays");
         assert_eq!(run.snapshot().surroundings.fixed_discs, run.world().fixed_discs);
         let speed = run.velocity(0).x;
-        let tolerance = match stepper {
-            Stepper::Dem | Stepper::Avbd => 0.05,
-            _ => 1e-9,
-        };
+        let is_soft = [Stepper::Dem, Stepper::Avbd].contains(&stepper);
+        let tolerance = if is_soft { 0.05 } else { 1e-9 };
         assert_close(speed, 1.0, tolerance, stepper.name());
     }
 }
@@ -336,8 +313,8 @@ fn momentum_comes_from_gravity_and_from_what_is_no_grain_alone() {
                 .iter()
                 .zip(list.impulses())
                 .filter(|(contact, _)| !matches!(numbering.other(contact.other), Other::Grain(_)))
-                .map(|(contact, impulse)| {
-                    impulse.normal * contact.normal + impulse.tangential * contact.normal.perp()
+                .map(|(contact, it)| {
+                    it.normal * contact.normal + it.tangential * contact.normal.perp()
                 })
                 .sum();
             let change = momentum(&run) - before;

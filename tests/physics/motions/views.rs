@@ -203,7 +203,7 @@ fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
             },
         };
         let physics = Physics { friction: false, rotation: false, ..Physics::FULL };
-        let rotation = MotionCourse::Rotation { pivot: DVec2::ZERO, rate, travel: None };
+        let rotation = round(DVec2::ZERO, rate);
         let mut scene = Scene {
             boundaries: vec![boundary],
             motions: vec![goes(&[0], rotation)],

@@ -138,8 +138,8 @@ fn two_free_grains_part_by_the_energy_of_their_relative_motion() {
 #[test]
 fn overlap_is_pushed_out_and_moves_nothing() {
     let grains = vec![
-        Grain { feels_gravity: false, ..Grain::at_rest(DVec2::ZERO, RADIUS) },
-        Grain { feels_gravity: false, ..Grain::at_rest(DVec2::new(1.8 * RADIUS, 0.0), RADIUS) },
+        weightless(Grain::at_rest(DVec2::ZERO, RADIUS)),
+        weightless(Grain::at_rest(DVec2::new(1.8 * RADIUS, 0.0), RADIUS)),
     ];
     for bond in [0.0, BOND] {
         let scene = scene(LINE, DVec2::new(G, 0.0), range(bond, 1e-3), grains.clone());
@@ -246,7 +246,7 @@ fn a_grain_that_rides_on_a_moving_disc_does_not_circle_it() {
     let circles = |disc_speed: f64| {
         let direction = DVec2::Y;
         let course = MotionCourse::Straight { direction, speed: disc_speed, travel: None };
-        let of_disc = Motion { fixed_discs: vec![0], course: Some(course), ..Motion::default() };
+        let of_disc = discs_go(1, course);
         let grain = moving(DVec2::new(2.0 * RADIUS, 0.0), RADIUS, direction);
         let run = after(
             &Scene {

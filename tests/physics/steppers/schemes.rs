@@ -37,7 +37,7 @@ fn pulled(stepper: Stepper, bond: f64, dt: f64, free: bool) -> Scene {
     let hanging = Grain::at_rest(DVec2::new(0.0, -(radius + other) * (1.0 - 1e-9)), radius);
     let mut grains = vec![hanging];
     if free {
-        grains.push(Grain { feels_gravity: false, ..Grain::at_rest(DVec2::ZERO, other) });
+        grains.push(weightless(Grain::at_rest(DVec2::ZERO, other)));
     }
     let fixed_discs = if free { Vec::new() } else { vec![fixed(DVec2::ZERO, other)] };
     let scene = under_g(parameters(bond, dt, 0.2, 0.5), grains);
