@@ -224,6 +224,10 @@ pub fn plane(point: DVec2, normal: DVec2) -> Boundary {
     Boundary::HalfSpace { point, normal }
 }
 
+pub fn piston(point: DVec2, normal: DVec2, speed: f64, travel: f64) -> Boundary {
+    Boundary::Piston { point, normal, speed, travel }
+}
+
 pub fn level() -> Boundary {
     plane(DVec2::ZERO, DVec2::Y)
 }

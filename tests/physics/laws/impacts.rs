@@ -203,8 +203,7 @@ fn a_wall_that_moves_strikes_twice_and_its_work_is_no_gain_of_the_bounces() {
     let mut scene = struck(Physics::FULL, 1.0, row_of(DVec2::X, &[0.0, 0.0]));
     scene.parameters.friction = 0.5;
     let point = -RADIUS * (1.0 - TOUCH) * DVec2::X;
-    scene.boundaries =
-        vec![Boundary::Piston { point, normal: DVec2::X, speed: SPEED, travel: 1.0 }];
+    scene.boundaries = vec![piston(point, DVec2::X, SPEED, 1.0)];
     // The first ball hands its 2V on to the second, and is struck once more.
     for velocity in after_a_step(&scene, DVec2::X) {
         assert_close(velocity, 2.0 * SPEED, 1e-9, "a ball in front of the wall");
@@ -272,7 +271,7 @@ fn pushed(physics: Physics, restitution: f64, distance: f64, travel: f64) -> Sce
     let grains = vec![Grain::at_rest(DVec2::ZERO, RADIUS)];
     let point = DVec2::new(-RADIUS - distance, 0.0);
     Scene {
-        boundaries: vec![Boundary::Piston { point, normal: DVec2::X, speed: WALL_SPEED, travel }],
+        boundaries: vec![piston(point, DVec2::X, WALL_SPEED, travel)],
         ..scene(physics, DVec2::ZERO, parameters(0.0, DT, restitution, 0.5), grains)
     }
 }

@@ -6,12 +6,7 @@ use crate::common::*;
 
 /// A grain over a level, a piston beside it, and a fixed disc.
 fn with(motions: Vec<Motion>) -> Scene {
-    let piston = Boundary::Piston {
-        point: DVec2::new(-3.0, 0.0),
-        normal: DVec2::X,
-        speed: 0.1,
-        travel: 1.0,
-    };
+    let piston = piston(DVec2::new(-3.0, 0.0), DVec2::X, 0.1, 1.0);
     Scene {
         boundaries: vec![level(), piston],
         motions,

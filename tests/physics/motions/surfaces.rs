@@ -272,8 +272,7 @@ fn the_budget_of_energy_is_closed_where_walls_move_and_where_gravity_turns() {
     turning.gravity_turn = Some(GravityTurn { course, elapsed_secs: 0.0 });
     turning.solver.max_sweeps = 100;
     let mut lifted = slump::scene::stability::logs(1.0);
-    let (point, normal) = (DVec2::ZERO, DVec2::Y);
-    lifted.boundaries = vec![Boundary::Piston { point, normal, speed: 0.2, travel: 0.01 }];
+    lifted.boundaries = vec![piston(DVec2::ZERO, DVec2::Y, 0.2, 0.01)];
     for (name, scene, allowed) in
         [("shaken", shaken(), 1e-11), ("turning", turning, 1e-10), ("lifted", lifted, 1e-10)]
     {

@@ -19,12 +19,7 @@ fn on_a_floor(shape: usize) -> Scene {
         }
         2 => vec![Boundary::ConvexPolygon { points: corners }],
         3 => Vec::new(),
-        _ => vec![Boundary::Piston {
-            point: DVec2::ZERO,
-            normal: DVec2::Y,
-            speed: 0.0,
-            travel: f64::from(u32::MAX),
-        }],
+        _ => vec![piston(DVec2::ZERO, DVec2::Y, 0.0, f64::from(u32::MAX))],
     };
     if shape == 3 {
         // Each grain stands on a disc of its own.
@@ -96,13 +91,11 @@ fn pressed(normal: DVec2, as_pistons: bool) -> Scene {
     for (number, (normal, distance)) in walls.into_iter().enumerate() {
         let point = distance * normal;
         if as_pistons {
-            scene.boundaries.push(Boundary::Piston { point, normal, speed, travel });
+            scene.boundaries.push(piston(point, normal, speed, travel));
         } else {
-            scene.boundaries.push(Boundary::HalfSpace { point, normal });
-            let travel = Some(travel);
-            scene
-                .motions
-                .push(goes(&[number], MotionCourse::Straight { direction: normal, speed, travel }));
+            scene.boundaries.push(plane(point, normal));
+            let course = MotionCourse::Straight { direction: normal, speed, travel: Some(travel) };
+            scene.motions.push(goes(&[number], course));
         }
     }
     scene.solver.max_sweeps = 60;

@@ -127,12 +127,7 @@ fn a_wall_that_comes_throws_a_grain_off_by_its_own_speed() {
             weightless(moving(DVec2::new(1.03 * RADIUS, 0.0), RADIUS, DVec2::new(-0.2, 0.0)));
         let run = after(
             &Scene {
-                boundaries: vec![Boundary::Piston {
-                    point: DVec2::ZERO,
-                    normal: DVec2::X,
-                    speed: 0.3,
-                    travel: 10.0,
-                }],
+                boundaries: vec![piston(DVec2::ZERO, DVec2::X, 0.3, 10.0)],
                 ..ranged(
                     SMOOTH,
                     DVec2::new(0.0, -G),
