@@ -214,18 +214,6 @@ fn grains_come_from_one_place() {
 }
 
 #[test]
-fn a_rain_outside_its_range_is_refused() {
-    let said = |rain: NewPile| settle(&rain, |_| true).expect_err("no rain").to_string();
-    assert!(said(NewPile { grains: 0, ..NewPile::default() }).starts_with("grains is 0, but"));
-    for width in [0.0, 1.0, f64::NAN, -3.0, 1e9] {
-        let message = said(NewPile { box_width_in_diameters: width, ..NewPile::default() });
-        assert!(message.starts_with("box-width is "), "{message}");
-    }
-    let interrupted = settle(&NewPile { grains: 5, ..NewPile::default() }, |_| false);
-    assert!(interrupted.is_err_and(|error| error.to_string().contains("interrupted")));
-}
-
-#[test]
 fn an_unknown_built_in_scene_is_told_of_with_those_there_are() {
     let message = built_in("heap").expect_err("no such scene").to_string();
     assert!(message.starts_with("scene is heap, but must be one of pile, cradle, collision"));

@@ -275,13 +275,16 @@ fn piles_of_any_shape_come_to_rest() {
 
 #[test]
 fn what_is_no_pile_is_refused_in_a_sentence() {
-    let refused = |pile: NewPile| deposit(&pile, |_| true).expect_err("none").to_string();
-    assert!(refused(pile(0, 16.0, 1)).starts_with("grains is 0, but must be"));
-    for width in [1.0, -4.0, f64::NAN, f64::INFINITY] {
-        assert!(refused(pile(5, width, 1)).starts_with("box-width is "));
+    for deposition in [Deposition::DropAndRoll, Deposition::Rain] {
+        let of = |grains: usize, width: f64| NewPile { deposition, ..pile(grains, width, 1) };
+        let refused = |pile: NewPile| deposit(&pile, |_| true).expect_err("none").to_string();
+        assert!(refused(of(0, 16.0)).starts_with("grains is 0, but must be"));
+        for width in [0.0, 1.0, -4.0, 1e9, f64::NAN, f64::INFINITY] {
+            assert!(refused(of(5, width)).starts_with("box-width is "));
+        }
+        let interrupted = deposit(&of(50, 16.0), |_| false).expect_err("interrupted");
+        assert!(interrupted.to_string().contains("interrupted"));
     }
-    let interrupted = deposit(&pile(50, 16.0, 1), |_| false).expect_err("interrupted");
-    assert!(interrupted.to_string().contains("interrupted"));
     let said = |options: &[(&str, &str)]| {
         let config = Config::of_options(options.iter().copied());
         config.and_then(|config| config.scene(|_| true)).expect_err("refused").to_string()
