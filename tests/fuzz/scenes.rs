@@ -115,8 +115,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
         speculative: u.ratio(1, 4)?,
     };
     if u.ratio(3, 4)? {
-        let settings = scene.settings().with_only_what_is_taken();
-        scene.set_settings(settings);
+        scene.set_settings(scene.settings().with_only_what_is_taken());
     }
     scene.grains = (0..u.int_in_range(1..=12)?).map(|_| grain(u, size)).collect::<Result<_>>()?;
     scene.mean_diameter = 2.0 * scene.grains[0].radius;

@@ -43,8 +43,7 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
         moving(0.01 * (DVec2::new(column + 0.5 * row, 0.87 * row) + shift), 0.005, velocity)
     };
     for (stepper, method) in every_way() {
-        let parameters = parameters(20.0, 1e-3, 0.3, 0.5);
-        let mut scene = under_g(parameters, (0..110 * 160).map(at).collect());
+        let mut scene = under_g(parameters(20.0, 1e-3, 0.3, 0.5), (0..110 * 160).map(at).collect());
         (scene.stepper, scene.solver.method, scene.solver.max_sweeps) = (stepper, method, 3);
         // What a direct method does is its own; three steps of it would take the time of all the others.
         if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {

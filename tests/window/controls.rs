@@ -109,8 +109,7 @@ fn what_makes_no_sense_is_refused_visibly() {
 #[test]
 fn a_scene_that_cannot_be_opened_says_why_and_leaves_the_old_one() {
     let mut robot = Robot::open(pile());
-    let config = Config::of_scene("no-such.toml");
-    robot.load(config);
+    robot.load(Config::of_scene("no-such.toml"));
     let (notice, _) = robot.state().notice().expect("a complaint");
     assert!(notice.text.starts_with("no-such.toml: "), "{}", notice.text);
     assert_eq!(robot.world().snapshot.grains.len(), 138);

@@ -94,8 +94,7 @@ fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
     let mut again = Robot::open_saved(&path);
     assert_eq!(again.bits(), now);
     again.seek(0.0);
-    let end = again.state().frame.recorded_secs();
-    again.seek(end);
+    again.seek(again.state().frame.recorded_secs());
     assert_eq!(again.bits(), now, "and its way");
     // A link says that it does not tell of it.
     robot.state_mut().copy_link();

@@ -13,8 +13,7 @@ fn heap() -> Scene {
         let at = DVec2::new(2.05 * f64::from(column) + shift, 1.01 + 1.9 * f64::from(row));
         Grain::at_rest(RADIUS * at, RADIUS)
     });
-    let physics = Physics::FULL;
-    let mut heap = scene(physics, GRAVITY, parameters(5.0, 1e-3, 0.0, 0.4), grains.collect());
+    let mut heap = scene(Physics::FULL, GRAVITY, parameters(5.0, 1e-3, 0.0, 0.4), grains.collect());
     let plane = |point, normal| Boundary::HalfSpace { point, normal };
     heap.boundaries = vec![
         plane(DVec2::ZERO, DVec2::Y),

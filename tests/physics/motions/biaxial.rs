@@ -14,8 +14,7 @@ fn pressed_together(seed: u64) -> Scene {
         Grain::at_rest(place, random.random_range(0.008..0.012))
     };
     let grains = (0..36).map(grain).collect();
-    let parameters = parameters(0.0, 1e-3, 0.0, 0.3);
-    let mut scene = without_g(parameters, grains);
+    let mut scene = without_g(parameters(0.0, 1e-3, 0.0, 0.3), grains);
     let wall =
         |x: f64, y: f64, normal: DVec2| Boundary::HalfSpace { point: DVec2::new(x, y), normal };
     scene.boundaries = vec![

@@ -16,8 +16,7 @@ pub(super) fn gas(small: f64, all_round: bool) -> Scene {
         let velocity = DVec2::new(component() + 0.5, component() - fall);
         moving(0.01 * place, 0.005 * if k % 3 == 0 { small } else { 0.95 }, velocity)
     });
-    let numbers = parameters(0.0, 1e-4, 1.0, 0.0);
-    let mut scene = without_g(numbers, grains.collect());
+    let mut scene = without_g(parameters(0.0, 1e-4, 1.0, 0.0), grains.collect());
     scene.mean_diameter = 0.01;
     scene.periodic = Some(if all_round { SQUARE } else { Periodic::along_x([0.0, SIDE]) });
     if !all_round {
@@ -132,8 +131,7 @@ fn a_pair_that_meets_across_a_border_is_a_pair_that_meets_inside() {
                     moving(at(x, y) + part * SIZE, 0.01, speed * DVec2::ONE)
                 };
                 let discs = vec![disc(-0.0073, -0.0071, 0.3), disc(0.0073, 0.0072, -0.1)];
-                let numbers = parameters(0.0, 1e-3, 0.5, 0.4);
-                let mut pair = without_g(numbers, discs);
+                let mut pair = without_g(parameters(0.0, 1e-3, 0.5, 0.4), discs);
                 for grain in pair.grains.iter_mut().filter(|_| !slides) {
                     grain.position = periodic.wrap(grain.position);
                 }

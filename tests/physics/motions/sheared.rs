@@ -31,8 +31,7 @@ pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
         .collect();
     let drift: DVec2 = grains.iter().map(|grain| grain.velocity).sum::<DVec2>() / 80.0;
     grains.iter_mut().for_each(|grain| grain.velocity.y -= drift.y);
-    let parameters = parameters(0.0, 1e-4, restitution, friction);
-    let mut scene = without_g(parameters, grains);
+    let mut scene = without_g(parameters(0.0, 1e-4, restitution, friction), grains);
     scene.solver.tolerance = 1e-10;
     scene.periodic = Some(cell(shear_rate));
     scene
@@ -291,8 +290,7 @@ fn an_image_that_slides_towards_discs_at_rest_is_found() {
     for &stepper in Stepper::ALL {
         let at = |x: f64, y: f64| moving(DVec2::new(x, y), 0.01, DVec2::ZERO);
         let grains = vec![at(0.03, 0.005), at(0.08, SIZE.y - 0.005)];
-        let parameters = parameters(0.0, 1e-4, 0.0, 0.2);
-        let mut scene = without_g(parameters, grains);
+        let mut scene = without_g(parameters(0.0, 1e-4, 0.0, 0.2), grains);
         (scene.stepper, scene.periodic) = (stepper, Some(cell(1.0)));
         let mut run = start(&scene);
         // The image goes 0.1 m/s, and after a third of a second it has gone three centimetres and meets the other.

@@ -196,8 +196,7 @@ fn assert_a_sweep_like_any_other(mut scene: Scene) {
 
 #[test]
 fn colours_on_any_number_of_threads_give_bitwise_the_sweeps_of_one() {
-    let parameters = parameters(20.0, 1e-3, 0.3, 0.5);
-    let mut scene = pressed_pile(40_000, 0.1, 5, parameters);
+    let mut scene = pressed_pile(40_000, 0.1, 5, parameters(20.0, 1e-3, 0.3, 0.5));
     scene.solver = SolverSettings {
         method: Method::NsgsParallel,
         stop: StopTest::RelativeChange,

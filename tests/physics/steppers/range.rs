@@ -124,8 +124,7 @@ fn two_free_grains_part_by_the_energy_of_their_relative_motion() {
         ];
         let weightless = |grain| Grain { feels_gravity: false, ..grain };
         let grains = grains.into_iter().map(weightless).collect();
-        let parameters = range(BOND, time_step_secs);
-        let scene = scene(LINE, DVec2::new(G, 0.0), parameters, grains);
+        let scene = scene(LINE, DVec2::new(G, 0.0), range(BOND, time_step_secs), grains);
         let run =
             after(&Scene { stepper: Stepper::Range, ..scene }, (0.1 / time_step_secs) as usize);
         let velocities = run.velocities();

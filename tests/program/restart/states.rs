@@ -104,8 +104,7 @@ fn every_scene_goes_on_in_every_way_from_its_start_and_from_any_step() {
         let what = format!("{}: {way:?}", scene.name);
         // A step may ask for what the scene does not have; it is refused before anything begins.
         let Ok(simulation) = scene.simulation() else { return };
-        let later = goes_on(&scene, &simulation, STEPS, &what);
-        goes_on(&scene, &later, STEPS, &what);
+        goes_on(&scene, &goes_on(&scene, &simulation, STEPS, &what), STEPS, &what);
     });
 }
 

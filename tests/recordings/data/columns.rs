@@ -77,8 +77,7 @@ fn walls_are_named_as_scene_files_name_them() {
     let is_wall = |other| matches!(other, OtherBody::Boundary(_));
     assert!(moments.iter().flat_map(|moment| &moment.contacts).any(|it| is_wall(it.other)));
     let folder = folder();
-    let walls = scene("moving-walls");
-    recorded(folder.path(), &[FormatName::Parquet], &walls, 20, 5);
+    recorded(folder.path(), &[FormatName::Parquet], &scene("moving-walls"), 20, 5);
     let contacts = parquet(folder.path(), "contacts");
     assert!(contacts["name_j"].contains(&word("piston 1")), "{:?}", contacts["name_j"]);
 }

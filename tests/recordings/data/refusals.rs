@@ -166,8 +166,7 @@ fn what_is_nothing_of_all_that_is_told_of() {
 #[test]
 fn damaged_parquet_is_refused_or_read_and_nothing_else() {
     let folder = folder();
-    let pile = scene("pile");
-    recorded(folder.path(), &[FormatName::Parquet], &pile, 2, 1);
+    recorded(folder.path(), &[FormatName::Parquet], &scene("pile"), 2, 1);
     let whole = bytes(&parts(folder.path(), "grains")[0]);
     let path = folder.path().join("damaged.parquet");
     let mut random = Pcg64::seed_from_u64(3);

@@ -72,8 +72,7 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     // Half rows, and a frame that the index does not know.
     let cut = |file: &str, by: u64| {
         let file = std::fs::OpenOptions::new().write(true).open(torn.join(file)).expect("a file");
-        let length = file.metadata().expect("a length").len();
-        file.set_len(length - by).expect("cut");
+        file.set_len(file.metadata().expect("a length").len() - by).expect("cut");
     };
     cut("csv/grains.csv", 7);
     cut("frames.csv", 2);
