@@ -131,7 +131,7 @@ fn check(input: &str) -> bool {
     let scene = folder.path().join("scene.toml");
     write(&scene, file);
     let out = folder.path().join("out");
-    let [scene_name, out_name] = [&scene, &out].map(|path| text(&path));
+    let [scene_name, out_name] = [&scene, &out].map(|path| text(path));
     let arguments: Vec<String> = arguments
         .lines()
         .map(|word| word.replace("FILE", scene_name).replace("OUT", out_name))
@@ -189,8 +189,7 @@ fn command_lines_and_what_they_leave() {
 /// Checks the folder of a run that ended by itself with `code` and said `stderr`.
 pub fn check_books(folder: &Path, code: i32, stderr: &str) {
     let rows = rows_of(&folder.join("observables.csv"));
-    let manifest: Value =
-        serde_json::from_str(&read(&folder.join("manifest.json"))).expect("a manifest");
+    let manifest = manifest(folder);
     let run = &manifest["runs"][0];
     let mut tally = Tally::default();
     for (row, number) in rows.iter().zip(1..) {

@@ -63,7 +63,7 @@ fn scene_files() {
     texts.push(scene_to_toml(&rained).expect("TOML"));
     fuzz_texts("scene-files", "toml", texts, |_, path| {
         // Where grains are rained, many of them may well take their time.
-        let scene = Config::of_scene(text(&path)).without_settling()?;
+        let scene = Config::of_scene(text(path)).without_settling()?;
         scene.simulation()
     });
 }

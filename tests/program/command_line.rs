@@ -130,7 +130,7 @@ fn a_frame_carries_the_command_that_draws_it_bit_for_bit() {
     let words = shlex::split(&told.text).expect("words");
     assert!(words.contains(&"0.15".to_owned()), "{words:?}");
     succeed(slump("").current_dir(folder.path()).args(&words[1..]).args(["--renderer", "cpu"]));
-    assert!(bytes(&folder.path().join("frames/frame_00000.png")) == bytes(&frame));
+    assert!(bytes(folder.path().join("frames/frame_00000.png")) == bytes(&frame));
 }
 
 #[test]

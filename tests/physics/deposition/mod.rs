@@ -304,7 +304,7 @@ fn a_wider_base_changes_no_bit_of_a_pile_that_stays_on_it() {
         config.and_then(|config| config.scene(|_| true))
     };
     let run = |scene: &Scene| {
-        let simulation = after(&scene, 50);
+        let simulation = after(scene, 50);
         simulation.grains().positions.clone()
     };
     let (own, wide) = (said(&[]).expect("a pile"), said(&[("base-width", "500")]).expect("a pile"));

@@ -178,7 +178,7 @@ fn a_running_simulation_sees_every_contact_of_fast_grains() {
 fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
-        let mut run = start(&scene);
+        let mut run = start(scene);
         let sweeps = [(); 3].map(|()| run.step().expect("a finite state").sweeps);
         (sweeps, run.contacts().impulses().to_vec(), run.grains().clone())
     })

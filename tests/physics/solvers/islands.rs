@@ -58,8 +58,7 @@ fn island_by_island(method: Method, stop: StopTest) -> SolverSettings {
 }
 
 fn after_steps(scene: &Scene, solver: SolverSettings, steps: usize) -> Simulation {
-    let run = after(&Scene { solver, ..scene.clone() }, steps);
-    run
+    after(&Scene { solver, ..scene.clone() }, steps)
 }
 
 fn methods() -> impl Iterator<Item = Method> {

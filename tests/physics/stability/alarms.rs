@@ -5,7 +5,7 @@ use slump::scene::stability::{cantilever, column, heap, mass_ratio, overlapped};
 
 /// The kinds of alarms of a run, and what they say.
 fn alarms(scene: &Scene, steps: u32) -> Vec<(AlarmKind, String)> {
-    let mut run = start(&scene);
+    let mut run = start(scene);
     for _ in 0..steps {
         if run.step().is_err() {
             break;
@@ -73,7 +73,7 @@ fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
 fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not() {
     // Runs until bonds have broken, or for 0.1 s: what it says of breaks, and whether there were any.
     let run = |scene: &Scene| {
-        let mut simulation = start(&scene);
+        let mut simulation = start(scene);
         let mut broken = 0.0;
         while simulation.time_secs() < 0.1 && broken == 0.0 {
             let step = simulation.step().expect("finite");

@@ -208,7 +208,7 @@ fn an_earlier_recording_is_removed_with_all_its_files() {
     let folder = folder();
     write_frames(&mut start(folder.path()), 0..3);
     assert_eq!(names(folder.path()).len(), 10);
-    write(&folder.path().join("vtk/grains_1.vtp"), "not of a recording");
+    write(folder.path().join("vtk/grains_1.vtp"), "not of a recording");
     drop(Recording::start(folder.path(), FORMATS, &about(), true).expect("a recording"));
     assert_eq!(names(folder.path()), ["vtk/grains_1.vtp"]);
 }
