@@ -1,7 +1,6 @@
 //! The models of friction beside Coulomb's law: what each does to one contact, exactly, and that the problem it
 //! puts in the place of Coulomb's has one solution, which is found.
 
-mod certificates;
 mod piles;
 
 use crate::common::*;

@@ -1,7 +1,6 @@
 //! Bodies that move by themselves, and gravity that turns: what their surfaces do to grains, that nothing depends on who moves, and that
 //! energy, momentum, restart and mirror know of it.
 
-mod biaxial;
 mod driven;
 mod gravity;
 mod images;
