@@ -6,9 +6,9 @@ use slump::config::SavedState;
 
 use crate::program::*;
 
-fn drawn(arguments: &[&str], out: &Path) -> Command {
+fn drawn(line: &str, out: &Path) -> Command {
     let mut command = slump("--headless --size 64x36 --renderer cpu");
-    command.args(arguments).arg("--frames").arg(out);
+    command.args(line.split_whitespace()).arg("--frames").arg(out);
     command
 }
 
@@ -47,20 +47,20 @@ fn same(one: &Path, other: &Path, what: &str) {
 }
 
 /// A run of 0.1 s that is saved at 0.05 s.
-fn halves(more: &[&str]) -> [TempDir; 3] {
+fn halves(more: &str) -> [TempDir; 3] {
     let folders = [folder(), folder(), folder()];
     let state = folders[1].path().join("half.slump");
-    let base = [&["--bond", "20", "--dt", "1e-3", "--fps", "100"], more].concat();
+    let base = format!("--bond 20 --dt 1e-3 --fps 100 {more}");
     succeed(drawn(&base, folders[0].path()).args(["--duration", "0.1"]));
     succeed(drawn(&base, folders[1].path()).args(["--duration", "0.05", "--save"]).arg(&state));
-    let second = ["--fps", "100", "--duration", "0.1", "--restart", text(&state)];
-    succeed(&mut drawn(&second, folders[2].path()));
+    let second = "--fps 100 --duration 0.1";
+    succeed(drawn(second, folders[2].path()).arg("--restart").arg(&state));
     folders
 }
 
 #[test]
 fn a_saved_run_goes_on_as_if_it_had_never_ended() {
-    for more in [&[][..], &["--stepper", "range"], &["--stepper", "dem"], &["--solver", "newton"]] {
+    for more in ["", "--stepper range", "--stepper dem", "--solver newton"] {
         let [whole, first, second] = halves(more);
         let rows = |folder: &TempDir| {
             let text = read(folder.path().join("observables.csv"));
@@ -90,11 +90,12 @@ fn a_saved_run_goes_on_as_if_it_had_never_ended() {
 
 #[test]
 fn a_saved_run_goes_on_otherwise_where_it_is_asked_to() {
-    let [_, first, _] = halves(&[]);
+    let [_, first, _] = halves("");
     let state = first.path().join("half.slump");
     let restart = |more: &[&str]| {
         let out = folder();
-        let command = drawn(&[&["--restart", text(&state)], more].concat(), out.path());
+        let mut command = drawn("", out.path());
+        command.arg("--restart").arg(&state).args(more);
         (out, command)
     };
     let (out, mut command) = restart(&["--bond", "80", "--stepper", "range", "--dt", "5e-4"]);
@@ -172,8 +173,8 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
     let first = folder();
     let saved = first.path().join("saved.slump");
     let saved = text(&saved);
-    let dense = ["--scene", "moving-walls", "--duration", "0.1", "--save", saved];
-    succeed(&mut drawn(&dense, first.path()));
+    let dense = "--scene moving-walls --duration 0.1";
+    succeed(drawn(dense, first.path()).args(["--save", saved]));
     for (more, name) in [
         (&[][..], "greys"),
         (&["--show", "forces"], "forces"),
@@ -182,7 +183,7 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
         let whole = folder();
         let gif = |folder: &Path| folder.join("a.gif").to_string_lossy().into_owned();
         let arguments = |out: &Path| {
-            let mut command = drawn(&PILE.split(' ').collect::<Vec<_>>(), out);
+            let mut command = drawn(PILE, out);
             command.args(more).args(["--gif", &gif(out)]);
             command.stdout(Stdio::null()).stderr(Stdio::null());
             command
@@ -228,9 +229,8 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
 fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     let (whole, stopped) = (folder(), folder());
     let line = PILE.replace("0.03", "100");
-    let arguments: Vec<&str> = line.split(' ').collect();
-    succeed(&mut drawn(&arguments, whole.path()));
-    let mut run = drawn(&arguments, stopped.path());
+    succeed(&mut drawn(&line, whole.path()));
+    let mut run = drawn(&line, stopped.path());
     let mut child = run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
     wait_for("pictures", || stopped.path().join("frame_00002.png").exists());
     send("TERM", child.id().into());
@@ -238,24 +238,23 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     let step = manifest(stopped.path())["runs"][0]["step"].as_u64().expect("a step");
     assert!(step < 300, "it was stopped on the way");
     // Without checkpoints, and with another number, the command is another one.
-    let other = refusal(drawn(&arguments, stopped.path()).args(["--mu", "0.4"]));
+    let other = refusal(drawn(&line, stopped.path()).args(["--mu", "0.4"]));
     assert!(
         other.contains("checkpoint.slump is there") && other.contains("another command"),
         "{other}"
     );
-    let without = refusal(&mut drawn(&arguments[..8], stopped.path()));
+    let without =
+        refusal(&mut drawn(PILE.split(" --checkpoint").next().expect("options"), stopped.path()));
     assert!(without.contains("unless --overwrite"), "{without}");
     // What the checkpoint tells of must be there.
     let (table, picture) =
         (stopped.path().join("observables.csv"), stopped.path().join("frame_00001.png"));
     let [rows, pixels] = [&table, &picture].map(bytes);
     write(&table, &rows[..rows.len() / 2]);
-    assert!(refusal(&mut drawn(&arguments, stopped.path())).contains("observables.csv: has "));
+    assert!(refusal(&mut drawn(&line, stopped.path())).contains("observables.csv: has "));
     write(&table, &rows);
     std::fs::remove_file(&picture).expect("a file");
-    assert!(
-        refusal(&mut drawn(&arguments, stopped.path())).contains("frame_00001.png: is missing")
-    );
+    assert!(refusal(&mut drawn(&line, stopped.path())).contains("frame_00001.png: is missing"));
     write(&picture, &pixels);
     // What came after it, as where the run was killed later, goes.
     write(&table, [&rows[..], b"9,9,9\n9,"].concat());
@@ -263,13 +262,13 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
         write(stopped.path().join(left), &pixels);
     }
 
-    let said = succeed(&mut drawn(&arguments, stopped.path()));
+    let said = succeed(&mut drawn(&line, stopped.path()));
     assert!(said.contains(&format!("the run goes on at step {step}, t = 0.")), "{said}");
     same(whole.path(), stopped.path(), "after a signal");
     let went_on = &manifest(stopped.path())["runs"][0]["went_on_at"];
     assert_eq!(went_on[0]["step"].as_u64(), Some(step));
     // What is complete does not go on.
-    assert!(refusal(&mut drawn(&arguments, stopped.path())).contains("frame_00000.png is there"));
+    assert!(refusal(&mut drawn(&line, stopped.path())).contains("frame_00000.png is there"));
 }
 
 #[test]
@@ -277,10 +276,9 @@ fn a_checkpoint_that_cannot_be_gone_on_with_is_refused_and_overwritten_when_aske
     let out = folder();
     let checkpoint = out.path().join("checkpoint.slump");
     write(&checkpoint, "slump-state 2 0.0.0 1 x\ny");
-    let said = refusal(&mut drawn(&PILE.split(' ').collect::<Vec<_>>(), out.path()));
+    let said = refusal(&mut drawn(PILE, out.path()));
     assert!(said.contains("is of version 0.0.0") && said.contains("unless --overwrite"), "{said}");
     let brief = PILE.replace("0.3 ", "0.01 ");
-    let brief: Vec<&str> = brief.split(' ').collect();
     succeed(drawn(&brief, out.path()).arg("--overwrite"));
     assert!(!checkpoint.exists());
     assert_eq!(manifest(out.path())["runs"][0]["ended"], "complete");
