@@ -144,10 +144,7 @@ impl ProblemVisitor for SolveTimer<'_> {
 }
 
 /// Seconds of one solve of a copy, and what it came to.
-fn timed<M: Model>(
-    problem: &StepProblem<M>,
-    settings: &SolverSettings,
-) -> (f64, Measures) {
+fn timed<M: Model>(problem: &StepProblem<M>, settings: &SolverSettings) -> (f64, Measures) {
     let (mut copy, mut memory) = (problem.clone(), Memory::default());
     let started = Instant::now();
     solve(&mut copy, &mut memory, settings);
