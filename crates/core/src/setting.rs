@@ -55,7 +55,7 @@ pub struct Control {
     pub hint: &'static str,
     /// Ends of a number's slider. Typed values may lie outside.
     pub range: [f64; 2],
-    /// Whether equal distances on the slider are equal factors.
+    /// True where equal distances on the slider are equal factors.
     pub logarithmic: bool,
 }
 
@@ -78,7 +78,7 @@ pub(crate) struct Declaration<T> {
     pub help: &'static str,
     /// What it may be, for messages.
     pub allowed: &'static str,
-    /// Whether a value is allowed. NaN must not be.
+    /// True where a value is allowed. NaN must not be.
     pub holds: fn(T) -> bool,
     pub needs: Needs,
     pub control: Option<Control>,
@@ -217,19 +217,22 @@ pub trait Changes: Default {
     fn write<S: SerializeMap>(&self, map: &mut S) -> Result<(), S::Error>;
 }
 
-/// Declares a structure of settings and the one of their changes. Each field is followed by its default and
-/// by what [`crate::setting::Declaration`] says of it.
+/// Declares a structure of settings and the one of their changes. Each field is followed by its default, by name, stand-in
+/// and help of its option (which is its documentation, too), and by what else [`crate::setting::Declaration`] says of it.
 macro_rules! settings {
     (
         $(#[$meta:meta])* $vis:vis struct $Name:ident, changes $Changes:ident, heading $heading:literal {
-            $($(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr, { $($said:tt)* })*
+            $(
+                $(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr,
+                $flag:literal $(($value_name:literal))?, $help:literal, { $($said:tt)* }
+            )*
         }
     ) => {
         #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
         #[serde(deny_unknown_fields)]
         $(#[$meta])*
         $vis struct $Name {
-            $($(#[$field_meta])* pub $field: $type,)*
+            $(#[doc = $help] $(#[$field_meta])* pub $field: $type,)*
         }
 
         #[doc = concat!("What is given of [`", stringify!($Name), "`].")]
@@ -259,8 +262,13 @@ macro_rules! settings {
                 #[allow(unused_imports, reason = "not every declaration needs them all")]
                 use $crate::setting::{Control, Declaration, Needs, shown};
                 $(
-                    pub(super) const $field: Declaration<$type> =
-                        Declaration { $($said)* ..Declaration::ANY };
+                    pub(super) const $field: Declaration<$type> = Declaration {
+                        name: $flag,
+                        $(value_name: $value_name,)?
+                        help: $help,
+                        $($said)*
+                        ..Declaration::ANY
+                    };
                 )*
             }
 
@@ -340,7 +348,8 @@ macro_rules! settings {
 
 pub(crate) use settings;
 
-/// Declares a setting that is one of a few words, each with its name and a line that explains it.
+/// Declares a setting that is one of a few words, each with its name and a line that explains it, which is its
+/// documentation, too.
 macro_rules! words {
     (
         $(#[$meta:meta])* $vis:vis enum $Name:ident {
@@ -350,7 +359,7 @@ macro_rules! words {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
         $(#[$meta])*
         $vis enum $Name {
-            $($(#[$variant_meta])* #[serde(rename = $word)] $Variant,)*
+            $(#[doc = $hint] $(#[$variant_meta])* #[serde(rename = $word)] $Variant,)*
         }
 
         impl $Name {

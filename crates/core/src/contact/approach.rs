@@ -65,7 +65,7 @@ pub(crate) struct LookAhead {
     pub distance: f64,
     /// Farther pairs are none, m.
     pub reach: f64,
-    /// Whether pairs that have touched are bonded from then on, and contacts until the bond breaks.
+    /// True where pairs that have touched are bonded from then on, and contacts until the bond breaks.
     pub bonds: bool,
 }
 

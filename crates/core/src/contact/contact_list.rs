@@ -73,7 +73,7 @@ pub struct ContactList {
     /// Memory alone: what threads find, each of some grains.
     #[serde(skip)]
     parts: Vec<ContactColumns>,
-    /// Whether pairs with a gap are among the contacts.
+    /// True where pairs with a gap are among the contacts.
     looks_ahead: bool,
     /// The step that contacts are found in from now on.
     step: u64,
@@ -134,12 +134,12 @@ impl ContactList {
         &mut self.now.bonds
     }
 
-    /// Whether pairs with a gap are among the contacts.
+    /// True where pairs with a gap are among the contacts.
     pub(crate) fn looks_ahead(&self) -> bool {
         self.looks_ahead
     }
 
-    /// Whether the pair of a contact touches or is bonded, and does not just come near.
+    /// True where the pair of a contact touches or is bonded, and does not just come near.
     pub fn is_in_touch(&self, index: usize) -> bool {
         !self.looks_ahead || self.now.bonds[index].alive
     }
@@ -183,7 +183,7 @@ impl ContactList {
         }
     }
 
-    /// Whether its lists are of one length and tell of bodies that exist, of which there are so many, the
+    /// True where its lists are of one length and tell of bodies that exist, of which there are so many, the
     /// first of them grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
         let ContactColumns { contacts, impulses, memories, bonds, found_in } = &self.now;
@@ -346,7 +346,7 @@ struct ContactSearch<'a> {
     candidates: &'a Candidates,
     /// The contacts of the step before.
     before: &'a ContactColumns,
-    /// Whether pairs with a gap are among the contacts.
+    /// True where pairs with a gap are among the contacts.
     looks_ahead: bool,
     step: u64,
 }

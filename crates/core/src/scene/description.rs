@@ -333,13 +333,9 @@ impl Scene {
 words! {
     /// Files that a recording is written as.
     pub enum FormatName {
-        /// Apache Parquet.
         Parquet = "parquet", "Parquet, for pandas, polars and their like";
-        /// Comma-separated values.
         Csv = "csv", "Text with commas";
-        /// The Visualization Toolkit's.
         Vtk = "vtk", "Files of VTK, for ParaView";
-        /// LAMMPS'.
         Ovito = "ovito", "Dumps as LAMMPS writes them, for OVITO";
     }
 }

@@ -7,11 +7,8 @@ use crate::setting::words;
 words! {
     /// What a scene is there for, with its heading in lists.
     pub enum SceneGroup {
-        /// The paper's scenes.
         Paper = "paper", "Scenes";
-        /// Experiments of granular physics.
         Experiments = "experiments", "Experiments";
-        /// Scenes made to break methods.
         Stability = "stability", "Scenes made to break methods";
     }
 }

@@ -20,15 +20,10 @@ const LARGEST_OVERLAP: f64 = 0.05;
 words! {
     /// A way to go wrong.
     pub enum AlarmKind {
-        /// A position or velocity is no longer a number.
         NotFinite = "not-finite", "the state is no longer finite";
-        /// A grain went through a wall or the ground, or far away.
         GrainLost = "grain-lost", "a grain has gone through a wall or left the world";
-        /// A hundred steps in a row ended at the sweep limit, or stalled before it.
         SweepLimit = "sweep-limit", "100 steps in a row were not solved to their tolerance";
-        /// A contact overlaps by more than 5 % of d.
         Overlap = "overlap", "a contact overlaps by more than 5 % of a diameter";
-        /// Bonds were about to break in a step that is too long to see it, under the law `range`.
         BreakUnseen = "break-unseen", "bonds break faster than the substeps of a step can follow";
     }
 }
@@ -159,14 +154,9 @@ impl Watch {
         }
     }
 
-    /// Tells of a step that was too long for its bonds, where one was: `longest_secs` is the longest that is not.
-    pub(super) fn look_at_length(&mut self, longest_secs: Option<f64>, observables: &Observables) {
-        if longest_secs.is_some() {
-            self.raise(AlarmKind::BreakUnseen, observables, longest_secs);
-        }
-    }
-
-    fn raise(
+    /// Raises an alarm, unless there is one of its kind: of a step that was too long for its bonds with the longest that
+    /// is not, s.
+    pub(super) fn raise(
         &mut self,
         kind: AlarmKind,
         &Observables { step, time_secs, .. }: &Observables,

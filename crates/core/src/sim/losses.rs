@@ -36,7 +36,7 @@ pub(super) struct Losses {
     world: Edges,
     /// On a line nothing can slump.
     on_line: bool,
-    /// Whether all grains have been looked at once: some may be in a wall from the start.
+    /// True where all grains have been looked at once: some may be in a wall from the start.
     begun: bool,
     /// Two points of each wall when it was looked at last, m; none where no motion carries any.
     frames: Vec<[DVec2; 2]>,
@@ -126,7 +126,7 @@ impl Losses {
         if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
     }
 
-    /// Whether it watches over so many grains.
+    /// True where it watches over so many grains.
     pub(super) fn is_of(&self, grains: usize) -> bool {
         [self.from.len(), self.lost.len(), self.initial_heights.len()] == [grains; 3]
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
@@ -253,7 +253,7 @@ fn outward(side: &Segment) -> DVec2 {
     -(side.b - side.a).perp().normalize_or_zero()
 }
 
-/// Whether the way `from` … `to` crosses a segment. A point that is shared by two segments in a row
+/// True where the way `from` … `to` crosses a segment. A point that is shared by two segments in a row
 /// belongs to one side of the way, so that nothing slips through between them.
 fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
     let is_left = |a: DVec2, b: DVec2, place: DVec2| (b - a).perp_dot(place - a) >= 0.0;
@@ -265,7 +265,7 @@ fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
         && is_left(from, to, wall.a) != is_left(from, to, wall.b)
 }
 
-/// Whether the way `from` … `to`, both outside of a convex polygon, goes through it.
+/// True where the way `from` … `to`, both outside of a convex polygon, goes through it.
 fn cuts(from: DVec2, to: DVec2, sides: &[Segment]) -> bool {
     let (mut enters, mut leaves) = (0f64, 1f64);
     for side in sides {

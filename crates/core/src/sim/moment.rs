@@ -51,11 +51,11 @@ pub struct GrainState {
     pub radius: f64,
     /// kg.
     pub mass: f64,
-    /// Whether the gravity field acts on it.
+    /// True where the gravity field acts on it.
     pub feels_gravity: bool,
     /// Grey that the scene gives it: 0 black … 255 white.
     pub tone: u8,
-    /// Whether it went through a wall or left the world.
+    /// True where it went through a wall or left the world.
     pub lost: bool,
 }
 
@@ -101,11 +101,8 @@ pub enum OtherBody {
 words! {
     /// What a contact does under Signorini's and Coulomb's laws.
     pub enum ContactStatus {
-        /// It pulls as hard as its cohesion lets it, without cohesion not at all, and opens.
         Open = "open", "pulls as hard as it can, and opens";
-        /// Friction is below its bound.
         Stick = "stick", "friction is below its bound";
-        /// Friction is at its bound, which is 0 where there is none.
         Slip = "slip", "friction is at its bound";
     }
 }
@@ -136,19 +133,23 @@ impl Simulation {
             let status = laws.status(contact, other, alive, [normal_force, tangential_force]);
             let grain = contact.grain as usize;
             let (centre, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
+            // A boundary is touched in a point.
+            let (other, radius_of_other) = match other {
+                Other::Grain(index) => (OtherBody::Grain(index as u32), world.grains.radii[index]),
+                Other::FixedDisc(index) => {
+                    (OtherBody::FixedDisc(index as u32), world.fixed_discs[index].radius)
+                }
+                Other::Feature(feature) => {
+                    (OtherBody::Boundary(candidates.boundary_of(feature) as u32), 0.0)
+                }
+            };
             ContactState {
                 grain: contact.grain,
-                other: match other {
-                    Other::Grain(index) => OtherBody::Grain(index as u32),
-                    Other::FixedDisc(index) => OtherBody::FixedDisc(index as u32),
-                    Other::Feature(feature) => {
-                        OtherBody::Boundary(candidates.boundary_of(feature) as u32)
-                    }
-                },
+                other,
                 normal: contact.normal,
                 gap: contact.gap,
                 point: centre - (radius + 0.5 * contact.gap) * contact.normal,
-                branch: (radius + contact.gap + radius_of(world, other)) * contact.normal,
+                branch: (radius + contact.gap + radius_of_other) * contact.normal,
                 normal_force,
                 tangential_force,
                 status,
@@ -156,18 +157,8 @@ impl Simulation {
                 age_steps,
             }
         });
-        Moment {
-            observables: *self.observables(),
-            settings: *self.settings(),
-            contacts: states.collect(),
-            grains: (0..world.grains.len()).map(|index| self.grain_state(index)).collect(),
-            surroundings: self.surroundings(),
-        }
-    }
-
-    fn grain_state(&self, index: usize) -> GrainState {
-        let grains = &self.state.world.grains;
-        GrainState {
+        let grains = &world.grains;
+        let grain_state = |index: usize| GrainState {
             position: grains.positions[index],
             angle: grains.angles[index],
             velocity: grains.velocities[index],
@@ -177,16 +168,14 @@ impl Simulation {
             feels_gravity: grains.feels_gravity[index],
             tone: grains.tones[index],
             lost: self.is_lost(index),
+        };
+        Moment {
+            observables: *self.observables(),
+            settings: *self.settings(),
+            contacts: states.collect(),
+            grains: (0..world.grains.len()).map(grain_state).collect(),
+            surroundings: self.surroundings(),
         }
-    }
-}
-
-/// Radius of the other disc, m; 0 for a boundary, which is touched in a point.
-fn radius_of(world: &World, other: Other) -> f64 {
-    match other {
-        Other::Grain(index) => world.grains.radii[index],
-        Other::FixedDisc(index) => world.fixed_discs[index].radius,
-        Other::Feature(_) => 0.0,
     }
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::contact::{Candidates, ContactList};
 use crate::error::{Error, Result};
-use crate::sim::alarm::Watch;
+use crate::sim::alarm::{AlarmKind, Watch};
 use crate::sim::observables::{self, Observables};
 use crate::sim::settings::{Settings, reach_in};
 use crate::sim::snapshot::Surroundings;
@@ -101,7 +101,9 @@ impl Simulation {
         let mut memory = std::mem::take(&mut self.memory);
         let pieces = remedies::pieces(&self.state, &self.settings);
         self.take_step(pieces, &mut memory);
-        self.watch.look_at_length(memory.take_longest_step_secs(), &self.observables);
+        if let longest @ Some(_) = memory.range.longest_step_secs.take() {
+            self.watch.raise(AlarmKind::BreakUnseen, &self.observables, longest);
+        }
         self.memory = memory;
         self.look()
     }
@@ -302,7 +304,7 @@ impl Simulation {
         self.steady.step_at(secs, &self.settings.parameters)
     }
 
-    /// Whether a grain went through a wall or left the world.
+    /// True where a grain went through a wall or left the world.
     pub(super) fn is_lost(&self, grain: usize) -> bool {
         self.watch.losses.lost[grain]
     }

@@ -27,7 +27,7 @@ pub(crate) struct State {
     pub walls: Walls,
     /// A spring on one grain, from the next step on.
     pub pull: Option<Pull>,
-    /// Whether a hand holds a wall: then the last motion is its own.
+    /// True where a hand holds a wall: then the last motion is its own.
     pub is_held: bool,
     /// Δt of the impulses in `contacts`, s.
     pub time_step_of_impulses_secs: f64,
@@ -125,7 +125,7 @@ impl State {
         }
     }
 
-    /// Whether all positions and velocities are numbers.
+    /// True where all positions and velocities are numbers.
     pub(crate) fn is_finite(&self) -> bool {
         let grains = &self.world.grains;
         // A sum is finite only where every term is (or where an overflow is close enough to count).

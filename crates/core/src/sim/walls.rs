@@ -250,7 +250,7 @@ impl Walls {
 }
 
 impl Wall {
-    /// Whether it moves a boundary along its normal and no other way.
+    /// True where it moves a boundary along its normal and no other way.
     fn pushes(&self, world: &World, boundary: &Boundary) -> bool {
         self.surface_speed == 0.0
             && match self.mover {

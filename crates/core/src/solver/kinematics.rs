@@ -96,7 +96,12 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
         [x * slide, -y * slide]
     }
     /// A packed normal along x and y; along axes that there are not, 0.
-    fn components(normal: Self::Normal<f64>) -> [f64; 2];
+    fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2];
+    /// (v_n, v_t) relative to the image that a packed normal is of, of those relative to the body itself.
+    #[inline(always)]
+    fn relative_to_image<T: Lanes>(_normal: Self::Normal<T>, velocity: [T; 2]) -> [T; 2] {
+        velocity
+    }
     /// (v_n, v_t) of body i relative to body j, m/s.
     fn relative_velocity<T: Lanes>(
         normal: Self::Normal<T>,
@@ -204,8 +209,9 @@ impl Model for Line {
         normal
     }
 
-    fn components(normal: f64) -> [f64; 2] {
-        [normal, 0.0]
+    #[inline(always)]
+    fn components<T: Lanes>(normal: T) -> [T; 2] {
+        [normal, normal.same(0.0)]
     }
 
     #[inline(always)]
@@ -281,54 +287,9 @@ pub struct SlidingNormal<T> {
     pub slide: T,
 }
 
-/// A normal in the plane.
-trait NormalInPlane<T: Lanes>: Copy {
-    /// A normal along x and y, of an image that stays.
-    fn of(normal: [T; 2]) -> Self;
-    /// Along x and y.
-    fn along_axes(self) -> [T; 2];
-    /// (v_n, v_t) relative to the image, of those relative to the body itself.
-    fn relative_to_image(self, velocity: [T; 2]) -> [T; 2];
-}
-
-impl<T: Lanes> NormalInPlane<T> for [T; 2] {
-    #[inline(always)]
-    fn of(normal: [T; 2]) -> Self {
-        normal
-    }
-
-    #[inline(always)]
-    fn along_axes(self) -> [T; 2] {
-        self
-    }
-
-    #[inline(always)]
-    fn relative_to_image(self, velocity: [T; 2]) -> [T; 2] {
-        velocity
-    }
-}
-
-impl<T: Lanes> NormalInPlane<T> for SlidingNormal<T> {
-    #[inline(always)]
-    fn of(normal: [T; 2]) -> Self {
-        Self { normal, slide: normal[0].same(0.0) }
-    }
-
-    #[inline(always)]
-    fn along_axes(self) -> [T; 2] {
-        self.normal
-    }
-
-    #[inline(always)]
-    fn relative_to_image(self, [along_normal, along_tangent]: [T; 2]) -> [T; 2] {
-        let Self { normal, slide } = self;
-        [along_normal - normal[0] * slide, along_tangent + normal[1] * slide]
-    }
-}
-
 /// What all kinds of motion in the plane share. `own` is what one of them has of its own.
 macro_rules! plane_model {
-    ($name:ident, $slot:ident, $normal:ty, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
+    ($name:ident, $slot:ident, $normal:ty, |$of:ident| $packed:expr, $along_axes:expr, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
         impl Model for $name {
             type Body<T: Lanes> = PlaneBody<T>;
             type Normal<T: Lanes> = $normal;
@@ -364,7 +325,7 @@ macro_rules! plane_model {
 
             #[inline(always)]
             fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2] {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 let normal = [nx, ny, 0.0];
                 let tangent = [-ny, nx, -1.0];
                 [[normal, tangent], [[-nx, -ny, 0.0], [ny, -nx, -1.0]]]
@@ -400,11 +361,14 @@ macro_rules! plane_model {
 
             #[inline(always)]
             fn normal<T: Lanes>(normal: [T; 2]) -> Self::Normal<T> {
-                NormalInPlane::of(normal)
+                let $of = normal;
+                $packed
             }
 
-            fn components(normal: Self::Normal<f64>) -> [f64; 2] {
-                normal.along_axes()
+            #[inline(always)]
+            fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2] {
+                let $of = normal;
+                $along_axes
             }
 
             #[inline(always)]
@@ -413,16 +377,16 @@ macro_rules! plane_model {
                 i: &PlaneBody<T>,
                 j: &PlaneBody<T>,
             ) -> [T; 2] {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 let x = i.velocity[0] - j.velocity[0];
                 let y = i.velocity[1] - j.velocity[1];
                 let spin = if Self::ROTATION { i.spin + j.spin } else { nx.same(0.0) };
-                normal.relative_to_image([nx * x + ny * y, nx * y - ny * x - spin])
+                Self::relative_to_image(normal, [nx * x + ny * y, nx * y - ny * x - spin])
             }
 
             #[inline(always)]
             fn velocity<T: Lanes>(normal: Self::Normal<T>, i: &PlaneBody<T>) -> [T; 2] {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 let [x, y] = i.velocity;
                 let spin = if Self::ROTATION { i.spin } else { nx.same(0.0) };
                 [nx * x + ny * y, nx * y - ny * x - spin]
@@ -436,7 +400,7 @@ macro_rules! plane_model {
                 [along_normal, along_tangent]: [T; 2],
                 share: T,
             ) {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 let x = nx * along_normal - ny * along_tangent;
                 let y = ny * along_normal + nx * along_tangent;
                 let other_share = share.same(1.0) - share;
@@ -457,7 +421,7 @@ macro_rules! plane_model {
                 normal: Self::Normal<T>,
                 [along_normal, along_tangent]: [T; 2],
             ) {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 i.velocity[0] += nx * along_normal - ny * along_tangent;
                 i.velocity[1] += ny * along_normal + nx * along_tangent;
                 if Self::ROTATION {
@@ -487,11 +451,19 @@ macro_rules! plane_model {
     };
 }
 
-plane_model!(SmoothPlane, smooth_plane, [T; 2], friction: false, rotation: false, own: {});
-plane_model!(Plane, plane, [T; 2], friction: true, rotation: false, own: {});
-plane_model!(SpinningPlane, spinning_plane, [T; 2], friction: true, rotation: true, own: {});
-plane_model!(ShearedPlane, sheared_plane, SlidingNormal<T>, friction: true, rotation: true, own: {
+plane_model!(SmoothPlane, smooth_plane, [T; 2], |normal| normal, normal, friction: false, rotation: false, own: {});
+plane_model!(Plane, plane, [T; 2], |normal| normal, normal, friction: true, rotation: false, own: {});
+plane_model!(SpinningPlane, spinning_plane, [T; 2], |normal| normal, normal, friction: true, rotation: true, own: {});
+plane_model!(ShearedPlane, sheared_plane, SlidingNormal<T>, |normal| SlidingNormal { normal, slide: normal[0].same(0.0) }, normal.normal, friction: true, rotation: true, own: {
     const SLIDES: bool = true;
+
+    #[inline(always)]
+    fn relative_to_image<T: Lanes>(
+        SlidingNormal { normal, slide }: SlidingNormal<T>,
+        [along_normal, along_tangent]: [T; 2],
+    ) -> [T; 2] {
+        [along_normal - normal[0] * slide, along_tangent + normal[1] * slide]
+    }
 
     #[inline(always)]
     fn sliding(normal: SlidingNormal<f64>, slide: f64) -> SlidingNormal<f64> {

@@ -5,25 +5,16 @@ use crate::setting::words;
 words! {
     /// A method, by the name that command line, scene files and panels use.
     pub enum Method {
-        /// Non-linear Gauss–Seidel.
         Nsgs = "nsgs", "non-linear Gauss-Seidel: one contact after the other, exact for each";
-        /// Non-linear Gauss–Seidel by colours, in vector registers and on several threads.
         NsgsParallel = "nsgs-parallel",
             "Gauss-Seidel by tiles and colours: four contacts at a time, large piles on several threads";
-        /// Semi-smooth Newton with a sparse factorisation.
         Newton = "newton", "semi-smooth Newton, sparse direct: all contacts together, for tight tolerances";
-        /// Non-smooth non-linear conjugate gradients over Gauss–Seidel sweeps.
         Nncg = "nncg", "conjugate gradients over Gauss-Seidel sweeps: fewer sweeps to tight tolerances";
-        /// Accelerated projected gradients with adaptive restart.
         Apgd = "apgd", "accelerated projected gradients with restart: all contacts at once, no order";
-        /// Alternating directions of multipliers with a cached factorisation.
         Admm = "admm", "alternating directions of multipliers: one cached factorisation, many solves";
-        /// Jacobi with mass splitting.
         Jacobi = "jacobi", "Jacobi with mass splitting: all contacts at once, each with its part of the mass";
-        /// Interior point with a sparse factorisation, for the convex models of friction.
         InteriorPoint = "interior-point",
             "interior point, sparse direct: the convex models of friction to any tolerance";
-        /// One of the above, by the size of the problem.
         Auto = "auto", "newton up to 1,000 contacts, nncg above, nsgs where sweeps are what is studied";
     }
 }
@@ -32,16 +23,11 @@ words! {
     /// The order of a sweep.
     #[derive(Default)]
     pub enum Ordering {
-        /// Alternating between distant stretches of the order of detection: the fastest sweep.
         #[default]
         Interleaved = "interleaved", "distant contacts in turn: the fastest sweep";
-        /// As detected: sorted by grain i, then by j.
         Detected = "detected", "as detected: sorted by grain";
-        /// From the lowest contact against gravity to the highest.
         BottomUp = "bottom-up", "from the lowest contact to the highest";
-        /// Interleaved, every second sweep backward.
         Symmetric = "symmetric", "interleaved, every second sweep backward";
-        /// By colours: no two contacts of a colour share a grain.
         Coloured = "coloured", "contacts that share no grain follow each other";
     }
 }

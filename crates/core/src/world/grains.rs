@@ -19,7 +19,7 @@ pub struct Grain {
     /// Angular velocity, rad/s, positive anticlockwise.
     #[serde(default)]
     pub angular_velocity: f64,
-    /// Whether the gravity field acts on this disc.
+    /// True where the gravity field acts on this disc.
     #[serde(default = "yes")]
     pub feels_gravity: bool,
     /// Grey of the disc in the pictures that follow the paper: 0 black … 255 white.
@@ -74,7 +74,7 @@ pub struct Grains {
     pub radii: Vec<f64>,
     /// Masses, kg: areal density × πr².
     pub masses: Vec<f64>,
-    /// Whether gravity acts.
+    /// True where gravity acts.
     pub feels_gravity: Vec<bool>,
     /// Greys for the paper's pictures.
     pub tones: Vec<u8>,
@@ -138,7 +138,7 @@ impl Grains {
         self.positions.len()
     }
 
-    /// Whether there is no disc.
+    /// True where there is no disc.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }

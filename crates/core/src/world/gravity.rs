@@ -129,7 +129,7 @@ impl GravityTurn {
     pub(super) const NONE: Self =
         Self { course: TurnCourse::Rate { rate: 0.0 }, elapsed_secs: 0.0 };
 
-    /// Whether it turns nothing.
+    /// True where it turns nothing.
     pub fn is_none(&self) -> bool {
         self.course == Self::NONE.course
     }

@@ -79,7 +79,7 @@ impl World {
         periodic.check(boundaries, fixed_discs, motions, gravity, physics, lengths)
     }
 
-    /// Whether anything can move that no grain moves.
+    /// True where anything can move that no grain moves.
     pub fn has_motion(&self) -> bool {
         !self.motions.is_empty() || self.boundaries.iter().any(Boundary::moves_by_itself)
     }
@@ -101,12 +101,12 @@ impl World {
 pub struct Physics {
     /// 1 (all on the x axis) or 2.
     pub axes: u8,
-    /// Whether contacts carry tangential impulses.
+    /// True where contacts carry tangential impulses.
     pub friction: bool,
-    /// Whether grains turn. Without friction nothing changes a disc's spin, so this asks for
+    /// True where grains turn. Without friction nothing changes a disc's spin, so this asks for
     /// friction.
     pub rotation: bool,
-    /// Whether contacts can pull.
+    /// True where contacts can pull.
     pub cohesion: bool,
 }
 

@@ -118,12 +118,12 @@ impl Motion {
         }
     }
 
-    /// Whether they turn round a pivot.
+    /// True where they turn round a pivot.
     pub(super) fn turns(&self) -> bool {
         self.course.as_ref().is_some_and(|course| course.pivot().is_some())
     }
 
-    /// Whether a course along a line, or a force, leads them along an axis: x is 0, y is 1.
+    /// True where a course along a line, or a force, leads them along an axis: x is 0, y is 1.
     pub(super) fn goes_along(&self, axis: usize) -> bool {
         self.drive.as_ref().is_some_and(|drive| drive.direction[axis] != 0.0)
             || match &self.course {
@@ -349,7 +349,7 @@ impl Carry {
         self.by.length() + self.angle.abs() * reach
     }
 
-    /// Whether it brings anything anywhere.
+    /// True where it brings anything anywhere.
     pub(crate) fn goes(&self) -> bool {
         self.by != DVec2::ZERO || self.angle != 0.0
     }

@@ -51,7 +51,7 @@ pub(super) fn check_motions(
     Ok(())
 }
 
-/// Whether what drives a motion goes with its course.
+/// Checks that what drives a motion goes with its course.
 fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Result<()> {
     /// Cosine of two directions that are perpendicular but for rounding.
     const PERPENDICULAR: f64 = 1e-9;

@@ -27,10 +27,8 @@ words! {
     /// How the grains of a new pile are put in place.
     #[derive(Default)]
     pub enum Deposition {
-        /// They fall together through a medium.
         #[default]
         Rain = "rain", "They fall together through a medium, as for the shipped state: minutes for 2,000 grains";
-        /// One by one, each rolling to where two others hold it.
         DropAndRoll = "drop-and-roll", "One by one, each rolling to where two others hold it: a denser pile with more contacts, in seconds for 10,000 grains";
     }
 }
@@ -133,7 +131,7 @@ const REST_SECS: f64 = 0.02;
 pub struct Settling<'a> {
     /// The pile as it is now.
     pub simulation: &'a Simulation,
-    /// Whether grains may still be falling through the medium of the rain.
+    /// True where grains may still be falling through the medium of the rain.
     pub rains: bool,
     /// Simulated time, s.
     pub time_secs: f64,

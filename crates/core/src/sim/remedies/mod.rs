@@ -32,7 +32,7 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    /// Whether it is asked for.
+    /// True where it is asked for.
     pub(crate) fn is_on(&self, remedies: &Remedies) -> bool {
         remedies.get(self.name) != Remedies::default().get(self.name)
     }
@@ -49,52 +49,40 @@ settings! {
     /// Remedies for known failures.
     #[serde(default)]
     pub struct Remedies, changes RemedyChanges, heading "Solver" {
-        /// Push overlap out by moving grains apart after the step, without giving them speed.
-        push_out: bool = false, {
-            name: "push-out",
-            help: "Push overlap out by moving grains apart after each step, without giving them speed",
+        push_out: bool = false, "push-out",
+            "Push overlap out by moving grains apart after each step, without giving them speed", {
             control: shown(
                 "Push overlap out",
                 "Grains that overlap are moved apart after each step, without speed.",
             ),
         }
-        /// Cut a step into pieces in which no grain moves further than this, in d; 0 never does.
-        max_travel: f64 = 0.0, {
-            name: "max-travel",
-            value_name: "D",
-            help: "Cut steps into pieces in which no grain moves further than this, in diameters; 0 \
-                   never does",
+        max_travel: f64 = 0.0, "max-travel" ("D"),
+            "Cut steps into pieces in which no grain moves further than this, in diameters; 0 \
+             never does", {
             allowed: "a finite number of diameters ≥ 0; 0 never cuts a step",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
-        /// Solve a step that did not converge once more without bounces: restitution can ask wedged
-        /// contacts for what contradicts itself, and then a step has no solution with them.
-        calm_unsolved: bool = false, {
-            name: "calm-unsolved",
-            help: "Solve a step that did not converge once more without bounces, which may contradict \
-                   each other",
+        calm_unsolved: bool = false, "calm-unsolved",
+            "Solve a step that did not converge once more without bounces, which may contradict \
+             each other", {
             control: shown(
                 "Calm unsolved steps",
                 "A step that did not converge is solved once more without bounces, which may \
                  contradict each other.",
             ),
         }
-        /// Have shocks run through touching grains one after the other, in scenes without cohesion.
-        sequential_impacts: bool = false, {
-            name: "sequential-impacts",
-            help: "Have shocks run through touching grains one after the other, as in Newton's cradle; \
-                   not with cohesion",
+        sequential_impacts: bool = false, "sequential-impacts",
+            "Have shocks run through touching grains one after the other, as in Newton's cradle; \
+             not with cohesion", {
             control: shown(
                 "Shocks in sequence",
                 "Shocks run through touching grains one after the other, as in Newton's cradle; \
                  not where Bond is above 0.",
             ),
         }
-        /// Let pairs with a gap that would close within the step close that gap and no more.
-        speculative: bool = false, {
-            name: "speculative",
-            help: "Let pairs that would close their gap within a step close it and no more, so that \
-                   nothing tunnels; it costs bounces",
+        speculative: bool = false, "speculative",
+            "Let pairs that would close their gap within a step close it and no more, so that \
+             nothing tunnels; it costs bounces", {
             control: shown(
                 "Look ahead",
                 "Pairs that would meet within a step close their gap and no more: nothing \
@@ -105,33 +93,32 @@ settings! {
 }
 
 impl Remedies {
-    /// Whether there are none.
+    /// True where there are none.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 }
 
 /// All remedies, in the order of their settings.
-pub const ROWS: [Remedy; 5] = [
-    Remedy { name: "push-out", taken_by: &[Stepper::Moreau], robust: Some(Value::Switch(true)) },
-    Remedy {
-        name: "max-travel",
-        taken_by: &[Stepper::Moreau, Stepper::Range],
-        robust: Some(Value::Number(ROBUST_TRAVEL)),
-    },
-    Remedy {
-        name: "calm-unsolved",
-        taken_by: &[Stepper::Moreau],
-        robust: Some(Value::Switch(true)),
-    },
-    Remedy {
-        name: "sequential-impacts",
-        taken_by: &[Stepper::Moreau],
-        robust: Some(Value::Switch(true)),
-    },
-    // Fast grains are cut into pieces of a step: looking ahead would cost them their bounce.
-    Remedy { name: "speculative", taken_by: &[Stepper::Moreau], robust: None },
-];
+pub const ROWS: [Remedy; 5] = {
+    const fn row(
+        name: &'static str,
+        taken_by: &'static [Stepper],
+        robust: Option<Value>,
+    ) -> Remedy {
+        Remedy { name, taken_by, robust }
+    }
+    const ON: Option<Value> = Some(Value::Switch(true));
+    const MOREAU: &[Stepper] = &[Stepper::Moreau];
+    [
+        row("push-out", MOREAU, ON),
+        row("max-travel", &[Stepper::Moreau, Stepper::Range], Some(Value::Number(ROBUST_TRAVEL))),
+        row("calm-unsolved", MOREAU, ON),
+        row("sequential-impacts", MOREAU, ON),
+        // Fast grains are cut into pieces of a step: looking ahead would cost them their bounce.
+        row("speculative", MOREAU, None),
+    ]
+};
 
 const _: () = assert!(ROWS.len() == Remedies::ABOUT.len(), "each remedy has a row and a setting");
 
@@ -143,7 +130,13 @@ pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> 
         stage.solve(settings)
     };
     if settings.remedies.calm_unsolved && !report.converged {
-        report = solve_again(stage, settings, report);
+        // ρ v_n^{n−1} can ask wedged contacts for what contradicts itself, and then a step has no solution with it. So it is
+        // solved anew with ρ = 0, from the impulses of the step before; what it measures is that problem's.
+        let mut calm = *settings;
+        calm.parameters.restitution = 0.0;
+        // Detection at the same places finds the same contacts, and their impulses with them.
+        set_up(stage, &calm);
+        report = stage.solve(&calm).after(report);
     }
     report
 }
@@ -153,25 +146,6 @@ pub(super) fn after_step<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings
     if settings.remedies.push_out {
         push_out(stage.state, settings.parameters.time_step_secs);
     }
-}
-
-/// Solves the step anew with ρ = 0, from the impulses of the step before. The work of the solve that failed
-/// counts.
-///
-/// A step that did not converge, solved once more without bounces.
-///
-/// The term ρ v_n^{n−1} can ask wedged contacts for what contradicts itself, and then a step has no solution
-/// with it. What the step measures is then the residual of the problem without.
-pub(in crate::sim) fn solve_again<M: Model>(
-    stage: &mut Stage<'_, M>,
-    settings: &Settings,
-    failed: SolveReport,
-) -> SolveReport {
-    let mut calm = *settings;
-    calm.parameters.restitution = 0.0;
-    // Detection at the same places finds the same contacts, and their impulses with them.
-    set_up(stage, &calm);
-    stage.solve(&calm).after(failed)
 }
 
 /// Furthest way of a grain in a piece where the preset `robust` asks, in d: half of what could jump a wall.

@@ -77,7 +77,13 @@ pub(in crate::sim) fn solve<M: Model>(
     let mut halvings = 0;
     while M::FRICTION && halvings < HALVINGS && gains_energy(stage.problem) {
         halvings += 1;
-        scale_rebounds(stage.problem, if halvings < HALVINGS { 0.5 } else { 0.0 });
+        let factor = if halvings < HALVINGS { 0.5 } else { 0.0 };
+        for (row, wall_speed) in stage.problem.rows_with_walls() {
+            let rebound = row.restitution_velocity + wall_speed;
+            if rebound < 0.0 {
+                row.restitution_velocity = factor * rebound - wall_speed;
+            }
+        }
         earlier.add(report);
         report = stage.solve(settings);
     }
@@ -120,7 +126,7 @@ pub(in crate::sim) fn follow<M: Model>(
     Some(report)
 }
 
-/// Whether the contacts of a solved step have done work on the grains, beyond rounding and beyond what
+/// True where the contacts of a solved step have done work on the grains, beyond rounding and beyond what
 /// the walls that move have put in: velocities are taken relative to those.
 fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     let (mut gain, mut scale) = (0.0, 0.0);
@@ -135,16 +141,6 @@ fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     gain > LEAST_GAIN * scale
 }
 
-/// Multiplies the speeds that contacts are asked to open with, relative to walls that move.
-fn scale_rebounds<M: Model>(problem: &mut StepProblem<M>, factor: f64) {
-    for (row, wall_speed) in problem.rows_with_walls() {
-        let rebound = row.restitution_velocity + wall_speed;
-        if rebound < 0.0 {
-            row.restitution_velocity = factor * rebound - wall_speed;
-        }
-    }
-}
-
 /// How far the shocks have gone.
 struct ImpactSequence<M: Model> {
     /// Velocities by now.
@@ -153,7 +149,7 @@ struct ImpactSequence<M: Model> {
     speeds: Vec<f64>,
     /// P/m_ij of each row so far, m/s.
     impulses: Vec<f64>,
-    /// Whether a row's pair touches: one that will do so within the step only has no shock yet.
+    /// True where a row's pair touches: one that will do so within the step only has no shock yet.
     touching: Vec<bool>,
 }
 

@@ -146,7 +146,7 @@ impl Elements {
         let masses = &world.grains.masses;
         let (list, impulses, memories) = contacts.parts_mut();
         pushes.clear();
-        totals.rewind();
+        totals.next = 0;
         for ((contact, sum), memory) in list.iter().zip(impulses).zip(memories) {
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
@@ -188,11 +188,6 @@ impl Totals {
     fn new(contacts: &[Contact]) -> Self {
         let impulses = vec![Impulse::default(); contacts.len()];
         Self { contacts: contacts.to_vec(), impulses, next: 0 }
-    }
-
-    /// Before the contacts of another substep.
-    fn rewind(&mut self) {
-        self.next = 0;
     }
 
     /// Adds to the contact of that pair, if it is one of them. Both lists are sorted alike.

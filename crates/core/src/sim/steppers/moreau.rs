@@ -2,7 +2,7 @@
 //! make of it.
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
-use crate::sim::remedies::{self, sequential_impacts};
+use crate::sim::remedies;
 use crate::sim::settings::Settings;
 use crate::sim::steppers::StepperInfo;
 use crate::sim::stepping::{Stage, StepResult};
@@ -23,14 +23,6 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     let result = stage.move_by(report, settings);
     remedies::after_step(stage, settings);
     result
-}
-
-/// Sets up the problem as its method gets it.
-pub(super) fn set_up_with_impacts<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
-    set_up(stage, settings);
-    if settings.remedies.sequential_impacts {
-        sequential_impacts::follow(stage, settings);
-    }
 }
 
 /// Detects the contacts and sets up the problem of the next step.

@@ -74,7 +74,14 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
         substepping.works.drive_work += take_walls(stage, &mut contacts, walls);
         substeps::end_substep(stage.problem, &mut contacts, substepping);
-        correct_wall_works(stage.problem, &contacts, walls, &mut substepping.works);
+        // Contacts told of the work of walls with their last speed in the substep; they had the mean one.
+        for (row, contact) in stage.problem.rows.fixed.iter().zip(&contacts) {
+            if let Some(DrivenRow { by, .. }) = contact.driven {
+                let (wall, along) = (&walls[by.wall as usize], by.part_along(contact.impulse));
+                let surplus = -0.5 * row.effective_mass * along * (wall.now - wall.before);
+                substepping.works.measures.wall_work += surplus;
+            }
+        }
         // The spring that pulls a grain looks at its velocity.
         substepping.store(stage);
     });
@@ -273,23 +280,14 @@ fn begin_walls<M: Model>(
     let State { world, walls, .. } = &*stage.state;
     let mut driven: Vec<DrivenWall> = walls.driven(world, substep_secs).collect();
     driven.iter_mut().for_each(|wall| wall.now = wall.free);
-    set_answers::<M>(stage.problem, contacts, &driven);
-    driven
-}
-
-/// Tells contacts d_n and d_t.
-fn set_answers<M: Model>(
-    problem: &StepProblem<M>,
-    contacts: &mut [Touching],
-    walls: &[DrivenWall],
-) {
-    for (row, contact) in problem.rows.fixed.iter().zip(contacts) {
+    for (row, contact) in stage.problem.rows.fixed.iter().zip(contacts) {
         if let Some(DrivenRow { by, .. }) = contact.driven {
-            let share = walls[by.wall as usize].response * row.effective_mass;
+            let share = driven[by.wall as usize].response * row.effective_mass;
             let [normal, tangential] = by.along.map(|along| share * along * along);
             contact.answers = [1.0 + normal, 1.0 + tangential / M::TANGENTIAL_COMPLIANCE];
         }
     }
+    driven
 }
 
 /// Has the walls go on as a sweep has left them, and gives the work of what drives them since the substep began, J.
@@ -301,21 +299,4 @@ fn take_walls<M: Model>(
     contacts.iter_mut().for_each(|contact| contact.see(driven));
     let State { world, walls, .. } = &mut *stage.state;
     walls.take_driven(world, driven)
-}
-
-/// Takes off what contacts told of the work of walls with their last speed in a substep, since they had the mean one.
-fn correct_wall_works<M: Model>(
-    problem: &StepProblem<M>,
-    contacts: &[Touching],
-    walls: &[DrivenWall],
-    works: &mut StepResult,
-) {
-    for (row, contact) in problem.rows.fixed.iter().zip(contacts) {
-        if let Some(DrivenRow { by, .. }) = contact.driven {
-            let wall = &walls[by.wall as usize];
-            let along = by.part_along(contact.impulse);
-            let gained = wall.now - wall.before;
-            works.measures.wall_work += -0.5 * row.effective_mass * along * gained;
-        }
-    }
 }

@@ -128,7 +128,7 @@ impl DelassusProblem {
         self.rows.len()
     }
 
-    /// Whether there is no contact; never so.
+    /// True where there is no contact; never so.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }

@@ -6,9 +6,19 @@
 //! are not finite or a step that is refused.
 
 use super::elimination::Elimination;
+use crate::solver::kinematics::Model;
 
 /// A block of D × D numbers.
 pub(crate) type Block<const D: usize> = [[f64; D]; D];
+
+/// The inertias of a body of that mass, kg.
+pub(crate) fn inertia<M: Model, const D: usize>(mass: f64) -> Block<D> {
+    let mut block = [[0.0; D]; D];
+    for (axis, row) in block.iter_mut().enumerate() {
+        row[axis] = mass * M::INERTIA_OVER_MASS[axis];
+    }
+    block
+}
 
 /// A matrix, then its factors. Memory is kept between matrices.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +42,14 @@ impl<const D: usize> BlockMatrix<D> {
         ] {
             blocks.clear();
             blocks.resize(count, zero);
+        }
+    }
+
+    /// The inertias of bodies alone, of these masses (kg).
+    pub(crate) fn start<M: Model>(&mut self, elimination: &Elimination, masses: &[f64]) {
+        self.clear(elimination);
+        for (&place, &mass) in elimination.place_of.iter().zip(masses) {
+            self.diagonal[place as usize] = inertia::<M, D>(mass);
         }
     }
 

@@ -135,13 +135,7 @@ impl<const D: usize> Directions<D> {
     /// Factorises the matrix of a compliance ε.
     fn factorise<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, matrix, .. } = self;
-        matrix.clear(elimination);
-        for (body, &mass) in problem.bodies.masses.iter().enumerate() {
-            let block = matrix.diagonal_mut(elimination.place_of[body]);
-            for (axis, entries) in block.iter_mut().enumerate() {
-                entries[axis] = mass * M::INERTIA_OVER_MASS[axis];
-            }
-        }
+        matrix.start::<M>(elimination, &problem.bodies.masses);
         let tangential = 1.0 / M::TANGENTIAL_COMPLIANCE;
         let add = |block: &mut [[f64; D]; D], stiffness: f64, a: &Gradients, b: &Gradients| {
             for (row, entries) in block.iter_mut().enumerate() {

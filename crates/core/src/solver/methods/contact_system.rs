@@ -43,11 +43,16 @@ impl Clone for WorkVectors {
 /// One step's contact problem in scaled variables (see the module). `contact` is an index below
 /// [`ContactSystem::len`].
 pub trait ContactSystem {
-    /// Whether contacts carry tangential impulses. Where they do not, tangential entries are 0.
+    /// True where contacts carry tangential impulses. Where they do not, tangential entries are 0.
     const FRICTION: bool;
 
     /// Number of contacts.
     fn len(&self) -> usize;
+
+    /// True where there is no contact.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
 
     /// The present impulses s; `impulses` is cleared first.
     fn read(&self, impulses: &mut ScaledVector);
@@ -80,7 +85,7 @@ pub trait ContactSystem {
     /// The common residual of the present impulses.
     fn residual(&self) -> f64;
 
-    /// Whether the stopping test is met by an iteration that led from the impulses `before` to the
+    /// True where the stopping test is met by an iteration that led from the impulses `before` to the
     /// present ones.
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool;
 }

@@ -10,6 +10,8 @@ mod newton;
 mod nncg;
 mod nsgs;
 mod nsgs_parallel;
+#[cfg(test)]
+mod random_problem;
 mod stopping;
 mod sweep;
 
@@ -65,7 +67,7 @@ pub(crate) fn solve_system<S: ContactSystem>(
     vectors: &mut WorkVectors,
 ) -> Option<SolveReport> {
     match settings.method {
-        _ if system.len() == 0 => Some(SolveReport::nothing_yet()),
+        _ if system.is_empty() => Some(SolveReport::nothing_yet()),
         // Without bodies there is nothing to factorise.
         Method::Nncg | Method::Auto => Some(nncg::solve(system, settings, vectors)),
         Method::Apgd => Some(apgd::solve(system, settings, vectors)),

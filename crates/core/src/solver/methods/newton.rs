@@ -247,16 +247,9 @@ fn assemble<M: Model, const D: usize>(
 ) {
     let NewtonWorkspace { graph, matrix, vector, guesses, .. } = workspace;
     let (elimination, pair_blocks) = (&graph.elimination, &graph.pair_blocks);
-    matrix.clear(elimination);
+    matrix.start::<M>(elimination, &problem.bodies.masses);
     vector.clear();
     vector.resize(problem.bodies.now.len(), [0.0; D]);
-    for (body, &mass) in problem.bodies.masses.iter().enumerate() {
-        let place = elimination.place_of[body];
-        let block = matrix.diagonal_mut(place);
-        for (axis, row) in block.iter_mut().enumerate() {
-            row[axis] = mass * M::INERTIA_OVER_MASS[axis];
-        }
-    }
     guesses.clear();
     for row in &problem.rows.fixed {
         let velocity = row.velocity(&problem.bodies.now);

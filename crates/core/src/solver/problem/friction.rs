@@ -180,8 +180,7 @@ impl<M: Model> StepProblem<M> {
 
     /// True where contacts are to be bounded that have not been solved yet.
     pub(crate) fn has_unset_bounds(&self) -> bool {
-        let LaggedFriction { model, now, .. } = &self.friction;
-        *model == FrictionModel::Tresca && now.contains(&UNSET_BOUND)
+        self.friction.model == FrictionModel::Tresca && self.friction.now.contains(&UNSET_BOUND)
     }
 
     /// Gives such contacts Coulomb's bounds at the present impulses, for all solves of the step.

@@ -92,8 +92,8 @@ impl Measures {
 /// formed in m/s and weighted by m_n.
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
-    let add_error = |sums: &mut Sums, row: (usize, &Row<_>), motion: RowVelocities| {
-        sums.add_error::<M>(problem, row, &motion);
+    let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
+        sums.add_error(problem, number, row, &motion);
     };
     sum_of_rows(problem, add_error, Sums::add_all).residual::<M>(problem)
 }
@@ -152,7 +152,7 @@ pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
     let visit = |(sums, measures): &mut Sum,
                  (number, row): (usize, &Row<_>),
                  motion: RowVelocities| {
-        sums.add_error::<M>(problem, (number, row), &motion);
+        sums.add_error(problem, number, row, &motion);
         let [normal, tangential] = problem.reduced_impulse(number, row);
         let half_mass = 0.5 * row.effective_mass;
         measures.compressive_contacts += u32::from(normal > 0.0);
@@ -231,7 +231,8 @@ impl Sums {
     fn add_error<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
-        (number, row): (usize, &Row<M>),
+        number: usize,
+        row: &Row<M>,
         motion: &RowVelocities,
     ) {
         let now = problem.own_part(number, row, motion.now).unwrap_or(motion.now);

@@ -144,7 +144,7 @@ impl<M: Model> ContactRows<M> {
         self.fixed.len() + self.pairs.len()
     }
 
-    /// Whether there are none.
+    /// True where there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -168,7 +168,7 @@ impl<M: Model> ContactRows<M> {
         fixed.chain(self.pairs.iter_mut().map(|row| &mut row.row))
     }
 
-    /// Whether the row of a number is one between grains.
+    /// True where the row of a number is one between grains.
     #[inline(always)]
     pub fn is_pair(&self, number: usize) -> bool {
         number >= self.fixed.len()

@@ -237,17 +237,27 @@ impl<M: Model> StepProblem<M> {
     /// rows' own velocities, being relative, leave out.
     pub(crate) fn surface_works(&self) -> [f64; 2] {
         let [whole, along_tangents] = self.surface_works_of(self, |number| number);
-        // Rows tell of driven walls as they go at the end.
-        let surplus = if self.is_driven() { self.surplus_of_driven_walls() } else { 0.0 };
+        // Rows tell of driven walls as they go at the end, but these had their mean speeds: Σ P·b ½(V − V⁻) too much.
+        let surplus = |known: &DrivenRow| {
+            let number = known.number as usize;
+            let row = &self.rows.fixed[number];
+            let along = known.by.part_along(self.reduced_impulse(number, row));
+            let wall = &self.walls.driven[known.by.wall as usize];
+            0.5 * row.effective_mass * along * (wall.now - wall.before)
+        };
+        let surplus = match self.is_driven() {
+            true => self.walls.driven_rows.iter().map(surplus).sum(),
+            false => 0.0,
+        };
         [whole - surplus, along_tangents]
     }
 
-    /// The same of a part of this problem's rows: in the place of the contact behind each stands its number here.
-    pub(crate) fn surface_works_in(&self, part: &Self) -> [f64; 2] {
-        self.surface_works_of(part, |number| part.rows.contacts[number] as usize)
-    }
-
-    fn surface_works_of(&self, part: &Self, number_here: impl Fn(usize) -> usize) -> [f64; 2] {
+    /// The same of rows of a part of this problem, whose numbers here `number_here` gives.
+    pub(crate) fn surface_works_of(
+        &self,
+        part: &Self,
+        number_here: impl Fn(usize) -> usize,
+    ) -> [f64; 2] {
         let (mut whole, mut along_tangents) = (0.0, 0.0);
         for (number, row) in part.rows.fixed.iter().enumerate() {
             let [normal, tangential] = part.reduced_impulse(number, row);
@@ -361,19 +371,6 @@ impl<M: Model> StepProblem<M> {
             row.surface_speed = known.still[1] + along[1] * speed;
             speeds[number] = known.speed + along[0] * speed;
         }
-    }
-
-    /// What of the work (J) that rows tell of their walls' present speeds is to be taken away, since the walls had their
-    /// mean speeds in the step: Σ P·b ½(V − V⁻).
-    fn surplus_of_driven_walls(&self) -> f64 {
-        let of_row = |known: &DrivenRow| {
-            let number = known.number as usize;
-            let row = &self.rows.fixed[number];
-            let along = known.by.part_along(self.reduced_impulse(number, row));
-            let wall = &self.walls.driven[known.by.wall as usize];
-            0.5 * row.effective_mass * along * (wall.now - wall.before)
-        };
-        self.walls.driven_rows.iter().map(of_row).sum()
     }
 
     /// Contacts of the wall of each row, and κ (b_n² + b_t² m_t/m_n) of the row; none where its body is not driven.

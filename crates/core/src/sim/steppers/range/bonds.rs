@@ -47,7 +47,7 @@ pub(in crate::sim) struct RangeMemory {
     pub(super) shocks: Shocks,
     #[serde(skip)]
     lowered: Vec<(usize, f64)>,
-    /// Whether bonds were about to break in the last step.
+    /// True where bonds were about to break in the last step.
     pub restless: bool,
     /// Where a step was too long for the bonds that were about to break in it: the longest that is not, s.
     #[serde(skip)]
@@ -62,8 +62,8 @@ pub(super) fn solve_range<M: Model>(
     settings: &Settings,
     may_break: bool,
 ) -> Result<StepResult, SolveReport> {
-    let shocks_result = pass_shocks(stage, remembered, settings);
-    let mut result = shocks_result.unwrap_or_else(StepResult::nothing_yet);
+    let passed = shocks::pass(stage, &mut remembered.shocks, settings);
+    let mut result = passed.unwrap_or_else(StepResult::nothing_yet);
     let numbers = StepNumbers::of(stage.world(), settings);
     let RangeMemory { shocks, lowered, restless, .. } = remembered;
     let Stage { state, problem, memory, .. } = stage;
@@ -95,7 +95,7 @@ pub(super) fn solve_range<M: Model>(
 struct BondOpening {
     /// The part of the step.
     part: f64,
-    /// Whether a shock closed it.
+    /// True where a shock closed it.
     is_closed: bool,
     /// v at the beginning, m/s.
     speed: f64,
@@ -174,16 +174,6 @@ fn update_bonds<M: Model>(
     energies
 }
 
-/// Takes a prepared problem through its shocks.
-pub(super) fn pass_shocks<M: Model>(
-    stage: &mut Stage<'_, M>,
-    remembered: &mut RangeMemory,
-    settings: &Settings,
-) -> Option<StepResult> {
-    let numbers = StepNumbers::of(stage.world(), settings);
-    shocks::pass::<M>(stage, &mut remembered.shocks, numbers, &settings.solver)
-}
-
 /// What the bounds of a step hang on.
 struct BondLimits<'a> {
     /// One a contact.
@@ -193,7 +183,7 @@ struct BondLimits<'a> {
 }
 
 impl BondLimits<'_> {
-    /// Whether bonds are about to break in a step that has been solved, at whose beginning the fastest grain or
+    /// True where bonds are about to break in a step that has been solved, at whose beginning the fastest grain or
     /// wall had that speed (m/s).
     fn is_restless<M: Model>(
         &self,
@@ -209,7 +199,7 @@ impl BondLimits<'_> {
         !lowered.is_empty()
     }
 
-    /// Whether nothing moved when the step began, and no pair moves apart or along in it.
+    /// True where nothing moved when the step began, and no pair moves apart or along in it.
     fn stands<M: Model>(&self, problem: &StepProblem<M>, fastest: f64) -> bool {
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;

@@ -24,7 +24,7 @@ use crate::contact::{LookAhead, Numbering, Other};
 use crate::error::Error;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::range::bonds::{pass_shocks, solve_range};
+use crate::sim::steppers::range::bonds::solve_range;
 use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Approach, Model, SolveReport};
@@ -82,9 +82,9 @@ fn travel(world: &World, fastest: f64, time_step_secs: f64) -> f64 {
 /// How a step is cut.
 struct StepCut {
     substeps: u32,
-    /// Whether bonded pairs circle so fast that it cannot be taken as a whole.
+    /// True where bonded pairs circle so fast that it cannot be taken as a whole.
     circling: bool,
-    /// Whether it is tried as a whole first.
+    /// True where it is tried as a whole first.
     whole_first: bool,
     /// The longest step (s) in whose substeps a break is seen, where this one is longer.
     longest_step_secs: Option<f64>,
@@ -156,7 +156,7 @@ pub(super) fn set_up<M: Model>(
     let first = settings.over(settings.parameters.time_step_secs / f64::from(substeps));
     let first = if whole_first { *settings } else { first };
     prepare(stage, &first);
-    pass_shocks(stage, memory, &first);
+    shocks::pass(stage, &mut memory.shocks, &first);
 }
 
 /// Detects the contacts and sets up the problem of a step. A gap must not close by more than itself;
@@ -235,7 +235,7 @@ pub(super) fn separate<M: Model>(state: &mut State) {
 /// smaller: steps are cut in vain.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
-/// Whether a bonded pair circles so fast that a step of that length would take the turn of its normal for a shock.
+/// True where a bonded pair circles so fast that a step of that length would take the turn of its normal for a shock.
 /// `pull` is C₀/m_ij, m/s², and `distance` δ_c, m.
 ///
 /// Bonded pairs that circle each other.

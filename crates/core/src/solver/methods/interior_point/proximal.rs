@@ -20,7 +20,7 @@
 //! rounding would eat what a small ε magnifies.
 
 use super::contact::{ContactNumbers, Shape};
-use super::system::{for_each_change, push_all};
+use super::system::{for_each_change, inertias, push_all};
 use super::{InteriorPoint, PathWorkspace};
 use crate::contact::law;
 use crate::solver::kinematics::Model;
@@ -229,9 +229,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
             .map(|contact| contact.allowed::<S>(numbers, contact.trial(numbers, compliance, 0.0)));
         push_all(problem, elimination, impulses, vector);
         let mut squared = 0.0;
-        for (&body, momenta) in elimination.body_at.iter().zip(&*vector) {
-            for (momentum, inertia) in momenta.iter().zip(M::INERTIA_OVER_MASS) {
-                squared += momentum * momentum / (inertia * problem.bodies.masses[body as usize]);
+        for (inertia, momenta) in inertias::<M, D>(problem, elimination).zip(&*vector) {
+            for (momentum, inertia) in momenta.iter().zip(inertia) {
+                squared += momentum * momentum / inertia;
             }
         }
         squared
@@ -254,13 +254,10 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let share = self.least_on_line(compliance);
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
-        for (&body, (momenta, change)) in
-            graph.elimination.body_at.iter().zip(momenta.iter_mut().zip(&*vector))
-        {
-            let mass = problem.bodies.masses[body as usize];
+        let all = inertias::<M, D>(problem, &graph.elimination).zip(momenta).zip(vector);
+        for ((inertia, momenta), change) in all {
             for axis in 0..D {
-                let inertia = mass * M::INERTIA_OVER_MASS[axis];
-                momenta[axis] += share * inertia * change[axis];
+                momenta[axis] += share * inertia[axis] * change[axis];
             }
         }
         for contact in near {
@@ -275,13 +272,10 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;
         let (mut of_masses, mut at_start) = (0.0, 0.0);
-        for (&body, (momenta, change)) in
-            graph.elimination.body_at.iter().zip(momenta.iter().zip(vector))
-        {
-            let mass = problem.bodies.masses[body as usize];
+        let all = inertias::<M, D>(problem, &graph.elimination).zip(momenta).zip(vector);
+        for ((inertia, momenta), change) in all {
             for axis in 0..D {
-                let inertia = mass * M::INERTIA_OVER_MASS[axis];
-                of_masses += inertia * change[axis] * change[axis];
+                of_masses += inertia[axis] * change[axis] * change[axis];
                 at_start += momenta[axis] * change[axis];
             }
         }

@@ -2,7 +2,9 @@
 
 use super::contact::Shape;
 use crate::solver::kinematics::Model;
-use crate::solver::linear::{Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix};
+use crate::solver::linear::{
+    Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix, inertia,
+};
 use crate::solver::problem::{Row, StepProblem};
 
 /// The matrix, then its factors.
@@ -22,17 +24,14 @@ impl<const D: usize> StepMatrix<D> {
         mut answers: impl Iterator<Item = Block<2>>,
     ) {
         let elimination = &graph.elimination;
+        let masses = &problem.bodies.masses;
         if S::LEANS {
-            self.unsymmetric.clear(elimination);
+            self.unsymmetric.start::<M>(elimination, masses);
         } else {
             self.symmetric.clear(elimination);
-        }
-        for (body, &mass) in problem.bodies.masses.iter().enumerate() {
-            let mut block = [[0.0; D]; D];
-            for (axis, row) in block.iter_mut().enumerate() {
-                row[axis] = mass * M::INERTIA_OVER_MASS[axis];
+            for (&place, &mass) in elimination.place_of.iter().zip(masses) {
+                self.symmetric.add_to_diagonal(place, &inertia::<M, D>(mass));
             }
-            self.add_to_diagonal::<S>(elimination.place_of[body], &block);
         }
         for (row, answer) in problem.rows.fixed.iter().zip(&mut answers) {
             let [on_i, _] = gradients::<M, D>(row);
@@ -142,6 +141,15 @@ fn add_push<const D: usize>(to: &mut [f64; D], on: &[[f64; D]; 2], impulse: [f64
 #[inline(always)]
 fn relative<const D: usize>(velocity: &[f64; D], on: &[[f64; D]; 2]) -> [f64; 2] {
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
+}
+
+/// By place: the inertias of the bodies, kg.
+pub(super) fn inertias<M: Model, const D: usize>(
+    problem: &StepProblem<M>,
+    elimination: &Elimination,
+) -> impl Iterator<Item = [f64; D]> {
+    let masses = elimination.body_at.iter().map(|&body| problem.bodies.masses[body as usize]);
+    masses.map(|mass| std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis]))
 }
 
 /// m S⁻¹, kg.

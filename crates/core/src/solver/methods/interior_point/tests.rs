@@ -1,65 +1,23 @@
 //! Random contact problems that have a solution: proximal multipliers, which end a solve or stand in for the path, find
 //! the velocities that the path leads to.
 
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
-
 use super::*;
 use crate::contact::ContactLaw;
-use crate::solver::problem::{FixedRow, PairRow, Row};
+use crate::solver::methods::random_problem::random_problem;
 use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane, StopTest};
 
 const FRICTION: f64 = 0.6;
 
-/// Contacts of bodies of different masses. Nothing has to move for them (what is added to v_n is positive), so that
-/// there is a solution.
+/// Nothing has to move for its contacts, so that there is a solution.
 fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
-    let (bodies, contacts) = (40, 90);
-    let mut random = Pcg64::seed_from_u64(seed);
     let law = ContactLaw::new(FRICTION, 0.1, FrictionCone::Shifted);
-    let mut problem = StepProblem::<M> { law, ..StepProblem::default() };
-    problem.bodies.mean_mass = 1.0;
+    let mut problem = random_problem::<M>(seed, law, 40, 90, 6, 0.0..0.3);
     problem.friction.model = model;
-    problem.rows.contacts.extend(0..contacts);
-    for _ in 0..bodies {
-        problem.bodies.masses.push(random.random_range(0.2..5.0));
-        let speeds = [(); 3].map(|()| random.random_range(-1.0..1.0));
-        problem.bodies.free.push(M::from_coordinates(speeds));
-    }
-    problem.bodies.before = problem.bodies.free.clone();
-    for contact in 0..contacts {
-        let i = random.random_range(0..bodies);
-        let j = (i + random.random_range(1..6)) % bodies;
-        let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
-        let normal = match M::AXES {
-            1 => [angle.cos().signum(), 0.0],
-            _ => [angle.cos(), angle.sin()],
-        };
-        let (of_i, of_j) = (problem.bodies.masses[i], problem.bodies.masses[j]);
-        let is_fixed = contact % 6 == 0;
-        let share = if is_fixed { 1.0 } else { of_j / (of_i + of_j) };
-        // Drawn before the row's own numbers.
-        let surface_speed = if is_fixed { random.random_range(-0.1..0.1) } else { 0.0 };
-        let row = Row {
-            i: i as u32,
-            j: j as u32,
-            normal: M::normal(normal),
-            restitution_velocity: random.random_range(0.0..0.3),
-            shifted_impulse: random.random_range(0.0..1.0),
-            tangential_impulse: 0.0,
-            effective_mass: of_i * share,
-        };
-        if is_fixed {
-            problem.rows.fixed.push(FixedRow { row, surface_speed });
-        } else {
-            problem.rows.pairs.push(PairRow { row, share });
-        }
-        problem.friction.now.push(match model {
-            FrictionModel::Tresca => random.random_range(0.0..0.2),
-            _ => 0.0,
-        });
-    }
-    problem.form_velocities();
+    let bound = |number: usize| match model {
+        FrictionModel::Tresca => 0.2 * (0.618 * number as f64).fract(),
+        _ => 0.0,
+    };
+    problem.friction.now.extend((0..problem.rows.len()).map(bound));
     problem
 }
 

@@ -45,10 +45,8 @@ impl BlockMemory {
         add_up: impl Fn(Blocks<'_>, &mut [BodySlot]) -> f64 + Sync,
     ) -> f64 {
         let Self { layout, sums, .. } = self;
-        let TileLayout { tiles, blocks, slots, fixed_between, .. } = layout;
-        let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
-        for_each_tile(threads, tiles, in_tiles, slots, sums, &add_up);
-        sums.iter().sum::<f64>() + add_up(Blocks { all: between, fixed: *fixed_between }, slots)
+        let between = layout.visit(threads, sums, add_up);
+        sums.iter().sum::<f64>() + between
     }
 }
 
@@ -79,7 +77,7 @@ fn solve_at<M: Model>(
 /// While it lives, impulses of rows are those of the blocks, and velocities those of the slots.
 struct Tiled<'a, M: Model> {
     level: Level,
-    /// Whether there are several tiles, threads for them, and enough for these to do.
+    /// True where there are several tiles, threads for them, and enough for these to do.
     threads: bool,
     law: ContactLaw,
     problem: &'a mut StepProblem<M>,
@@ -130,13 +128,10 @@ impl<'a, M: Model> Tiled<'a, M> {
         let Self { level, threads, law, memory, .. } = self;
         let (level, law) = (*level, &*law);
         let BlockMemory { layout, changes, .. } = &mut **memory;
-        let TileLayout { tiles, blocks, slots, fixed_between, .. } = layout;
-        let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
         let solve = |blocks: Blocks<'_>, slots: &mut [BodySlot]| dispatch!(level, simd => solve_blocks::<_, M, MEASURE>(simd, law, blocks, slots));
-        for_each_tile(*threads, tiles, in_tiles, slots, changes, &solve);
+        let between = layout.visit(*threads, changes, solve);
         let mut change = ImpulseChange::default();
-        changes.iter().for_each(|&of_tile| change.add_all(of_tile));
-        change.add_all(solve(Blocks { all: between, fixed: *fixed_between }, slots));
+        changes.iter().chain([&between]).for_each(|&part| change.add_all(part));
         change
     }
 
@@ -277,6 +272,20 @@ struct TileLayout {
 }
 
 impl TileLayout {
+    /// Visits the blocks of all tiles with their slots, on several threads where these are wanted, and then those between
+    /// tiles; gives what comes of these.
+    fn visit<T: Send>(
+        &mut self,
+        threads: bool,
+        results: &mut [T],
+        visit: impl Fn(Blocks<'_>, &mut [BodySlot]) -> T + Sync,
+    ) -> T {
+        let Self { tiles, blocks, slots, fixed_between, .. } = self;
+        let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
+        for_each_tile(threads, tiles, in_tiles, slots, results, &visit);
+        visit(Blocks { all: between, fixed: *fixed_between }, slots)
+    }
+
     /// Lays out a problem. Nothing where its grains do not all exist, or a colour or two tiles share one.
     fn fill<M: Model>(&mut self, problem: &StepProblem<M>) -> Option<()> {
         self.tiles.clear();

@@ -1,59 +1,24 @@
 //! Random contact problems: whatever the vector registers and the threads, the bits are those of
 //! the same contacts one after the other.
 
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
 use rayon::ThreadPoolBuilder;
 
 use super::*;
 use crate::contact::levels;
-use crate::solver::problem::{FixedRow, PairRow, residual};
+use crate::solver::methods::random_problem::random_problem;
+use crate::solver::problem::residual;
 use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane};
 use crate::world::FrictionCone::{self, Compressive, Shifted};
 
-/// Contacts between bodies whose numbers are near to each other, every eighth against a fixed one, by tiles and
-/// colours.
+/// Contacts between bodies whose numbers are near to each other, by tiles and colours.
 fn problem<M: Model>(
     seed: u64,
     bodies: usize,
     contacts: u32,
     cone: FrictionCone,
 ) -> StepProblem<M> {
-    let mut random = Pcg64::seed_from_u64(seed);
-    let law = ContactLaw::new(0.5, 0.3, cone);
-    let mut problem = StepProblem::<M> { law, ..StepProblem::default() };
-    problem.bodies.mean_mass = 1.0;
-    problem.bodies.masses.resize(bodies, 1.0);
-    problem.rows.contacts.extend(0..contacts);
-    for _ in 0..bodies {
-        let speeds = [(); 3].map(|()| random.random_range(-1.0..1.0));
-        problem.bodies.free.push(M::from_coordinates(speeds));
-    }
-    problem.bodies.before = problem.bodies.free.clone();
-    for contact in 0..contacts {
-        let i = random.random_range(0..bodies);
-        let j = (i + random.random_range(1..bodies.min(64))) % bodies;
-        let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
-        let normal = [if angle < 3.0 { 1.0 } else { -1.0 }, 0.0];
-        let share_or_speed = random.random_range(0.1..0.9);
-        let row = Row {
-            i: i as u32,
-            j: j as u32,
-            normal: M::normal(match M::AXES {
-                1 => normal,
-                _ => [angle.cos(), angle.sin()],
-            }),
-            restitution_velocity: random.random_range(-0.5..0.5),
-            shifted_impulse: random.random_range(0.0..1.0),
-            tangential_impulse: if M::FRICTION { random.random_range(-0.1..0.1) } else { 0.0 },
-            effective_mass: random.random_range(0.5..2.0),
-        };
-        let rows = &mut problem.rows;
-        match contact % 8 {
-            0 => rows.fixed.push(FixedRow { row, surface_speed: share_or_speed }),
-            _ => rows.pairs.push(PairRow { row, share: share_or_speed }),
-        }
-    }
+    let (law, reach) = (ContactLaw::new(0.5, 0.3, cone), bodies.min(64));
+    let mut problem = random_problem::<M>(seed, law, bodies, contacts, reach, -0.5..0.5);
     problem.sort_by_colours();
     problem.form_velocities();
     problem

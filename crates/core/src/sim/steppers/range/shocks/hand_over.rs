@@ -125,7 +125,7 @@ impl Shocks {
         })
     }
 
-    /// Whether what the step does to a row acts in what a meeting has left of it: a pair that met at t and was
+    /// True where what the step does to a row acts in what a meeting has left of it: a pair that met at t and was
     /// not struck since has no gap at t, so that at the end it has (Δt − t) v^n, and −½a(Δt − t)² where it falls.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];

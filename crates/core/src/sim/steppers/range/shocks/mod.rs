@@ -58,10 +58,11 @@ pub(super) use hand_over::ClosedBond;
 use glam::DVec2;
 
 use crate::contact::{Candidates, Contact, ContactList};
+use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{Model, SolverSettings, StepProblem, for_each_row};
+use crate::solver::{Model, StepProblem, for_each_row};
 use crate::world::World;
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
@@ -87,12 +88,12 @@ const NEVER: f64 = f64::INFINITY;
 pub(super) fn pass<M: Model>(
     stage: &mut Stage<'_, M>,
     shocks: &mut Shocks,
-    numbers: StepNumbers,
-    settings: &SolverSettings,
+    settings: &Settings,
 ) -> Option<StepResult> {
+    shocks.numbers = StepNumbers::of(stage.world(), settings);
+    let settings = &settings.solver;
     let Stage { state, problem, part, memory } = stage;
     let State { world, candidates, contacts, .. } = &**state;
-    shocks.numbers = numbers;
     shocks.begin(problem, contacts, settings.tolerance);
     let mut result: Option<StepResult> = None;
     for _ in 0..MOST_PASSES {
@@ -192,7 +193,7 @@ struct ShockBody {
     struck_in_pass: bool,
     /// What gravity gives it in the step, m/s.
     gain: [f64; 3],
-    /// Whether it rests against something or is bonded, and so does not fall freely.
+    /// True where it rests against something or is bonded, and so does not fall freely.
     is_supported: bool,
     /// What the step's last velocity tells too little of its way, m: −½aΔt² of one that falls freely, and
     /// −Σ tλ of the impulses that the step has for pairs that met.

@@ -46,7 +46,7 @@ fn solve_together<M: Model>(
 
 impl Shocks {
     /// Puts what is struck in this pass into `part`: either pairs that are struck alone, or all others.
-    /// Whether there are any.
+    /// True where there are any.
     pub(super) fn set_up<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -133,7 +133,8 @@ impl Shocks {
         };
         let measures = measure(part);
         let Measures { residual, normal_work, mut tangential_work, border_work, .. } = measures;
-        let [wall_work, of_surfaces] = problem.surface_works_in(part);
+        let [wall_work, of_surfaces] =
+            problem.surface_works_of(part, |number| part.rows.contacts[number] as usize);
         tangential_work += of_surfaces;
         // Against the scale of the step, as all of it is.
         let residual = residual * (settings.tolerance * scale(part) / self.least).min(1.0);
