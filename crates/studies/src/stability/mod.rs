@@ -207,7 +207,6 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// The scene at t = 0, stepped by the variant.
     fn start(&self, mut scene: Scene) -> Result<Simulation> {
         self.variant.apply(&mut scene);
         scene.simulation()
@@ -225,7 +224,6 @@ impl Trial {
     }
 }
 
-/// Steps for a simulated time, s.
 fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
     simulation.take_steps(simulation.parameters().steps_in(secs))
 }
