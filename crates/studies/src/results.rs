@@ -130,7 +130,7 @@ pub(super) fn run_to_end(
         slump: observables.slump,
         first_gap: first_gap(&simulation),
         lost_grains: observables.lost_grains,
-        alarms: kinds.map(AlarmKind::name).collect::<Vec<_>>().join(" "),
+        alarms: kinds.map(|kind| kind.name()).collect::<Vec<_>>().join(" "),
     })
 }
 

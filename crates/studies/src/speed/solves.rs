@@ -85,7 +85,7 @@ impl SolveTimer<'_> {
     }
 
     /// The sweeps that fit in the time limit, from what so many take that it can be told.
-    fn sweeps_in_time<M: Model>(&self, problem: &StepProblem<M::Kinematics>) -> u32 {
+    fn sweeps_in_time<M: Model>(&self, problem: &StepProblem<M>) -> u32 {
         let mut sweeps = FIRST_SWEEPS;
         loop {
             let (secs, _) = timed::<M>(problem, &self.variant.sweeps(sweeps));
@@ -101,12 +101,8 @@ impl SolveTimer<'_> {
 impl ProblemVisitor for SolveTimer<'_> {
     type Output = TimedSolves;
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        contacts: &ContactList,
-    ) -> TimedSolves {
-        let start = left(&measure::<M>(problem));
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, contacts: &ContactList) -> TimedSolves {
+        let start = left(&measure(problem));
         let mut solves = TimedSolves {
             contacts: contacts.contacts().len(),
             start,
@@ -147,15 +143,12 @@ impl ProblemVisitor for SolveTimer<'_> {
 }
 
 /// Seconds of one solve of a copy, and what it came to.
-fn timed<M: Model>(
-    problem: &StepProblem<M::Kinematics>,
-    settings: &SolverSettings,
-) -> (f64, Measures) {
+fn timed<M: Model>(problem: &StepProblem<M>, settings: &SolverSettings) -> (f64, Measures) {
     let (mut copy, mut memory) = (problem.clone(), Memory::default());
     let started = Instant::now();
-    solve::<M>(&mut copy, &mut memory, settings);
+    solve(&mut copy, &mut memory, settings);
     let secs = started.elapsed().as_secs_f64();
-    (secs, measure::<M>(&copy))
+    (secs, measure(&copy))
 }
 
 /// The natural map of what was solved.
