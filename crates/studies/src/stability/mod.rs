@@ -2,12 +2,14 @@
 //! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in `rest` or `motion`
 //! here, and [`CHALLENGES`] lists all.
 
+mod maps;
 mod motion;
 mod rest;
 mod table;
 
 use std::sync::LazyLock;
 
+pub use maps::{contraction_of_column, count_of_maps, maps};
 pub use table::{StabilityCell, StabilityTable, StabilityVerdict, picture};
 
 use crate::contact::Numbering;
@@ -177,6 +179,11 @@ impl TriedVariant {
             VariantChange::Stepper(stepper) => scene.stepper = stepper,
             VariantChange::Preset(preset) => preset.apply(scene),
         }
+    }
+
+    /// True of a method or a stepper, not of settings of one.
+    fn is_of_registry(&self) -> bool {
+        matches!(self.change, VariantChange::Method(_) | VariantChange::Stepper(_))
     }
 }
 

@@ -32,7 +32,7 @@ pub(super) fn column(trial: &Trial) -> Result<f64> {
 }
 
 /// A column whose steps get `sweeps` sweeps each (or substeps), from nothing.
-fn sagging(count: usize, sweeps: u32) -> Scene {
+pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
     let mut scene = scenes::column(count);
     scene.solver.max_sweeps = sweeps;
     scene.parameters.substeps = sweeps;
@@ -68,7 +68,7 @@ fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
 }
 
 /// How far the last grain has moved since `scene`, in d.
-fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
+pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
     let last = scene.grains.len() - 1;
     let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
     before.distance(now) / scene.mean_diameter
@@ -191,7 +191,7 @@ const SURE: f64 = 1.5;
 const CHAIN_HALVINGS: u32 = 9;
 /// Time that bridge and cantilever are watched, s: torn, they fall 30 d in it.
 const WATCH_SECS: f64 = 0.25;
-const CANTILEVER: i32 = 4;
+pub(super) const CANTILEVER: i32 = 4;
 const BRIDGE: i32 = 10;
 /// Time step of the shock, s: the paper's bond opens at it, for want of convergence.
 const SHOCK_STEP_SECS: f64 = 5e-4;
