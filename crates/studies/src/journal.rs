@@ -121,7 +121,6 @@ fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The journals of some folders, in the order of their names.
 pub(super) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for folder in folders {

@@ -9,11 +9,9 @@ use super::runner::Runner;
 use crate::error::{Error, Result};
 use crate::output::check_writable;
 
-/// Where and when times were measured.
 #[derive(Clone, Debug)]
 pub(super) struct Machine {
     pub processor: String,
-    /// Cores that this program may use.
     pub cores: usize,
     /// UTC, year-month-day.
     pub date: String,

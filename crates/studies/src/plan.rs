@@ -63,7 +63,7 @@ pub struct Study {
     pub name: String,
     /// Tells studies apart: hash of the keys of all runs.
     pub fingerprint: String,
-    /// Whether these are the runs of a quick pass, which differs from the full one.
+    /// True if these are the runs of a quick pass, which differs from the full one.
     pub is_quick_pass: bool,
     /// Which rows each run writes over time, if any.
     pub series: Option<SeriesSettings>,
@@ -422,7 +422,7 @@ fn not_above(field: &str, least: &str, from: impl Display, to: impl Display) -> 
     Error::value(format!("{field}.to"), to, format!("{least} from, which is {from}"))
 }
 
-/// Whether values are evenly spaced in ratio.
+/// True if values are evenly spaced in ratio.
 fn is_logarithmic(field: &str, range: &Table, from: f64) -> Result<bool> {
     let Some(scale) = range.get("scale") else { return Ok(false) };
     match scale.as_str() {

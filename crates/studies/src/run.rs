@@ -39,7 +39,7 @@ pub struct Recorded {
     pub simulation: Simulation,
     /// Sums over its steps.
     pub tally: Tally,
-    /// Whether the recorder ended it.
+    /// True if the recorder ended it.
     pub interrupted: bool,
     /// Why it ended early, if it failed: its state was no longer finite, or it could not be recorded.
     pub failure: Option<Error>,

@@ -75,7 +75,7 @@ fn column_names(observables: &Observables) -> Result<String> {
     Ok(String::from_utf8_lossy(&bytes).lines().next().unwrap_or_default().to_owned())
 }
 
-/// Whether the series of a finished run is there as it was written. One that is damaged is named.
+/// True if the series of a finished run is there as it was written. One that is damaged is named.
 pub(super) fn is_whole(folder: &Path, case: &FinishedCase<SweptRun>) -> bool {
     let path = series_path(folder, &case.key);
     let Ok(bytes) = std::fs::read(&path) else { return false };

@@ -41,7 +41,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Whether the run of that number belongs to this part.
+    /// True if the run of that number belongs to this part.
     fn has(self, run: usize) -> bool {
         run % self.count == self.index - 1
     }
@@ -189,7 +189,6 @@ fn recording_of(
     Ok(Some(recording.at(Times::of(data), &scene.simulation()?)))
 }
 
-/// Where the recording of the run with a key lies.
 fn data_path(folder: &Path, key: &str) -> PathBuf {
     folder.join(DATA).join(key)
 }

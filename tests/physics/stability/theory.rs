@@ -5,12 +5,9 @@ use slump::scene::stability::{
     column_on_line, dilatancy, mass_ratio, thin_wall,
 };
 
-use crate::common::*;
+use slump::study::stability::contraction_of_column;
 
-/// What a sweep of Gauss–Seidel leaves of the slowest mode of a column.
-fn contraction_of_column(count: f64) -> f64 {
-    (std::f64::consts::FRAC_PI_2 / count).cos().powi(2)
-}
+use crate::common::*;
 
 /// Steps until a column sinks steadily: each leaves a tenth or less of the one before.
 const STEADY: usize = 40;

@@ -8,7 +8,7 @@ use slump::study::chart::{Axis, Chart, Layer, Look, MapCell, PALETTE, Point, She
 use crate::program::*;
 
 /// Figures that take no more than a few seconds.
-const FAST: [&str; 6] = ["fig2", "two-body", "fig8", "fig8-strip", "cradle-choices", "cradle-map"];
+const FAST: [&str; 5] = ["fig2", "two-body", "fig8", "cradle-choices", "cradle-map"];
 /// Share of pixels that may differ between two processors' roundings.
 const MOST_DIFFERENT: f64 = 0.002;
 

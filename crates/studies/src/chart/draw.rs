@@ -31,7 +31,6 @@ const CAPTION_CHARACTER: u32 = 10;
 /// Name that the font goes by; one that browsers know too, for the SVG.
 const FONT: &str = "sans-serif";
 
-/// A pair of axes with what is drawn on them.
 type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<AxisCoordinates, AxisCoordinates>>;
 
 /// The sheet as PNG, which says of itself which command draws it.
@@ -142,7 +141,6 @@ fn draw<DB: DrawingBackend>(layout: &Layout<'_>, area: DrawingArea<DB, Shift>) -
     area.present().map_err(failed)
 }
 
-/// The names of curves, one below the other.
 fn draw_legend<DB: DrawingBackend>(
     legend: &[(&str, Rgb, Look)],
     area: &DrawingArea<DB, Shift>,

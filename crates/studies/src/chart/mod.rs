@@ -97,7 +97,7 @@ pub enum Layer {
     Curve {
         /// Name in the CSV, and in the legend where `in_legend`.
         name: String,
-        /// Whether the legend tells of it.
+        /// True if the legend tells of it.
         in_legend: bool,
         /// Its points, in order.
         points: Vec<Point>,
@@ -135,13 +135,9 @@ impl Layer {
     }
 
     /// The same curve, number `index` of `count` side by side.
-    pub fn beside(self, index: usize, count: usize) -> Self {
-        self.aside(ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0)))
-    }
-
-    pub(crate) fn aside(mut self, widths: f64) -> Self {
+    pub fn beside(mut self, index: usize, count: usize) -> Self {
         if let Self::Curve { aside, .. } = &mut self {
-            *aside = widths;
+            *aside = ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0));
         }
         self
     }

@@ -85,7 +85,7 @@ pub(super) const RANGE_REGIMES: PairedExperiment = PairedExperiment {
     },
 };
 
-/// Whether dry piles that bounce slump under `range` as under `moreau` at a small Δt, and as under `dem`.
+/// Dry piles that bounce: `range` against `moreau` at a small Δt, and against `dem`.
 pub(super) const DRY: PairedExperiment = PairedExperiment {
     name: "dry",
     studies: &["dry"],
@@ -99,7 +99,7 @@ pub(super) const DRY: PairedExperiment = PairedExperiment {
     },
 };
 
-/// Whether a pile slumps under a model of friction as it does under Coulomb's law, by the number of grains.
+/// A model of friction against Coulomb's law, by the number of grains.
 pub(super) const FRICTION: PairedExperiment = PairedExperiment {
     name: "friction",
     studies: &["friction"],
@@ -163,7 +163,6 @@ fn against<'a>(rows: &Rows<'a>, law: Stepper) -> [Rows<'a>; 2] {
     [least, of(Stepper::Range)]
 }
 
-/// That the slumps of each comparison are alike.
 fn alike(all: &[Comparison], said: &str, hangs_on: &str) -> Vec<Claim> {
     all.iter().map(|one| one.alike(said).hanging_on(hangs_on)).collect()
 }
@@ -180,7 +179,6 @@ fn by_level(all: &[Comparison], how: &str) -> Vec<Claim> {
     claims.collect()
 }
 
-/// That slump changes with Δt by that sign whatever was changed.
 fn claim_of_sign(bond: f64, sign: f64, all: &[Comparison]) -> Claim {
     let changes = || {
         all.iter().filter_map(|one| Some((&one.group, one.pairs().find(|one| one.bond == bond)?)))

@@ -1,4 +1,4 @@
-//! Whether slump is a matter of Bond and of the work that it takes to break a bond: piles under `range`, whose
+//! Slump against Bond and the work that it takes to break a bond: piles under `range`, whose
 //! debonding distance sets that work, and under `dem`, whose stiffness does, at equal works from the same states.
 //!
 //! `moreau` knows no work of fracture: its contacts pull as long as they are found. Beside the others it is drawn

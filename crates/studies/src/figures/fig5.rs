@@ -138,14 +138,17 @@ fn flat(states: &[Alike]) -> (String, Verdict) {
 
 fn falling(states: &[Alike]) -> (String, Verdict) {
     let slope = slopes(states);
-    let (p, measured) = (slope.p_below(0.0), measured("slope per decade", &slope));
-    (format!("{measured}; below 0: {}", p_value(p)), Verdict::of(p, slope.p_above(0.0)))
+    tested(&slope, "below", slope.p_below(0.0), slope.p_above(0.0))
 }
 
 fn rising(states: &[Alike]) -> (String, Verdict) {
     let slope = slopes(states);
-    let (p, measured) = (slope.p_above(0.0), measured("slope per decade", &slope));
-    (format!("{measured}; above 0: {}", p_value(p)), Verdict::of(p, slope.p_below(0.0)))
+    tested(&slope, "above", slope.p_above(0.0), slope.p_below(0.0))
+}
+
+fn tested(slope: &Mean, side: &str, p: f64, p_not: f64) -> (String, Verdict) {
+    let measured = measured("slope per decade", slope);
+    (format!("{measured}; {side} 0: {}", p_value(p)), Verdict::of(p, p_not))
 }
 
 /// Both ends lie above the mean of what is between them, state by state. Which Δt is lowest is not

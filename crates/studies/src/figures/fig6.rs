@@ -9,7 +9,6 @@ use crate::config::Config;
 use crate::error::Result;
 use crate::statistics::{mean, p_value, slope, turning_point};
 
-/// Resamplings of the initial states for the interval of the turning point.
 const RESAMPLINGS: usize = 400;
 /// As many for each of many shuffles.
 const FEWER_RESAMPLINGS: usize = 20;

@@ -1,5 +1,7 @@
 //! Fig. 8: where j goes after the shock, on the paper's axes; and what else the paper says of these runs.
 
+use std::ops::RangeInclusive;
+
 use super::fig8::{OPEN_GAP, PHASE_SECS};
 use super::{Claim, Figure, StudyRunner};
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
@@ -12,9 +14,9 @@ const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
 /// Where the paper's axes end, s and d.
 const ENDS: (f64, f64) = (2.0, 5.0);
 /// The steps at which the paper has j leave with one velocity, s.
-const FREE_SECS: (f64, f64) = (1e-4, 6e-4);
+const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
 /// The steps at which the paper has k stay with i and j, s.
-const CLUSTER_SECS: (f64, f64) = (7e-4, 3e-3);
+const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
 /// The step at which the paper has i catch up with j, s.
 const CAUGHT_SECS: f64 = 5e-3;
 /// Ratio of the largest to the smallest of velocities that are one.
@@ -66,14 +68,14 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         let step_secs = config.parameters.time_step_secs.unwrap_or(0.0);
         runs.push(DiscSeries { step_secs, rows: read(&text, diameter)? });
     }
-    let mut near = chart(&runs, "place of j after the shock", (-0.1, 0.8))?;
+    let mut near = chart(&runs, "place of j after the shock", -0.1, 0.8)?;
     let curves = near.layers.iter().filter_map(|layer| match layer {
         Layer::Curve { points, .. } => Some(points),
         _ => None,
     });
     let highest = curves.flatten().map(|point| point.y).fold(1.1, f64::max);
     (near.y.from, near.y.to) = (1.0 - 0.05 * (highest - 1.0), 1.0 + 1.05 * (highest - 1.0));
-    let mut far = chart(&runs, "the same on the paper's axes", (0.0, ENDS.0))?;
+    let mut far = chart(&runs, "the same on the paper's axes", 0.0, ENDS.0)?;
     (far.y.from, far.y.to) = (0.0, ENDS.1);
     let caption = vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
     let sheet = Sheet { size: (2000, 860), charts: vec![near, far], caption };
@@ -82,7 +84,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig8", sheet, claims, table: None })
 }
 
-fn chart(runs: &[DiscSeries], title: &str, (from, to): (f64, f64)) -> Result<Chart> {
+fn chart(runs: &[DiscSeries], title: &str, from: f64, to: f64) -> Result<Chart> {
     let axes = (Axis::linear("t − t_shock (s)", from, to), Axis::linear("x_j / d", 0.98, 1.2));
     let mut chart = Chart::new(format!("Fig. 8: {title}"), axes.0, axes.1);
     for (index, shown) in SHOWN_SECS.into_iter().enumerate() {
@@ -119,8 +121,8 @@ fn read(text: &str, diameter: f64) -> Result<Vec<SeriesRow>> {
 }
 
 /// The runs with a Δt in a range, its ends among them.
-fn between(runs: &[DiscSeries], (least, most): (f64, f64)) -> impl Iterator<Item = &DiscSeries> {
-    runs.iter().filter(move |run| (least..=most).contains(&run.step_secs))
+fn between(runs: &[DiscSeries], steps: RangeInclusive<f64>) -> impl Iterator<Item = &DiscSeries> {
+    runs.iter().filter(move |run| steps.contains(&run.step_secs))
 }
 
 fn swings(runs: &[DiscSeries]) -> Claim {

@@ -75,7 +75,7 @@ impl FigureInfo {
 }
 
 /// All figures that are charts, in the order of the report.
-static FIGURES: [FigureInfo; 20] = [
+static FIGURES: [FigureInfo; 19] = [
     FigureInfo::new("fig2", &[], two_bodies::fig2),
     FigureInfo::new("two-body", &[], two_bodies::two_bodies),
     FigureInfo::new("fig5a", &["pile", "pile-compressive"], fig5::slump),
@@ -83,7 +83,6 @@ static FIGURES: [FigureInfo; 20] = [
     FigureInfo::paired(beyond::PILE_CHOICES),
     FigureInfo::new("fig6", &["pile"], fig6::make),
     FigureInfo::new("fig8", &["cradle-courses"], fig8_series::make),
-    FigureInfo::new("fig8-strip", &["cradle"], fig8::strip),
     FigureInfo::new("fig8-share", &["cradle-share"], fig8::share),
     FigureInfo::new("cradle-choices", &["cradle-choices"], fig8::choices),
     FigureInfo::new("cradle-map", &["cradle-map"], fig8::map),

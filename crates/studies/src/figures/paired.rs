@@ -40,7 +40,6 @@ pub(super) struct Comparison {
     pub group: String,
     /// What the levels are compared with, in words.
     pub base: String,
-    /// Each in words.
     pub levels: Vec<(String, Vec<PairedSlumps>)>,
     pub grains: usize,
 }
@@ -256,8 +255,11 @@ fn sheet(all: &[Comparison]) -> Sheet {
     let mut bonds: Vec<f64> = all.iter().flat_map(Comparison::pairs).map(|one| one.bond).collect();
     bonds.sort_by(f64::total_cmp);
     bonds.dedup();
-    let reaches = all.iter().flat_map(Comparison::pairs).map(PairedSlumps::reach);
-    let reach = 1.05 * reaches.filter(|reach| reach.is_finite()).fold(0.05, f64::max);
+    let ends = all.iter().flat_map(Comparison::pairs).map(|one| {
+        let Point { y, interval, .. } = one.point(0.0);
+        interval.map_or(y.abs(), |_| one.reach())
+    });
+    let reach = 1.05 * ends.fold(0.05, f64::max);
     let (shared, mut width) = (all.len() > MOST_CHARTS, CHART);
     let mut parts: Vec<(String, Vec<Place<'_>>)> = Vec::new();
     if shared {
@@ -323,7 +325,6 @@ impl Comparison {
     }
 }
 
-/// A time, as it is written.
 pub(super) fn seconds(secs: f64) -> String {
     format!("{secs:e} s")
 }

@@ -17,7 +17,6 @@ const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
 /// Cohesive times from one over this to this are near 1.
 const NEAR: f64 = 3.0;
-/// Steps of the scale of colours.
 const SHADES: u32 = 64;
 
 /// Slump → colour: dark is a pile that holds.

@@ -12,7 +12,6 @@ use crate::results::alarms_of;
 use crate::scene::NewPile;
 use crate::{PlannedRun, RunResult, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
-/// Studies by name, each with its file's text.
 macro_rules! shipped {
     ($($name:literal)*) => {
         &[$(($name, include_str!(concat!("../../../../assets/studies/", $name, ".toml")))),*]
@@ -20,15 +19,14 @@ macro_rules! shipped {
 }
 
 const STUDIES: &[(&str, &str)] = shipped![
-    "pile" "pile-compressive" "pile-choices" "cradle" "cradle-courses" "cradle-choices"
+    "pile" "pile-compressive" "pile-choices" "cradle-courses" "cradle-choices"
     "cradle-share" "cradle-map" "pile-map" "pile-size" "pile-tolerance" "range" "range-regimes"
     "range-size" "dry" "cohesion" "friction" "tolerance"
 ];
 
-/// Runs shipped studies, and has those that are finished.
 pub(super) struct StudyRunner {
     folder: PathBuf,
-    /// Whether studies run their quick pass.
+    /// True if studies run their quick pass.
     pub quick: bool,
     pub finished: BTreeMap<&'static str, (Study, RunsTable)>,
 }
@@ -38,7 +36,6 @@ impl StudyRunner {
         Self { folder, quick, finished: BTreeMap::new() }
     }
 
-    /// Runs a shipped study, unless it was run before.
     pub(super) fn run(&mut self, wanted: &str) -> Result<()> {
         let Some(&(name, text)) = STUDIES.iter().find(|(name, _)| *name == wanted) else {
             return Err(Error::value("study", wanted, "one that is shipped"));
@@ -122,12 +119,10 @@ impl StudyRunner {
 pub(super) struct Rows<'a>(pub Vec<(&'a Config, &'a RunResult)>);
 
 impl<'a> Rows<'a> {
-    /// Those that a condition picks.
     pub(super) fn such_that(&self, holds: impl Fn(&Config) -> bool) -> Self {
         Self(self.0.iter().copied().filter(|(config, _)| holds(config)).collect())
     }
 
-    /// The same, and the others.
     pub(super) fn parted(&self, holds: impl Fn(&Config) -> bool) -> [Self; 2] {
         [self.such_that(&holds), self.such_that(|config| !holds(config))]
     }
@@ -141,7 +136,6 @@ impl<'a> Rows<'a> {
         self.such_that(|config| config.parameters.bond == Some(bond))
     }
 
-    /// Those with a Δt, s.
     pub(super) fn of_step(&self, step: f64) -> Self {
         self.such_that(|config| config.parameters.time_step_secs == Some(step))
     }
@@ -154,7 +148,6 @@ impl<'a> Rows<'a> {
         self.such_that(|config| config.solver.tolerance == Some(tolerance))
     }
 
-    /// The different values of a number, rising.
     pub(super) fn values(&self, number: impl Fn(&Config) -> Option<f64>) -> Vec<f64> {
         let mut values: Vec<f64> = self.0.iter().filter_map(|(config, _)| number(config)).collect();
         values.sort_by(f64::total_cmp);
@@ -166,7 +159,6 @@ impl<'a> Rows<'a> {
         self.values(|config| config.parameters.bond)
     }
 
-    /// Δt, rising, s.
     pub(super) fn steps(&self) -> Vec<f64> {
         self.values(|config| config.parameters.time_step_secs)
     }

@@ -46,7 +46,7 @@ pub(super) struct CollectionPlan {
     /// Width of the box that the piles are made in, in diameters.
     pub box_width_in_diameters: f64,
     pub deposition: Deposition,
-    /// Whether the walls of the box stay, so that the piles are at rest.
+    /// True if the walls of the box stay, so that the piles are at rest.
     pub in_a_box: bool,
     pub advance: SolverSettings,
     /// Contacts slower than this many g·Δt do not bounce; 0 in the paper's scheme.
@@ -72,7 +72,6 @@ impl CollectionPlan {
         }
     }
 
-    /// 24 of them: the first two times.
     pub(super) fn fewer_piles(restitution_threshold: f64) -> Self {
         Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
     }
@@ -106,7 +105,6 @@ impl CollectionPlan {
         }
     }
 
-    /// The names of its steps, in their order.
     pub(super) fn names(&self) -> Vec<String> {
         let of_pile =
             |config: &Config| self.times_secs.iter().map(|&time| self.name(config, time)).collect();

@@ -22,7 +22,7 @@ use super::chart::Sheet;
 use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, note_line, print_line, print_text, write_file};
-use crate::report::write_sheet;
+use crate::report::{ReportTable, write_sheet};
 use crate::runner::Runner;
 
 /// Something to chart.
@@ -52,10 +52,10 @@ pub struct ChartOptions {
 struct ChartSection {
     name: String,
     sheet: Sheet,
-    /// Markdown; may be empty.
-    report: String,
-    /// (name, CSV) of tables beside the sheet's own.
-    tables: Vec<(String, String)>,
+    words: String,
+    summary: ReportTable,
+    /// Tables that the report does not show.
+    others: Vec<ReportTable>,
 }
 
 struct Bench<'a> {
@@ -85,13 +85,13 @@ impl Bench<'_> {
 
     /// Writes the files of a section, and gives its part of the report.
     fn write(&self, section: &ChartSection) -> Result<String> {
-        let ChartSection { name, sheet, report, tables } = section;
+        let ChartSection { name, sheet, words, summary, others } = section;
         let folder = &self.options.out;
         write_sheet(folder, name, sheet, &self.machine.command)?;
-        for (table, text) in tables {
-            write_file(&folder.join(format!("{table}.csv")), text.as_bytes())?;
+        for table in others.iter().chain([summary]) {
+            write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
         }
-        Ok(format!("\n![{name}]({name}.png)\n\n{report}\n"))
+        Ok(format!("\n![{name}]({name}.png)\n\n{words}\n\n{}\n", summary.to_markdown()))
     }
 }
 
@@ -127,11 +127,6 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     print_text(&report);
     print_line(format_args!("\n{}", path.display()));
     Ok(())
-}
-
-/// A number of a CSV table; nothing where there is none.
-fn csv_cell(value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| format!("{value:e}"))
 }
 
 fn listed<T>(values: impl IntoIterator<Item = T>, word: impl Fn(T) -> String) -> String {

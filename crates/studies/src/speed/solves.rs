@@ -48,7 +48,6 @@ pub(super) struct TimedSolves {
     /// Smallest natural map of any of the solves.
     #[serde(with = "number")]
     pub smallest: f64,
-    /// By falling goal.
     pub reached: Vec<ReachedGoal>,
     /// How long the solve took that did not reach its goal in time, s.
     pub gave_up_secs: Option<f64>,

@@ -6,9 +6,10 @@ use super::solves::{
     LEAST_REPEATS, LONG_SOLVE_SECS, MOST_SWEEPS, ROUNDING, SolveTimer, TimedSolves,
 };
 use super::variants::{self, ChartedVariant};
-use super::{Bench, ChartSection, csv_cell, listed};
+use super::{Bench, ChartSection, listed};
 use crate::chart::{Axis, Chart, Sheet};
 use crate::error::Result;
+use crate::report::ReportTable;
 use crate::runner::{Case, Runner, Threads};
 use crate::solver::{FrictionModel, Method, Ordering};
 
@@ -24,6 +25,8 @@ const SIZES: [usize; 3] = [500, 2_000, 10_000];
 #[derive(Clone)]
 struct TimedCollection {
     title: String,
+    /// Most time of a solve, s.
+    limit_secs: f64,
     problems: Vec<String>,
     variants: Vec<ChartedVariant>,
     /// By variant, then by step.
@@ -36,15 +39,15 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let timer = CollectionTimer {
         variants: variants::told_apart(variants::of_problems(!quick)),
         goals: residuals_asked_for(quick),
-        limit_secs: if quick { 0.25 } else { 3.0 },
     };
+    let limit_secs = if quick { 0.25 } else { 3.0 };
     let pick = if quick { CollectionPlan::fewer_piles } else { CollectionPlan::piles };
     let mut all = Vec::new();
     for (label, threshold, title) in [
         ("steps", THRESHOLD, "steps, restitution from 2 g·Δt up"),
         ("steps-paper", 0.0, "steps, restitution as in the paper"),
     ] {
-        all.push(timer.time(bench, label, &pick(threshold), title)?);
+        all.push(timer.time(bench, label, &pick(threshold), title, limit_secs)?);
     }
     Ok(vec![timer.section(bench, "chart-step", &all)])
 }
@@ -56,9 +59,8 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     let mut variants = variants::of_problems(false);
     let models = variants::models().into_iter();
     variants.extend(models.filter(|one| one.solver.friction_model == FrictionModel::Tresca));
-    let limit_secs = if quick { 1.0 } else { 10.0 };
     let variants = variants::told_apart(variants);
-    let timer = CollectionTimer { variants, goals: REPORTED.to_vec(), limit_secs };
+    let timer = CollectionTimer { variants, goals: REPORTED.to_vec() };
     let mut sections = Vec::new();
     for (name, in_a_box, state) in
         [("chart-size-moving", false, "that begin to slump"), ("chart-size-rest", true, "at rest")]
@@ -66,12 +68,9 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
         let mut all = Vec::new();
         for grains in SIZES {
             let plan = CollectionPlan::of_size(grains, in_a_box, quick);
-            all.push(timer.time(
-                bench,
-                "sizes",
-                &plan,
-                &format!("steps of {grains} grains {state}"),
-            )?);
+            let limit_secs = if quick { 1e-4 } else { 1e-3 } * grains as f64;
+            let title = format!("steps of {grains} grains {state}");
+            all.push(timer.time(bench, "sizes", &plan, &title, limit_secs)?);
         }
         sections.push(timer.section(bench, name, &all));
     }
@@ -81,8 +80,6 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
 struct CollectionTimer {
     variants: Vec<ChartedVariant>,
     goals: Vec<f64>,
-    /// Most time of a solve, s.
-    limit_secs: f64,
 }
 
 impl CollectionTimer {
@@ -93,8 +90,9 @@ impl CollectionTimer {
         journal: &str,
         plan: &CollectionPlan,
         title: &str,
+        limit_secs: f64,
     ) -> Result<TimedCollection> {
-        let Self { variants, goals, limit_secs } = self;
+        let Self { variants, goals } = self;
         let runner: Runner<TimedSolves> = bench.runner(journal)?;
         let problems = plan.names();
         let mut cases: Vec<Case<(usize, &ChartedVariant)>> = Vec::new();
@@ -107,23 +105,24 @@ impl CollectionTimer {
         let is_finished = cases.iter().all(|case| runner.has(&case.key));
         let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
         let results = runner.run(&cases, Threads::One, |&(step, variant)| {
-            SolveTimer { variant, goals, limit_secs: *limit_secs }.time(&steps[step])
+            SolveTimer { variant, goals, limit_secs }.time(&steps[step])
         })?;
         let mut solves: Vec<Vec<TimedSolves>> = variants.iter().map(|_| Vec::new()).collect();
         for (index, case) in results.into_iter().enumerate() {
             solves[index % variants.len()].push(case.result);
         }
         let title = format!("{} {title}", problems.len());
-        Ok(TimedCollection { title, problems, variants: variants.clone(), solves })
+        Ok(TimedCollection { title, limit_secs, problems, variants: variants.clone(), solves })
     }
 
     fn section(&self, bench: &Bench, name: &str, all: &[TimedCollection]) -> ChartSection {
-        let Self { goals, limit_secs, .. } = self;
+        let goals = &self.goals;
         ChartSection {
             name: name.to_owned(),
             sheet: residuals_sheet(bench, all, goals),
-            report: report(all, *limit_secs),
-            tables: tables(name, all, goals),
+            words: words(all),
+            summary: summary(name, all),
+            others: vec![times(name, all, goals)],
         }
     }
 }
@@ -139,28 +138,9 @@ fn residuals_asked_for(quick: bool) -> Vec<f64> {
     (0..=9 * per_decade).map(residual).collect()
 }
 
-struct StepSummary {
-    share_solved: f64,
-    mean_secs: Option<f64>,
-    /// Against [`BASE`].
-    ratio: (Option<f64>, usize),
-}
-
 impl TimedCollection {
     fn timings(&self, variant: usize, goal: f64) -> Vec<Timing> {
         self.solves[variant].iter().map(|solves| solves.timing(goal)).collect()
-    }
-
-    fn summary(&self, variant: usize, goal: f64) -> StepSummary {
-        let timings = self.timings(variant, goal);
-        let is_base = |one: &ChartedVariant| (one.solver.method, one.solver.ordering) == BASE;
-        let base = self.variants.iter().position(is_base).unwrap_or(0);
-        let solved = timings.iter().filter(|timing| timing.solved).map(|timing| timing.secs);
-        StepSummary {
-            share_solved: share_solved(&timings),
-            mean_secs: geometric_mean(solved),
-            ratio: speed_ratio(&self.timings(base, goal), &timings),
-        }
     }
 
     /// The steps that begin far from their solution.
@@ -223,80 +203,80 @@ fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> She
     Sheet { size: (760 * charts.len() as u32, 760), charts, caption }
 }
 
-/// Markdown: shares solved, times, ratios and residual floors.
-fn report(all: &[TimedCollection], limit_secs: f64) -> String {
+/// How the steps were timed, and the residual floors of each collection.
+fn words(all: &[TimedCollection]) -> String {
     let mut lines = vec![format!(
         "Times are minima of at least {LEAST_REPEATS} repeats, but for solves of more than {LONG_SOLVE_SECS} s; means \
-         geometric. A solve is given up after {MOST_SWEEPS} sweeps or about {limit_secs} s; where nsgs gave up, the \
-         time it took until then stands for the time it would need, and the ratio is a lower bound."
+         geometric. A solve is given up after {MOST_SWEEPS} sweeps or a limit of time; where nsgs gave up, the \
+         time it took until then stands for the time it would need, and the ratio is a lower bound.\n"
     )];
-    let parts = all.iter().flat_map(|all| [all.clone(), all.far()]);
-    for timed in parts.filter(|timed| !timed.solves[0].is_empty()) {
-        lines.push(format!("\n### {}\n", timed.title));
-        lines.push(
-            "| method | residual | steps solved | mean time of those, ms | times as fast as nsgs over those, at least |\n|---|---|---|---|---|"
-                .into(),
-        );
-        for goal in REPORTED {
-            for (number, variant) in timed.variants.iter().enumerate() {
-                let summary = timed.summary(number, goal);
-                let ms = summary.mean_secs.map(|secs| format!("{:.4}", 1e3 * secs));
-                lines.push(format!(
-                    "| {} | {goal:e} | {:.1} % | {} | {} |",
-                    variant.name,
-                    100.0 * summary.share_solved,
-                    ms.unwrap_or("failed on all".into()),
-                    summary.ratio.0.map_or("none".into(), |ratio| format!("{ratio:.2}"))
-                ));
-            }
-        }
+    for timed in all {
         let floors = timed.floors();
         let share = |below: f64| {
             let count = floors.iter().filter(|floor| **floor <= below * (1.0 + ROUNDING)).count();
-            100.0 * count as f64 / floors.len().max(1) as f64
+            format!("{below:e} in {:.0} %", 100.0 * count as f64 / floors.len().max(1) as f64)
         };
         lines.push(format!(
-            "\nSmallest residual that any method reached: at most 1e-10 in {:.0} % of the steps, 1e-8 in \
-             {:.0} %, 1e-6 in {:.0} %, 1e-3 in {:.0} %; largest {:.1e}.",
-            share(1e-10),
-            share(1e-8),
-            share(1e-6),
-            share(1e-3),
+            "* {}, each given up after about {} s: smallest residual that any method reached at most {}; largest {:.1e}.",
+            timed.title,
+            timed.limit_secs,
+            [1e-10, 1e-8, 1e-6, 1e-3].map(share).join(", "),
             floors.last().copied().unwrap_or(0.0)
         ));
     }
     lines.join("\n")
 }
 
-/// Every time, and the summary of every residual, as CSV.
-fn tables(name: &str, all: &[TimedCollection], goals: &[f64]) -> Vec<(String, String)> {
-    let mut times = String::from(
-        "problem,contacts,start_residual,method,residual,seconds,solved,smallest_residual,duality_gap\n",
-    );
-    let mut ratios = String::from(
-        "collection,method,residual,share_solved,mean_seconds,ratio_at_least,ratio_at_least_steps\n",
-    );
-    for timed in all {
-        for &goal in goals {
-            for (number, ChartedVariant { name: method, .. }) in timed.variants.iter().enumerate() {
-                for (problem, solves) in timed.problems.iter().zip(&timed.solves[number]) {
-                    let TimedSolves { contacts, start, smallest, .. } = solves;
-                    let Timing { secs, solved } = solves.timing(goal);
-                    times.push_str(&format!(
-                        "\"{problem}\",{contacts},{start:e},{method},{goal:e},{secs:e},{solved},{smallest:e},{}\n",
-                        csv_cell(solves.reached(goal).and_then(|reached| reached.duality_gap))
-                    ));
-                }
-                let StepSummary { share_solved, mean_secs, ratio } = timed.summary(number, goal);
-                ratios.push_str(&format!(
-                    "\"{}\",{method},{goal:e},{share_solved},{},{},{}\n",
-                    timed.title,
-                    csv_cell(mean_secs),
-                    csv_cell(ratio.0),
-                    ratio.1
-                ));
+/// What each variant comes to: over all steps, and over those that begin far from their solution.
+fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
+    let columns = "collection method residual share_solved mean_ms ratio_to_nsgs_at_least";
+    let mut rows = Vec::new();
+    let parts = all.iter().flat_map(|all| [all.clone(), all.far()]);
+    for timed in parts.filter(|timed| !timed.solves[0].is_empty()) {
+        let is_base = |one: &ChartedVariant| (one.solver.method, one.solver.ordering) == BASE;
+        let base = timed.variants.iter().position(is_base).unwrap_or(0);
+        for goal in REPORTED {
+            for (number, variant) in timed.variants.iter().enumerate() {
+                let timings = timed.timings(number, goal);
+                let solved = timings.iter().filter(|timing| timing.solved);
+                let mean_ms = geometric_mean(solved.map(|timing| 1e3 * timing.secs));
+                let ratio = speed_ratio(&timed.timings(base, goal), &timings);
+                let mut row = vec![timed.title.clone(), variant.name.clone(), format!("{goal:e}")];
+                row.push(format!("{:.3}", share_solved(&timings)));
+                row.extend(
+                    [mean_ms, ratio].map(|x| x.map_or(String::new(), |x| format!("{x:.4}"))),
+                );
+                rows.push(row);
             }
         }
     }
-    vec![(format!("{name}-times"), times), (format!("{name}-ratios"), ratios)]
+    ReportTable { name: format!("{name}-ratios"), columns: columns.split(' ').collect(), rows }
+}
+
+fn times(name: &str, all: &[TimedCollection], goals: &[f64]) -> ReportTable {
+    let columns = "problem contacts start_residual method residual seconds solved smallest_residual duality_gap";
+    let mut rows = Vec::new();
+    for timed in all {
+        for &goal in goals {
+            for (variant, solves) in timed.variants.iter().zip(&timed.solves) {
+                for (problem, solves) in timed.problems.iter().zip(solves) {
+                    let TimedSolves { contacts, start, smallest, .. } = solves;
+                    let Timing { secs, solved } = solves.timing(goal);
+                    let gap = solves.reached(goal).and_then(|reached| reached.duality_gap);
+                    rows.push(vec![
+                        problem.clone(),
+                        contacts.to_string(),
+                        format!("{start:e}"),
+                        variant.name.clone(),
+                        format!("{goal:e}"),
+                        format!("{secs:e}"),
+                        solved.to_string(),
+                        format!("{smallest:e}"),
+                        gap.map_or(String::new(), |gap| format!("{gap:e}")),
+                    ]);
+                }
+            }
+        }
+    }
+    ReportTable { name: format!("{name}-times"), columns: columns.split(' ').collect(), rows }
 }

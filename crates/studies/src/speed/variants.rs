@@ -40,7 +40,6 @@ pub(super) fn all() -> Vec<ChartedVariant> {
     variants
 }
 
-/// A method that solves the problem of a step.
 pub(super) fn of_method(method: Method) -> ChartedVariant {
     of_model(method, FrictionModel::Coulomb)
 }
@@ -86,7 +85,6 @@ impl ChartedVariant {
         self.stepper.uses_method().then_some(self.solver.method)
     }
 
-    /// Warm-started, down to a residual.
     pub(super) fn to_residual(&self, tolerance: f64, max_sweeps: u32) -> SolverSettings {
         let stop = StopTest::Residual;
         SolverSettings { stop, tolerance, max_sweeps, warm_start: true, ..self.solver }

@@ -2,12 +2,14 @@
 //! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in `rest` or `motion`
 //! here, and [`CHALLENGES`] lists all.
 
+mod maps;
 mod motion;
 mod rest;
 mod table;
 
 use std::sync::LazyLock;
 
+pub use maps::{contraction_of_column, count_of_maps, maps};
 pub use table::{StabilityCell, StabilityTable, StabilityVerdict, picture};
 
 use crate::contact::Numbering;
@@ -178,6 +180,11 @@ impl TriedVariant {
             VariantChange::Preset(preset) => preset.apply(scene),
         }
     }
+
+    /// True of a method or a stepper, not of settings of one.
+    fn is_of_registry(&self) -> bool {
+        matches!(self.change, VariantChange::Method(_) | VariantChange::Stepper(_))
+    }
 }
 
 /// All variants: every method, every stepper without one, every model of friction beside Coulomb's law, and
@@ -207,7 +214,6 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// The scene at t = 0, stepped by the variant.
     fn start(&self, mut scene: Scene) -> Result<Simulation> {
         self.variant.apply(&mut scene);
         scene.simulation()
@@ -225,7 +231,6 @@ impl Trial {
     }
 }
 
-/// Steps for a simulated time, s.
 fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
     simulation.take_steps(simulation.parameters().steps_in(secs))
 }

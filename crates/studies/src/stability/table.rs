@@ -203,8 +203,7 @@ const BELOW: u32 = 220;
 /// Colours of holding, degrading and failing, told apart also by their lightness.
 const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
 
-/// The colour of a verdict, given as 0, 1 or 2.
-fn colour(verdict: f64) -> Rgb {
+pub(super) fn colour(verdict: f64) -> Rgb {
     COLOURS[(verdict as usize).min(2)]
 }
 

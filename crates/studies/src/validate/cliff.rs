@@ -28,7 +28,6 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 const ASPECT: f64 = 2.0;
-/// Slump below which a cliff stands.
 const STANDS: f64 = 0.2;
 /// tan φ_f of discs with μ = 0.5, about.
 const TAN_OF_FRICTION: f64 = 0.36;

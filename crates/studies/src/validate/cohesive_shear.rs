@@ -18,7 +18,6 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// I that is aimed at.
 const INERTIAL: f64 = 0.08;
 /// η that is weak, and η that is strong.
 const WEAK: f64 = 1.0;

@@ -62,25 +62,19 @@ impl SweepVariant {
 
 const YOUNG: &str = "D. M. Young 1971: any fixed order on a chain";
 
+const fn sweeps(
+    name: &'static str,
+    method: Method,
+    ordering: Ordering,
+    source: &'static str,
+) -> SweepVariant {
+    SweepVariant { name, source, method, ordering }
+}
+
 const VARIANTS: [SweepVariant; 3] = [
-    SweepVariant {
-        name: "jacobi",
-        source: "half of ½ by mass splitting",
-        method: Method::Jacobi,
-        ordering: Ordering::Interleaved,
-    },
-    SweepVariant {
-        name: "nsgs interleaved",
-        source: YOUNG,
-        method: Method::Nsgs,
-        ordering: Ordering::Interleaved,
-    },
-    SweepVariant {
-        name: "nsgs bottom-up",
-        source: YOUNG,
-        method: Method::Nsgs,
-        ordering: Ordering::BottomUp,
-    },
+    sweeps("jacobi", Method::Jacobi, Ordering::Interleaved, "half of ½ by mass splitting"),
+    sweeps("nsgs interleaved", Method::Nsgs, Ordering::Interleaved, YOUNG),
+    sweeps("nsgs bottom-up", Method::Nsgs, Ordering::BottomUp, YOUNG),
 ];
 
 fn cases(quick: bool) -> Vec<ExperimentCase> {

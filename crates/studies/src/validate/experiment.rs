@@ -69,7 +69,7 @@ pub(super) struct RunReadings {
     /// Steps that were not solved as asked. With a number of sweeps nothing is asked but those.
     pub unsolved_steps: u64,
     pub lost_grains: u32,
-    /// Whether its state was no longer finite; it has no readings then.
+    /// True if its state was no longer finite; it has no readings then.
     pub blew_up: bool,
 }
 
@@ -233,7 +233,7 @@ impl PublishedQuantity {
         (self.measured.mean / self.published - 1.0).abs()
     }
 
-    /// Whether the two agree, where all runs are sound.
+    /// How the two compare, where all runs are sound.
     pub(super) fn verdict(&self) -> Agreement {
         let (Mean { low, high, .. }, band) = (self.measured, self.band);
         if low >= band[0] && high <= band[1] {

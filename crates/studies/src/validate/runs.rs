@@ -37,7 +37,7 @@ impl ExperimentRuns {
         (self.experiment.judge)(&sound).into_iter().map(judge).collect()
     }
 
-    /// Whether all that is asked of a step is a number of sweeps.
+    /// True if all that is asked of a step is a number of sweeps.
     pub(super) fn has_sweeps_alone(&self) -> bool {
         self.variant.is_none_or(|variant| matches!(variant.budget, SolveBudget::Sweeps(_)))
     }

@@ -95,7 +95,6 @@ pub(super) fn layers(
 #[derive(Clone, Copy, Debug)]
 struct ShearedLayer {
     cell: ShearCell,
-    /// I that is aimed at.
     inertial: f64,
     bond: f64,
     seed: u64,

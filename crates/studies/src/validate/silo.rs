@@ -53,7 +53,6 @@ fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// The silo with its plate, around grains.
 fn silo(grains: Vec<Grain>, orifice: f64, gravity: f64, variant: StepVariant) -> Scene {
     let mut scene = dry("silo", grains);
     scene.gravity = Gravity::Uniform { acceleration: -gravity * GRAVITY * DVec2::Y };

@@ -60,8 +60,9 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(vec![ChartSection {
         name: "chart-simulation".into(),
         sheet: report::sheet(bench, plan, &simulated, &references),
-        report: report::report(plan, &simulated, &references),
-        tables: vec![("chart-simulation-points".into(), report::table(plan, &simulated))],
+        words: report::words(plan, &references),
+        summary: report::table(plan, &simulated),
+        others: Vec::new(),
     }])
 }
 
@@ -107,7 +108,6 @@ impl SimulationPlan {
         }
     }
 
-    /// A pile at a time step under a law.
     fn config(&self, pile: usize, time_step_secs: f64, law: Stepper) -> Config {
         let ((bond, seed), made_as) = (self.piles[pile], NewPile::default());
         let parameters = ParameterChanges {
@@ -183,18 +183,10 @@ fn piles(quick: bool) -> Vec<(f64, u64)> {
     seeds.into_iter().enumerate().flat_map(of).collect()
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum TimedEnding {
-    Done,
-    TooSlow,
-    /// Its state was no longer finite.
-    NotFinite,
-}
-
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct TimedRun {
-    ending: TimedEnding,
+    /// Why it did not reach its end, in words.
+    failed: Option<String>,
     /// Least of its repeats, s.
     least_secs: f64,
     simulated_secs: f64,
@@ -214,7 +206,7 @@ struct TimedRun {
 fn timed_run(scene: &Scene, repeats: u32, limit_secs: f64) -> Result<TimedRun> {
     let mut run = timed_once(scene, limit_secs)?;
     for _ in 1..repeats {
-        if run.ending != TimedEnding::Done || run.least_secs > LONG_ENOUGH_SECS {
+        if run.failed.is_some() || run.least_secs > LONG_ENOUGH_SECS {
             break;
         }
         run.least_secs = run.least_secs.min(timed_once(scene, limit_secs)?.least_secs);
@@ -233,16 +225,16 @@ fn timed_once(scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
         let is_over = looks && started.elapsed().as_secs_f64() > limit_secs;
         Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     })?;
-    let ending = match ended {
-        RunEnding::Done => TimedEnding::Done,
-        RunEnding::Stopped => TimedEnding::TooSlow,
+    let failed = match ended {
+        RunEnding::Done => None,
+        RunEnding::Stopped => Some("too slow".to_owned()),
         RunEnding::NotFinite(_) => {
             tally.add(simulation.observables());
-            TimedEnding::NotFinite
+            Some("not finite".to_owned())
         }
     };
     Ok(TimedRun {
-        ending,
+        failed,
         least_secs: started.elapsed().as_secs_f64(),
         simulated_secs: simulation.time_secs(),
         steps: tally.steps,
@@ -299,7 +291,7 @@ impl References {
             scene.solver = SolverSettings { method, stop, tolerance, ..SolverSettings::default() };
             timed_run(&scene, 1, f64::INFINITY)
         })?;
-        if let Some(run) = runs.iter().find(|run| run.result.ending != TimedEnding::Done) {
+        if let Some(run) = runs.iter().find(|run| run.result.failed.is_some()) {
             return Err(Error::value(&run.key, "not finite", "finite to compare with it"));
         }
         Ok(Self(cases.iter().zip(runs).map(|(case, run)| (case.setup, run.result)).collect()))
@@ -336,8 +328,7 @@ struct SimulatedPoint<'a> {
     time_step_secs: f64,
     /// The runs that reached their end, pile by pile.
     runs: Vec<TimedRun>,
-    /// Why there is no point, where there is none.
-    failed: Option<&'static str>,
+    failed: Option<String>,
     speed: f64,
     /// Mean |slump − reference| at the same Δt, and at the finest.
     errors: [f64; 2],
@@ -373,11 +364,7 @@ fn run_all<'a>(
                     scene.parameters.substeps = *substeps;
                     timed_run(&scene, plan.repeats, plan.limit_secs * DURATION_SECS)
                 })?;
-                failed = match run.result.ending {
-                    TimedEnding::Done => None,
-                    TimedEnding::TooSlow => Some("too slow"),
-                    TimedEnding::NotFinite => Some("not finite"),
-                };
+                failed = run.result.failed.clone();
                 runs.extend(failed.is_none().then_some(run.result));
             }
             simulated.push(summed_up(references, variant, time_step_secs, runs, failed));
@@ -392,7 +379,7 @@ fn summed_up<'a>(
     variant: &'a BudgetedVariant,
     time_step_secs: f64,
     runs: Vec<TimedRun>,
-    failed: Option<&'static str>,
+    failed: Option<String>,
 ) -> SimulatedPoint<'a> {
     let sum = |number: fn(&TimedRun) -> f64| runs.iter().map(number).sum::<f64>();
     let (law, tolerance) = (variant.law, 0);

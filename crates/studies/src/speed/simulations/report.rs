@@ -1,6 +1,7 @@
 //! How simulations are drawn and told.
 
 use super::*;
+use crate::report::ReportTable;
 
 /// Draws a point for each variant, budget and Δt: against the same Δt, and against the finest one.
 pub(super) fn sheet(
@@ -40,7 +41,6 @@ pub(super) fn sheet(
     Sheet { size: (1500, 840), charts, caption }
 }
 
-/// Adds the points with their Pareto front, and how far two references are from each other.
 fn with_errors(
     mut chart: Chart,
     plan: &SimulationPlan,
@@ -78,66 +78,42 @@ fn with_errors(
     chart
 }
 
-pub(super) fn report(
-    plan: &SimulationPlan,
-    simulated: &[SimulatedPoint],
-    references: &References,
-) -> String {
+pub(super) fn words(plan: &SimulationPlan, references: &References) -> String {
     let [tight, tighter] = TOLERANCES;
     let [unsolved, steps] = references.unsolved();
-    let mut lines = vec![
-        format!(
-            "References are by {}. Two at the same Δt, solved to residuals of {tight:e} and {tighter:e}, differ by \
-             {:.4} in the mean: no smaller error means anything. {unsolved} of their {steps} steps were not solved as \
-             asked. Runs that take more than {} s a simulated second are given up as too slow. Every time is the least \
-             of {}.",
-            REFERENCE,
-            references.floor(plan),
-            plan.limit_secs,
-            if plan.repeats == 1 { "1 run".into() } else { format!("{} runs", plan.repeats) }
-        ),
-        "\n| method | Δt, s | effort | simulated s per s | error, same Δt | error, finest Δt | verdicts agreed |\n|---|---|---|---|---|---|---|".into(),
-    ];
-    for point in simulated {
-        let (name, budget) = (&plan.variants[point.variant.variant].name, &point.variant.budget);
-        let numbers = match point.failed {
-            Some(why) => format!("{why} | | | |"),
-            None => format!(
-                "{:.2} | {:.4} | {:.4} | {:.0} % |",
-                point.speed,
-                point.errors[0],
-                point.errors[1],
-                100.0 * point.verdicts
-            ),
-        };
-        lines.push(format!("| {name} | {:e} | {budget} | {numbers}", point.time_step_secs));
-    }
-    lines.join("\n")
+    format!(
+        "References are by {REFERENCE}. Two at the same Δt, solved to residuals of {tight:e} and {tighter:e}, differ by \
+         {:.4} in the mean: no smaller error means anything. {unsolved} of their {steps} steps were not solved as \
+         asked. Runs that take more than {} s a simulated second are given up as too slow. Every time is the least \
+         of {}.",
+        references.floor(plan),
+        plan.limit_secs,
+        if plan.repeats == 1 { "1 run".into() } else { format!("{} runs", plan.repeats) }
+    )
 }
 
-pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> String {
-    let mut text = String::from(
-        "method,time_step_secs,effort,failed,simulated_secs_per_sec,error_same_step,error_finest_step,\
-         verdicts_agreed,mean_overlap,unconverged_steps,steps\n",
-    );
-    for point in simulated {
+pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> ReportTable {
+    let columns = "method time_step_secs effort failed simulated_secs_per_sec error_same_step error_finest_step \
+                   verdicts_agreed mean_overlap unconverged_steps steps";
+    let row = |point: &SimulatedPoint| {
         let runs = &point.runs;
         let overlap = mean(&runs.iter().map(|run| run.mean_overlap).collect::<Vec<_>>()).mean;
         let sum = |number: fn(&TimedRun) -> u64| runs.iter().map(number).sum::<u64>();
-        let numbers = match point.failed {
-            Some(why) => format!("{why},,,,,,,"),
-            None => format!(
-                ",{},{},{},{},{overlap},{},{}",
-                point.speed,
-                point.errors[0],
-                point.errors[1],
-                point.verdicts,
-                sum(|run| run.unconverged_steps),
-                sum(|run| run.steps)
-            ),
-        };
-        let (name, budget) = (&plan.variants[point.variant.variant].name, &point.variant.budget);
-        text.push_str(&format!("{name},{:e},{budget},{numbers}\n", point.time_step_secs));
-    }
-    text
+        let name = &plan.variants[point.variant.variant].name;
+        let mut row = vec![name.clone(), format!("{:e}", point.time_step_secs)];
+        row.push(point.variant.budget.clone());
+        row.push(point.failed.clone().unwrap_or_default());
+        let numbers = [point.speed, point.errors[0], point.errors[1], point.verdicts];
+        let mut numbers = numbers.map(|x| format!("{x:.4}")).to_vec();
+        numbers.push(format!("{overlap:.2e}"));
+        numbers.extend(
+            [sum(|run| run.unconverged_steps), sum(|run| run.steps)].map(|x| x.to_string()),
+        );
+        let is_there = point.failed.is_none();
+        row.extend(numbers.into_iter().map(|number| if is_there { number } else { String::new() }));
+        row
+    };
+    let rows = simulated.iter().map(row).collect();
+    let name = "chart-simulation-points".to_owned();
+    ReportTable { name, columns: columns.split(' ').collect(), rows }
 }

@@ -7,7 +7,7 @@ fn made_up(plan: &SimulationPlan) -> References {
     let reference = |case: ReferenceCase| {
         let ReferenceCase { time_step_secs, pile, tolerance, .. } = case;
         let run = TimedRun {
-            ending: TimedEnding::Done,
+            failed: None,
             least_secs: 2.0,
             simulated_secs: 1.0,
             steps: 10,

@@ -1,0 +1,284 @@
+//! Stability maps: where, over two parameters, each method holds, where it sinks or overlaps by more
+//! than 1 % of d, and where it is lost: torn, thrown, or no longer finite.
+//!
+//! Theory gives their borders. A step of Gauss–Seidel from nothing leaves the share
+//! ρ^s of what gravity adds to the slowest mode, g Δt, and of what the step before left. So a column
+//! sinks with
+//!
+//! > v = A g Δt ρ^s / (1 − ρ^s),
+//!
+//! where A = 4/π is the slowest mode's part at the top of a column of many (1 for two discs) and ρ is
+//! what `scene::stability` derives for each scene. In T it sinks by v T = 0.01 d where
+//! s = ln(q/(1 + q)) / ln ρ, q = 0.01 d/(A g Δt T). The border of springs is their critical time step.
+//!
+//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever. Δt does not enter: a bond
+//! pulls no more than is asked of it, so that no impulse of cohesion pulls grains into each other, however long a step.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use rayon::prelude::*;
+
+use super::rest::{CANTILEVER, sagging, sunk};
+use super::table::colour;
+use super::{TriedVariant, VARIANTS, jitter};
+use crate::chart::{Axis, Chart, INK, Layer, Look, MapCell, Sheet, points};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::scene::stability::{
+    breaking_bond_of_cantilever, cantilever, column_on_line, mass_ratio,
+};
+
+/// Simulated time of every run, s.
+const DURATION_SECS: f64 = 0.1;
+/// Sinking or overlap that counts, in d.
+const COUNTS: f64 = 0.01;
+/// Part of the slowest mode in the motion of a column's top.
+const TOP_OF_COLUMN: f64 = 4.0 / PI;
+/// A grain that has gone this far is lost, in d.
+const LOST: f64 = 1.0;
+/// Speed that a scene at rest does not have at its end, in √(g d): of grains, and of those on springs.
+const SHAKES: [f64; 2] = [0.05, 4e-3];
+/// Discs of the column whose size is not varied.
+const DISCS: usize = 20;
+/// Size of a chart, pixels.
+const CHART: (u32, u32) = (500, 500);
+/// Charts side by side.
+const ABREAST: usize = 5;
+
+/// A parameter of a map.
+struct Parameter {
+    label: &'static str,
+    from: f64,
+    to: f64,
+    /// True of a number that counts.
+    whole: bool,
+}
+
+const TIME_STEP: Parameter = Parameter { label: "Δt (s)", from: 1e-4, to: 1e-2, whole: false };
+
+const fn sweeps(to: f64) -> Parameter {
+    Parameter { label: "sweeps (substeps) a step", from: 1.0, to, whole: true }
+}
+
+impl Parameter {
+    /// A dozen values in ratio, half of them in a quick pass, each with the edges of its cell.
+    fn values(&self, quick: bool) -> Vec<(f64, [f64; 2])> {
+        let count = if quick { 6 } else { 12 };
+        let ratio = (self.to / self.from).powf(1.0 / f64::from(count));
+        let edge = |k: i32| self.from * ratio.powi(k);
+        let value = |k: i32| {
+            let middle = (edge(k) * edge(k + 1)).sqrt();
+            (if self.whole { middle.round().max(1.0) } else { middle }, [edge(k), edge(k + 1)])
+        };
+        (0..count).map(value).collect()
+    }
+
+    fn axis(&self) -> Axis {
+        Axis::log(self.label, self.from, self.to)
+    }
+}
+
+/// A border that theory gives, against x: its name, and the variant that it is of; empty for all of them.
+type Border = (&'static str, &'static str, fn(f64) -> Result<f64>);
+
+/// A map of two parameters.
+struct Map {
+    name: &'static str,
+    title: &'static str,
+    x: Parameter,
+    y: Parameter,
+    scene: fn(f64, f64) -> Scene,
+    borders: &'static [Border],
+}
+
+/// All maps.
+const MAPS: [Map; 4] = [
+    Map {
+        name: "map-dt-bond",
+        title: "cantilever",
+        x: TIME_STEP,
+        y: Parameter { label: "Bond", from: 5.0, to: 500.0, whole: false },
+        scene: |time_step_secs, bond| {
+            let mut scene = cantilever(CANTILEVER);
+            scene.parameters.time_step_secs = time_step_secs;
+            scene.parameters.bond = bond;
+            scene
+        },
+        borders: &[(STATICS, "", |_| Ok(breaking_bond_of_cantilever(CANTILEVER)))],
+    },
+    Map {
+        name: "map-dt-sweeps",
+        title: "column of 20",
+        x: TIME_STEP,
+        y: sweeps(1e3),
+        scene: |time_step_secs, sweeps| sagging_on_line(DISCS, time_step_secs, sweeps),
+        borders: &[
+            ("theory", "nsgs", |time_step_secs| {
+                let contraction = contraction_of_column(DISCS as f64);
+                Ok(sweeps_at_border(TOP_OF_COLUMN, time_step_secs, contraction))
+            }),
+            (SPRINGS, "dem", |time_step_secs| substeps_at_border(DISCS, time_step_secs)),
+        ],
+    },
+    Map {
+        name: "map-mass-sweeps",
+        title: "heavy on light",
+        x: Parameter { label: "ratio of masses", from: 1.0, to: 1e4, whole: false },
+        y: sweeps(1e5),
+        scene: |ratio, sweeps| {
+            let mut scene = mass_ratio(ratio);
+            scene.solver = sagging(1, sweeps as u32).solver;
+            scene
+        },
+        borders: &[("theory", "nsgs", |ratio| {
+            Ok(sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0)))
+        })],
+    },
+    Map {
+        name: "map-discs-sweeps",
+        title: "columns",
+        x: Parameter { label: "discs", from: 2.0, to: 100.0, whole: true },
+        y: sweeps(1e4),
+        scene: |count, sweeps| sagging_on_line(count as usize, 1e-3, sweeps),
+        borders: &[
+            ("theory", "nsgs", |count| {
+                Ok(sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count)))
+            }),
+            (SPRINGS, "dem", |count| substeps_at_border(count as usize, 1e-3)),
+        ],
+    },
+];
+
+const STATICS: &str = "statics";
+const SPRINGS: &str = "critical time step";
+
+fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
+    let mut scene = column_on_line(count);
+    scene.solver = sagging(count, sweeps as u32).solver;
+    scene.parameters.time_step_secs = time_step_secs;
+    scene
+}
+
+/// 0 where the variant holds, 1 where it sinks or overlaps, 2 where it is lost.
+///
+/// A step left unsolved sinks steadily. Stiff springs that are stable have come to rest, but where they `may_swing`.
+fn class(variant: &TriedVariant, scene: &Scene, may_swing: bool) -> Result<f64> {
+    let mut scene = scene.clone();
+    variant.apply(&mut scene);
+    let mut simulation = scene.simulation()?;
+    let mut overlap = 0f64;
+    while simulation.time_secs() < DURATION_SECS {
+        match simulation.step() {
+            Ok(observables) => overlap = overlap.max(observables.max_overlap),
+            Err(Error::NonFinite { .. }) => return Ok(2.0),
+            Err(error) => return Err(error),
+        }
+    }
+    let way = sunk(&simulation, &scene);
+    let springs = simulation.critical_time_step_secs().is_some();
+    let shakes = !(springs && may_swing) && jitter(&simulation) > SHAKES[usize::from(springs)];
+    Ok(if way > LOST || shakes {
+        2.0
+    } else if way.max(overlap) > COUNTS {
+        1.0
+    } else {
+        0.0
+    })
+}
+
+/// The methods and steppers of the registry, which alone have maps.
+fn of_registry() -> impl Iterator<Item = &'static TriedVariant> {
+    VARIANTS.iter().filter(|variant| variant.is_of_registry())
+}
+
+/// All maps, each with its file's name: the methods of the registry side by side.
+///
+/// # Errors
+/// Where a scene is not sound.
+pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Sheet)>> {
+    let mut sheets = Vec::new();
+    for map in &MAPS {
+        let mut charts = Vec::new();
+        for variant in of_registry() {
+            charts.push(map.chart(variant, quick)?);
+            progress();
+        }
+        for (number, charts) in charts.chunks(ABREAST).enumerate() {
+            let mut caption = vec![
+                "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s; red is torn, thrown, still shaking or not finite.".to_owned(),
+            ];
+            caption.push(if map.can_swing() {
+                "Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing."
+            } else {
+                "Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs."
+            }.to_owned());
+            let size = (CHART.0 * charts.len() as u32, CHART.1);
+            let sheet = Sheet { size, charts: charts.to_vec(), caption };
+            sheets.push((format!("{}-{}", map.name, number + 1), sheet));
+        }
+    }
+    Ok(sheets)
+}
+
+/// Number of charts of all maps.
+pub fn count_of_maps() -> usize {
+    MAPS.len() * of_registry().count()
+}
+
+impl Map {
+    /// True of the cantilever, whose springs swing for longer than a run.
+    fn can_swing(&self) -> bool {
+        self.borders.iter().any(|(name, ..)| *name == STATICS)
+    }
+
+    fn chart(&self, variant: &TriedVariant, quick: bool) -> Result<Chart> {
+        let rows = self.y.values(quick);
+        let columns = self.x.values(quick).into_par_iter();
+        let cells = columns
+            .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
+            .map(|(x, y)| {
+                let value = class(variant, &(self.scene)(x.0, y.0), self.can_swing())?;
+                Ok(MapCell { x, y, value })
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let title = format!("{}: {}", self.title, variant.name);
+        let mut chart = Chart::new(title, self.x.axis(), self.y.axis());
+        chart.layers.push(Layer::Cells { name: variant.name.into(), cells, colour });
+        let (from, to) = (self.x.from, self.x.to);
+        for (name, of, border) in self.borders {
+            if !of.is_empty() && *of != variant.name {
+                continue;
+            }
+            let mut curve = Vec::new();
+            for k in 0..=60 {
+                let x = from * (to / from).powf(f64::from(k) / 60.0);
+                curve.push((x, border(x)?));
+            }
+            curve.retain(|(_, y)| (self.y.from..=self.y.to).contains(y));
+            let look = if *name == SPRINGS { Look::Line(3) } else { Look::Dashes(3) };
+            chart.layers.push(Layer::quiet(*name, points(curve), INK, look));
+        }
+        Ok(chart)
+    }
+}
+
+/// What a sweep of Gauss–Seidel leaves of the slowest mode of a column.
+pub fn contraction_of_column(count: f64) -> f64 {
+    (FRAC_PI_2 / count).cos().powi(2)
+}
+
+fn sweeps_at_border(part: f64, time_step_secs: f64, contraction: f64) -> f64 {
+    let scene = column_on_line(1);
+    let fall = part * scene.gravity.magnitude() * time_step_secs * DURATION_SECS;
+    let q = COUNTS * scene.mean_diameter / fall;
+    (q / (1.0 + q)).ln() / contraction.ln()
+}
+
+fn substeps_at_border(count: usize, time_step_secs: f64) -> Result<f64> {
+    let mut scene = column_on_line(count);
+    if let Some(dem) = VARIANTS.iter().find(|variant| variant.name == "dem") {
+        dem.apply(&mut scene);
+    }
+    let critical_secs = scene.simulation()?.critical_time_step_secs().unwrap_or(f64::INFINITY);
+    Ok(time_step_secs / critical_secs)
+}
