@@ -12,9 +12,7 @@ use crate::output::{
 };
 use crate::solver::Method;
 use crate::study::chart::{png, svg};
-use crate::study::stability::{
-    CHALLENGES, Challenge, StabilityTable, count_of_maps, maps, picture,
-};
+use crate::study::stability::{CHALLENGES, Challenge, StabilityTable, picture};
 use crate::study::{
     ChartOptions, ChartPart, RunsTable, Shard, Study, SweepOptions, ValidateOptions, chart_speed,
     experiment_names, figure_names, merge, reproduce, sweep, validate,
@@ -141,7 +139,7 @@ pub(super) struct ChartCommand {
     /// Coarser, in a few minutes
     #[arg(long)]
     quick: bool,
-    /// Also race on steps of 500, 2,000 and 10,000 grains, and simulate 2,000
+    /// Also race on steps of 500, 2,000 and 10,000 grains
     #[arg(long)]
     large: bool,
     /// Chart these alone
@@ -162,7 +160,7 @@ pub(super) struct StabilityCommand {
     /// Challenges; all where none is given
     #[arg(value_name = "SCENE")]
     scenes: Vec<String>,
-    /// Folder for the table and its picture, and, unless challenges are given, the stability maps
+    /// Folder for the table and its picture
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// File for the table alone, as CSV
@@ -194,33 +192,17 @@ impl StabilityCommand {
         print_text(&table);
         if let Some(folder) = &self.out {
             write_file(&folder.join("table.csv"), &table.to_csv()?)?;
-            self.draw(&table, folder)?;
+            let quick = if self.quick { " --quick" } else { "" };
+            let scenes: String = self.scenes.iter().map(|name| format!(" {name}")).collect();
+            let command = format!("slump stability{quick}{scenes} --out stability");
+            let sheet = picture(&table);
+            write_file(&folder.join("table.png"), &png(&sheet, &command)?)?;
+            write_file(&folder.join("table.svg"), svg(&sheet)?.as_bytes())?;
             print_line(folder.display());
         }
         if let Some(path) = &self.table {
             write_file(path, &table.to_csv()?)?;
             print_line(path.display());
-        }
-        Ok(())
-    }
-
-    fn draw(&self, table: &StabilityTable, folder: &Path) -> Result<()> {
-        let mut sheets = vec![("table".to_owned(), picture(table))];
-        if self.scenes.is_empty() {
-            let progress = Progress::new("maps", count_of_maps() as u64);
-            let found = maps(self.quick, || progress.advance(1));
-            progress.finish();
-            sheets.extend(found?);
-        }
-        let quick = if self.quick { " --quick" } else { "" };
-        let scenes: String = self.scenes.iter().map(|name| format!(" {name}")).collect();
-        let command = format!("slump stability{quick}{scenes} --out stability");
-        for (name, sheet) in &sheets {
-            write_file(&folder.join(format!("{name}.png")), &png(sheet, &command)?)?;
-            write_file(&folder.join(format!("{name}.svg")), svg(sheet)?.as_bytes())?;
-            if name != "table" {
-                write_file(&folder.join(format!("{name}.csv")), &sheet.to_csv()?)?;
-            }
         }
         Ok(())
     }

@@ -384,9 +384,6 @@ pub fn refuses(good: &Scene, cases: &[Refusal]) {
     }
 }
 
-/// Bodies and rows of a step's problem in a model.
-pub type Problem<M> = StepProblem<<M as Model>::Kinematics>;
-
 /// Holds a property to so many random inputs, the same ones every time.
 pub fn for_random<S: proptest::strategy::Strategy>(
     cases: u32,

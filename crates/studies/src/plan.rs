@@ -270,9 +270,6 @@ impl Known {
 impl PlannedRun {
     /// That of a config. Series have these grains; `outputs` is what is written of the run besides its result, and
     /// `bases` what has been read, by name.
-    ///
-    /// # Errors
-    /// Where the config is not sound, or has fewer grains.
     fn new(
         config: &Config,
         grains_asked_for: &[usize],
@@ -326,9 +323,6 @@ const MOST_VALUES: i64 = 1_000_000;
 ///
 /// A list is `[0, 20, 50]`. A range is `{ from = 1, to = 16 }`, whole numbers one by one, or
 /// `{ from = 1e-4, to = 1e-2, count = 20 }`, evenly spaced, with `scale = "log"` in ratio.
-///
-/// # Errors
-/// Where it is neither, holds no value, or holds one twice.
 fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
     let values = match said {
         Value::Array(list) => list.clone(),

@@ -9,24 +9,15 @@ use crate::sim::{Observables, RunEnding, Simulation, Snapshot, Tally};
 /// What takes down a run while it goes on.
 pub trait Recorder {
     /// Called after every step. Breaking ends the run.
-    ///
-    /// # Errors
-    /// Where it cannot be taken down; the run ends.
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>>;
 
     /// Called at the start, and after every step, before its pictures, with the whole state and the sums so
     /// far.
-    ///
-    /// # Errors
-    /// Where it cannot be taken down; the run ends.
     fn state(&mut self, _simulation: &Simulation, _tally: &Tally) -> Result<()> {
         Ok(())
     }
 
     /// Called at each time that was asked for, with its number and the state at the nearest step.
-    ///
-    /// # Errors
-    /// Where it cannot be taken down; the run ends.
     fn picture(&mut self, number: usize, snapshot: Snapshot) -> Result<()>;
 }
 

@@ -35,7 +35,6 @@ pub fn mean(values: &[f64]) -> Mean {
     Mean { mean, low: mean - half, high: mean + half, standard_error, count }
 }
 
-/// Student's distribution for the mean of `count` values.
 fn student(count: usize) -> Option<StudentsT> {
     if count < 2 { None } else { StudentsT::new(0.0, 1.0, (count - 1) as f64).ok() }
 }
@@ -139,7 +138,6 @@ fn determinant(m: &[[f64; 3]; 3]) -> f64 {
         + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
 }
 
-/// A p-value as it is written.
 pub(super) fn p_value(p: f64) -> String {
     if p < 1e-4 { "p < 0.0001".into() } else { format!("p = {p:.4}") }
 }

@@ -107,18 +107,17 @@ struct FromRandomStarts<'a>(&'a SolverSettings, u64);
 impl ProblemVisitor for FromRandomStarts<'_> {
     type Output = Vec<f64>;
 
-    fn visit<M: Model>(self, problem: &mut Problem<M>, _: &ContactList) -> Vec<f64> {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Vec<f64> {
         let mut random = random(self.1);
-        let mut root_masses = Vec::new();
-        let mut system = BodySystem::<M>::new(problem, &mut root_masses);
+        let mut system = BodySystem::<M>::new(problem);
         let mut impulse = || random.random_range(-1.0..1.0) * 0.05;
         let impulses: Vec<_> = (0..system.len())
             .map(|contact| [0, 1].map(|_| impulse() * system.root_mass(contact)))
             .collect();
         system.write(&impulses);
-        let report = solve::<M>(problem, &mut Memory::default(), self.0);
+        let report = solve(problem, &mut Memory::default(), self.0);
         assert!(report.converged, "{report:?}");
-        problem.bodies.now.iter().flat_map(M::Kinematics::coordinates).collect()
+        problem.bodies.now.iter().flat_map(M::coordinates).collect()
     }
 }
 

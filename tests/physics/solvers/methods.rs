@@ -96,9 +96,9 @@ struct Solve(SolverSettings);
 impl ProblemVisitor for Solve {
     type Output = (SolveReport, f64);
 
-    fn visit<M: Model>(self, problem: &mut Problem<M>, _: &ContactList) -> Self::Output {
-        let report = solve::<M>(problem, &mut Memory::default(), &self.0);
-        (report, residual::<M>(problem))
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Self::Output {
+        let report = solve(problem, &mut Memory::default(), &self.0);
+        (report, residual(problem))
     }
 }
 
@@ -108,9 +108,9 @@ pub struct SolveTwice(pub SolverSettings, pub SolverSettings);
 impl ProblemVisitor for SolveTwice {
     type Output = [SolveReport; 2];
 
-    fn visit<M: Model>(self, problem: &mut Problem<M>, _: &ContactList) -> Self::Output {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Self::Output {
         let mut memory = Memory::default();
-        [self.0, self.1].map(|settings| solve::<M>(problem, &mut memory, &settings))
+        [self.0, self.1].map(|settings| solve(problem, &mut memory, &settings))
     }
 }
 

@@ -254,7 +254,7 @@ fn contact_cells(moment: &Moment, contact: &ContactState) -> Row {
         ("gap", contact.gap.into()),
         ("normal_force", contact.normal_force.into()),
         ("tangential_force", contact.tangential_force.into()),
-        ("status", word(contact.status.word())),
+        ("status", word(contact.status.name())),
         ("bond", bond),
         ("stretch", optional(contact.bond_stretch)),
         ("age", Cell::Whole(contact.age_steps)),

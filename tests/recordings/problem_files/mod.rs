@@ -72,15 +72,15 @@ struct Swept(u32);
 impl ProblemVisitor for Swept {
     type Output = (f64, Vec<[f64; 2]>);
 
-    fn visit<M: Model>(self, problem: &mut Problem<M>, _: &ContactList) -> Self::Output {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Self::Output {
         if self.0 > 0 {
             let never = SolverSettings { max_sweeps: self.0, ..settings(Method::Nsgs, 1e-300) };
-            solve::<M>(problem, &mut Memory::default(), &never);
+            solve(problem, &mut Memory::default(), &never);
         }
         let impulses = problem.rows().map(|(number, row)| {
             problem.reduced_impulse(number, row).map(|p| row.effective_mass * p)
         });
-        (residual::<M>(problem), impulses.collect())
+        (residual(problem), impulses.collect())
     }
 }
 

@@ -29,8 +29,8 @@ const WAY_IN_RADII: f64 = 0.25;
 pub(super) struct Losses {
     /// Where each grain's way begins that has not been looked at, m.
     from: Vec<DVec2>,
-    lost: Vec<bool>,
-    count: u32,
+    pub lost: Vec<bool>,
+    pub count: u32,
     /// y_i(0), m.
     initial_heights: Vec<f64>,
     world: Edges,
@@ -70,16 +70,6 @@ impl Losses {
                 false => features.iter().map(frame).collect(),
             },
         }
-    }
-
-    /// Number of grains lost so far.
-    pub(super) fn count(&self) -> u32 {
-        self.count
-    }
-
-    /// Whether that grain is lost.
-    pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.lost[grain]
     }
 
     /// Looks where the grains have gone. Walls may have moved: `features` are where they are now.
@@ -142,14 +132,12 @@ impl Losses {
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
-    /// Forgets a grain, which is taken out of the world.
     pub(super) fn remove(&mut self, grain: usize) {
         self.from.remove(grain);
         self.initial_heights.remove(grain);
         self.count -= u32::from(self.lost.remove(grain));
     }
 
-    /// Watches over one grain more, the last.
     pub(super) fn add(&mut self, position: DVec2) {
         self.from.push(position);
         self.initial_heights.push(position.y);

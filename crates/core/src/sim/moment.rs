@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::contact::law::cohesion_force;
-use crate::contact::{Contact, Impulse, Numbering, Other};
+use crate::contact::{Contact, Numbering, Other};
+use crate::setting::words;
 use crate::sim::observables::Observables;
 use crate::sim::settings::Settings;
 use crate::sim::simulation::Simulation;
@@ -97,25 +98,15 @@ pub enum OtherBody {
     Boundary(u32),
 }
 
-/// What a contact does under Signorini's and Coulomb's laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ContactStatus {
-    /// It pulls as hard as its cohesion lets it, without cohesion not at all, and opens.
-    Open,
-    /// Friction is below its bound.
-    Stick,
-    /// Friction is at its bound, which is 0 where there is none.
-    Slip,
-}
-
-impl ContactStatus {
-    /// The word that files have for it.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Open => "open",
-            Self::Stick => "stick",
-            Self::Slip => "slip",
-        }
+words! {
+    /// What a contact does under Signorini's and Coulomb's laws.
+    pub enum ContactStatus {
+        /// It pulls as hard as its cohesion lets it, without cohesion not at all, and opens.
+        Open = "open", "pulls as hard as it can, and opens";
+        /// Friction is below its bound.
+        Stick = "stick", "friction is below its bound";
+        /// Friction is at its bound, which is 0 where there is none.
+        Slip = "slip", "friction is at its bound";
     }
 }
 
@@ -131,6 +122,7 @@ impl Simulation {
     pub fn moment(&self) -> Moment {
         let State { world, candidates, contacts, .. } = &self.state;
         let laws = Laws::of(self);
+        let per_time_step = 1.0 / self.state.time_step_of_impulses_secs;
         let numbering = Numbering::of(world);
         let ages = contacts.ages();
         let rows = contacts.contacts().iter().zip(contacts.impulses()).zip(contacts.bonds());
@@ -138,7 +130,8 @@ impl Simulation {
         let states = rows.zip(ages).enumerate().filter(in_touch);
         let states = states.map(|(_, (((contact, impulse), bond), age_steps))| {
             let other = numbering.other(contact.other);
-            let (normal_force, tangential_force) = laws.forces(impulse);
+            let normal_force = impulse.normal * per_time_step;
+            let tangential_force = impulse.tangential * per_time_step;
             let alive = laws.has_bonds && bond.alive;
             let status = laws.status(contact, other, alive, [normal_force, tangential_force]);
             let grain = contact.grain as usize;
@@ -204,12 +197,11 @@ struct Laws<'a> {
     has_cohesion: bool,
     has_bonds: bool,
     friction: f64,
-    per_time_step: f64,
 }
 
 impl<'a> Laws<'a> {
     fn of(simulation: &'a Simulation) -> Self {
-        let State { world, physics, time_step_of_impulses_secs, .. } = &simulation.state;
+        let State { world, physics, .. } = &simulation.state;
         let settings = simulation.settings();
         let parameters = &settings.parameters;
         Self {
@@ -218,12 +210,7 @@ impl<'a> Laws<'a> {
             has_cohesion: physics.cohesion,
             has_bonds: settings.stepper == Stepper::Range,
             friction: if physics.friction { parameters.friction } else { 0.0 },
-            per_time_step: 1.0 / time_step_of_impulses_secs,
         }
-    }
-
-    fn forces(&self, impulse: &Impulse) -> (f64, f64) {
-        (impulse.normal * self.per_time_step, impulse.tangential * self.per_time_step)
     }
 
     /// Of a contact with the forces N and T.

@@ -6,7 +6,7 @@ use crate::contact::{Numbering, Other};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Kinematics, Measures, Model, SolveReport};
+use crate::solver::{Measures, Model, SolveReport};
 use crate::world::{Drive, Motion, Periodic};
 
 /// Measured after each step. One row of the observables' CSV.
@@ -138,8 +138,7 @@ pub(super) fn after_step<M: Model>(
     initial_heights: f64,
 ) -> Observables {
     let moving = stage.problem.bodies.now.iter().zip(&stage.state.world.grains.masses);
-    let kinetic_energy =
-        moving.map(|(body, &mass)| M::Kinematics::kinetic_energy(body, mass)).sum();
+    let kinetic_energy = moving.map(|(body, &mass)| M::kinetic_energy(body, mass)).sum();
     Observables {
         step: before.step + 1,
         time_secs: before.time_secs + time_step_secs,
@@ -158,8 +157,8 @@ pub(super) fn at_start<M: Model>(
     initial_heights: f64,
 ) -> Observables {
     let energy = |index: usize| {
-        let body = M::Kinematics::body(&state.world, index);
-        M::Kinematics::kinetic_energy(&body, state.world.grains.masses[index])
+        let body = M::body(&state.world, index);
+        M::kinetic_energy(&body, state.world.grains.masses[index])
     };
     let bonds = settings.stepper.has_bonds().then(BondEnergies::default);
     let none_yet = settings.may_solve_models().then_some(0.0);
@@ -225,11 +224,7 @@ fn of_state<M: Model>(
         border_work: is_sheared.then_some(border_work),
         gravity_work,
         // On a line nothing can slump, and about a mean height of 0 a relative drop says nothing.
-        slump: if M::Kinematics::AXES == 1 || initial_heights == 0.0 {
-            0.0
-        } else {
-            dropped / initial_heights
-        },
+        slump: if M::AXES == 1 || initial_heights == 0.0 { 0.0 } else { dropped / initial_heights },
         bond_work: bonds.map(|bonds| bonds.work),
         bond_energy: bonds.map(|bonds| bonds.stored),
         broken_bond_energy: bonds.map(|bonds| bonds.broken),

@@ -143,7 +143,7 @@ impl Settings {
     /// # Errors
     /// Names the first setting that is outside its range or that the stepper does not take.
     pub fn validate(&self) -> Result<()> {
-        self.parameters.validate()?;
+        self.parameters.validate_each()?;
         (self.stepper.info().check)(&self.parameters)?;
         self.solver.validate()?;
         self.check_friction_model()?;

@@ -84,7 +84,6 @@ impl Walls {
         }
     }
 
-    /// Notes which bodies move.
     fn find_bodies(&mut self, world: &World, candidates: &Candidates) {
         let Self { moving, of_boundary, of_disc, of_feature, shapes } = self;
         of_boundary.clear();
@@ -113,7 +112,6 @@ impl Walls {
         }
     }
 
-    /// Whether any wall moves.
     pub(crate) fn any_move(&self) -> bool {
         !self.moving.is_empty()
     }

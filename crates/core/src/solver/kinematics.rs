@@ -24,20 +24,26 @@ use std::fmt::Debug;
 
 use glam::DVec2;
 
+use super::model::{Slot, Slots};
 use crate::contact::{Contact, Lanes};
 use crate::world::World;
 
-/// The ways in which the bodies of a scene can move.
-pub trait Kinematics: Copy + Debug + Default + Send + Sync + 'static {
+/// What a step computes: how bodies move, and whether contacts rub. Everything here is known when the step is
+/// compiled, so a leaner model has no branch for what it leaves out.
+///
+/// Cohesion and the cone of friction are not among it: in shifted impulses they are numbers (`contact::law`).
+pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// A body as the sweep sees it; with several lanes, a body a lane.
     type Body<T: Lanes>: Copy + Send + Sync + Debug + 'static;
     /// A contact's normal as the sweep sees it.
     type Normal<T: Lanes>: Copy + Send + Sync + Debug + 'static;
     /// Number of axes.
     const AXES: usize;
-    /// Whether grains turn.
+    /// True where contacts carry tangential impulses.
+    const FRICTION: bool;
+    /// True where grains turn.
     const ROTATION: bool;
-    /// Whether images of grains slide beside the grains themselves.
+    /// True where images of grains slide beside the grains themselves.
     const SLIDES: bool = false;
     /// m_n / m_t, the same for every contact of solid discs.
     const TANGENTIAL_COMPLIANCE: f64;
@@ -47,6 +53,8 @@ pub trait Kinematics: Copy + Debug + Default + Send + Sync + 'static {
     /// Inertia of each degree of freedom over the body's mass: with s = rω, ½Iω² = ½(m/2)s².
     const INERTIA_OVER_MASS: [f64; 3];
 
+    /// The slot of its problems.
+    fn slot(slots: &mut Slots) -> &mut Slot<Self>;
     /// Packs grain `index` of a world.
     fn body(world: &World, index: usize) -> Self::Body<f64>;
     /// Writes a body's velocity back to grain `index`.
@@ -139,18 +147,23 @@ pub struct LineBody<T = f64> {
     pub velocity: T,
 }
 
-/// One axis: no tangent, no rotation.
+/// One axis: neither friction nor rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Line;
 
-impl Kinematics for Line {
+impl Model for Line {
     type Body<T: Lanes> = LineBody<T>;
     type Normal<T: Lanes> = T;
     const AXES: usize = 1;
+    const FRICTION: bool = false;
     const ROTATION: bool = false;
     const TANGENTIAL_COMPLIANCE: f64 = 1.0;
     const DEGREES: usize = 1;
     const INERTIA_OVER_MASS: [f64; 3] = [1.0, 0.0, 0.0];
+
+    fn slot(slots: &mut Slots) -> &mut Slot<Self> {
+        &mut slots.line
+    }
 
     #[inline(always)]
     fn coordinates<T: Lanes>(body: &LineBody<T>) -> [T; 3] {
@@ -243,15 +256,19 @@ pub struct PlaneBody<T = f64> {
     pub spin: T,
 }
 
-/// Two axes, no rotation.
+/// Two axes, neither friction nor rotation.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SmoothPlane;
+
+/// Two axes and friction, no rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plane;
 
-/// Two axes and rotation.
+/// Two axes, friction and rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SpinningPlane;
 
-/// Two axes and rotation, and images that slide.
+/// The same, and images that slide. Its friction may be 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShearedPlane;
 
@@ -310,17 +327,22 @@ impl<T: Lanes> NormalInPlane<T> for SlidingNormal<T> {
 }
 
 /// What all kinds of motion in the plane share. `own` is what one of them has of its own.
-macro_rules! plane_kinematics {
-    ($name:ident, $normal:ty, rotation: $rotation:literal, own: { $($own:item)* }) => {
-        impl Kinematics for $name {
+macro_rules! plane_model {
+    ($name:ident, $slot:ident, $normal:ty, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
+        impl Model for $name {
             type Body<T: Lanes> = PlaneBody<T>;
             type Normal<T: Lanes> = $normal;
             $($own)*
             const AXES: usize = 2;
+            const FRICTION: bool = $friction;
             const ROTATION: bool = $rotation;
             const TANGENTIAL_COMPLIANCE: f64 = if $rotation { 3.0 } else { 1.0 };
             const DEGREES: usize = if $rotation { 3 } else { 2 };
             const INERTIA_OVER_MASS: [f64; 3] = [1.0, 1.0, 0.5];
+
+            fn slot(slots: &mut Slots) -> &mut Slot<Self> {
+                &mut slots.$slot
+            }
 
             #[inline(always)]
             fn coordinates<T: Lanes>(body: &PlaneBody<T>) -> [T; 3] {
@@ -465,9 +487,10 @@ macro_rules! plane_kinematics {
     };
 }
 
-plane_kinematics!(Plane, [T; 2], rotation: false, own: {});
-plane_kinematics!(SpinningPlane, [T; 2], rotation: true, own: {});
-plane_kinematics!(ShearedPlane, SlidingNormal<T>, rotation: true, own: {
+plane_model!(SmoothPlane, smooth_plane, [T; 2], friction: false, rotation: false, own: {});
+plane_model!(Plane, plane, [T; 2], friction: true, rotation: false, own: {});
+plane_model!(SpinningPlane, spinning_plane, [T; 2], friction: true, rotation: true, own: {});
+plane_model!(ShearedPlane, sheared_plane, SlidingNormal<T>, friction: true, rotation: true, own: {
     const SLIDES: bool = true;
 
     #[inline(always)]

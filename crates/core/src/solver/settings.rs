@@ -80,11 +80,7 @@ settings! {
             name: "solver",
             value_name: "NAME",
             help: "Method that solves each step",
-            control: Some(Control {
-                label: "Method",
-                hint: "How the impulses of a step are found.",
-                ..Control::PLAIN
-            }),
+            control: shown("Method", "How the impulses of a step are found."),
         }
         /// The order of a sweep.
         #[serde(default, skip_serializing_if = "is_default")]
@@ -92,11 +88,7 @@ settings! {
             name: "ordering",
             value_name: "ORDER",
             help: "In which order a sweep visits the contacts",
-            control: Some(Control {
-                label: "Order",
-                hint: "In which order a sweep visits contacts.",
-                ..Control::PLAIN
-            }),
+            control: shown("Order", "In which order a sweep visits contacts."),
         }
         /// What `tolerance` refers to.
         #[serde(default)]
@@ -104,11 +96,7 @@ settings! {
             name: "stop",
             value_name: "TEST",
             help: "What the tolerance refers to",
-            control: Some(Control {
-                label: "Stops on",
-                hint: "What the tolerance refers to.",
-                ..Control::PLAIN
-            }),
+            control: shown("Stops on", "What the tolerance refers to."),
         }
         /// In the unit of `stop`.
         tolerance: f64 = 1e-6, {
@@ -129,7 +117,6 @@ settings! {
         /// converged.
         max_sweeps: u32 = 5_000, {
             name: "max-sweeps",
-            value_name: "N",
             help: "A step that needs more sweeps is reported as not converged",
             allowed: "at least 1",
             holds: |value| value > 0,
@@ -144,13 +131,8 @@ settings! {
         /// Start from the impulses of the step before.
         warm_start: bool = true, {
             name: "warm-start",
-            value_name: "BOOL",
             help: "Whether each step starts from the impulses of the one before",
-            control: Some(Control {
-                label: "Warm start",
-                hint: "Each step starts from the impulses of the one before.",
-                ..Control::PLAIN
-            }),
+            control: shown("Warm start", "Each step starts from the impulses of the one before."),
         }
         /// What is asked of friction.
         #[serde(default, skip_serializing_if = "is_default")]
@@ -160,17 +142,15 @@ settings! {
             help: "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
                    `slump list` says what each gets wrong",
             needs: Needs::Friction,
-            control: Some(Control {
-                label: "Friction",
-                hint: "What a step asks of friction: Coulomb's law, or a convex problem in its place.",
-                ..Control::PLAIN
-            }),
+            control: shown(
+                "Friction",
+                "What a step asks of friction: Coulomb's law, or a convex problem in its place.",
+            ),
         }
         /// How often a step is solved under a model of friction, what the model holds taken anew each time.
         #[serde(default = "one", skip_serializing_if = "is_one")]
         model_solves: u32 = 1, {
             name: "model-solves",
-            value_name: "N",
             help: "How often each step is solved under tresca or desaxce, what they hold taken anew each \
                    time: 1 is the cheapest, more come nearer to Coulomb's law",
             allowed: "between 1 and 1000",
@@ -191,17 +171,12 @@ settings! {
             value_name: "MODEL",
             help: "What becomes of a step that is not solved under Coulomb's law",
             needs: Needs::Friction,
-            control: Some(Control {
-                label: "Falls back on",
-                hint: "What becomes of a step that is not solved under Coulomb's law.",
-                ..Control::PLAIN
-            }),
+            control: shown("Falls back on", "What becomes of a step that is not solved under Coulomb's law."),
         }
         /// Solve grains that no contact joins to each other by themselves.
         #[serde(default, skip_serializing_if = "is_default")]
         islands: bool = false, {
             name: "islands",
-            value_name: "BOOL",
             help: "Whether grains that no contact joins to the others are solved by themselves, and fall back \
                    by themselves: pays where a scene has several heaps",
         }

@@ -131,7 +131,6 @@ impl Boundary {
         }
     }
 
-    /// Moves it.
     pub(crate) fn carry(&mut self, carry: &Carry) {
         let move_all = |points: &mut [DVec2]| {
             points.iter_mut().for_each(|point| *point = carry.place(*point));

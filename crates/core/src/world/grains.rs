@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 
 /// One disc as a scene describes it. Plain data, checked with the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,12 +100,9 @@ impl Grains {
         self.tones.push(grain.tone);
     }
 
-    /// Checks that there are discs, and that each list says something of each.
     pub(crate) fn validate(&self) -> Result<()> {
         let count = self.len();
-        if count == 0 {
-            return Err(Error::value("grains", 0, "at least one disc"));
-        }
+        error::check(count != 0, "grains", 0, "at least one disc")?;
         let lengths = [
             ("velocities", self.velocities.len()),
             ("angles", self.angles.len()),

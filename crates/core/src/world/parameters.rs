@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::number::is_zero;
-use crate::setting::{Group, settings, words};
+use crate::setting::{settings, words};
 
 words! {
     /// Which part of the normal force bounds friction (the paper leaves both readings open).
@@ -194,7 +194,6 @@ settings! {
         #[serde(default, skip_serializing_if = "is_zero")]
         substeps: u32 = 0, {
             name: "substeps",
-            value_name: "N",
             help: "Substeps of a step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable",
             allowed: "at most 100000; 0 leaves it to the stepper",
             holds: |value| value <= MAX_SUBSTEPS,
@@ -214,11 +213,6 @@ fn default_debonding_distance() -> f64 {
 }
 
 impl Parameters {
-    /// Checks every number against its range.
-    pub(crate) fn validate(&self) -> Result<()> {
-        self.validate_each()
-    }
-
     /// The same numbers with another Δt, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { time_step_secs, ..self }

@@ -52,7 +52,7 @@ pub fn reproduce(
         for study in info.studies {
             studies.run(study)?;
         }
-        let mut figure = (info.make)(&studies)?;
+        let mut figure = info.figure(&studies)?;
         studies.qualify(info.studies, &mut figure.claims);
         figure.sheet.caption.extend(studies.note(info.studies));
         let quick = if quick { " --quick" } else { "" };
@@ -74,7 +74,6 @@ pub fn reproduce(
     Ok(())
 }
 
-/// `report.md`.
 struct Report {
     text: String,
 }

@@ -1,15 +1,13 @@
-//! Speed charted against accuracy: of single steps, by their size as well, of whole simulations, and what a scene
-//! saves by computing no more than it needs. Every method of the registry is on every chart.
+//! Speed charted against accuracy: of single steps, small and large, and of whole simulations. Every method of
+//! the registry is on every chart.
 //!
 //! The folder of a chart holds pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and
 //! `measured/`: journals of what was measured, by program and processor, so that the same command
 //! goes on where it was stopped and never mixes times of different programs.
 
 mod collection;
-mod models;
 mod performance;
 mod simulations;
-mod sizes;
 mod solves;
 mod steps;
 mod variants;
@@ -30,13 +28,11 @@ use crate::runner::Runner;
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ChartPart {
-    /// Residual against the time of a step, and performance profiles
+    /// Residual against the time of a step
     Step,
     /// Error of the slump against simulated seconds per second
     Simulation,
-    /// What a scene's model costs
-    Model,
-    /// A step of 500 to 10,000 grains, to residuals and to a certificate
+    /// The same of steps of 500 to 10,000 grains, with certificates under `tresca`
     Size,
 }
 
@@ -47,26 +43,13 @@ pub struct ChartOptions {
     pub out: PathBuf,
     /// Coarser, in a few minutes.
     pub quick: bool,
-    /// Also steps of up to 10,000 grains, and simulations of 2,000.
+    /// Also steps of up to 10,000 grains.
     pub large: bool,
     /// The parts; all where there is none.
     pub only: Vec<ChartPart>,
 }
 
-impl ChartOptions {
-    /// The command that charts this, with a folder of one's own.
-    fn command(&self) -> String {
-        let only = self.only.iter().filter_map(clap::ValueEnum::to_possible_value);
-        let only: String = only.map(|part| format!(" --only {}", part.get_name())).collect();
-        let switch = |on: bool, word: &str| if on { format!(" --{word}") } else { String::new() };
-        let switches = switch(self.quick, "quick") + &switch(self.large, "large");
-        format!("slump chart{only}{switches} --out chart")
-    }
-}
-
-/// A finished chart with what is said of it.
 struct ChartSection {
-    /// Name of its files.
     name: String,
     sheet: Sheet,
     /// Markdown; may be empty.
@@ -75,7 +58,6 @@ struct ChartSection {
     tables: Vec<(String, String)>,
 }
 
-/// Where charts are made.
 struct Bench<'a> {
     options: &'a ChartOptions,
     machine: Machine,
@@ -86,7 +68,6 @@ impl Bench<'_> {
         self.options.out.join("states")
     }
 
-    /// A runner of the measurements of this program on this machine.
     fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         name: &str,
@@ -106,7 +87,7 @@ impl Bench<'_> {
     fn write(&self, section: &ChartSection) -> Result<String> {
         let ChartSection { name, sheet, report, tables } = section;
         let folder = &self.options.out;
-        write_sheet(folder, name, sheet, &self.options.command())?;
+        write_sheet(folder, name, sheet, &self.machine.command)?;
         for (table, text) in tables {
             write_file(&folder.join(format!("{table}.csv")), text.as_bytes())?;
         }
@@ -124,15 +105,14 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     let is_wanted = |part| match part {
         _ if !options.only.is_empty() => options.only.contains(&part),
         ChartPart::Size => options.large,
-        ChartPart::Step | ChartPart::Simulation | ChartPart::Model => true,
+        ChartPart::Step | ChartPart::Simulation => true,
     };
     let mut report = format!("# Speed against accuracy\n\n{}\n", bench.machine.words());
     type Make = fn(&Bench) -> Result<Vec<ChartSection>>;
-    let makers: [(ChartPart, &str, Make); 4] = [
+    let makers: [(ChartPart, &str, Make); 3] = [
         (ChartPart::Step, "Single steps", steps::make),
         (ChartPart::Simulation, "Whole simulations", simulations::make),
-        (ChartPart::Model, "What a scene's model costs", models::make),
-        (ChartPart::Size, "Steps by size", sizes::make),
+        (ChartPart::Size, "Steps by size", steps::make_sizes),
     ];
     for (_, title, make) in makers.into_iter().filter(|(part, ..)| is_wanted(*part)) {
         let begun = Instant::now();
@@ -154,7 +134,6 @@ fn csv_cell(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| format!("{value:e}"))
 }
 
-/// Values in words, with commas between them.
 fn listed<T>(values: impl IntoIterator<Item = T>, word: impl Fn(T) -> String) -> String {
     values.into_iter().map(word).collect::<Vec<_>>().join(", ")
 }

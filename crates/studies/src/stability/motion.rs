@@ -198,7 +198,6 @@ const BEFORE: u64 = 50;
 const AFTER: u64 = 30;
 /// Time step before it is switched, s.
 const SMALL_STEP_SECS: f64 = 2e-4;
-/// Rows of the heaps.
 const ROWS: usize = 4;
 /// Half the side of the box around the heap, in d.
 const BOX: f64 = 12.0;

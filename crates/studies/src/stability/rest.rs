@@ -34,7 +34,7 @@ pub(super) fn column(trial: &Trial) -> Result<f64> {
 }
 
 /// A column whose steps get `sweeps` sweeps each (or substeps), from nothing.
-pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
+fn sagging(count: usize, sweeps: u32) -> Scene {
     let mut scene = scenes::column(count);
     scene.solver.max_sweeps = sweeps;
     scene.parameters.substeps = sweeps;
@@ -70,7 +70,7 @@ fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
 }
 
 /// How far the last grain has moved since `scene`, in d.
-pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
+fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
     let last = scene.grains.len() - 1;
     let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
     before.distance(now) / scene.mean_diameter
@@ -142,7 +142,6 @@ pub(super) fn repose_angle(trial: &Trial) -> Result<f64> {
     Ok((steepest / right - 1.0).abs())
 }
 
-/// Whether any grain of a scene goes far.
 fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
     Ok(way_in(trial, SLIDING_SECS, scene)? >= SLID)
 }
@@ -197,7 +196,6 @@ const SURE: f64 = 1.5;
 const CHAIN_HALVINGS: u32 = 9;
 /// Time that bridge and cantilever are watched, s: torn, they fall 30 d in it.
 const WATCH_SECS: f64 = 0.25;
-/// Grains of a row.
 const CANTILEVER: i32 = 4;
 const BRIDGE: i32 = 10;
 /// Time step of the shock, s: the paper's bond opens at it, for want of convergence.

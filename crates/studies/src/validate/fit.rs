@@ -7,7 +7,6 @@ use crate::statistics::{mean, slope};
 pub(super) struct DampedWave {
     /// θ, rad.
     pub angle: f64,
-    /// r.
     pub shrinkage: f64,
 }
 

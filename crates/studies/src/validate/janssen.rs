@@ -11,10 +11,7 @@
 
 use glam::DVec2;
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, seeded,
-};
+use super::experiment::*;
 use super::variants::StepVariant;
 use super::watched::{WatchedRun, at_rest, centre_of_mass, loose, open_box, settled};
 use crate::error::Result;

@@ -121,7 +121,6 @@ const SPREAD: f64 = 0.2;
 /// Radius of the largest disc, m.
 const LARGEST_RADIUS: f64 = 0.5 * DIAMETER * (1.0 + SPREAD);
 
-/// The radius of the next disc, m.
 fn random_radius(random: &mut Pcg64) -> f64 {
     0.5 * DIAMETER * random.random_range(1.0 - SPREAD..=1.0 + SPREAD)
 }
@@ -158,7 +157,6 @@ pub struct Settled {
 }
 
 impl Settled {
-    /// The grains of a simulation that has come to rest.
     fn of(mut simulation: Simulation) -> Self {
         let kinetic_energy = kinetic_energy(&simulation);
         let &Observables { mean_overlap, max_overlap, .. } = simulation.observables();
@@ -171,12 +169,10 @@ impl Settled {
     }
 }
 
-/// That `progress` ended it.
 fn interrupted() -> Error {
     Error::value("generation", "interrupted", "left to end")
 }
 
-/// That it takes too long.
 fn not_at_rest(speed_over_rest: f64, limit_secs: f64) -> Error {
     let allowed = format!("below 1 within {limit_secs:.1} s of simulated time");
     Error::value("speed over rest", speed_over_rest, allowed)

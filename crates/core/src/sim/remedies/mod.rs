@@ -52,13 +52,11 @@ settings! {
         /// Push overlap out by moving grains apart after the step, without giving them speed.
         push_out: bool = false, {
             name: "push-out",
-            value_name: "BOOL",
             help: "Push overlap out by moving grains apart after each step, without giving them speed",
-            control: Some(Control {
-                label: "Push overlap out",
-                hint: "Grains that overlap are moved apart after each step, without speed.",
-                ..Control::PLAIN
-            }),
+            control: shown(
+                "Push overlap out",
+                "Grains that overlap are moved apart after each step, without speed.",
+            ),
         }
         /// Cut a step into pieces in which no grain moves further than this, in d; 0 never does.
         max_travel: f64 = 0.0, {
@@ -73,41 +71,35 @@ settings! {
         /// contacts for what contradicts itself, and then a step has no solution with them.
         calm_unsolved: bool = false, {
             name: "calm-unsolved",
-            value_name: "BOOL",
             help: "Solve a step that did not converge once more without bounces, which may contradict \
                    each other",
-            control: Some(Control {
-                label: "Calm unsolved steps",
-                hint: "A step that did not converge is solved once more without bounces, which may \
-                       contradict each other.",
-                ..Control::PLAIN
-            }),
+            control: shown(
+                "Calm unsolved steps",
+                "A step that did not converge is solved once more without bounces, which may \
+                 contradict each other.",
+            ),
         }
         /// Have shocks run through touching grains one after the other, in scenes without cohesion.
         sequential_impacts: bool = false, {
             name: "sequential-impacts",
-            value_name: "BOOL",
             help: "Have shocks run through touching grains one after the other, as in Newton's cradle; \
                    not with cohesion",
-            control: Some(Control {
-                label: "Shocks in sequence",
-                hint: "Shocks run through touching grains one after the other, as in Newton's cradle; \
-                       not where Bond is above 0.",
-                ..Control::PLAIN
-            }),
+            control: shown(
+                "Shocks in sequence",
+                "Shocks run through touching grains one after the other, as in Newton's cradle; \
+                 not where Bond is above 0.",
+            ),
         }
         /// Let pairs with a gap that would close within the step close that gap and no more.
         speculative: bool = false, {
             name: "speculative",
-            value_name: "BOOL",
             help: "Let pairs that would close their gap within a step close it and no more, so that \
                    nothing tunnels; it costs bounces",
-            control: Some(Control {
-                label: "Look ahead",
-                hint: "Pairs that would meet within a step close their gap and no more: nothing \
-                       tunnels, but they hardly bounce.",
-                ..Control::PLAIN
-            }),
+            control: shown(
+                "Look ahead",
+                "Pairs that would meet within a step close their gap and no more: nothing \
+                 tunnels, but they hardly bounce.",
+            ),
         }
     }
 }
@@ -189,8 +181,6 @@ const ROBUST_TRAVEL: f64 = 0.25;
 const MOST_PIECES: f64 = 1000.0;
 
 /// Pieces of the next step: 1 unless grains are too fast for it.
-///
-/// A step cut into pieces, so that no grain jumps over what it should hit.
 pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
     let world = &state.world;
     let longest = settings.remedies.max_travel * world.mean_diameter;
@@ -229,8 +219,6 @@ struct PushedContact {
 }
 
 /// Moves the grains after a step of that length, whose contacts are still those of its beginning.
-///
-/// Overlap pushed out by places alone.
 ///
 /// After a step the grains are moved by δ so that each contact's gap grows by a part of what it
 /// overlaps too much, and no contact is pushed into overlap by its neighbours. With w = 1/m_i + 1/m_j
@@ -292,8 +280,6 @@ pub(in crate::sim) fn push_out(state: &mut State, time_step_secs: f64) {
 const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 
 /// How far a step that has begun has to look: as far as two bodies of the fastest speed come.
-///
-/// Speculative contacts: pairs with a gap that a step would close.
 ///
 /// A contact that is looked for at the beginning of a step is missed where the pair meets later in it,
 /// and a fast disc is then inside a wall, or through it. So pairs with a gap that would close within

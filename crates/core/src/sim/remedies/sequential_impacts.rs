@@ -44,8 +44,8 @@ use crate::contact::ContactList;
 use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{
-    Bodies, FrictionModel, Kinematics, Memory, Method, Model, SolveReport, SolverSettings,
-    StepProblem, for_each_row, relative_velocities, solve as solve_problem,
+    Bodies, FrictionModel, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
+    for_each_row, relative_velocities, solve as solve_problem,
 };
 
 /// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
@@ -114,7 +114,7 @@ pub(in crate::sim) fn follow<M: Model>(
         impacts.take(problem, &mut pass);
     }
     if impacts.fastest_closing() > LEAST_IN_FASTEST * fastest {
-        report.add(impacts.stop_the_rest::<M>(problem, memory, &settings.solver));
+        report.add(impacts.stop_the_rest(problem, memory, &settings.solver));
     }
     impacts.set_rebounds(problem);
     Some(report)
@@ -122,7 +122,7 @@ pub(in crate::sim) fn follow<M: Model>(
 
 /// Whether the contacts of a solved step have done work on the grains, beyond rounding and beyond what
 /// the walls that move have put in: velocities are taken relative to those.
-fn gains_energy<K: Kinematics>(problem: &StepProblem<K>) -> bool {
+fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     let (mut gain, mut scale) = (0.0, 0.0);
     for_each_row(problem, |number, row, motion| {
         let [normal, tangential] =
@@ -136,7 +136,7 @@ fn gains_energy<K: Kinematics>(problem: &StepProblem<K>) -> bool {
 }
 
 /// Multiplies the speeds that contacts are asked to open with, relative to walls that move.
-fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
+fn scale_rebounds<M: Model>(problem: &mut StepProblem<M>, factor: f64) {
     for (row, wall_speed) in problem.rows_with_walls() {
         let rebound = row.restitution_velocity + wall_speed;
         if rebound < 0.0 {
@@ -146,9 +146,9 @@ fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
 }
 
 /// How far the shocks have gone.
-struct ImpactSequence<K: Kinematics> {
+struct ImpactSequence<M: Model> {
     /// Velocities by now.
-    bodies: Vec<K::Body<f64>>,
+    bodies: Vec<M::Body<f64>>,
     /// u of each row, m/s.
     speeds: Vec<f64>,
     /// P/m_ij of each row so far, m/s.
@@ -157,9 +157,8 @@ struct ImpactSequence<K: Kinematics> {
     touching: Vec<bool>,
 }
 
-impl<K: Kinematics> ImpactSequence<K> {
-    /// Nothing has happened yet.
-    fn new(problem: &StepProblem<K>, contacts: &ContactList) -> Self {
+impl<M: Model> ImpactSequence<M> {
+    fn new(problem: &StepProblem<M>, contacts: &ContactList) -> Self {
         let bodies = problem.bodies.before.clone();
         let mut speeds = Vec::new();
         relative_velocities(problem, &bodies, &mut speeds);
@@ -178,8 +177,8 @@ impl<K: Kinematics> ImpactSequence<K> {
     /// Sets `pass` up with the rows that close faster than `least` (m/s). Whether there are any.
     fn select(
         &self,
-        problem: &StepProblem<K>,
-        pass: &mut StepProblem<K>,
+        problem: &StepProblem<M>,
+        pass: &mut StepProblem<M>,
         restitution: f64,
         least: f64,
     ) -> bool {
@@ -202,7 +201,7 @@ impl<K: Kinematics> ImpactSequence<K> {
     }
 
     /// Takes over what a pass has led to.
-    fn take(&mut self, problem: &StepProblem<K>, pass: &mut StepProblem<K>) {
+    fn take(&mut self, problem: &StepProblem<M>, pass: &mut StepProblem<M>) {
         for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
         }
@@ -211,10 +210,10 @@ impl<K: Kinematics> ImpactSequence<K> {
     }
 
     /// Stops all contacts that still close, without friction, by the step's own method: there may be many of them.
-    fn stop_the_rest<M: Model<Kinematics = K>>(
+    fn stop_the_rest(
         &mut self,
-        problem: &StepProblem<K>,
-        memory: &mut Memory<K>,
+        problem: &StepProblem<M>,
+        memory: &mut Memory<M>,
         settings: &SolverSettings,
     ) -> SolveReport {
         let mut rest = problem.clone();
@@ -240,7 +239,7 @@ impl<K: Kinematics> ImpactSequence<K> {
 
     /// Asks each contact that was struck for the speed that it has come to. One that was not may not
     /// bounce. The step starts from the impulses of the impacts.
-    fn set_rebounds(&self, problem: &mut StepProblem<K>) {
+    fn set_rebounds(&self, problem: &mut StepProblem<M>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];
             // The law speaks of velocities relative to a wall that moves.

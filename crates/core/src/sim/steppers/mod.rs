@@ -49,9 +49,9 @@ pub struct StepperInfo {
     pub solves: &'static str,
     /// Where it comes from.
     pub source: &'static str,
-    /// The settings that it reads, by name. With `solver` among them it solves the step's problem by a
-    /// method.
-    pub settings: &'static [&'static str],
+    /// The settings that it reads, by name, with spaces between. With `solver` among them it solves the step's problem
+    /// by a method.
+    pub settings: &'static str,
     /// Observables that it has beside those that all have.
     pub observables: &'static [&'static str],
     /// Whether it moves walls that a force drives.
@@ -73,7 +73,7 @@ impl StepperInfo {
     pub(super) const WHOLE: Self = Self {
         solves: "",
         source: "",
-        settings: &[],
+        settings: "",
         observables: &[],
         takes_drives: false,
         check: |_| Ok(()),
@@ -98,7 +98,7 @@ impl Stepper {
 
     /// Whether it reads the setting of that name.
     pub fn reads(self, name: &str) -> bool {
-        self.info().settings.contains(&name)
+        self.info().settings.split(' ').any(|setting| setting == name)
     }
 
     /// Whether it solves the step's problem by one of the methods.
@@ -169,48 +169,26 @@ pub struct FractureWork {
     pub over_mgd: f64,
 }
 
-/// Two grains of the mean mass.
-pub(super) struct MeanPair {
-    /// m, kg.
-    mass: f64,
-    /// g, m/s².
-    gravity_magnitude: f64,
-    /// d, m.
-    diameter: f64,
+/// m_ij of two grains of the mean mass, kg.
+pub(super) fn effective_mass_of_mean(world: &World) -> f64 {
+    let masses = &world.grains.masses;
+    0.5 * (masses.iter().sum::<f64>() / masses.len() as f64)
 }
 
-impl MeanPair {
-    /// Of a world's grains.
-    pub(super) fn of(world: &World) -> Self {
-        let masses = &world.grains.masses;
-        Self {
-            mass: masses.iter().sum::<f64>() / masses.len() as f64,
-            gravity_magnitude: world.gravity.magnitude(),
-            diameter: world.mean_diameter,
-        }
+/// The work of fracture of a law under which a bond of some C₀ (N) takes `work` (J).
+pub(super) fn fracture_work_of(
+    world: &World,
+    physics: Physics,
+    parameters: &Parameters,
+    work: impl FnOnce(f64) -> f64,
+) -> Option<FractureWork> {
+    if !physics.cohesion {
+        return None;
     }
-
-    /// m_ij, kg.
-    pub(super) fn effective_mass(&self) -> f64 {
-        0.5 * self.mass
-    }
-
-    /// The work of a law under which a bond of some C₀ (N) takes `work` (J).
-    pub(super) fn fracture_work(
-        &self,
-        physics: Physics,
-        parameters: &Parameters,
-        work: impl FnOnce(f64) -> f64,
-    ) -> Option<FractureWork> {
-        if !physics.cohesion {
-            return None;
-        }
-        let Self { mass, gravity_magnitude, diameter } = *self;
-        let joules =
-            work(cohesion_force(parameters.bond, self.effective_mass(), gravity_magnitude));
-        let lift = mass * gravity_magnitude * diameter;
-        Some(FractureWork { joules, over_mgd: if lift > 0.0 { joules / lift } else { 0.0 } })
-    }
+    let (effective_mass, g) = (effective_mass_of_mean(world), world.gravity.magnitude());
+    let joules = work(cohesion_force(parameters.bond, effective_mass, g));
+    let lift = 2.0 * effective_mass * g * world.mean_diameter;
+    Some(FractureWork { joules, over_mgd: if lift > 0.0 { joules / lift } else { 0.0 } })
 }
 
 #[cfg(test)]
@@ -222,8 +200,8 @@ mod tests {
         let remedies = |name: &str| crate::sim::remedies::ROWS.iter().any(|row| row.name == name);
         let names: Vec<&str> = Settings::about().map(|about| about.name).collect();
         for stepper in Stepper::ALL {
-            for name in stepper.info().settings {
-                assert!(names.contains(name), "{stepper} reads {name}");
+            for name in stepper.info().settings.split(' ') {
+                assert!(names.contains(&name), "{stepper} reads {name}");
             }
         }
         for name in names {

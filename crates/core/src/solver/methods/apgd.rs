@@ -21,30 +21,16 @@
 //!   place of the projected step takes two to three times as many iterations.
 //! * w is affine, so w(y) is formed from the w(x) at hand: one product with A an iteration.
 
-use super::contact_system::{
-    BestIterate, ContactSystem, ScaledVector, SystemMemory, WorkVectors, projected,
-};
+use super::contact_system::{BestIterate, ContactSystem, ScaledVector, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};
-use crate::solver::model::Model;
-use crate::solver::problem::StepProblem;
 use crate::solver::settings::SolverSettings;
 
 /// L after a step that was too long, over the curvature that it met: a little more than needed, or
 /// the next step meets as much again.
 const MARGIN: f64 = 1.05;
 
-/// Solves a prepared problem.
-pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
-    memory: &mut SystemMemory,
-    settings: &SolverSettings,
-) -> SolveReport {
-    let (mut system, vectors) = memory.system::<M>(problem);
-    solve_system(&mut system, settings, vectors)
-}
-
 /// Solves a system from its present impulses. Every product with A counts as an iteration.
-pub(super) fn solve_system<S: ContactSystem>(
+pub(super) fn solve<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
     vectors: &mut WorkVectors,

@@ -12,9 +12,9 @@ pub(super) fn sheet(
     let good = || simulated.iter().filter(|point| point.failed.is_none()).map(|point| point.speed);
     let slowest = 0.7 * good().fold(f64::INFINITY, f64::min).min(1.0);
     let fastest = 1.5 * good().fold(0.0, f64::max).max(10.0 * slowest);
-    let finest = format!("Δt = {:e} s", plan.finest_secs);
+    let finest = format!("Δt = {:e} s", FINEST_SECS);
     let panels = [("the same Δt", Some(references.floor(plan))), (finest.as_str(), None)];
-    let mut charts: Vec<Chart> = panels
+    let charts: Vec<Chart> = panels
         .into_iter()
         .enumerate()
         .map(|(panel, (against, floor))| {
@@ -26,20 +26,18 @@ pub(super) fn sheet(
             with_errors(chart, plan, simulated, panel, floor)
         })
         .collect();
-    let legend = Chart::legend_of(&mut charts, 0.42);
-    charts.push(legend);
     let steps = listed(&plan.time_steps_secs, |step| format!("{step:e} s"));
-    let (piles, grains) = (plan.piles.len(), plan.made_as.grains);
+    let (piles, grains) = (plan.piles.len(), NewPile::default().grains);
     let caption = bench.caption(&[
         &format!(
             "A point for each method, effort and Δt (the larger the dot, the larger: {steps}); means over {piles} piles of {grains} grains."
         ),
         &format!(
             "References by {}. Slump after {} s. On the lower edge: the reference itself.",
-            plan.reference.name, plan.duration_secs
+            REFERENCE, DURATION_SECS
         ),
     ]);
-    Sheet { size: (1800, 900), charts, caption }.high_enough()
+    Sheet { size: (1500, 840), charts, caption }
 }
 
 /// Adds the points with their Pareto front, and how far two references are from each other.
@@ -80,13 +78,12 @@ fn with_errors(
     chart
 }
 
-/// The report's lines.
 pub(super) fn report(
     plan: &SimulationPlan,
     simulated: &[SimulatedPoint],
     references: &References,
 ) -> String {
-    let [tight, tighter] = plan.tolerances;
+    let [tight, tighter] = TOLERANCES;
     let [unsolved, steps] = references.unsolved();
     let mut lines = vec![
         format!(
@@ -94,7 +91,7 @@ pub(super) fn report(
              {:.4} in the mean: no smaller error means anything. {unsolved} of their {steps} steps were not solved as \
              asked. Runs that take more than {} s a simulated second are given up as too slow. Every time is the least \
              of {}.",
-            plan.reference.name,
+            REFERENCE,
             references.floor(plan),
             plan.limit_secs,
             if plan.repeats == 1 { "1 run".into() } else { format!("{} runs", plan.repeats) }
@@ -118,7 +115,6 @@ pub(super) fn report(
     lines.join("\n")
 }
 
-/// Every point as CSV.
 pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> String {
     let mut text = String::from(
         "method,time_step_secs,effort,failed,simulated_secs_per_sec,error_same_step,error_finest_step,\

@@ -25,33 +25,16 @@ use crate::error::Error;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::range::bonds::{pass_shocks, solve_range};
-use crate::sim::steppers::{MeanPair, StepperInfo};
+use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Approach, Kinematics, Model, SolveReport};
+use crate::solver::{Approach, Model, SolveReport};
 use crate::world::{FrictionCone, Parameters, World};
 
-/// The row of the registry.
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
     source: "bonds that cost the work C₀δc; shocks apart from loads",
-    settings: &[
-        "bond",
-        "dt",
-        "tilt",
-        "rho",
-        "mu",
-        "cone",
-        "restitution-threshold",
-        "debonding-distance",
-        "solver",
-        "ordering",
-        "stop",
-        "tolerance",
-        "max-sweeps",
-        "warm-start",
-        "fallback",
-        "islands",
-    ],
+    settings: "bond dt tilt rho mu cone restitution-threshold debonding-distance solver \
+        ordering stop tolerance max-sweeps warm-start fallback islands",
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.
     check: |parameters| match parameters.cone {
@@ -61,7 +44,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     takes_drives: true,
     fracture_work: |world, physics, parameters| {
         let distance = parameters.debonding_distance * world.mean_diameter;
-        MeanPair::of(world).fracture_work(physics, parameters, |force| force * distance)
+        fracture_work_of(world, physics, parameters, |force| force * distance)
     },
     ..StepperInfo::WHOLE
 };
@@ -203,7 +186,7 @@ fn try_step<M: Model>(
 }
 
 /// The numbers of a step that its shocks and bonds hang on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepNumbers {
     pub parameters: Parameters,
     pub time_step_secs: f64,
@@ -242,12 +225,7 @@ pub(super) fn separate<M: Model>(state: &mut State) {
     let State { world, contacts, candidates, .. } = state;
     let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
     for _ in 0..PASSES {
-        let found = if M::Kinematics::AXES == 1 {
-            contacts.separate::<1>(world, candidates, allowed)
-        } else {
-            contacts.separate::<2>(world, candidates, allowed)
-        };
-        if !found {
+        if !contacts.separate(world, candidates, allowed, M::AXES) {
             break;
         }
     }

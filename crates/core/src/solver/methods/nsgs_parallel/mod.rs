@@ -19,8 +19,7 @@ use super::nsgs;
 use super::stopping::{SolveReport, is_settled, is_tested, sweep_until_settled};
 use super::sweep::ImpulseChange;
 use crate::contact::ContactLaw;
-use crate::solver::kinematics::Kinematics;
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::{ContactRows, Row, StepProblem, residual_of, squared_residual_scale};
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::threads;
@@ -55,7 +54,7 @@ impl BlockMemory {
 
 /// Solves a prepared problem by sweeps.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut BlockMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
@@ -65,13 +64,13 @@ pub(super) fn solve<M: Model>(
 /// Solves with the vector instructions of a level.
 fn solve_at<M: Model>(
     level: Level,
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut BlockMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
     match Tiled::<M>::new(level, problem, memory) {
         Some(mut tiled) => tiled.run(settings),
-        None => nsgs::solve::<M>(problem, settings),
+        None => nsgs::solve(problem, settings),
     }
 }
 
@@ -83,7 +82,7 @@ struct Tiled<'a, M: Model> {
     /// Whether there are several tiles, threads for them, and enough for these to do.
     threads: bool,
     law: ContactLaw,
-    problem: &'a mut StepProblem<M::Kinematics>,
+    problem: &'a mut StepProblem<M>,
     memory: &'a mut BlockMemory,
     squared_scale: Option<f64>,
 }
@@ -92,7 +91,7 @@ impl<'a, M: Model> Tiled<'a, M> {
     /// Nothing where the problem is not such a one.
     fn new(
         level: Level,
-        problem: &'a mut StepProblem<M::Kinematics>,
+        problem: &'a mut StepProblem<M>,
         memory: &'a mut BlockMemory,
     ) -> Option<Self> {
         memory.layout.fill(problem)?;
@@ -144,13 +143,13 @@ impl<'a, M: Model> Tiled<'a, M> {
     /// The common residual.
     fn residual(&mut self) -> f64 {
         let squared_scale =
-            *self.squared_scale.get_or_insert_with(|| squared_residual_scale::<M>(self.problem));
+            *self.squared_scale.get_or_insert_with(|| squared_residual_scale(self.problem));
         let squared_error = self.squared_error();
         if squared_scale == 0.0 {
             // What is rounding alone is told by the rows.
             self.store();
         }
-        residual_of::<M>(self.problem, [squared_error, squared_scale])
+        residual_of(self.problem, [squared_error, squared_scale])
     }
 
     fn squared_error(&mut self) -> f64 {
@@ -279,7 +278,7 @@ struct TileLayout {
 
 impl TileLayout {
     /// Lays out a problem. Nothing where its grains do not all exist, or a colour or two tiles share one.
-    fn fill<K: Kinematics>(&mut self, problem: &StepProblem<K>) -> Option<()> {
+    fn fill<M: Model>(&mut self, problem: &StepProblem<M>) -> Option<()> {
         self.tiles.clear();
         self.blocks.clear();
         self.places.clear();
@@ -306,16 +305,16 @@ impl TileLayout {
         self.fixed_between = self.add_all(problem, BlockPlace { tile: 0, first_slot: 0 }, tiles)?;
         self.slots.clear();
         self.slots.extend(self.grains.iter().map(|&grain| {
-            problem.bodies.now.get(grain as usize).map_or_else(BodySlot::default, BodySlot::of::<K>)
+            problem.bodies.now.get(grain as usize).map_or_else(BodySlot::default, BodySlot::of::<M>)
         }));
         Some(())
     }
 
     /// Adds the blocks of a tile, or those between tiles behind the last, and tells how many are of contacts
     /// with fixed bodies.
-    fn add_all<K: Kinematics>(
+    fn add_all<M: Model>(
         &mut self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         place: BlockPlace,
         tile: usize,
     ) -> Option<usize> {
@@ -337,9 +336,9 @@ impl TileLayout {
     }
 
     /// Adds the blocks of a colour, whose rows, with share or surface speed, are numbered from `first`.
-    fn add<'a, K: Kinematics>(
+    fn add<'a, M: Model>(
         &mut self,
-        rows: impl ExactSizeIterator<Item = (&'a Row<K>, f64)> + Clone,
+        rows: impl ExactSizeIterator<Item = (&'a Row<M>, f64)> + Clone,
         first: usize,
         BlockPlace { tile, first_slot }: BlockPlace,
         are_pairs: bool,
@@ -375,7 +374,7 @@ impl TileLayout {
     }
 
     /// Gives rows and bodies what became of them.
-    fn store<M: Model>(&self, problem: &mut StepProblem<M::Kinematics>) {
+    fn store<M: Model>(&self, problem: &mut StepProblem<M>) {
         let ContactRows { fixed, pairs, .. } = &mut problem.rows;
         for (block, place) in self.blocks.iter().zip(&self.places) {
             let [start, end] = [place.start as usize, place.end as usize];
@@ -389,7 +388,7 @@ impl TileLayout {
         }
         for (slot, &grain) in self.slots.iter().zip(&self.grains) {
             if let Some(body) = problem.bodies.now.get_mut(grain as usize) {
-                slot.store::<M::Kinematics>(body);
+                slot.store::<M>(body);
             }
         }
     }
