@@ -1,4 +1,4 @@
-//! Grains that the mouse adds and takes out, and walls that it draws.
+//! The mouse in the scene: what it pins, drags, adds, takes out and draws.
 
 use egui::{Event, Modifiers, PointerButton, Pos2};
 

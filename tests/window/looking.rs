@@ -1,4 +1,4 @@
-//! What can be looked at and asked besides the pile itself, and that controls stay where they are.
+//! What can be looked at, compared and asked besides the pile itself, and that controls stay where they are.
 
 use crate::robot::*;
 

@@ -1,4 +1,4 @@
-//! The mean over other piles: whose it is, when it is there, and when it is not.
+//! New piles while they are made, and the mean over other piles: whose it is, and when there is one.
 
 use crate::robot::*;
 

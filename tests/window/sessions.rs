@@ -1,4 +1,4 @@
-//! Sessions and links: what is open now, opened again later or elsewhere.
+//! Sessions, links and saved runs: what is open now, opened again later or elsewhere.
 
 use crate::robot::*;
 

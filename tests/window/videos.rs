@@ -1,4 +1,4 @@
-//! Videos that the window makes of its record.
+//! Videos and animations that the window makes of its record.
 
 use std::io::BufReader;
 

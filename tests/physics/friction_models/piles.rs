@@ -1,4 +1,5 @@
-//! Piles under every convex model: what is solved is the model, and has one solution.
+//! Piles under every convex model: what is solved is the model, has one solution and is certified; and what becomes of a
+//! step that is not solved under Coulomb's law.
 
 use proptest::prelude::*;
 

@@ -1,4 +1,5 @@
-//! Rattlers, clusters and shares of contacts, where they can be counted by hand.
+//! Rattlers, clusters, shares of contacts and distributions of forces that can be counted by hand; moments of which little
+//! or nothing can be said.
 
 use super::packings::{RADIUS, among, box_walls, disc, discs, lean, touch, triangular_discs};
 use crate::common::*;

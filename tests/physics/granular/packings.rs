@@ -1,4 +1,4 @@
-//! Moments made by hand: discs and contacts with forces that are known.
+//! Moments made by hand, and square and triangular packings under known loads.
 
 use std::f64::consts::PI;
 use std::sync::Arc;

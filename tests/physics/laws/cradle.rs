@@ -1,4 +1,4 @@
-//! The paper's cradle (§4): which time steps lose the bond between i and j.
+//! The paper's cradle (§4): which time steps lose the bond between i and j; and chains that hang by their cohesion.
 
 use crate::common::*;
 
@@ -93,6 +93,11 @@ const RADIUS: f64 = 0.05;
 /// Overlap of neighbours, m: rounding of the places, and no more than that.
 const OVERLAP: f64 = 1e-12;
 const TIME_STEPS: [f64; 4] = [1e-5, 1e-4, 1e-3, 5e-3];
+
+// With m the mass of a disc, the contact with the fixed disc has C₀ = Bond·m·g and carries n·m·g; the contact under the
+// k-th disc has C₀ = Bond·(m/2)·g and carries (n − k)·m·g. So a chain holds while n < Bond and n − 1 < Bond/2: a single
+// disc falls off the ceiling at Bond = 1, and a chain of three or more breaks under its first disc, at Bond = 2(n − 1).
+// With two discs both contacts reach their limits together, at Bond = 2.
 
 /// n discs below a fixed one. The line lies along gravity: `down` is x on one axis.
 fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {

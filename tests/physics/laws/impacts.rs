@@ -1,4 +1,5 @@
-//! Shocks through touching grains, one after the other: what is known exactly, and what always holds.
+//! Shocks through touching grains, one after the other, and those of walls that move along their normal: what is known
+//! exactly, and what always holds.
 
 use proptest::prelude::*;
 use slump::scene::stability::{bounce, heap};

@@ -1,4 +1,5 @@
-//! Grains that go through walls or leave the world are counted, told of, and left out of the slump.
+//! Grains that go through walls or leave the world are told of and left out of the slump; contacts that are looked for
+//! ahead of a step let nothing tunnel.
 
 use slump::scene::stability::{WALL_DISTANCE, heap, thin_wall};
 

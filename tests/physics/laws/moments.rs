@@ -1,4 +1,5 @@
-//! What a moment tells of contacts, against what is known of them.
+//! What runs tell: contacts against what is known of them, steps that stall, residuals; and what small piles show of the
+//! paper's §3.
 
 use rayon::prelude::*;
 
@@ -184,6 +185,9 @@ fn converged_never_stands_beside_a_residual_that_is_not_finite() {
         }
     }
 }
+
+// Piles are chaotic, so single slumps move by some hundredths with anything. Each claim is one of the mean of paired
+// differences over the initial states, with Student's 95 % interval.
 
 const BOX_WIDTH_IN_DIAMETERS: f64 = 8.0;
 /// Initial states, and Student's t for 95 % and one degree of freedom less.

@@ -1,4 +1,5 @@
-//! Gravity that turns: what falls freely, what a box that is tilted lets slide, and the budget of energy.
+//! Gravity that turns by itself or is tilted by hand: what falls, what slides, and that a tilted world is the one whose
+//! gravity is listed so.
 
 use super::{saved_and_read, through_a_file};
 use crate::common::*;

@@ -1,4 +1,4 @@
-//! Borders that wrap: nothing depends on where they are, and nothing is lost across them.
+//! Borders that wrap at the sides, below and above, or both: nothing depends on where they are.
 
 use super::images::gas;
 use super::through_a_file;

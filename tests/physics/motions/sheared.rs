@@ -1,5 +1,4 @@
-//! Borders that shear: pairs across them are pairs like others, no place is marked by them, and what they would tear is
-//! refused.
+//! Borders that shear: no place is marked by them, momentum and energy are accounted for, and flows take their profile.
 
 use crate::common::*;
 

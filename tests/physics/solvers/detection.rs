@@ -1,4 +1,4 @@
-//! The candidate search against trying every pair.
+//! The candidate search against trying every pair, and sweeps colour by colour on many threads against one.
 
 use rand_pcg::Pcg64;
 

@@ -1,4 +1,4 @@
-//! Borders that theory gives, against those that are measured.
+//! Borders that theory gives, and what models of friction do to what slides, against what is measured.
 
 use slump::scene::stability::{
     FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, blow, breaking_bond_of_cantilever, cantilever,

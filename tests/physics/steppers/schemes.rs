@@ -1,4 +1,4 @@
-//! The stepping schemes `tgs-soft` and `dem`: what each must get right by itself.
+//! The stepping schemes `tgs-soft`, `dem` and `avbd`: what each must get right by itself.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! The stepping scheme `dem`: springs and dashpots, and the step at which they blow up.
+//! The stepping scheme `dem`: springs and dashpots, the numbers that set them, and the step at which they blow up.
 
 use slump::error::Error;
 

@@ -1,4 +1,4 @@
-//! The program, and the folders that it leaves.
+//! Runs that are saved, stopped, killed and gone on with by the program, and the folders that they leave.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What a user asks of recordings.
+//! What a user asks of recordings, and recordings of a study's runs.
 
 use super::tables::{metadata, number, parquet, parts, steps};
 use super::*;
