@@ -47,7 +47,7 @@ enum Command {
     Sweep(SweepCommand),
     /// Make the paper's figures, and those its conclusion asks for, from simulation alone
     Reproduce(ReproduceCommand),
-    /// Chart speed against accuracy of every method: of steps, of simulations, and of lean models
+    /// Chart speed against accuracy of every method: of steps and of simulations
     Chart(ChartCommand),
     /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
     Stability(StabilityCommand),
@@ -140,8 +140,8 @@ impl RunCommand {
 
 /// Prints the built-in scenes, the steppers, the methods and the models of friction.
 fn list() {
-    for group in SceneGroup::ALL {
-        print_line(format_args!("{}:", group.title()));
+    for &group in SceneGroup::ALL {
+        print_line(format_args!("{}:", group.hint()));
         for scene in SCENES.iter().filter(|scene| scene.group == group) {
             print_line(format_args!("  {:14} {}", scene.name, scene.summary));
         }
@@ -155,7 +155,11 @@ fn list() {
             stepper.info().solves,
             stepper.info().source
         ));
-        print_line(format_args!("  {:14} reads {}", "", stepper.info().settings.join(", ")));
+        print_line(format_args!(
+            "  {:14} reads {}",
+            "",
+            stepper.info().settings.replace(' ', ", ")
+        ));
     }
     print_line(format_args!("Methods, for steppers that solve each step's problem by one:"));
     for info in METHODS {

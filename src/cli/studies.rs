@@ -141,7 +141,7 @@ pub(super) struct ChartCommand {
     /// Coarser, in a few minutes
     #[arg(long)]
     quick: bool,
-    /// Also race on steps of 500, 2,000 and 10,000 grains, and simulate 2,000
+    /// Also race on steps of 500, 2,000 and 10,000 grains
     #[arg(long)]
     large: bool,
     /// Chart these alone
@@ -194,33 +194,28 @@ impl StabilityCommand {
         print_text(&table);
         if let Some(folder) = &self.out {
             write_file(&folder.join("table.csv"), &table.to_csv()?)?;
-            self.draw(&table, folder)?;
+            let quick = if self.quick { " --quick" } else { "" };
+            let scenes: String = self.scenes.iter().map(|name| format!(" {name}")).collect();
+            let command = format!("slump stability{quick}{scenes} --out stability");
+            let mut sheets = vec![("table".to_owned(), picture(&table))];
+            if self.scenes.is_empty() {
+                let progress = Progress::new("maps", count_of_maps() as u64);
+                let maps = maps(self.quick, || progress.advance(1));
+                progress.finish();
+                sheets.extend(maps?);
+            }
+            for (name, sheet) in &sheets {
+                write_file(&folder.join(format!("{name}.png")), &png(sheet, &command)?)?;
+                write_file(&folder.join(format!("{name}.svg")), svg(sheet)?.as_bytes())?;
+                if name != "table" {
+                    write_file(&folder.join(format!("{name}.csv")), &sheet.to_csv()?)?;
+                }
+            }
             print_line(folder.display());
         }
         if let Some(path) = &self.table {
             write_file(path, &table.to_csv()?)?;
             print_line(path.display());
-        }
-        Ok(())
-    }
-
-    fn draw(&self, table: &StabilityTable, folder: &Path) -> Result<()> {
-        let mut sheets = vec![("table".to_owned(), picture(table))];
-        if self.scenes.is_empty() {
-            let progress = Progress::new("maps", count_of_maps() as u64);
-            let found = maps(self.quick, || progress.advance(1));
-            progress.finish();
-            sheets.extend(found?);
-        }
-        let quick = if self.quick { " --quick" } else { "" };
-        let scenes: String = self.scenes.iter().map(|name| format!(" {name}")).collect();
-        let command = format!("slump stability{quick}{scenes} --out stability");
-        for (name, sheet) in &sheets {
-            write_file(&folder.join(format!("{name}.png")), &png(sheet, &command)?)?;
-            write_file(&folder.join(format!("{name}.svg")), svg(sheet)?.as_bytes())?;
-            if name != "table" {
-                write_file(&folder.join(format!("{name}.csv")), &sheet.to_csv()?)?;
-            }
         }
         Ok(())
     }

@@ -1,24 +1,20 @@
 //! Recordings that go on, and what several want of one folder.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
-use slump::data::{FormatName, Recording, RunFacts, Times};
-use slump::scene::Scene;
+use slump::data::{RunFacts, Times};
 
-use super::{folder, record, scene, start};
+use super::*;
 
 /// All files of a recording, but for the manifest.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
-    for entry in std::fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
+    for name in names_in(folder) {
+        let path = folder.join(&name);
         if path.is_dir() {
-            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
             all.extend(files(&path).into_iter().map(|(file, it)| (format!("{name}/{file}"), it)));
         } else {
-            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-            all.insert(name, std::fs::read(&path).expect("a file"));
+            all.insert(name, bytes(&path));
         }
     }
     all
@@ -37,19 +33,13 @@ fn assert_same_files(found: &Path, expected: &Path, what: &str) {
     }
 }
 
-fn whole(folder: &Path, scene: &Scene, formats: &[FormatName], steps: u64) {
-    let mut recording = start(folder, formats, scene);
-    record(&mut recording, &mut scene.simulation().expect("a scene"), steps, 2);
-    recording.finish().expect("a recording");
-}
-
 #[test]
 fn what_goes_on_is_what_was_never_stopped() {
     let formats = [FormatName::Parquet, FormatName::Csv];
     let pile = scene("pile");
     let folder = folder();
     let expected = folder.path().join("whole");
-    whole(&expected, &pile, &formats, 120);
+    recorded(&expected, &formats, &pile, 120, 2);
     // Before the first frame, within the first part, at a frame, between two, and at the end.
     for stopped_at in [0, 1, 9, 40, 77, 120] {
         let path = folder.path().join(format!("from-{stopped_at}"));
@@ -77,13 +67,12 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     let pile = scene("pile");
     let folder = folder();
     let (expected, torn) = (folder.path().join("whole"), folder.path().join("torn"));
-    whole(&expected, &pile, &formats, 40);
-    whole(&torn, &pile, &formats, 30);
+    recorded(&expected, &formats, &pile, 40, 2);
+    recorded(&torn, &formats, &pile, 30, 2);
     // Half rows, and a frame that the index does not know.
     let cut = |file: &str, by: u64| {
         let file = std::fs::OpenOptions::new().write(true).open(torn.join(file)).expect("a file");
-        let length = file.metadata().expect("a length").len();
-        file.set_len(length - by).expect("cut");
+        file.set_len(file.metadata().expect("a length").len() - by).expect("cut");
     };
     cut("csv/grains.csv", 7);
     cut("frames.csv", 2);
@@ -122,7 +111,7 @@ fn frames_that_are_there_are_not_made_again() {
     recording.add_if_due(&simulation).expect("a frame");
     assert_eq!(recording.frames(), 5);
     recording.finish().expect("a recording");
-    let index = std::fs::read_to_string(folder.path().join("frames.csv")).expect("an index");
+    let index = read(folder.path().join("frames.csv"));
     let rows: Vec<_> = index.lines().skip_while(|line| !line.starts_with("step")).collect();
     assert_eq!(rows.len(), 6);
     assert!(rows[5].starts_with("8,") && rows[5].ends_with(",4"), "{rows:?}");
@@ -151,9 +140,9 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
     let folder = folder();
     let pile = scene("pile");
     let about = RunFacts::default();
-    whole(folder.path(), &pile, FormatName::ALL, 8);
-    std::fs::write(folder.path().join("note.txt"), "mine").expect("a file");
-    std::fs::write(folder.path().join("grains/note.parquet"), "mine").expect("a file");
+    recorded(folder.path(), FormatName::ALL, &pile, 8, 2);
+    write(folder.path().join("note.txt"), "mine");
+    write(folder.path().join("grains/note.parquet"), "mine");
     let before = files(folder.path());
     let again = Recording::start(folder.path(), &[FormatName::Csv], &about, false);
     let said = again.err().expect("a refusal").to_string();
@@ -178,19 +167,19 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
 #[test]
 fn a_recording_goes_on_in_its_own_formats_alone() {
     let folder = folder();
-    whole(folder.path(), &scene("pile"), &[FormatName::Csv], 8);
+    recorded(folder.path(), &[FormatName::Csv], &scene("pile"), 8, 2);
     let about = RunFacts::default();
     let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4);
     let said = other.err().expect("a refusal").to_string();
     assert!(said.starts_with("data-format is parquet, but must be as "), "{said}");
     // What is no table of this version is not gone on with, nor touched.
     let table = folder.path().join("csv/contacts.csv");
-    let text = std::fs::read_to_string(&table).expect("a table").replace("normal_force", "force");
-    std::fs::write(&table, &text).expect("a file");
+    let text = read(&table).replace("normal_force", "force");
+    write(&table, &text);
     let changed = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 4);
     let said = changed.err().expect("a refusal").to_string();
     assert!(said.contains("contacts.csv: line ") && said.contains("normal_force"), "{said}");
-    assert_eq!(std::fs::read_to_string(&table).expect("a table"), text);
+    assert_eq!(read(&table), text);
 }
 
 #[test]
@@ -204,18 +193,13 @@ fn what_cannot_be_written_ends_the_recording_with_a_sentence_and_leaves_what_was
     let before = files(folder.path());
     let moved = folder.path().join("gone");
     std::fs::rename(folder.path().join("grains"), &moved).expect("moved");
-    let mut failure = None;
-    for _ in 0..50 {
+    let told = (0..50).find_map(|_| {
         let observables = *simulation.step().expect("a finite state");
-        let told =
-            recording.add_step(&observables).and_then(|()| recording.add(simulation.moment()));
-        let told = told.and_then(|()| recording.flush());
-        if let Err(error) = told {
-            failure = Some(error.to_string());
-            break;
-        }
-    }
-    let said = failure.expect("an error");
+        let added = recording.add_step(&observables);
+        let added = added.and_then(|()| recording.add(simulation.moment()));
+        added.and_then(|()| recording.flush()).err()
+    });
+    let said = told.expect("an error").to_string();
     assert!(said.contains("part-00000.parquet: cannot be written"), "{said}");
     recording.finish().expect("it is told once");
     std::fs::rename(&moved, folder.path().join("grains")).expect("moved back");

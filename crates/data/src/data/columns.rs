@@ -141,7 +141,7 @@ const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 
 /// Words of the column `status`.
 const STATUSES: &[&str] =
-    &[ContactStatus::Open.word(), ContactStatus::Stick.word(), ContactStatus::Slip.word()];
+    &[ContactStatus::Open.name(), ContactStatus::Stick.name(), ContactStatus::Slip.name()];
 
 struct ContactTableRow {
     step: u64,

@@ -5,16 +5,14 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
+use slump_core::with_model;
 
 use super::{Friction, ProblemFile, pairs};
 use crate::contact::{ContactLaw, ContactList};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::{ProblemVisitor, RunEnding, Simulation};
-use crate::solver::{
-    Assembled, FixedRow, Kinematics, Model, ModelParts, ModelVisitor, PairRow, Row, StepProblem,
-    visit_model,
-};
+use crate::solver::{Assembled, FixedRow, Model, ModelParts, PairRow, Row, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
 /// Two forms of one problem may differ by this part: rounding, with room for a file whose numbers
@@ -103,94 +101,12 @@ impl BodyForm {
                 return Err(Error::value(format!("bodies.pair[{contact}]"), found, allowed));
             }
         }
-        visit_model(self.parts(file)?, BodiesCheck { bodies: self, file })
+        with_model!(self.parts(file)?, M => self.check_numbers::<M>(file))
     }
-
-    /// The model that solves this problem on its bodies.
-    pub(super) fn parts(&self, file: &ProblemFile) -> Result<ModelParts> {
-        let friction = self.friction(file)?;
-        Ok(ModelParts {
-            axes: self.axes,
-            sheared: false,
-            friction: self.axes == 2 && friction > 0.0,
-            rotation: self.rotation,
-        })
-    }
-
-    fn friction(&self, file: &ProblemFile) -> Result<f64> {
-        let friction = file.friction();
-        match friction.iter().find(|&mu| *mu != friction[0]) {
-            Some(mu) => Err(Error::value("mu", mu, "the same for all contacts of bodies")),
-            None => Ok(friction[0]),
-        }
-    }
-
-    /// The step's problem, its rows in the order of the file, those with fixed bodies first.
-    pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M::Kinematics> {
-        let coordinates = |body: usize| {
-            let [x, y, spin] = self.free_velocity[body];
-            M::Kinematics::from_coordinates([x, y, self.radius[body] * spin])
-        };
-        let free: Vec<_> = (0..self.mass.len()).map(coordinates).collect();
-        let mut problem = StepProblem::<M::Kinematics>::default();
-        problem.bodies.before.clone_from(&free);
-        problem.bodies.free = free;
-        let cone = if self.capture_speed > 0.0 { file.cone } else { FrictionCone::Shifted };
-        problem.law = ContactLaw::new(file.friction()[0], self.capture_speed, cone);
-        problem.bodies.masses.clone_from(&self.mass);
-        problem.bodies.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
-        let starts: Vec<[f64; 2]> = match &file.start {
-            Some(start) => pairs(start).collect(),
-            None => vec![[0.0; 2]; file.nc],
-        };
-        for pass in [false, true] {
-            for (contact, &(i, j)) in self.pair.iter().enumerate() {
-                if j.is_some() != pass {
-                    continue;
-                }
-                let mass = self.mass[i as usize];
-                let share = j.map(|j| self.mass[j as usize] / (mass + self.mass[j as usize]));
-                let effective_mass = share.map_or(mass, |share| mass * share);
-                let surface_speed = self.surface_speed.get(contact).copied().unwrap_or(0.0);
-                let [normal, tangential] = starts[contact];
-                let row = Row {
-                    i,
-                    j: j.unwrap_or(0),
-                    normal: M::Kinematics::normal(self.normal[contact]),
-                    restitution_velocity: self.restitution_velocity[contact],
-                    shifted_impulse: normal / effective_mass + self.capture_speed,
-                    tangential_impulse: tangential / effective_mass,
-                    effective_mass,
-                };
-                problem.rows.contacts.push(contact as u32);
-                match share {
-                    Some(share) => problem.rows.pairs.push(PairRow { row, share }),
-                    None => problem.rows.fixed.push(FixedRow { row, surface_speed }),
-                }
-            }
-        }
-        problem.form_velocities();
-        problem
-    }
-}
-
-/// Whether two forms of one number are as near as rounding leaves them; not where one is NaN.
-fn agree(found: f64, expected: f64, scale: f64) -> bool {
-    (found - expected).abs() <= DISAGREEMENT * scale
-}
-
-struct BodiesCheck<'a> {
-    bodies: &'a BodyForm,
-    file: &'a ProblemFile,
-}
-
-impl ModelVisitor for BodiesCheck<'_> {
-    type Output = Result<()>;
 
     /// Without friction tangential rows play no part, and need not agree.
-    fn visit<M: Model>(self) -> Result<()> {
-        let Self { bodies, file } = self;
-        let problem = bodies.step_problem::<M>(file);
+    fn check_numbers<M: Model>(&self, file: &ProblemFile) -> Result<()> {
+        let problem = self.step_problem::<M>(file);
         let assembled = Assembled::of(&problem)?;
         let place = |index: u32| 2 * problem.rows.contacts[index as usize / 2] + index % 2;
         let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
@@ -224,7 +140,7 @@ impl ModelVisitor for BodiesCheck<'_> {
         let cohesion = file.cohesion_impulses();
         let rows = problem.rows.iter();
         for (row, &contact) in rows.zip(&problem.rows.contacts) {
-            let expected = row.effective_mass * bodies.capture_speed;
+            let expected = row.effective_mass * self.capture_speed;
             let found = cohesion[contact as usize];
             if !agree(found, expected, expected) {
                 let allowed = format!("{expected}, the bodies'");
@@ -233,6 +149,78 @@ impl ModelVisitor for BodiesCheck<'_> {
         }
         Ok(())
     }
+
+    /// The model that solves this problem on its bodies.
+    pub(super) fn parts(&self, file: &ProblemFile) -> Result<ModelParts> {
+        let friction = self.friction(file)?;
+        Ok(ModelParts {
+            axes: self.axes,
+            sheared: false,
+            friction: self.axes == 2 && friction > 0.0,
+            rotation: self.rotation,
+        })
+    }
+
+    fn friction(&self, file: &ProblemFile) -> Result<f64> {
+        let friction = file.friction();
+        match friction.iter().find(|&mu| *mu != friction[0]) {
+            Some(mu) => Err(Error::value("mu", mu, "the same for all contacts of bodies")),
+            None => Ok(friction[0]),
+        }
+    }
+
+    /// The step's problem, its rows in the order of the file, those with fixed bodies first.
+    pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M> {
+        let coordinates = |body: usize| {
+            let [x, y, spin] = self.free_velocity[body];
+            M::from_coordinates([x, y, self.radius[body] * spin])
+        };
+        let free: Vec<_> = (0..self.mass.len()).map(coordinates).collect();
+        let mut problem = StepProblem::<M>::default();
+        problem.bodies.before.clone_from(&free);
+        problem.bodies.free = free;
+        let cone = if self.capture_speed > 0.0 { file.cone } else { FrictionCone::Shifted };
+        problem.law = ContactLaw::new(file.friction()[0], self.capture_speed, cone);
+        problem.bodies.masses.clone_from(&self.mass);
+        problem.bodies.mean_mass = self.mass.iter().sum::<f64>() / self.mass.len() as f64;
+        let starts: Vec<[f64; 2]> = match &file.start {
+            Some(start) => pairs(start).collect(),
+            None => vec![[0.0; 2]; file.nc],
+        };
+        for pass in [false, true] {
+            for (contact, &(i, j)) in self.pair.iter().enumerate() {
+                if j.is_some() != pass {
+                    continue;
+                }
+                let mass = self.mass[i as usize];
+                let share = j.map(|j| self.mass[j as usize] / (mass + self.mass[j as usize]));
+                let effective_mass = share.map_or(mass, |share| mass * share);
+                let surface_speed = self.surface_speed.get(contact).copied().unwrap_or(0.0);
+                let [normal, tangential] = starts[contact];
+                let row = Row {
+                    i,
+                    j: j.unwrap_or(0),
+                    normal: M::normal(self.normal[contact]),
+                    restitution_velocity: self.restitution_velocity[contact],
+                    shifted_impulse: normal / effective_mass + self.capture_speed,
+                    tangential_impulse: tangential / effective_mass,
+                    effective_mass,
+                };
+                problem.rows.contacts.push(contact as u32);
+                match share {
+                    Some(share) => problem.rows.pairs.push(PairRow { row, share }),
+                    None => problem.rows.fixed.push(FixedRow { row, surface_speed }),
+                }
+            }
+        }
+        problem.form_velocities();
+        problem
+    }
+}
+
+/// Whether two forms of one number are as near as rounding leaves them; not where one is NaN.
+fn agree(found: f64, expected: f64, scale: f64) -> bool {
+    (found - expected).abs() <= DISAGREEMENT * scale
 }
 
 /// The problem of the step that begins at `at_secs`, the simulation of `scene` having got there by
@@ -283,23 +271,19 @@ struct ProblemFileVisitor<'a> {
 impl ProblemVisitor for ProblemFileVisitor<'_> {
     type Output = Result<ProblemFile>;
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Result<ProblemFile> {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Result<ProblemFile> {
         check_can_be_held(problem)?;
         let Assembled { matrix, free_velocities } = Assembled::of(problem)?;
         let grains = self.grains;
         let rows = || problem.rows.iter();
         let fixed = problem.rows.fixed.len();
         let free_velocity = |(body, radius): (_, &f64)| {
-            let [x, y, spin] = M::Kinematics::coordinates(body);
+            let [x, y, spin] = M::coordinates(body);
             [x, y, spin / radius]
         };
         let bodies = BodyForm {
-            axes: M::Kinematics::AXES as u8,
-            rotation: M::Kinematics::ROTATION,
+            axes: M::AXES as u8,
+            rotation: M::ROTATION,
             capture_speed: problem.law.capture_speed(),
             mass: grains.masses.clone(),
             inertia: (0..grains.len()).map(|body| grains.inertia(body)).collect(),
@@ -317,7 +301,7 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
                 .collect(),
             normal: rows()
                 .map(|row| {
-                    let [[[x, y, _], _], _] = M::Kinematics::gradients(row.normal);
+                    let [[[x, y, _], _], _] = M::gradients(row.normal);
                     [x, y]
                 })
                 .collect(),
@@ -344,14 +328,14 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
 }
 
 /// Whether a file can hold a problem.
-fn check_can_be_held<K: Kinematics>(problem: &StepProblem<K>) -> Result<()> {
+fn check_can_be_held<M: Model>(problem: &StepProblem<M>) -> Result<()> {
     let refuse = |field: &str, holds: &str| {
         Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))
     };
     if problem.is_driven() {
         return refuse("motions.drive", "grains alone");
     }
-    if K::SLIDES {
+    if M::SLIDES {
         return refuse("periodic.shear_rate", "grains whose images stay");
     }
     Ok(())

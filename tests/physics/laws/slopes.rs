@@ -6,10 +6,7 @@
 //! disc, and above slides like the other while its spin grows with 2μ g cosθ / r. In the scheme all
 //! of these hold exactly in every step, whatever Δt: one contact is solved exactly by one update.
 
-use crate::common::{G, UNTURNING, assert_close, fixed, parameters, scene, start, take_steps};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::world::{Boundary, FrictionCone, Grain, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 0.1;
 const MU: f64 = 0.3;
@@ -25,12 +22,11 @@ fn on_level(physics: Physics, slope: f64, mu: f64, boundary: Boundary) -> Scene 
     }
 }
 
-/// Level y = 0, by every shape that can say it.
 fn levels() -> Vec<(&'static str, Boundary)> {
     let at = |x: f64| DVec2::new(x, 0.0);
     let low = |x: f64| DVec2::new(x, -1.0);
     vec![
-        ("half-space", Boundary::HalfSpace { point: at(3.0), normal: DVec2::new(0.0, 2.0) }),
+        ("half-space", plane(at(3.0), DVec2::new(0.0, 2.0))),
         ("segment", Boundary::Segment { from: at(-1.0), to: at(50.0) }),
         ("segment backwards", Boundary::Segment { from: at(50.0), to: at(-1.0) }),
         ("polyline", Boundary::Polyline { points: [-1.0, 0.04, 0.9, 50.0].map(at).to_vec() }),
@@ -49,23 +45,21 @@ fn acceleration(slope: f64) -> (f64, f64) {
 #[test]
 fn a_disc_that_cannot_roll_slides_above_coulombs_threshold_and_not_below() {
     for (name, level) in levels() {
-        let mut stuck = start(&on_level(UNTURNING, MU * (1.0 - 1e-6), MU, level.clone()));
-        take_steps(&mut stuck, 500);
+        let stuck = after(&on_level(UNTURNING, MU * (1.0 - 1e-6), MU, level.clone()), 500);
         assert_eq!(stuck.observables().contacts, 1, "{name}");
-        assert!(stuck.world().grains.velocities[0].length() < 1e-14, "{name}: sticks");
+        assert!(stuck.velocity(0).length() < 1e-14, "{name}: sticks");
         let impulse = stuck.contacts().impulses()[0];
         assert_close(impulse.tangential.abs(), MU * impulse.normal, 2e-6, name);
 
         for slope in [MU * (1.0 + 1e-6), 0.5, 2.0] {
-            let mut sliding = start(&on_level(UNTURNING, slope, MU, level.clone()));
-            take_steps(&mut sliding, 500);
+            let sliding = after(&on_level(UNTURNING, slope, MU, level.clone()), 500);
             let (along, onto) = acceleration(slope);
-            let velocity = sliding.world().grains.velocities[0];
+            let velocity = sliding.velocity(0);
             let expected = (along - MU * onto) * DT * 500.0;
             // At 1e-6 above the threshold, roundings of μ g cosθ are 1e-9 of the difference.
             assert_close(velocity.x, expected, 1e-8, name);
             assert!(velocity.y.abs() < 1e-12, "{name}: stays on its level");
-            assert_eq!(sliding.world().grains.angular_velocities[0], 0.0);
+            assert_eq!(sliding.grains().angular_velocities[0], 0.0);
         }
     }
 }
@@ -78,9 +72,8 @@ fn cohesion_steepens_the_threshold_with_the_shifted_cone_alone() {
         let mut scene = on_level(UNTURNING, slope, MU, level.clone());
         scene.parameters.bond = bond;
         scene.parameters.cone = cone;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 100);
-        simulation.world().grains.velocities[0].x / (G * DT * 100.0)
+        let run = after(&scene, 100);
+        run.velocity(0).x / (G * DT * 100.0)
     };
     // sinθ − μ cosθ = μ·Bond, that is sin(θ − φ) = μ·Bond·cosφ with tanφ = μ.
     let steepest = (MU.atan() + (MU * bond * MU.atan().cos()).asin()).tan();
@@ -93,26 +86,25 @@ fn cohesion_steepens_the_threshold_with_the_shifted_cone_alone() {
 
 #[test]
 fn a_disc_rolls_without_slip_up_to_three_mu_and_with_slip_above() {
-    for (name, level) in levels() {
-        for slope in [0.1, MU, 3.0 * MU * (1.0 - 1e-6), 3.0 * MU * (1.0 + 1e-6), 2.0] {
-            let mut simulation = start(&on_level(Physics::FULL, slope, MU, level.clone()));
-            take_steps(&mut simulation, 500);
-            let (along, onto) = acceleration(slope);
-            let grains = &simulation.world().grains;
-            let secs = 500.0 * DT;
-            let spin = -RADIUS * grains.angular_velocities[0];
-            let (speed, expected_spin) = if slope < 3.0 * MU {
-                (along * secs * 2.0 / 3.0, along * secs * 2.0 / 3.0)
-            } else {
-                ((along - MU * onto) * secs, 2.0 * MU * onto * secs)
-            };
-            assert_close(grains.velocities[0].x, speed, 1e-10, &format!("{name}, tanθ {slope}"));
-            assert_close(spin, expected_spin, 1e-10, &format!("{name}: spin at tanθ {slope}"));
-            assert!(grains.positions[0].x > 0.05, "{name}: got past the polyline's vertex");
-            let turned = -RADIUS * grains.angles[0];
-            let way = grains.positions[0].x;
-            assert_eq!((turned - way).abs() < 1e-9 * way, slope < 3.0 * MU, "{name}: no slip");
-        }
+    for ((name, level), slope) in
+        pairs(levels(), [0.1, MU, 3.0 * MU * (1.0 - 1e-6), 3.0 * MU * (1.0 + 1e-6), 2.0])
+    {
+        let run = after(&on_level(Physics::FULL, slope, MU, level.clone()), 500);
+        let (along, onto) = acceleration(slope);
+        let grains = run.grains();
+        let secs = 500.0 * DT;
+        let spin = -RADIUS * grains.angular_velocities[0];
+        let (speed, expected_spin) = if slope < 3.0 * MU {
+            (along * secs * 2.0 / 3.0, along * secs * 2.0 / 3.0)
+        } else {
+            ((along - MU * onto) * secs, 2.0 * MU * onto * secs)
+        };
+        assert_close(grains.velocities[0].x, speed, 1e-10, &format!("{name}, tanθ {slope}"));
+        assert_close(spin, expected_spin, 1e-10, &format!("{name}: spin at tanθ {slope}"));
+        assert!(grains.positions[0].x > 0.05, "{name}: got past the polyline's vertex");
+        let turned = -RADIUS * grains.angles[0];
+        let way = grains.positions[0].x;
+        assert_eq!((turned - way).abs() < 1e-9 * way, slope < 3.0 * MU, "{name}: no slip");
     }
 }
 
@@ -122,11 +114,9 @@ fn a_vertex_of_a_nearly_flat_polyline_is_not_felt() {
     for kink in [-tilt, tilt] {
         let points = [DVec2::new(-1.0, 0.0), DVec2::new(0.5, 0.0), DVec2::new(20.0, 19.5 * kink)];
         let bent = Boundary::Polyline { points: points.to_vec() };
-        let mut on_bent = start(&on_level(Physics::FULL, 0.2, MU, bent));
-        let mut on_level = start(&on_level(Physics::FULL, 0.2, MU, levels().remove(0).1));
-        take_steps(&mut on_bent, 2000);
-        take_steps(&mut on_level, 2000);
-        let [a, b] = [&on_bent, &on_level].map(|simulation| simulation.world().grains.clone());
+        let on_bent = after(&on_level(Physics::FULL, 0.2, MU, bent), 2000);
+        let on_level = after(&on_level(Physics::FULL, 0.2, MU, levels().remove(0).1), 2000);
+        let [a, b] = [&on_bent, &on_level].map(|run| run.grains().clone());
         assert!(a.positions[0].x > 2.0, "it rolled over the vertex");
         let off = a.velocities[0].distance(b.velocities[0]);
         assert!(off < 10.0 * tilt * b.velocities[0].length(), "kink {kink}: off by {off}");
@@ -144,19 +134,14 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
         let place = reach * (1.0 - 1e-9) * DVec2::new(start_angle.sin(), start_angle.cos());
         let scene = Scene {
             fixed_discs: vec![fixed(DVec2::ZERO, other)],
-            ..scene(
-                Physics::FULL,
-                DVec2::new(0.0, -G),
-                parameters(0.0, dt, 0.0, 1e3),
-                vec![Grain::at_rest(place, RADIUS)],
-            )
+            ..under_g(parameters(0.0, dt, 0.0, 1e3), vec![Grain::at_rest(place, RADIUS)])
         };
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let (mut cosine, mut touched) = (1.0, 0);
-        while simulation.world().grains.positions[0].length() < 1.02 * reach {
-            simulation.step().expect("a finite state");
-            if simulation.observables().contacts > 0 {
-                cosine = simulation.contacts().contacts()[0].normal.y;
+        while run.place(0).length() < 1.02 * reach {
+            run.step().expect("a finite state");
+            if run.observables().contacts > 0 {
+                cosine = run.contacts().contacts()[0].normal.y;
                 touched += 1;
             }
         }
@@ -169,5 +154,60 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
         // late by about √Δt (measured 0.75 and 0.98 of it).
         let off = (leaving_cosine(dt) - ideal).abs();
         assert!(off < 1.2 * dt.sqrt(), "Δt {dt}: left at {off} off the ideal cosine");
+    }
+}
+
+/// The disc on a half-space, with cohesion, by a scheme.
+fn on_slope(
+    stepper: Stepper,
+    physics: Physics,
+    slope: f64,
+    bond: f64,
+    cone: FrictionCone,
+) -> Scene {
+    let mut scene = by(stepper, 0, on_level(physics, slope, MU, level()));
+    scene.parameters = Parameters { bond, cone, restitution: 0.1, ..scene.parameters };
+    scene
+}
+
+/// Its velocity and its acceleration once it lies on the slope.
+fn slides(scene: &Scene) -> (f64, f64) {
+    let mut run = after(scene, 500);
+    let velocity = run.velocity(0).x;
+    take_steps(&mut run, 200);
+    let later = run.velocity(0).x;
+    assert_eq!(run.observables().contacts, 1);
+    (later, (later - velocity) / 0.2)
+}
+
+#[test]
+fn friction_keeps_to_coulombs_cone() {
+    let mu = MU;
+    for method in SCHEMES {
+        let shifted = FrictionCone::Shifted;
+        let (velocity, _) = slides(&on_slope(method, UNTURNING, 0.999 * mu, 0.0, shifted));
+        assert!(velocity.abs() < 1e-9, "{method:?} sticks: {velocity:e} m/s");
+        for slope in [1.001 * mu, 0.5, 1.0] {
+            let along = G / slope.hypot(1.0) * (slope - mu);
+            let (_, found) = slides(&on_slope(method, UNTURNING, slope, 0.0, shifted));
+            assert_close(found, along, 1e-6, "how it slides");
+        }
+        // A disc rolls up to tanθ = 3μ, with two thirds of g sinθ, and slides above.
+        let slope: f64 = 0.8;
+        let (_, found) = slides(&on_slope(method, Physics::FULL, slope, 0.0, shifted));
+        assert_close(found, 2.0 / 3.0 * G * slope / slope.hypot(1.0), 1e-6, "how it rolls");
+        let slope: f64 = 1.0;
+        let (_, found) = slides(&on_slope(method, Physics::FULL, slope, 0.0, shifted));
+        assert_close(found, G / slope.hypot(1.0) * (slope - mu), 1e-6, "how it slides and turns");
+        // Cohesion holds where sinθ ≤ μ (cosθ + Bond), with the shifted cone alone.
+        for (bond, sticks) in [(1.01, true), (0.99, false)] {
+            let slope: f64 = 0.75;
+            let bond = bond * (slope / mu - 1.0) / slope.hypot(1.0);
+            let (velocity, _) = slides(&on_slope(method, UNTURNING, slope, bond, shifted));
+            assert_eq!(velocity.abs() < 1e-9, sticks, "{method:?}, Bond {bond}: {velocity} m/s");
+            let compressive = FrictionCone::Compressive;
+            let (_, found) = slides(&on_slope(method, UNTURNING, slope, bond, compressive));
+            assert_close(found, G / slope.hypot(1.0) * (slope - mu), 1e-6, "without C₀");
+        }
     }
 }
