@@ -16,7 +16,7 @@ use crate::sim::steppers::{Stepper, StepperMemory};
 use crate::sim::stepping::{Advance, Stage, StepResult};
 use crate::sim::walls::Walls;
 use crate::sim::{Alarm, Pull, remedies};
-use crate::solver::{Model, Slots, SolverSettings, StepProblem};
+use crate::solver::{Model, ModelParts, Slots, SolverSettings, StepProblem};
 use crate::world::{Parameters, Physics, World};
 use crate::{threads, with_model};
 
@@ -204,16 +204,21 @@ impl Simulation {
     /// first piece where the step is cut, with its shocks passed where they are solved apart. This
     /// simulation stays as it is.
     pub fn next_problem<V: ProblemVisitor>(&self, visitor: V) -> V::Output {
+        let (parts, mut slots, contacts) = self.prepared();
+        with_model!(parts, M => visitor.visit::<M>(&mut M::slot(&mut slots).problem, &contacts))
+    }
+
+    /// That problem, in the slot of its model, and its contacts. Not generic, so that it is compiled in this crate alone.
+    fn prepared(&self) -> (ModelParts, Slots, ContactList) {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
         let parts = state.leanest_model(&settings.parameters);
         state.contacts.begin_step(self.observables.step + 1);
         let pieces = remedies::pieces(&state, &settings);
         let settings = &settings.over(settings.parameters.time_step_secs / f64::from(pieces));
         with_model!(parts, M => {
-            let stage = &mut Stage::<M>::new(&mut state, M::slot(&mut slots));
-            memory.set_up(stage, settings);
-            visitor.visit::<M>(stage.problem, &stage.state.contacts)
-        })
+            memory.set_up(&mut Stage::<M>::new(&mut state, M::slot(&mut slots)), settings);
+        });
+        (parts, slots, state.contacts)
     }
 
     /// The world as it is now.

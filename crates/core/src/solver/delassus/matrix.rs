@@ -142,6 +142,8 @@ impl Assembled {
     ///
     /// # Errors
     /// Names the body that most contacts share, where they make W too large.
+    // Compiled once, in this crate.
+    #[inline(never)]
     pub fn of<M: Model>(problem: &StepProblem<M>) -> Result<Self> {
         let mut contacts_of_body = vec![Vec::new(); problem.bodies.masses.len()];
         for (number, row) in problem.rows() {

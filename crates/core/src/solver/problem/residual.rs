@@ -147,6 +147,8 @@ pub fn worst(one: f64, other: f64) -> f64 {
 /// ½(v^n + v^{n−1})·(ΔtF + HP), so a contact impulse does the work P·½(u^n + u^{n−1}) with u its
 /// relative velocity. Summed with gravity's this closes the budget to rounding, whatever the solver
 /// left undone. Where j is an image that slides, u is relative to that, and P·(what it slides by) is the border's work.
+// Compiled once, in this crate.
+#[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
     type Sum = (Sums, Measures);
     let visit = |(sums, measures): &mut Sum,
