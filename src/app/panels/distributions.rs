@@ -98,8 +98,13 @@ fn bars(histogram: &Histogram) -> Vec<Bar> {
     let mut finite = ends.windows(2).filter(|pair| pair.iter().all(|end| end.is_finite()));
     let usual = finite.next().map_or(1.0, |pair| pair[1] - pair[0]);
     let bar = |(pair, &count): (&[f64], &u64)| {
-        let low = if pair[0].is_finite() { pair[0] } else { pair[1] - usual };
-        let high = if pair[1].is_finite() { pair[1] } else { low + usual };
+        let (low, high) = match [pair[0], pair[1]] {
+            [low, high] if low.is_finite() && high.is_finite() => (low, high),
+            [low, _] if low.is_finite() => (low, low + usual),
+            [_, high] if high.is_finite() => (high - usual, high),
+            // Of a histogram with one bin.
+            _ => (0.0, usual),
+        };
         Bar::new(0.5 * (low + high), count as f64).width(0.92 * (high - low))
     };
     ends.windows(2).zip(counts).map(bar).collect()
