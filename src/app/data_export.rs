@@ -224,7 +224,7 @@ impl Writing<'_> {
         let formats = formats_of(&self.order.settings)?;
         let recording = Recording::start_in(claim, &formats, &self.about(simulation)?)?;
         Ok(match self.order.settings.every_secs {
-            Some(secs) => recording.at(Times::Every(secs), simulation),
+            Some(secs) => recording.at(Times::Every(secs)),
             None => recording,
         })
     }

@@ -15,8 +15,8 @@ use super::options::texts_of_panel;
 use super::table::ObservablesTable;
 use super::writer::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
 use crate::error::Result;
-use crate::output::{Progress, Texts, caught_signal, counted, note_line, print_line};
-use crate::render::{Camera, PanelGrid, Renderer, RendererChoice, Style, draw_scene};
+use crate::output::{Progress, Texts, caught_signal, counted, print_line};
+use crate::render::{Camera, PanelGrid, Style, draw_scene};
 use crate::scene::View;
 use crate::sim::{Observables, Snapshot};
 use crate::study::png::write_png;
@@ -40,17 +40,15 @@ struct FigureRun {
 }
 
 /// Simulates the runs on all cores and draws the figures into `folder`.
-pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoice) -> Result<()> {
-    let mut renderer = Renderer::new(renderer)?;
+pub(super) fn draw(folder: &Path, earlier: EarlierFiles) -> Result<()> {
     let claimed = RunFolder::claim(folder, earlier)?;
     let runs = paper_runs()?;
-    let mut manifest = Manifest::new(renderer.name());
+    let mut manifest = Manifest::new();
     for run in &runs {
         manifest.runs.push(RunEntry::start(&run.name, &run.scene)?);
     }
     claimed.clear()?;
-    note_line(format_args!("drawing with {}", renderer.name()));
-    let mut writer = FigureWriter { folder, renderer: &mut renderer, manifest };
+    let mut writer = FigureWriter { folder, manifest };
     writer.write_manifest()?;
     let mut runs = simulate(folder, runs)?;
 
@@ -88,7 +86,7 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
             let until_secs = run.times_secs.iter().copied().fold(0.0, f64::max);
             // A run that takes no step has no table.
             let path = folder.join(format!("{}.csv", run.name));
-            let table = (until_secs > 0.0).then(|| ObservablesTable::start_as(path)).transpose()?;
+            let table = (until_secs > 0.0).then(|| ObservablesTable::start(path)).transpose()?;
             let mut recorder = FigureRecorder { table, snapshots: Vec::new(), progress: &progress };
             let mut recorded = record(&run.scene, &run.times_secs, until_secs, &mut recorder)?;
             let table = recorder.table.map_or(Ok(()), ObservablesTable::finish);
@@ -125,7 +123,6 @@ impl Recorder for FigureRecorder<'_> {
 /// Draws figures and writes the manifest.
 struct FigureWriter<'a> {
     folder: &'a Path,
-    renderer: &'a mut Renderer,
     manifest: Manifest,
 }
 
@@ -229,7 +226,7 @@ impl FigureWriter<'_> {
         // The same camera with and without the bar: panels of one figure lie alike.
         let camera: Camera = Style::default().camera(min, max, width, height);
         let snapshot = &run.snapshots[number];
-        let image = draw_scene(self.renderer, snapshot, style, &camera, width, height)?;
+        let image = draw_scene(snapshot, style, &camera, width, height)?;
         let texts = texts_of_panel(&run.paper.scene, snapshot)?;
         self.write(&format!("{name}.png"), &image, vec![moment(run, number)], &texts)?;
         Ok(image)

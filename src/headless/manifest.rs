@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant as Clock};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::output::PendingFile;
@@ -18,7 +18,6 @@ pub(super) struct Manifest {
     pub version: &'static str,
     /// The command line.
     pub command: Vec<String>,
-    pub renderer: String,
     pub runs: Vec<RunEntry>,
     pub pictures: Vec<PictureEntry>,
     /// When it was last written while the run went on, and how long that took.
@@ -80,9 +79,6 @@ pub(super) struct RunEntry {
     /// The moment of the saved run that this one goes on with (`--restart`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restarted_from: Option<Instant>,
-    /// Where the same command went on with a checkpoint.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub went_on_at: Vec<Instant>,
     /// What went wrong, and what is most likely to help.
     pub alarms: Vec<AlarmEntry>,
     /// Dimensionless (paper §3.3).
@@ -106,8 +102,7 @@ pub(super) struct RunEntry {
 }
 
 /// A moment of a run.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Instant {
     pub step: u64,
     /// s.
@@ -131,7 +126,7 @@ pub(super) struct AlarmEntry {
 }
 
 /// One picture.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(super) struct PictureEntry {
     pub file: String,
     /// A moment a panel.
@@ -139,7 +134,7 @@ pub(super) struct PictureEntry {
 }
 
 /// One moment of a run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(super) struct ShownMoment {
     /// Name of the run.
     pub run: String,
@@ -147,13 +142,12 @@ pub(super) struct ShownMoment {
 }
 
 impl Manifest {
-    pub(super) fn new(renderer: &str) -> Self {
+    pub(super) fn new() -> Self {
         Self {
             program: "slump",
             version: env!("CARGO_PKG_VERSION"),
             // What is not UTF-8 cannot be told in JSON as it is.
             command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
-            renderer: renderer.to_owned(),
             runs: Vec::new(),
             pictures: Vec::new(),
             written: Clock::now(),
@@ -212,7 +206,6 @@ impl RunEntry {
             initial_state: format!("{:016x}", fingerprint(scene)),
             tally: Tally::default(),
             restarted_from: None,
-            went_on_at: Vec::new(),
             alarms: Vec::new(),
             cohesive_time: scene.parameters.cohesive_time(scene.mean_diameter, gravity),
             capture_speed: scene.parameters.capture_speed(gravity),

@@ -21,12 +21,12 @@ use crate::error::{Error, Result};
 use crate::output::heed_signals;
 use folder::EarlierFiles;
 
-/// Draws the paper's snapshots into a folder, with whatever renderer there is.
+/// Draws the paper's snapshots into a folder.
 ///
 /// # Errors
 /// Where the folder cannot be written to.
 pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
-    figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
+    figures::draw(folder, EarlierFiles::Kept)
 }
 
 /// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
@@ -53,7 +53,7 @@ pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     let earlier = if options.overwrite { EarlierFiles::Cleared } else { EarlierFiles::Refused };
     match &options.frames {
         Some(folder) if config.is_empty() && !options.asks_for_frames() => {
-            figures::draw(folder, earlier, options.renderer)
+            figures::draw(folder, earlier)
         }
         _ => run::draw(config, options, earlier),
     }

@@ -111,7 +111,7 @@ pub(crate) struct HeadlessOptions {
     /// Ground and ink
     #[arg(long, value_name = "THEME", help_heading = "Pictures")]
     pub theme: Option<Theme>,
-    /// What draws: auto tries Vulkan, OpenGL and then the processor
+    /// What draws the window: auto tries Vulkan and then OpenGL. Pictures are drawn by the processor
     #[arg(long, value_name = "KIND", help_heading = "Pictures", default_value = "auto")]
     pub renderer: RendererChoice,
     #[command(flatten)]
@@ -285,7 +285,7 @@ pub(crate) struct SavingOptions {
     /// Save the run at its end, a signal's too, unless its state is no longer finite
     #[arg(long, value_name = "FILE", help_heading = "Saved runs", requires = "headless")]
     pub save: Option<PathBuf>,
-    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames: the same command, given again after whatever stopped it, goes on from there (--overwrite begins anew)
+    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames, for --restart with another folder; a run that comes to its end removes it
     #[arg(
         long,
         value_name = "SECONDS",

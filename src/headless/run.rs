@@ -1,21 +1,19 @@
-//! The run of one scene: where it begins, with a scene at t = 0, with a run that was saved, or with the checkpoint that
-//! the same command left in its folder, and what it writes.
+//! The run of one scene: where it begins, with a scene at t = 0 or with a run that was saved, and what it writes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::HeadlessOptions;
-use super::folder::{Beginning, Checkpoints, EarlierFiles, Marks, RunFolder, look};
+use super::folder::{Checkpoints, EarlierFiles, RunFolder};
 use super::manifest::Instant;
-use super::options::SavingOptions;
 use super::writer::{RunWriter, interrupted};
 use crate::config::{Config, SavedState, scene_facts};
 use crate::data::{DataSettings, Recording, RecordingFolder, Times, formats_of};
 use crate::error::{Error, Result};
-use crate::output::{Progress, caught_signal, check_file, note_line, warn_of_steps};
-use crate::render::{Renderer, RendererChoice};
+use crate::output::{Progress, caught_signal, check_file, warn_of_steps};
+use crate::render::check_size;
 use crate::scene::{Scene, Settling};
-use crate::sim::{Observables, Simulation, Tally};
-use crate::study::{OnItsWay, go_on as go_on_with};
+use crate::sim::{Observables, Tally};
+use crate::study::{OnItsWay, go_on};
 
 /// Simulates the scene, or lets a saved run go on, and draws the frames.
 pub(super) fn draw(
@@ -29,80 +27,62 @@ pub(super) fn draw(
     let asked = RequestedRun::of(config, options)?;
     let PictureSchedule { times_secs, until_secs } = asked.schedule(config, options)?;
     let data = options.data.settings(asked.scene())?;
-    let choice = if options.draws() { options.renderer } else { RendererChoice::Cpu };
-    let renderer = Renderer::new(choice)?;
-    renderer.check_size(size.width, size.height)?;
-    let lock = |path: &Path| RunFolder::lock(path, earlier);
-    let folder = options.frames.as_deref().map(lock).transpose()?;
-    let every_secs = options.saving.checkpoint_every;
-    let fingerprint = every_secs.map(|_| asked.fingerprint(config, options)).transpose()?;
-    let found = left_in(folder.as_ref(), fingerprint.as_deref())?;
+    check_size(size.width, size.height)?;
+    let claim = |path: &Path| RunFolder::claim(path, earlier);
+    let folder = options.frames.as_deref().map(claim).transpose()?;
     let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.saving.save)];
     for (option, path) in files {
         path.as_deref().map(|path| check_file(option, path)).transpose()?;
     }
     let picture_times_secs = options.picture_times(asked.scene().duration_secs)?;
-    let claim = |data| RecordingPlan::claim(data, options.overwrite, found.is_some());
-    let recording = data.map(claim).transpose()?;
-    let begun = match found {
-        Some(found) => found,
-        None => asked.begin(config, &times_secs).map_err(|error| match caught_signal() {
-            Some(signal) => interrupted(signal, &Observables::default()),
-            None => error,
-        })?,
+    let recording = match data {
+        None => None,
+        Some((path, data)) => Some((RecordingFolder::of(&path, options.overwrite)?, data)),
     };
-    let goes_on = !begun.marks.went_on_at.is_empty();
+    let begun = asked.begin(config).map_err(|error| match caught_signal() {
+        Some(signal) => interrupted(signal, &Observables::default()),
+        None => error,
+    });
+    let (SavedState { scene, simulation, tally }, restarted_from) = begun?;
+    let now = simulation.observables().step;
+    let next_picture = times_secs.partition_point(|&secs| simulation.step_at(secs) < now);
     if let Some(folder) = &folder {
-        if goes_on { folder.keep_pictures(&begun.marks.pictures)? } else { folder.clear()? }
-    }
-    if options.draws() {
-        note_line(format_args!("drawing with {}", renderer.name()));
+        folder.clear()?;
     }
 
-    let Beginning { state: SavedState { scene, simulation, tally, .. }, marks } = begun;
     let steps = simulation.step_at(until_secs);
-    warn_of_steps(steps.saturating_sub(simulation.observables().step));
-    let next_picture = marks.next_picture;
-    let asked_of = folder.as_ref().zip(every_secs.zip(fingerprint));
-    let mut checkpoints = asked_of.map(|(folder, (every_secs, fingerprint))| {
-        Checkpoints::start(folder.path(), every_secs, fingerprint, &simulation)
-    });
-    if let (Some(checkpoints), false) = (&mut checkpoints, goes_on) {
-        // Before anything else is there that another run would be refused for.
-        checkpoints.write(&scene, &simulation, &tally, marks.clone())?;
-    }
-    let start = |plan: RecordingPlan| plan.start(&scene, &simulation, &picture_times_secs);
-    let recording = recording.map(start).transpose()?;
+    warn_of_steps(steps.saturating_sub(now));
+    let checkpoints = folder.as_ref().zip(options.saving.checkpoint_every);
+    let checkpoints = checkpoints
+        .map(|(folder, every_secs)| Checkpoints::start(&folder.path, every_secs, &simulation));
+    let recording = recording
+        .map(|(folder, data)| start_recording(folder, &data, &scene, picture_times_secs))
+        .transpose()?;
     let provenance = options.provenance(config, &scene)?;
-    let mut writer =
-        RunWriter::open(options, renderer, &scene, steps, provenance, marks, checkpoints)?;
-    writer.recording = recording;
+    let mut writer = RunWriter::open(options, &scene, steps, provenance, restarted_from)?;
+    (writer.recording, writer.checkpoints) = (recording, checkpoints);
     let run = OnItsWay { simulation, tally, next_picture };
-    let recorded = go_on_with(run, &times_secs, until_secs, &mut writer);
+    let recorded = go_on(run, &times_secs, until_secs, &mut writer);
     writer.end(recorded)
 }
 
-/// The run that the same command left in its folder, if there is one to go on with. Any other files of an
-/// earlier run are refused, unless they are to be removed.
-fn left_in(folder: Option<&RunFolder>, fingerprint: Option<&str>) -> Result<Option<Beginning>> {
-    let Some(folder) = folder else { return Ok(None) };
-    let Some(fingerprint) = fingerprint.filter(|_| folder.may_go_on()) else {
-        return folder.check("").map(|()| None);
-    };
-    match look(folder.path(), fingerprint) {
-        Ok(None) => folder.check("").map(|()| None),
-        Err(why) => folder.check(&format!(", and no run goes on with it: {why}")).map(|()| None),
-        Ok(Some(begun)) => {
-            let Observables { step, time_secs, .. } = begun.state.simulation.observables();
-            let place = folder.path().display();
-            note_line(format_args!("{place}: the run goes on at step {step}, t = {time_secs} s"));
-            Ok(Some(begun))
-        }
-    }
+/// Starts a recording, at the times of the pictures unless it has its own.
+fn start_recording(
+    folder: RecordingFolder,
+    data: &DataSettings,
+    scene: &Scene,
+    picture_times_secs: Vec<f64>,
+) -> Result<Recording> {
+    let mut about = scene_facts(scene)?;
+    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+    let command = words.collect::<Vec<_>>().join(" ").replace(char::is_control, " ");
+    about.facts.insert(1, ("command".to_owned(), command));
+    let times = data.every_secs.map_or(Times::At(picture_times_secs), Times::Every);
+    Ok(Recording::start_in(folder, &formats_of(data)?, &about)?.at(times))
 }
 
 /// What is asked for, read and checked, but for grains that have to settle.
-pub(super) enum RequestedRun {
+enum RequestedRun {
     /// A scene from t = 0 on, with its grains where they start from.
     Scene(Box<Scene>),
     /// A run that was saved, with the changes asked for.
@@ -110,9 +90,9 @@ pub(super) enum RequestedRun {
 }
 
 /// When pictures are taken, and when the run ends, s.
-pub(super) struct PictureSchedule {
-    pub times_secs: Vec<f64>,
-    pub until_secs: f64,
+struct PictureSchedule {
+    times_secs: Vec<f64>,
+    until_secs: f64,
 }
 
 impl RequestedRun {
@@ -120,7 +100,7 @@ impl RequestedRun {
     ///
     /// # Errors
     /// Names what is refused.
-    pub(super) fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
+    fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
         options.saving.validate()?;
         let Some(path) = &options.saving.restart else {
             let start = config.without_settling()?;
@@ -129,13 +109,12 @@ impl RequestedRun {
             return Ok(Self::Scene(Box::new(start)));
         };
         let mut state = SavedState::open(path)?;
-        state.of_run.clear();
         config.change_state(&mut state)?;
         Ok(Self::Run(Box::new(state)))
     }
 
     /// The scene, with the settings asked for.
-    pub(super) fn scene(&self) -> &Scene {
+    fn scene(&self) -> &Scene {
         match self {
             Self::Scene(scene) => scene,
             Self::Run(state) => &state.scene,
@@ -146,11 +125,7 @@ impl RequestedRun {
     ///
     /// # Errors
     /// Where a time is none of the run's.
-    pub(super) fn schedule(
-        &self,
-        config: &Config,
-        options: &HeadlessOptions,
-    ) -> Result<PictureSchedule> {
+    fn schedule(&self, config: &Config, options: &HeadlessOptions) -> Result<PictureSchedule> {
         let times_secs = options.picture_times(self.scene().duration_secs)?;
         // Times alone ask for no more than the last of them.
         let until_secs = match times_secs.last() {
@@ -174,54 +149,22 @@ impl RequestedRun {
         }
     }
 
-    /// Tells commands apart by what they compute and draw; where to, and what they save, is left out.
-    ///
-    /// # Errors
-    /// Where what is asked for cannot be put into bytes.
-    pub(super) fn fingerprint(&self, config: &Config, options: &HeadlessOptions) -> Result<String> {
-        let refuse = |error: &dyn std::fmt::Display| {
-            Error::value("scene", &self.scene().name, format!("written ({error})"))
-        };
-        let pictures = HeadlessOptions {
-            frames: None,
-            overwrite: false,
-            saving: SavingOptions::default(),
-            ..options.clone()
-        };
-        let start = match self {
-            Self::Scene(scene) => rmp_serde::to_vec_named(scene).map_err(|error| refuse(&error))?,
-            Self::Run(state) => state.to_bytes()?,
-        };
-        let config = serde_json::to_vec(config).map_err(|error| refuse(&error))?;
-        let mut hasher = blake3::Hasher::new();
-        for part in [&config[..], format!("{pictures:?}").as_bytes(), &start] {
-            hasher.update(&(part.len() as u64).to_le_bytes());
-            hasher.update(part);
-        }
-        Ok(hasher.finalize().to_hex().to_string())
-    }
-
-    /// The run, once its grains have settled.
+    /// The run, once its grains have settled, and the moment of the saved one that it goes on with.
     ///
     /// # Errors
     /// Where they do not come to rest.
-    pub(super) fn begin(self, config: &Config, times_secs: &[f64]) -> Result<Beginning> {
-        let (state, restarted_from) = match self {
+    fn begin(self, config: &Config) -> Result<(SavedState, Option<Instant>)> {
+        match self {
             Self::Scene(_) => {
                 let scene = settled(config)?;
                 let simulation = scene.simulation()?;
-                (SavedState::new(scene, simulation, Tally::default()), None)
+                Ok((SavedState::new(scene, simulation, Tally::default()), None))
             }
             Self::Run(state) => {
                 let now = Instant::of(state.simulation.observables());
-                (*state, Some(now))
+                Ok((*state, Some(now)))
             }
-        };
-        let is_past =
-            |&secs: &f64| state.simulation.step_at(secs) < state.simulation.observables().step;
-        let next_picture = times_secs.partition_point(is_past);
-        let marks = Marks { next_picture, restarted_from, ..Marks::default() };
-        Ok(Beginning { state, marks })
+        }
     }
 }
 
@@ -234,54 +177,4 @@ pub(crate) fn settled(config: &Config) -> Result<Scene> {
     });
     progress.finish();
     scene
-}
-
-/// A recording that is to be.
-pub(super) struct RecordingPlan {
-    /// A folder of its own; none where a run goes on with the recording that it has.
-    claim: Option<RecordingFolder>,
-    folder: PathBuf,
-    settings: DataSettings,
-}
-
-impl RecordingPlan {
-    /// Takes the folder of a recording that is asked for, unless a run `goes_on` with what is there.
-    ///
-    /// # Errors
-    /// Names what is wrong with the folder.
-    pub(super) fn claim(
-        (folder, settings): (PathBuf, DataSettings),
-        overwrite: bool,
-        goes_on: bool,
-    ) -> Result<Self> {
-        let claim = (!goes_on).then(|| RecordingFolder::of(&folder, overwrite)).transpose()?;
-        Ok(Self { claim, folder, settings })
-    }
-
-    /// Starts it, or goes on with it, at the present state of a run.
-    ///
-    /// # Errors
-    /// Where the folder cannot be written to.
-    pub(super) fn start(
-        self,
-        scene: &Scene,
-        simulation: &Simulation,
-        picture_times: &[f64],
-    ) -> Result<Recording> {
-        let mut about = scene_facts(scene)?;
-        let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
-        let command = words.collect::<Vec<_>>().join(" ").replace(char::is_control, " ");
-        about.facts.insert(1, ("command".to_owned(), command));
-        let times = match self.settings.every_secs {
-            Some(secs) => Times::Every(secs),
-            None => Times::At(picture_times.to_vec()),
-        };
-        let formats = formats_of(&self.settings)?;
-        let step = simulation.observables().step;
-        let recording = match self.claim {
-            Some(claim) => Recording::start_in(claim, &formats, &about)?,
-            None => Recording::go_on(&self.folder, &formats, &about, step)?,
-        };
-        Ok(recording.at(times, simulation))
-    }
 }

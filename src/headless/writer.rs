@@ -1,5 +1,4 @@
-//! What a run writes: its table, pictures, animations, recording and manifest, and the checkpoints from which all of
-//! them go on.
+//! What a run writes: its table, pictures, animations, recording and manifest, and its checkpoints.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -7,8 +6,8 @@ use std::path::Path;
 use image::RgbaImage;
 
 use super::HeadlessOptions;
-use super::folder::{Checkpoints, Marks};
-use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
+use super::folder::Checkpoints;
+use super::manifest::{Ended, Instant, Manifest, PictureEntry, RunEntry, ShownMoment};
 use super::options::PictureSize;
 use super::table::ObservablesTable;
 use super::waiting::WaitingStates;
@@ -17,7 +16,7 @@ use crate::data::Recording;
 use crate::error::{Error, Result, legible};
 use crate::film::{Animation, Video};
 use crate::output::{Progress, Signal, caught_signal, counted, note_line, print_line};
-use crate::render::{Camera, Renderer, Style, draw_scene};
+use crate::render::{Camera, Style, draw_scene};
 use crate::scene::{Scene, View};
 use crate::sim::{Alarm, AlarmKind, Observables, Simulation, Snapshot, Tally};
 use crate::solver::Method;
@@ -34,7 +33,6 @@ pub(super) struct RunWriter<'a> {
     options: &'a HeadlessOptions,
     scene: &'a Scene,
     progress: Progress,
-    renderer: Renderer,
     style: Style,
     camera: Camera,
     table: Option<ObservablesTable>,
@@ -47,74 +45,45 @@ pub(super) struct RunWriter<'a> {
     pub recording: Option<Recording>,
     manifest: Manifest,
     provenance: Provenance,
-    checkpoints: Option<Checkpoints>,
-    /// Where the run begins, and where it has come to.
-    marks: Marks,
+    /// What saves it now and then.
+    pub checkpoints: Option<Checkpoints>,
 }
 
 impl<'a> RunWriter<'a> {
-    /// Starts the files of a run that goes on from `marks` to step `end`.
+    /// Starts the files of a run to step `end`, which may go on with a saved one from a moment on.
     pub(super) fn open(
         options: &'a HeadlessOptions,
-        renderer: Renderer,
         scene: &'a Scene,
         end: u64,
         provenance: Provenance,
-        marks: Marks,
-        checkpoints: Option<Checkpoints>,
+        restarted_from: Option<Instant>,
     ) -> Result<Self> {
         let size = options.size()?;
         let View { min, max } = scene.view();
         let style = options.style()?;
-        let mut manifest = Manifest::new(renderer.name());
-        manifest.pictures.clone_from(&marks.pictures);
-        manifest.runs.push(RunEntry {
-            restarted_from: marks.restarted_from,
-            went_on_at: marks.went_on_at.clone(),
-            ..RunEntry::start(RUN, scene)?
-        });
-        let folder = options.frames.as_deref();
-        let table = |folder: &Path| match marks.went_on_at.is_empty() {
-            true => ObservablesTable::start(folder),
-            false => ObservablesTable::go_on(folder, marks.table),
-        };
+        let mut manifest = Manifest::new();
+        manifest.runs.push(RunEntry { restarted_from, ..RunEntry::start(RUN, scene)? });
+        let table = |folder: &Path| ObservablesTable::start(folder.join("observables.csv"));
         let rate_hz = options.video_rate_hz()?;
         let film = |path: &Path| Video::start(path, rate_hz);
         let animate = |path: &Path| Animation::start(path, GIF_RATE_HZ);
-        let mut writer = Self {
+        let writer = Self {
             options,
             scene,
             progress: Progress::new(&scene.name, end),
             camera: style.camera(min, max, size.width, size.height),
-            table: folder.map(table).transpose()?,
+            table: options.frames.as_deref().map(table).transpose()?,
             gif: options.gif.as_deref().map(animate).transpose()?,
             video: options.video.as_deref().map(film).transpose()?,
-            waiting: WaitingStates::asked_for(options, &style, &marks, checkpoints.is_some())?,
+            waiting: WaitingStates::asked_for(options, &style)?,
             style,
             recording: None,
             manifest,
             provenance,
-            renderer,
-            checkpoints,
-            marks,
+            checkpoints: None,
         };
-        writer.animate_earlier_pictures()?;
         writer.write_manifest()?;
         Ok(writer)
-    }
-
-    /// Gives GIF and video the pictures that a run has left before it goes on.
-    fn animate_earlier_pictures(&mut self) -> Result<()> {
-        if self.gif.is_none() && self.video.is_none() {
-            return Ok(());
-        }
-        let folder = self.options.frames.as_deref().unwrap_or(Path::new(""));
-        for PictureEntry { file, .. } in &self.marks.pictures.clone() {
-            let path = folder.join(file);
-            let image = image::open(&path).map_err(|error| Error::file(&path, error))?;
-            self.animate(image.into_rgba8())?;
-        }
-        Ok(())
     }
 
     fn end_recording(&mut self) -> Result<()> {
@@ -125,28 +94,12 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    /// How far everything has come, once all of that is on the disk.
-    fn marks(&mut self) -> Result<Marks> {
-        // It knows itself what it has of which step.
-        self.recording.as_mut().map_or(Ok(()), Recording::flush)?;
-        Ok(Marks {
-            table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
-            waiting: self.waiting.as_ref().map_or(Ok(0), WaitingStates::mark)?,
-            pictures: self.manifest.pictures.clone(),
-            ..self.marks.clone()
-        })
-    }
-
     fn checkpoint(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
-        if self.checkpoints.is_none() {
-            return Ok(());
-        }
-        let marks = self.marks()?;
         let checkpoints = self.checkpoints.as_mut();
-        checkpoints.map_or(Ok(()), |it| it.write(self.scene, simulation, tally, marks))
+        checkpoints.map_or(Ok(()), |it| it.write(self.scene, simulation, tally))
     }
 
-    /// Saves the run as it has ended, for the same command and for others.
+    /// Saves the run as it has ended.
     fn save(&mut self, recorded: &Recorded) -> Result<()> {
         let Recorded { simulation, tally, failure, .. } = recorded;
         let checkpoint = match failure {
@@ -216,7 +169,7 @@ impl<'a> RunWriter<'a> {
     fn draw(&mut self, number: usize, snapshot: &Snapshot) -> Result<()> {
         let PictureSize { width, height } = self.options.size()?;
         let (style, camera) = (&self.style, &self.camera);
-        let image = draw_scene(&mut self.renderer, snapshot, style, camera, width, height)?;
+        let image = draw_scene(snapshot, style, camera, width, height)?;
         if let Some(folder) = &self.options.frames {
             let file = format!("frame_{number:05}.png");
             let time_secs = asked_time_secs(snapshot.observables.time_secs);
@@ -278,7 +231,6 @@ impl Recorder for RunWriter<'_> {
     }
 
     fn state(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
-        // Before the checkpoint, which is to have it.
         let recording = self.recording.as_mut();
         recording.map_or(Ok(()), |recording| recording.add_if_due(simulation))?;
         let is_due = self.checkpoints.as_ref().is_some_and(|it| it.is_due(simulation));
@@ -290,9 +242,7 @@ impl Recorder for RunWriter<'_> {
         match &mut self.waiting {
             Some(waiting) => waiting.add(&self.style, number, snapshot),
             None => self.draw(number, &snapshot),
-        }?;
-        self.marks.next_picture = number + 1;
-        Ok(())
+        }
     }
 }
 

@@ -54,7 +54,7 @@ const LEAST_RADIUS_PX: f32 = 0.5;
 
 /// One disc. Lengths in pixels; positions relative to the middle of the picture, y up.
 #[repr(C)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[cfg_attr(feature = "window", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DiscInstance {
     /// Centre.
@@ -126,7 +126,7 @@ const LEAST_HALF_WIDTH_PX: f32 = 0.5;
 
 /// One link. Lengths in pixels; positions relative to the middle of the picture, y up.
 #[repr(C)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[cfg_attr(feature = "window", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LinkInstance {
     /// One end, in the middle of its round cap.

@@ -183,31 +183,9 @@ fn a_frame_carries_the_command_that_draws_it_bit_for_bit() {
 }
 
 #[test]
-fn pictures_are_drawn_without_any_gpu() {
-    let folder = folder();
-    slump()
-        .args(["--headless", "--scene", "collision", "--times", "0.5,0.1", "--renderer", "cpu"])
-        .arg("--frames")
-        .arg(folder.path())
-        .assert()
-        .success();
-    let manifest =
-        std::fs::read_to_string(folder.path().join("manifest.json")).expect("a manifest");
-    assert!(manifest.contains("\"renderer\": \"cpu\""), "{manifest}");
-}
-
-#[test]
 #[ignore = "SLUMP_PROGRAM is to name a program built with --no-default-features"]
-fn a_build_without_window_or_gpu_says_which_feature_brings_it() {
+fn a_build_without_window_says_which_feature_brings_it() {
     assert!(refusal(&[]).contains("no window: build it with the feature window"));
-    let folder = folder();
-    let out = folder.path().to_str().expect("UTF-8");
-    let frames = ["--headless", "--scene", "collision", "--frames", out, "--renderer"];
-    for kind in ["vulkan", "gl"] {
-        let said = refusal(&[&frames[..], &[kind]].concat());
-        assert!(said.contains(&format!("nothing by {kind}: build it with the feature gpu")));
-    }
-    slump().args(frames).arg("auto").assert().success();
 }
 
 #[test]

@@ -173,23 +173,18 @@ fn what_ffmpeg_says_last_is_told_where_it_fails() {
 
 #[cfg(unix)]
 #[test]
-fn a_run_that_is_stopped_has_a_whole_video_and_leaves_what_it_would_have_left_when_it_goes_on() {
+fn a_run_that_is_stopped_has_a_whole_video() {
     use std::os::unix::process::CommandExt;
     use std::time::{Duration, Instant};
     let run = |folder: &Path| {
         let mut command = Command::new(program());
         command.args(["--headless", "--bond", "20", "--dt", "1e-3", "--duration", "0.3"]);
         command.args(["--fps", "50", "--size", "160x100", "--renderer", "cpu"]);
-        command.args(["--checkpoint-every", "100", "--frames"]).arg(folder);
+        command.arg("--frames").arg(folder);
         command.arg("--video").arg(folder.join("a.mp4"));
         command
     };
-    let (whole, stopped) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    assert!(run(whole.path()).output().expect("the program starts").status.success());
-    let whole = whole.path().join("a.mp4");
-    assert_eq!(probe(&whole).pictures, 16);
-    let whole = std::fs::read(whole).expect("a video");
-
+    let stopped = tempfile::tempdir().unwrap();
     let mut child = run(stopped.path()).process_group(0).spawn().expect("the program starts");
     let begun = Instant::now();
     while !stopped.path().join("frame_00003.png").exists() {
@@ -202,9 +197,6 @@ fn a_run_that_is_stopped_has_a_whole_video_and_leaves_what_it_would_have_left_wh
         Command::new("kill").args(["-s", "INT", "--", &group]).status().expect("kill").success()
     );
     assert_eq!(child.wait().expect("an end").code(), Some(130));
-    let video = stopped.path().join("a.mp4");
-    let part = probe(&video).pictures;
+    let part = probe(&stopped.path().join("a.mp4")).pictures;
     assert!((4..16).contains(&part), "the pictures so far: {part}");
-    assert!(run(stopped.path()).output().expect("the program starts").status.success());
-    assert!(std::fs::read(&video).expect("a video") == whole, "as if it had not been stopped");
 }

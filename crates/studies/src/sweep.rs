@@ -191,7 +191,7 @@ fn recording_of(
     let Some(data) = &study.data else { return Ok(None) };
     let path = data_path(folder, &run.key);
     let recording = Recording::start(&path, &formats_of(data)?, &scene_facts(scene)?, true)?;
-    Ok(Some(recording.at(Times::of(data), &scene.simulation()?)))
+    Ok(Some(recording.at(Times::of(data))))
 }
 
 /// Where the recording of the run with a key lies.

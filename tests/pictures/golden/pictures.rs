@@ -1,46 +1,40 @@
-//! The pictures that are kept in `screenshots/`, each as a function of a renderer.
+//! The pictures that are kept in `screenshots/`, each as a function.
 
 use image::RgbaImage;
 use slump::error::Result;
-use slump::render::{ColourBy, PanelGrid, Renderer, Style, Theme, bounds, draw_scene};
+use slump::render::{ColourBy, PanelGrid, Style, Theme, bounds, draw_scene};
 use slump::sim::Snapshot;
 
 use crate::golden::states;
 
 /// Name of the file without its ending, and what draws it.
-pub type Golden = (&'static str, fn(&mut Renderer) -> Result<RgbaImage>);
+pub type Golden = (&'static str, fn() -> Result<RgbaImage>);
 
 /// All golden pictures.
 pub const GOLDENS: [Golden; 5] = [
-    ("pile-greys", |renderer| scene(renderer, &states::pile(), &Style::default(), 640, 400)),
-    ("pile-forces", |renderer| {
+    ("pile-greys", || scene(&states::pile(), &Style::default(), 640, 400)),
+    ("pile-forces", || {
         let style = Style { show_forces: true, ..Style::default() };
-        scene(renderer, &states::pile(), &style, 640, 400)
+        scene(&states::pile(), &style, 640, 400)
     }),
-    ("pile-speed", |renderer| {
+    ("pile-speed", || {
         let style = Style { colour_by: ColourBy::Speed, ..Style::default() };
-        scene(renderer, &states::pile(), &style, 640, 400)
+        scene(&states::pile(), &style, 640, 400)
     }),
-    ("cradle", |renderer| {
+    ("cradle", || {
         let style = Style { angles: true, ..Style::default() };
-        scene(renderer, &states::cradle(), &style, 640, 320)
+        scene(&states::cradle(), &style, 640, 320)
     }),
     ("figure", figure),
 ];
 
-fn scene(
-    renderer: &mut Renderer,
-    snapshot: &Snapshot,
-    style: &Style,
-    width: u32,
-    height: u32,
-) -> Result<RgbaImage> {
+fn scene(snapshot: &Snapshot, style: &Style, width: u32, height: u32) -> Result<RgbaImage> {
     let [min, max] = bounds(snapshot).expect("the hand-made states are not empty");
     let camera = style.camera(min, max, width, height);
-    draw_scene(renderer, snapshot, style, &camera, width, height)
+    draw_scene(snapshot, style, &camera, width, height)
 }
 
-fn figure(renderer: &mut Renderer) -> Result<RgbaImage> {
+fn figure() -> Result<RgbaImage> {
     let light = Style { scale_bar: false, ..Style::default() };
     let dark = Style { theme: Theme::Dark, ..light.clone() };
     let styles = [
@@ -50,10 +44,8 @@ fn figure(renderer: &mut Renderer) -> Result<RgbaImage> {
         Style { colour_by: ColourBy::Coordination, show_forces: true, ..dark },
     ];
     let pile = states::pile();
-    let panels = styles
-        .iter()
-        .map(|style| scene(renderer, &pile, style, 330, 190))
-        .collect::<Result<Vec<_>>>()?;
+    let panels =
+        styles.iter().map(|style| scene(&pile, style, 330, 190)).collect::<Result<Vec<_>>>()?;
     let mut grid = PanelGrid::new(2, 2, panels);
     grid.title = "Panels, labels and themes".to_owned();
     grid.column_labels = vec!["Δt = 10⁻⁴ s".to_owned(), "Δt = 5·10⁻³ s".to_owned()];

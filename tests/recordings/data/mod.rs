@@ -2,10 +2,10 @@
 
 mod columns;
 mod expected;
+mod folders;
 mod initial;
 mod options;
 mod refusals;
-mod resumed;
 mod studies;
 mod tables;
 #[cfg(unix)]

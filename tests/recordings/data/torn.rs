@@ -121,13 +121,6 @@ fn what_a_kill_leaves_of_a_file_that_was_whole_is_no_rows_and_goes_with_the_next
     assert!(again.status.success(), "{}", said(&again));
     assert_eq!(hidden(folder.path()), Vec::<String>::new());
     assert_eq!(rows("after"), expected);
-
-    plant();
-    let scene = super::scene("pile");
-    let about = slump::config::scene_facts(&scene).expect("facts");
-    let formats = [slump::data::FormatName::Parquet];
-    drop(slump::data::Recording::go_on(folder.path(), &formats, &about, 0).expect("goes on"));
-    assert_eq!(hidden(folder.path()), Vec::<String>::new());
 }
 
 #[test]

@@ -99,10 +99,6 @@ pub fn start(folder: &Path) -> Recording {
     Recording::start(folder, FORMATS, &about(), false).expect("a recording")
 }
 
-pub fn go_on(folder: &Path, step: u64) -> Recording {
-    Recording::go_on(folder, FORMATS, &about(), step).expect("a recording to go on with")
-}
-
 /// Writes frames of the numbers, each of the step ten times as high.
 pub fn write(recording: &mut Recording, numbers: std::ops::Range<u64>) {
     for number in numbers {

@@ -1,10 +1,10 @@
-//! Series and dumps as they grow, and as they are rolled back.
+//! Series and dumps as they grow.
 
 use std::path::Path;
 
 use slump::data::Recording;
 
-use crate::formats::moments::{FORMATS, about, go_on, start, write};
+use crate::formats::moments::{FORMATS, about, start, write};
 use crate::formats::whole::{frames_of_dump, frames_of_series};
 
 #[test]
@@ -24,44 +24,6 @@ fn a_series_is_whole_after_every_frame_of_many() {
 }
 
 #[test]
-fn rolled_back_frames_are_as_if_they_had_never_been() {
-    for (written, kept) in [(5, 3), (5, 5), (40, 1), (40, 39)] {
-        let [rolled, straight] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
-        write(&mut start(rolled.path()), 0..written);
-        // A step that no frame has: it lies after the last one that stays.
-        let mut later = go_on(rolled.path(), 10 * kept - 1);
-        assert_eq!(names(rolled.path()).len() as u64, 4 + 2 * kept, "{written}, {kept}");
-        write(&mut later, kept..written + 2);
-        write(&mut start(straight.path()), 0..written + 2);
-        assert_eq!(names(rolled.path()), names(straight.path()), "{written}, {kept}");
-        for name in names(straight.path()) {
-            let [found, expected] = [&rolled, &straight].map(|folder| said(folder.path(), &name));
-            assert!(found == expected, "{name} of {written}, {kept}");
-        }
-    }
-}
-
-#[test]
-fn a_frame_that_only_some_formats_have_is_written_again() {
-    for kept in [0, 2] {
-        let [cut, straight] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
-        write(&mut start(cut.path()), 0..3);
-        // As a kill would leave it between the last frames' files and the list of frames.
-        let list = cut.path().join("frames.csv");
-        let text = std::fs::read_to_string(&list).expect("a list");
-        let lines: Vec<&str> = text.lines().collect();
-        let until_kept = lines.len() - 3 + kept;
-        std::fs::write(&list, lines[..until_kept].join("\n") + "\n").expect("a list");
-        write(&mut go_on(cut.path(), 25), kept as u64..4);
-        write(&mut start(straight.path()), 0..4);
-        for name in names(straight.path()) {
-            let [found, expected] = [&cut, &straight].map(|folder| said(folder.path(), &name));
-            assert!(found == expected, "{name} after {kept} frames");
-        }
-    }
-}
-
-#[test]
 fn an_earlier_recording_is_removed_with_all_its_files() {
     let folder = tempfile::tempdir().expect("a folder");
     write(&mut start(folder.path()), 0..3);
@@ -70,15 +32,6 @@ fn an_earlier_recording_is_removed_with_all_its_files() {
     std::fs::write(&kept, "not of a recording").expect("a file");
     drop(Recording::start(folder.path(), FORMATS, &about(), true).expect("a recording"));
     assert_eq!(names(folder.path()), ["vtk/grains_1.vtp"]);
-}
-
-/// What a file says; of a series without its blanks, of which there may be more.
-fn said(folder: &Path, name: &str) -> Vec<u8> {
-    let mut bytes = std::fs::read(folder.join(name)).expect("a file");
-    if name.ends_with(".pvd") {
-        bytes.retain(|byte| !byte.is_ascii_whitespace());
-    }
-    bytes
 }
 
 /// Files of a recording, sorted.

@@ -44,9 +44,6 @@ pub struct SavedState {
     pub simulation: Simulation,
     /// Sums over its steps so far.
     pub tally: Tally,
-    /// What a run that goes on in the folder of its own keeps besides; it means something to that alone.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub of_run: Vec<u8>,
 }
 
 impl SavedState {
@@ -54,7 +51,7 @@ impl SavedState {
     /// where nobody wants them.
     pub fn new(mut scene: Scene, simulation: Simulation, tally: Tally) -> Self {
         scene.set_settings(*simulation.settings());
-        Self { scene, simulation, tally, of_run: Vec::new() }
+        Self { scene, simulation, tally }
     }
 
     /// Writes it to a file, which is there as a whole or not at all.

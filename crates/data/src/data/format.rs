@@ -63,7 +63,7 @@ impl Frame {
 /// A way to write frames down. It is used by one thread, which is not the solver's.
 ///
 /// Whatever was written before stays readable whenever the program is killed. A format starts in a
-/// folder that has none of its files, or, with [`Format::roll_back`] as the next call, in one that has.
+/// folder that has none of its files.
 pub(super) trait Format: Send {
     /// Takes the next frame. Its memory must not grow with the number of frames.
     fn add(&mut self, frame: &Frame) -> Result<()>;
@@ -83,10 +83,6 @@ pub(super) trait Format: Send {
     fn finish(&mut self) -> Result<()> {
         self.flush()
     }
-
-    /// Drops what steps after `step` measured, and all frames after that of the step `last_frame`, or all that
-    /// there are, so that the run can go on from `step`.
-    fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()>;
 }
 
 /// What is written where nothing is said.
@@ -119,7 +115,7 @@ pub fn check_format(format: FormatName) -> Result<()> {
     Err(Error::value("data-format", format.name(), allowed))
 }
 
-/// Starts, or goes on with what is there.
+/// Starts one.
 pub(super) fn start_format(
     format: FormatName,
     folder: &Path,

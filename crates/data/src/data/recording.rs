@@ -5,9 +5,9 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
 use super::columns::{FrameRow, frames};
-use super::csv::{KeptRows, TextTable};
+use super::csv::TextTable;
 use super::format::{Format, Frame, RunFacts, check_format, start_format};
-use super::recording_folder::{FRAMES, RecordingFolder, check_manifest, write_manifest};
+use super::recording_folder::{FRAMES, RecordingFolder, write_manifest};
 use crate::error::Result;
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{Moment, Observables, Simulation};
@@ -48,8 +48,6 @@ pub struct Recording {
     /// Rows that wait for the next frame.
     rows: Vec<Observables>,
     frames: u64,
-    /// Step of the last frame that was there when it was gone on with.
-    last_step: Option<u64>,
     schedule: Option<FrameSchedule>,
     /// None once the recording has ended, be it by an error.
     writer: Option<WriterThread>,
@@ -90,38 +88,10 @@ impl Recording {
         // First of all: it is by this that others know a recording.
         write_manifest(folder.path(), formats, facts)?;
         let writer = FormatsWriter::start(folder.path(), formats, facts)?;
-        Ok(Self::with(folder, writer, 0, None))
-    }
-
-    /// Goes on with the recording in a folder, for a run that goes on from a step: what was recorded after
-    /// it is dropped. Without a recording there one is started.
-    ///
-    /// # Errors
-    /// As [`Recording::start`], and where a file there is not what this version writes.
-    pub fn go_on(
-        folder: &Path,
-        formats: &[FormatName],
-        facts: &RunFacts,
-        step: u64,
-    ) -> Result<Self> {
-        let folder = RecordingFolder::to_go_on(folder)?;
-        check_manifest(folder.path(), formats)?;
-        let mut writer = FormatsWriter::start(folder.path(), formats, facts)?;
-        let kept = writer.roll_back(step)?;
-        write_manifest(folder.path(), formats, facts)?;
-        Ok(Self::with(folder, writer, kept.rows, kept.step))
-    }
-
-    fn with(
-        folder: RecordingFolder,
-        writer: FormatsWriter,
-        frames: u64,
-        last_step: Option<u64>,
-    ) -> Self {
         let (sender, messages) = sync_channel(MOST_WAITING);
         let thread = std::thread::spawn(move || writer.run(&messages));
         let writer = Some(WriterThread { sender, thread });
-        Self { folder, rows: Vec::new(), frames, last_step, schedule: None, writer }
+        Ok(Self { folder, rows: Vec::new(), frames: 0, schedule: None, writer })
     }
 
     /// Where it is.
@@ -155,14 +125,9 @@ impl Recording {
         Ok(())
     }
 
-    /// Has frames made at the steps nearest to some times of a run that is at this state, by
-    /// [`Recording::add_if_due`]. Where the recording is gone on with, it has those up to here.
-    pub fn at(mut self, times: Times, simulation: &Simulation) -> Self {
-        let mut schedule = FrameSchedule::new(times);
-        if self.last_step.is_some() {
-            schedule.is_due(simulation);
-        }
-        self.schedule = Some(schedule);
+    /// Has frames made at the steps nearest to some times of the run, by [`Recording::add_if_due`].
+    pub fn at(mut self, times: Times) -> Self {
+        self.schedule = Some(FrameSchedule { times, next: 0 });
         self
     }
 
@@ -249,20 +214,12 @@ struct FormatsWriter {
 }
 
 impl FormatsWriter {
-    /// Starts in a folder that has no recording, or goes on with the one that is there.
+    /// Starts in a folder that has no recording.
     fn start(folder: &Path, formats: &[FormatName], facts: &RunFacts) -> Result<Self> {
         let formats = formats.iter().map(|format| start_format(*format, folder, facts));
         let formats = formats.collect::<Result<_>>()?;
         let index = TextTable::new(folder.join(FRAMES), &RunFacts::default(), &frames(&[]));
         Ok(Self { formats, index, waiting: Vec::new() })
-    }
-
-    /// Drops what was recorded after a step, and frames that not every format has.
-    fn roll_back(&mut self, step: u64) -> Result<KeptRows> {
-        let kept = self.index.roll_back(Some(step))?;
-        let mut formats = self.formats.iter_mut();
-        formats.try_for_each(|format| format.roll_back(step, kept.step))?;
-        Ok(kept)
     }
 
     /// Writes what comes until no more can come. What fails ends the recording; what was written before
@@ -346,11 +303,6 @@ struct FrameSchedule {
 }
 
 impl FrameSchedule {
-    /// Frames at the steps nearest to some times.
-    fn new(times: Times) -> Self {
-        Self { times, next: 0 }
-    }
-
     /// Whether a frame is to be made of the present state. Steps are to be asked for in turn.
     fn is_due(&mut self, simulation: &Simulation) -> bool {
         let latest_secs = simulation.time_secs() + 0.5 * simulation.parameters().time_step_secs;
@@ -392,7 +344,7 @@ mod tests {
     use super::*;
 
     fn due(times: Times, time_step_secs: f64, until: u64) -> Vec<u64> {
-        let mut schedule = FrameSchedule::new(times);
+        let mut schedule = FrameSchedule { times, next: 0 };
         let step_at = |secs: f64| (secs / time_step_secs).round() as u64;
         let latest_secs = |step: u64| (step as f64 + 0.5) * time_step_secs;
         let is_due = |&step: &u64| schedule.is_due_at(step, latest_secs(step), step_at);

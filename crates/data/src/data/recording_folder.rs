@@ -37,7 +37,8 @@ impl RecordingFolder {
     /// Where it cannot be written to, another recording is being written to it, or, without `overwrite`, an
     /// earlier one is there.
     pub fn of(path: &Path, overwrite: bool) -> Result<Self> {
-        let folder = Self::lock(path)?;
+        check_writable("data", path)?;
+        let lock = FolderLock::of(path, Locked::Recording)?;
         if !overwrite && let Some(first) = files_of_a_recording(path)?.first() {
             let name = first.strip_prefix(path).unwrap_or(first).display();
             let allowed = format!(
@@ -46,25 +47,7 @@ impl RecordingFolder {
             );
             return Err(Error::value("data", path.display(), allowed));
         }
-        Ok(Self { overwrite, ..folder })
-    }
-
-    /// Takes a folder to go on with the recording that is there, but for what a kill left of its files.
-    ///
-    /// # Errors
-    /// As [`RecordingFolder::of`].
-    pub fn to_go_on(path: &Path) -> Result<Self> {
-        let folder = Self::lock(path)?;
-        let mut left = files_of_a_recording(path)?;
-        left.retain(|file| is_left(file));
-        left.iter().try_for_each(|file| remove(file))?;
-        Ok(folder)
-    }
-
-    fn lock(path: &Path) -> Result<Self> {
-        check_writable("data", path)?;
-        let lock = FolderLock::of(path, Locked::Recording)?;
-        Ok(Self { path: path.to_owned(), overwrite: false, _lock: lock })
+        Ok(Self { path: path.to_owned(), overwrite, _lock: lock })
     }
 
     /// The folder.
@@ -116,12 +99,6 @@ pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Resu
     }
     files.sort();
     Ok(files)
-}
-
-/// Whether a file is what a kill left of one.
-fn is_left(path: &Path) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str());
-    name.is_some_and(|name| final_name(name) != name)
 }
 
 /// Removes a file.
@@ -176,21 +153,6 @@ pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFac
         serde_json::to_string_pretty(&manifest).map_err(|error| Error::file(&path, error))?;
     text.push('\n');
     write_file(&path, text.as_bytes())
-}
-
-/// Refuses to go on with a recording in other formats.
-pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()> {
-    let path = folder.join(MANIFEST);
-    // Without one there is no recording yet.
-    let Ok(text) = std::fs::read(&path) else { return Ok(()) };
-    let manifest: Value = serde_json::from_slice(&text)
-        .map_err(|error| Error::unread(&path, error, "the manifest of a recording"))?;
-    if manifest["formats"] == json!(formats) {
-        return Ok(());
-    }
-    let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
-    let allowed = format!("as {} has it: {}", path.display(), manifest["formats"]);
-    Err(Error::value("data-format", names.join(","), allowed))
 }
 
 fn column_in_manifest(column: &Column) -> Value {

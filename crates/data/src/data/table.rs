@@ -1,7 +1,5 @@
 //! Tables of named columns, whatever writes them.
 
-#[cfg(feature = "data")]
-use crate::column_spec::STEP;
 use crate::column_spec::{CellValue, ColumnSpec};
 
 /// A table: columns of one length.
@@ -201,7 +199,7 @@ impl Table {
     }
 }
 
-/// Tables whose rows become more, and fewer again.
+/// Tables that grow.
 #[cfg(feature = "data")]
 impl Table {
     /// Adds the rows of a table of the same columns.
@@ -211,24 +209,10 @@ impl Table {
         }
     }
 
-    /// The steps of the rows.
-    pub(super) fn steps(&self) -> &[u64] {
-        match self.column(STEP).map(|column| &column.values) {
-            Some(Values::Counts(steps)) => steps,
-            _ => &[],
-        }
-    }
-
-    /// Drops the rows after a step, or all.
-    pub(super) fn keep_until(&mut self, step: Option<u64>) {
-        let rows = self.steps().partition_point(|&there| Some(there) <= step);
-        self.truncate(rows);
-    }
-
-    /// Drops all rows but the first ones.
-    pub(super) fn truncate(&mut self, rows: usize) {
+    /// Drops all rows.
+    pub(super) fn clear(&mut self) {
         for column in &mut self.columns {
-            each_kind!(&mut column.values, list => list.truncate(rows));
+            each_kind!(&mut column.values, list => list.clear());
         }
     }
 

@@ -1,9 +1,5 @@
 //! Recordings as Parquet: a folder a table, of files that are whole.
 
-mod decode;
-
-pub(super) use decode::{Decoded, ParquetFile};
-
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -17,7 +13,7 @@ use parquet::schema::types::{ColumnPath, Type};
 
 use super::columns::empty_tables_of_frames;
 use super::format::{Format, Frame, RunFacts};
-use super::recording_folder::{make_folder, numbered_parts, path_of_part, remove};
+use super::recording_folder::{make_folder, path_of_part};
 use super::table::{Column, Table, Values};
 use crate::error::{Error, Result};
 use crate::output::PendingFile;
@@ -39,7 +35,7 @@ pub(super) struct Parquet {
 }
 
 impl Parquet {
-    /// Starts, or goes on with what is there.
+    /// Starts.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let start = |table| GrowingParts::start(folder, facts, table);
         let of_frames = empty_tables_of_frames().into_iter().map(start).collect::<Result<_>>()?;
@@ -60,11 +56,6 @@ impl Format for Parquet {
     fn flush(&mut self) -> Result<()> {
         let mut tables = self.of_frames.iter_mut().chain([&mut self.steps]);
         tables.try_for_each(GrowingParts::flush)
-    }
-
-    fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()> {
-        self.of_frames.iter_mut().try_for_each(|parts| parts.roll_back(last_frame))?;
-        self.steps.roll_back(Some(step))
     }
 }
 
@@ -96,13 +87,11 @@ impl GrowingParts {
     fn add(&mut self, rows: &Table) -> Result<()> {
         self.rows.append(rows);
         self.has_news |= !rows.is_empty();
-        if self.rows.size() < SIZE_OF_PART { Ok(()) } else { self.end_part() }
-    }
-
-    fn end_part(&mut self) -> Result<()> {
-        self.flush()?;
-        self.number += 1;
-        self.rows.truncate(0);
+        if self.rows.size() >= SIZE_OF_PART {
+            self.flush()?;
+            self.number += 1;
+            self.rows.clear();
+        }
         Ok(())
     }
 
@@ -121,32 +110,6 @@ impl GrowingParts {
         // A run does not wait for the disk.
         file.finish(false)?;
         (self.has_news, self.has_file) = (false, true);
-        Ok(())
-    }
-
-    /// Drops the rows after a step, or all.
-    fn roll_back(&mut self, step: Option<u64>) -> Result<()> {
-        self.rows.truncate(0);
-        (self.number, self.has_news, self.has_file) = (0, false, false);
-        // From the last on, so that what is left is whole whenever this is stopped.
-        for (number, path) in numbered_parts(&self.folder)?.into_iter().rev() {
-            let mut rows = self.rows.clone();
-            ParquetFile::open(&path)?.read_into(&mut rows)?;
-            if rows.steps().first().is_none_or(|&first| Some(first) > step) {
-                remove(&path)?;
-                continue;
-            }
-            let all = rows.len();
-            rows.keep_until(step);
-            (self.number, self.has_file) = (number, true);
-            self.has_news = rows.len() < all;
-            self.rows = rows;
-            self.flush()?;
-            if self.rows.size() >= SIZE_OF_PART {
-                self.end_part()?;
-            }
-            return Ok(());
-        }
         Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! Recordings that go on, and what several want of one folder.
+//! When frames are made, and what several recordings want of one folder.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -24,19 +24,6 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
-#[track_caller]
-fn assert_same_files(found: &Path, expected: &Path, what: &str) {
-    let (found, expected) = (files(found), files(expected));
-    assert_eq!(
-        found.keys().collect::<Vec<_>>(),
-        expected.keys().collect::<Vec<_>>(),
-        "the files, {what}"
-    );
-    for (name, bytes) in &expected {
-        assert!(found[name] == *bytes, "{name} differs, {what}");
-    }
-}
-
 fn whole(folder: &Path, scene: &Scene, formats: &[FormatName], steps: u64) {
     let mut recording = start(folder, formats, scene);
     record(&mut recording, &mut scene.simulation().expect("a scene"), steps, 2);
@@ -44,60 +31,7 @@ fn whole(folder: &Path, scene: &Scene, formats: &[FormatName], steps: u64) {
 }
 
 #[test]
-fn what_goes_on_is_what_was_never_stopped() {
-    let formats = [FormatName::Parquet, FormatName::Csv];
-    let pile = scene("pile");
-    let folder = folder();
-    let expected = folder.path().join("whole");
-    whole(&expected, &pile, &formats, 120);
-    // Before the first frame, within the first part, at a frame, between two, and at the end.
-    for stopped_at in [0, 1, 9, 40, 77, 120] {
-        let path = folder.path().join(format!("from-{stopped_at}"));
-        let mut simulation = pile.simulation().expect("a scene");
-        let mut recording = start(&path, &formats, &pile);
-        record(&mut recording, &mut simulation, stopped_at, 2);
-        let saved = simulation.clone();
-        // The run goes on for a while, and is stopped after its checkpoint.
-        record(&mut recording, &mut simulation, 120 - stopped_at, 2);
-        drop(recording);
-        let mut simulation = saved;
-        let about = slump::config::scene_facts(&pile).expect("facts");
-        let mut recording =
-            Recording::go_on(&path, &formats, &about, stopped_at).expect("it goes on");
-        assert_eq!(recording.frames(), stopped_at / 2);
-        record(&mut recording, &mut simulation, 120 - stopped_at, 2);
-        recording.finish().expect("a recording");
-        assert_same_files(&path, &expected, &format!("from step {stopped_at}"));
-    }
-}
-
-#[test]
-fn what_a_kill_tore_is_mended_when_it_goes_on() {
-    let formats = [FormatName::Parquet, FormatName::Csv];
-    let pile = scene("pile");
-    let folder = folder();
-    let (expected, torn) = (folder.path().join("whole"), folder.path().join("torn"));
-    whole(&expected, &pile, &formats, 40);
-    whole(&torn, &pile, &formats, 30);
-    // Half rows, and a frame that the index does not know.
-    let cut = |file: &str, by: u64| {
-        let file = std::fs::OpenOptions::new().write(true).open(torn.join(file)).expect("a file");
-        let length = file.metadata().expect("a length").len();
-        file.set_len(length - by).expect("cut");
-    };
-    cut("csv/grains.csv", 7);
-    cut("frames.csv", 2);
-    let mut simulation = pile.simulation().expect("a scene");
-    simulation.take_steps(25).expect("a finite state");
-    let about = slump::config::scene_facts(&pile).expect("facts");
-    let mut recording = Recording::go_on(&torn, &formats, &about, 25).expect("it goes on");
-    record(&mut recording, &mut simulation, 15, 2);
-    recording.finish().expect("a recording");
-    assert_same_files(&torn, &expected, "mended");
-}
-
-#[test]
-fn frames_that_are_there_are_not_made_again() {
+fn frames_are_made_where_they_are_due() {
     let pile = scene("pile");
     let folder = folder();
     let about = RunFacts::default();
@@ -105,18 +39,12 @@ fn frames_that_are_there_are_not_made_again() {
     let mut simulation = pile.simulation().expect("a scene");
     let recording = Recording::start(folder.path(), &formats, &about, false);
     let recording = recording.expect("a recording");
-    let mut recording = recording.at(Times::Every(0.002), &simulation);
+    let mut recording = recording.at(Times::Every(0.002));
     recording.add_if_due(&simulation).expect("a frame");
     for _ in 0..7 {
         simulation.step().expect("a finite state");
         recording.add_if_due(&simulation).expect("a frame");
     }
-    assert_eq!(recording.frames(), 4);
-    recording.finish().expect("a recording");
-    let recording = Recording::go_on(folder.path(), &formats, &about, 7).expect("it goes on");
-    let mut recording = recording.at(Times::Every(0.002), &simulation);
-    // As a run that goes on asks before its first step.
-    recording.add_if_due(&simulation).expect("a frame");
     assert_eq!(recording.frames(), 4);
     simulation.step().expect("a finite state");
     recording.add_if_due(&simulation).expect("a frame");
@@ -139,8 +67,6 @@ fn one_recording_at_a_time_in_a_folder() {
         let said = second.err().expect("a refusal").to_string();
         assert!(said.contains("is being written by another run"), "{said}");
     }
-    let second = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 0);
-    assert!(second.is_err_and(|error| error.to_string().contains("another run")));
     first.finish().expect("a recording");
     let second = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
     second.expect("the folder is free").finish().expect("a recording");
@@ -173,24 +99,6 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
         assert_eq!(rows.count(), 2, "the names of its columns alone");
     }
     assert!(left.keys().eq(["data.json", "grains/note.parquet", "note.txt"]), "{:?}", left.keys());
-}
-
-#[test]
-fn a_recording_goes_on_in_its_own_formats_alone() {
-    let folder = folder();
-    whole(folder.path(), &scene("pile"), &[FormatName::Csv], 8);
-    let about = RunFacts::default();
-    let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4);
-    let said = other.err().expect("a refusal").to_string();
-    assert!(said.starts_with("data-format is parquet, but must be as "), "{said}");
-    // What is no table of this version is not gone on with, nor touched.
-    let table = folder.path().join("csv/contacts.csv");
-    let text = std::fs::read_to_string(&table).expect("a table").replace("normal_force", "force");
-    std::fs::write(&table, &text).expect("a file");
-    let changed = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 4);
-    let said = changed.err().expect("a refusal").to_string();
-    assert!(said.contains("contacts.csv: line ") && said.contains("normal_force"), "{said}");
-    assert_eq!(std::fs::read_to_string(&table).expect("a table"), text);
 }
 
 #[test]
