@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::config::SavedState;
 use crate::error::{Error, Result};
-use crate::output::{FolderLock, Locked, check_writable, final_name, remove_if_there};
+use crate::output::{FolderLock, check_writable, final_name, remove_if_there};
 use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 
@@ -13,7 +13,6 @@ use crate::sim::{Simulation, Tally};
 pub(super) enum EarlierFiles {
     /// Where there are any, the folder is refused.
     Refused,
-    /// They are removed.
     Cleared,
     /// They stay: the run goes on with what it began.
     Kept,
@@ -28,12 +27,9 @@ pub(super) struct RunFolder {
 
 impl RunFolder {
     /// Makes the folder where it is not there, and takes it for this run.
-    ///
-    /// # Errors
-    /// Where it cannot be written to, another run has it, or it holds what is refused: names the first file.
     pub(super) fn claim(path: &Path, earlier: EarlierFiles) -> Result<Self> {
         check_writable("frames", path)?;
-        let lock = FolderLock::of(path, Locked::Pictures)?;
+        let lock = FolderLock::of(path, ".slump.lock")?;
         if earlier == EarlierFiles::Refused
             && let Some(name) = files_of_a_run(path)?.first()
         {
@@ -47,9 +43,6 @@ impl RunFolder {
     }
 
     /// Removes what is to be cleared. To be called when all that was asked is known to be sound.
-    ///
-    /// # Errors
-    /// Names the file that cannot be removed.
     pub(super) fn clear(&self) -> Result<()> {
         if self.earlier != EarlierFiles::Cleared {
             return Ok(());
@@ -106,7 +99,6 @@ fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
 
-/// Name of a checkpoint.
 const CHECKPOINT: &str = "checkpoint.slump";
 
 /// Saves a run now and then, for another to go on with.
@@ -133,15 +125,10 @@ impl Checkpoints {
         }
     }
 
-    /// Whether one is due after this step.
     pub(super) fn is_due(&self, simulation: &Simulation) -> bool {
         simulation.step_at(self.next * self.every_secs) <= simulation.observables().step
     }
 
-    /// Writes one in the place of the one before.
-    ///
-    /// # Errors
-    /// Names the file and what the system says; the one before stays.
     pub(super) fn write(
         &mut self,
         scene: &Scene,
@@ -154,9 +141,6 @@ impl Checkpoints {
     }
 
     /// Removes it: the run is complete, and nothing goes on from there.
-    ///
-    /// # Errors
-    /// Names the file that stays.
     pub(super) fn remove(self) -> Result<()> {
         remove_if_there(&self.path)
     }

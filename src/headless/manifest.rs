@@ -16,7 +16,6 @@ use crate::study::Recorded;
 pub(super) struct Manifest {
     pub program: &'static str,
     pub version: &'static str,
-    /// The command line.
     pub command: Vec<String>,
     pub runs: Vec<RunEntry>,
     pub pictures: Vec<PictureEntry>,
@@ -32,7 +31,6 @@ const WAIT: Duration = Duration::from_millis(500);
 /// A list that has become long is written less often: it takes no more than this part of the time.
 const PART: u32 = 20;
 
-/// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Ended {
@@ -49,7 +47,6 @@ pub(super) enum Ended {
 }
 
 impl Ended {
-    /// How a recorded run ended.
     pub(super) fn of(recorded: &Recorded) -> Self {
         match &recorded.failure {
             Some(Error::NonFinite { .. }) => Self::NotFinite,
@@ -60,7 +57,6 @@ impl Ended {
     }
 }
 
-/// One run.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RunEntry {
     pub name: String,
@@ -110,14 +106,12 @@ pub(super) struct Instant {
 }
 
 impl Instant {
-    /// That of these observables.
     pub(super) fn of(observables: &Observables) -> Self {
         let Observables { step, time_secs, .. } = *observables;
         Self { step, time_secs }
     }
 }
 
-/// Something that went wrong.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct AlarmEntry {
     #[serde(flatten)]
@@ -125,7 +119,6 @@ pub(super) struct AlarmEntry {
     pub message: String,
 }
 
-/// One picture.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct PictureEntry {
     pub file: String,
@@ -133,10 +126,8 @@ pub(super) struct PictureEntry {
     pub shows: Vec<ShownMoment>,
 }
 
-/// One moment of a run.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct ShownMoment {
-    /// Name of the run.
     pub run: String,
     pub observables: Observables,
 }
@@ -155,7 +146,6 @@ impl Manifest {
         }
     }
 
-    /// Writes it.
     pub(super) fn write(&self, path: &Path) -> Result<()> {
         self.write_and(path, true)
     }

@@ -1,24 +1,18 @@
-//! Options of pictures, recordings and saved runs, and what files say of the command that makes them again.
+//! Options of pictures, recordings and saved runs.
 
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
-
-use crate::config::{Config, Provenance, asked_time_secs, parser_of, words_of, words_up_to};
+use crate::config::parser_of;
 use crate::data::{DataSettings, FormatName};
 use crate::error::{Error, Result};
 use crate::film::{VIDEO_RATES_HZ, VIDEO_SIDES, check_ffmpeg};
-use crate::output::Texts;
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
 use crate::scene::Scene;
-use crate::sim::Snapshot;
 
 /// Width and height of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PictureSize {
-    /// Pixels.
     pub width: u32,
-    /// Pixels.
     pub height: u32,
 }
 
@@ -45,8 +39,8 @@ pub(crate) enum Overlay {
     Angles,
 }
 
-/// Options of pictures.
-#[derive(Clone, Debug, Default, clap::Args)]
+/// Options of pictures, recordings and saved runs.
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 pub(crate) struct HeadlessOptions {
     /// Draw pictures without a window; with --frames alone, the paper's Fig. 3, 4 and 7
     #[arg(long, help_heading = "Pictures")]
@@ -114,13 +108,45 @@ pub(crate) struct HeadlessOptions {
     /// What draws the window: auto tries Vulkan and then OpenGL. Pictures are drawn by the processor
     #[arg(long, value_name = "KIND", help_heading = "Pictures", default_value = "auto")]
     pub renderer: RendererChoice,
-    #[command(flatten)]
-    pub saving: SavingOptions,
-    #[command(flatten)]
-    pub data: DataOptions,
+    /// Go on with a saved run: simulated time, slump and the numbers of pictures go on, and settings given besides change it from there on (--initial begins a new run at t = 0 with its grains)
+    #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
+    pub restart: Option<PathBuf>,
+    /// Save the run at its end, a signal's too, unless its state is no longer finite
+    #[arg(long, value_name = "FILE", help_heading = "Saved runs", requires = "headless")]
+    pub save: Option<PathBuf>,
+    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames, for --restart with another folder; a run that comes to its end removes it
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        help_heading = "Saved runs",
+        requires_all = ["headless", "frames"],
+        allow_negative_numbers = true
+    )]
+    pub checkpoint_every: Option<f64>,
+    /// Folder for a recording: all grains and contacts at the times of the pictures, for other programs
+    #[arg(long, value_name = "DIR", help_heading = "Data", requires = "headless")]
+    pub data: Option<PathBuf>,
+    /// Simulated time between its moments, seconds [default: the times of the pictures]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        help_heading = "Data",
+        requires = "headless",
+        allow_negative_numbers = true
+    )]
+    pub data_every: Option<f64>,
+    /// What it is written as [default: parquet]
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        help_heading = "Data",
+        requires = "headless",
+        value_delimiter = ',',
+        value_parser = parser_of::<FormatName>()
+    )]
+    pub data_format: Vec<FormatName>,
 }
 
-/// Size of a picture that no size is given for.
 const DEFAULT_SIZE: PictureSize = PictureSize { width: 960, height: 540 };
 /// Pictures per simulated second where neither rate nor times are given.
 const DEFAULT_FPS: f64 = 25.0;
@@ -128,24 +154,13 @@ const DEFAULT_FPS: f64 = 25.0;
 const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
-    /// Whether anything is said that only frames of one scene have.
-    pub(crate) fn asks_for_frames(&self) -> bool {
-        self.fps.is_some()
-            || !self.times.is_empty()
-            || self.size.is_some()
-            || self.animation().is_some()
-            || !self.show.is_empty()
-            || self.colour.is_some()
-            || !self.colour_scale.is_empty()
-            || self.force_scale.is_some()
-            || self.theme.is_some()
-            || self.data.data.is_some()
-            || self.saving.restart.is_some()
-            || self.saving.save.is_some()
-            || self.saving.checkpoint_every.is_some()
+    /// True where anything is said beside where the paper's figures go.
+    pub(super) fn asks_for_frames(&self) -> bool {
+        let Self { headless, overwrite, renderer, .. } = *self;
+        let frames = self.frames.clone();
+        *self != Self { headless, frames, overwrite, renderer, ..Self::default() }
     }
 
-    /// Whether pictures are drawn at all.
     pub(super) fn draws(&self) -> bool {
         self.frames.is_some() || self.animation().is_some()
     }
@@ -155,18 +170,10 @@ impl HeadlessOptions {
         self.gif.as_deref().or(self.video.as_deref())
     }
 
-    /// The size of a picture.
-    ///
-    /// # Errors
-    /// Where it is none.
     pub(crate) fn size(&self) -> Result<PictureSize> {
         self.size.as_ref().map_or(Ok(DEFAULT_SIZE), |text| text.parse())
     }
 
-    /// How the scene is drawn.
-    ///
-    /// # Errors
-    /// Where a scale is none, or given for what has none.
     pub(crate) fn style(&self) -> Result<Style> {
         let style = Style {
             colour_by: self.colour.unwrap_or_default(),
@@ -202,17 +209,11 @@ impl HeadlessOptions {
     }
 
     /// Pictures per simulated second where no times are given.
-    ///
-    /// # Errors
-    /// Where the speed of a video is none.
     pub(super) fn pictures_per_sec(&self) -> Result<f64> {
         Ok(self.fps.unwrap_or(DEFAULT_FPS / self.video_speed()?))
     }
 
     /// Simulated seconds in a second of the video; of pictures without a video in a second of what is shown.
-    ///
-    /// # Errors
-    /// Where it is none, or there is no video.
     fn video_speed(&self) -> Result<f64> {
         let Some(speed) = self.video_speed else { return Ok(1.0) };
         if self.video.is_none() {
@@ -224,10 +225,6 @@ impl HeadlessOptions {
         Err(Error::value("video-speed", speed, "a finite number > 0"))
     }
 
-    /// How many pictures a second of the video has.
-    ///
-    /// # Errors
-    /// Where nothing can encode videos, or the rate or the size are not those of one.
     pub(super) fn video_rate_hz(&self) -> Result<f64> {
         if let Some(path) = &self.video {
             check_ffmpeg(path.display())?;
@@ -252,9 +249,6 @@ impl HeadlessOptions {
     }
 
     /// The times of the pictures of a run that lasts `duration_secs`, s, rising.
-    ///
-    /// # Errors
-    /// Where the rate or a time is outside its range.
     pub(crate) fn picture_times(&self, duration_secs: f64) -> Result<Vec<f64>> {
         if !self.times.is_empty() {
             let allowed = format!("between 0 and the duration of {duration_secs} s");
@@ -276,32 +270,9 @@ impl HeadlessOptions {
     }
 }
 
-/// Options of runs that are saved and gone on with.
-#[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct SavingOptions {
-    /// Go on with a saved run: simulated time, slump and the numbers of pictures go on, and settings given besides change it from there on (--initial begins a new run at t = 0 with its grains)
-    #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
-    pub restart: Option<PathBuf>,
-    /// Save the run at its end, a signal's too, unless its state is no longer finite
-    #[arg(long, value_name = "FILE", help_heading = "Saved runs", requires = "headless")]
-    pub save: Option<PathBuf>,
-    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames, for --restart with another folder; a run that comes to its end removes it
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        help_heading = "Saved runs",
-        requires_all = ["headless", "frames"],
-        allow_negative_numbers = true
-    )]
-    pub checkpoint_every: Option<f64>,
-}
-
-impl SavingOptions {
-    /// Checks what can be checked before anything is read.
-    ///
-    /// # Errors
-    /// Where the time between checkpoints is none.
-    pub(super) fn validate(&self) -> Result<()> {
+impl HeadlessOptions {
+    /// Fails where the time between checkpoints is none.
+    pub(super) fn check_checkpoints(&self) -> Result<()> {
         match self.checkpoint_every {
             Some(secs) if !(secs > 0.0 && secs.is_finite()) => {
                 Err(Error::value("checkpoint-every", secs, "a finite number of seconds > 0"))
@@ -309,156 +280,20 @@ impl SavingOptions {
             _ => Ok(()),
         }
     }
-}
 
-/// Options of recordings.
-#[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct DataOptions {
-    /// Folder for a recording: all grains and contacts at the times of the pictures, for other programs
-    #[arg(long, value_name = "DIR", help_heading = "Data", requires = "headless")]
-    pub data: Option<PathBuf>,
-    /// Simulated time between its moments, seconds [default: the times of the pictures]
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        help_heading = "Data",
-        requires = "headless",
-        allow_negative_numbers = true
-    )]
-    pub data_every: Option<f64>,
-    /// What it is written as [default: parquet]
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        help_heading = "Data",
-        requires = "headless",
-        value_delimiter = ',',
-        value_parser = parser_of::<FormatName>()
-    )]
-    pub data_format: Vec<FormatName>,
-}
-
-impl DataOptions {
-    /// What is asked for by these and by the scene; these go first. Nothing where neither names a folder.
-    ///
-    /// # Errors
-    /// Names what is outside its range.
-    pub(super) fn settings(&self, scene: &Scene) -> Result<Option<(PathBuf, DataSettings)>> {
+    /// The recording that is asked for by these and by the scene; these go first. Nothing where neither names a folder.
+    pub(super) fn data_settings(&self, scene: &Scene) -> Result<Option<(PathBuf, DataSettings)>> {
         let of_scene = scene.data.clone().unwrap_or_default();
-        let formats =
-            if self.data_format.is_empty() { of_scene.formats } else { self.data_format.clone() };
+        let given = !self.data_format.is_empty();
+        let formats = if given { self.data_format.clone() } else { of_scene.formats };
         let every_secs = self.data_every.or(of_scene.every_secs);
         let settings = DataSettings { folder: None, every_secs, formats };
         settings.validate("data-every")?;
         let folder = self.data.clone().or(of_scene.folder);
-        if folder.is_none()
-            && let Some(field) = self.without_folder()
-        {
-            return Err(Error::value(field, "given", "given with --data DIR"));
+        let alone = self.data_every.map(|_| "data-every").or(given.then_some("data-format"));
+        match (folder, alone) {
+            (None, Some(field)) => Err(Error::value(field, "given", "given with --data DIR")),
+            (folder, _) => Ok(folder.map(|folder| (folder, settings))),
         }
-        Ok(folder.map(|folder| (folder, settings)))
-    }
-
-    fn without_folder(&self) -> Option<&'static str> {
-        let every = self.data_every.map(|_| "data-every");
-        every.or((!self.data_format.is_empty()).then_some("data-format"))
-    }
-}
-
-/// What a panel of a figure says of itself, of a scene that is built in.
-///
-/// # Errors
-/// Where it is none.
-pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
-    let settings = scene.settings();
-    let words = Config::of_scene(&scene.name).words(&settings)?;
-    let time_secs = asked_time_secs(snapshot.observables.time_secs);
-    let frames = ["--frames".to_owned(), "frames".to_owned()];
-    let run = Provenance { scene: scene.name.clone(), settings, words };
-    Ok(run.texts(Some(time_secs), &[words_up_to(time_secs), frames.into()].concat()))
-}
-
-impl HeadlessOptions {
-    /// What a run is made of that `config` and these options ask for.
-    ///
-    /// # Errors
-    /// Where the scene is no longer there.
-    pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
-        let settings = scene.settings();
-        let words = match &self.saving.restart {
-            None => {
-                // Frames are the same however long the run goes on after them.
-                let mut config = config.clone();
-                config.source.duration = None;
-                config.words(&settings)?
-            }
-            Some(path) => {
-                let file = ["--restart".to_owned(), path.display().to_string()];
-                [&file[..], &words_of(&settings, None)].concat()
-            }
-        };
-        Ok(Provenance { scene: scene.name.clone(), settings, words })
-    }
-
-    /// What the picture at a simulated time (s) says of itself.
-    pub(super) fn texts_of_frame(&self, run: &Provenance, time_secs: f64, style: &Style) -> Texts {
-        let frames = ["--frames".to_owned(), "frames".to_owned()];
-        run.texts(
-            Some(time_secs),
-            &[words_up_to(time_secs), self.words_of_style(style), frames.into()].concat(),
-        )
-    }
-
-    /// What an animation of a run that lasts so long (s) says of itself; its command ends with `last_words`.
-    pub(super) fn texts_of_animation(
-        &self,
-        run: &Provenance,
-        duration_secs: f64,
-        style: &Style,
-        last_words: &[&str],
-    ) -> Texts {
-        let mut words = vec!["--duration".to_owned(), duration_secs.to_string()];
-        if let Some(fps) = self.fps {
-            words.extend(["--fps".to_owned(), fps.to_string()]);
-        }
-        if !self.times.is_empty() {
-            let times: Vec<_> = self.times.iter().map(f64::to_string).collect();
-            words = vec!["--times".to_owned(), times.join(",")];
-        }
-        words.extend(self.words_of_style(style));
-        if let Some(speed) = self.video_speed {
-            words.extend(["--video-speed".to_owned(), speed.to_string()]);
-        }
-        words.extend(last_words.iter().map(|&word| word.to_owned()));
-        run.texts(None, &words)
-    }
-
-    /// The options that draw alike, with the scales that the frames have.
-    fn words_of_style(&self, style: &Style) -> Vec<String> {
-        let named = |value: Option<clap::builder::PossibleValue>| {
-            value.map_or_else(String::new, |value| value.get_name().to_owned())
-        };
-        let mut words = Vec::new();
-        let mut say = |name: &str, value: String| words.extend([format!("--{name}"), value]);
-        if let Some(size) = &self.size {
-            say("size", size.clone());
-        }
-        let shown: Vec<_> = self.show.iter().map(|what| named(what.to_possible_value())).collect();
-        if !shown.is_empty() {
-            say("show", shown.join(","));
-        }
-        if let Some(colour) = self.colour {
-            say("colour", named(colour.to_possible_value()));
-        }
-        if let Some((low, high)) = style.range.filter(|_| style.colour_by.has_scale()) {
-            say("colour-scale", format!("{low},{high}"));
-        }
-        if let Some(force) = style.force_reference.filter(|_| style.show_forces) {
-            say("force-scale", force.to_string());
-        }
-        if let Some(theme) = self.theme {
-            say("theme", named(theme.to_possible_value()));
-        }
-        words
     }
 }

@@ -26,11 +26,11 @@ pub(super) fn draw(
     options.video_rate_hz()?;
     let asked = RequestedRun::of(config, options)?;
     let PictureSchedule { times_secs, until_secs } = asked.schedule(config, options)?;
-    let data = options.data.settings(asked.scene())?;
+    let data = options.data_settings(asked.scene())?;
     check_size(size.width, size.height)?;
     let claim = |path: &Path| RunFolder::claim(path, earlier);
     let folder = options.frames.as_deref().map(claim).transpose()?;
-    let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.saving.save)];
+    let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.save)];
     for (option, path) in files {
         path.as_deref().map(|path| check_file(option, path)).transpose()?;
     }
@@ -52,14 +52,13 @@ pub(super) fn draw(
 
     let steps = simulation.step_at(until_secs);
     warn_of_steps(steps.saturating_sub(now));
-    let checkpoints = folder.as_ref().zip(options.saving.checkpoint_every);
+    let checkpoints = folder.as_ref().zip(options.checkpoint_every);
     let checkpoints = checkpoints
         .map(|(folder, every_secs)| Checkpoints::start(&folder.path, every_secs, &simulation));
     let recording = recording
         .map(|(folder, data)| start_recording(folder, &data, &scene, picture_times_secs))
         .transpose()?;
-    let provenance = options.provenance(config, &scene)?;
-    let mut writer = RunWriter::open(options, &scene, steps, provenance, restarted_from)?;
+    let mut writer = RunWriter::open(options, &scene, steps, restarted_from)?;
     (writer.recording, writer.checkpoints) = (recording, checkpoints);
     let run = OnItsWay { simulation, tally, next_picture };
     let recorded = go_on(run, &times_secs, until_secs, &mut writer);
@@ -96,13 +95,9 @@ struct PictureSchedule {
 }
 
 impl RequestedRun {
-    /// What the options ask for.
-    ///
-    /// # Errors
-    /// Names what is refused.
     fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
-        options.saving.validate()?;
-        let Some(path) = &options.saving.restart else {
+        options.check_checkpoints()?;
+        let Some(path) = &options.restart else {
             let start = config.without_settling()?;
             // Shapes that are none and discs in one place are told of before anything is written.
             start.simulation()?;
@@ -113,7 +108,6 @@ impl RequestedRun {
         Ok(Self::Run(Box::new(state)))
     }
 
-    /// The scene, with the settings asked for.
     fn scene(&self) -> &Scene {
         match self {
             Self::Scene(scene) => scene,
@@ -121,10 +115,6 @@ impl RequestedRun {
         }
     }
 
-    /// When pictures are taken.
-    ///
-    /// # Errors
-    /// Where a time is none of the run's.
     fn schedule(&self, config: &Config, options: &HeadlessOptions) -> Result<PictureSchedule> {
         let times_secs = options.picture_times(self.scene().duration_secs)?;
         // Times alone ask for no more than the last of them.
@@ -150,9 +140,6 @@ impl RequestedRun {
     }
 
     /// The run, once its grains have settled, and the moment of the saved one that it goes on with.
-    ///
-    /// # Errors
-    /// Where they do not come to rest.
     fn begin(self, config: &Config) -> Result<(SavedState, Option<Instant>)> {
         match self {
             Self::Scene(_) => {

@@ -25,14 +25,12 @@ pub(super) struct ObservablesTable {
 }
 
 impl ObservablesTable {
-    /// Starts a table at a path.
     pub(super) fn start(path: PathBuf) -> Result<Self> {
         let file = GrowingFile::start(path.clone())?;
         let rows = csv::Writer::from_writer(Vec::new());
         Ok(Self { path, file, rows, waiting: 0, written: Instant::now() })
     }
 
-    /// Adds a row.
     pub(super) fn add(&mut self, observables: &Observables) -> Result<()> {
         self.rows.serialize(observables).map_err(|error| Error::file(&self.path, error))?;
         self.waiting += 1;
@@ -40,7 +38,6 @@ impl ObservablesTable {
         if is_due { self.flush() } else { Ok(()) }
     }
 
-    /// Writes the rows that wait.
     pub(super) fn flush(&mut self) -> Result<()> {
         // Those that are written have had the names of the columns.
         let later = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());

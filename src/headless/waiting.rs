@@ -22,9 +22,6 @@ pub(crate) struct WaitingStates {
 
 impl WaitingStates {
     /// Where states wait if the style asks for it.
-    ///
-    /// # Errors
-    /// Names the file and what the system says.
     pub(super) fn asked_for(options: &HeadlessOptions, style: &Style) -> Result<Option<Self>> {
         let waits = style.colour_by.has_scale() && style.range.is_none()
             || style.show_forces && style.force_reference.is_none();
@@ -42,7 +39,6 @@ impl WaitingStates {
         Ok(Self { folder, file, places: vec![0], range: None, force_reference: 0.0 })
     }
 
-    /// Number of states.
     pub(crate) fn len(&self) -> usize {
         self.places.len() - 1
     }

@@ -23,12 +23,10 @@ use crate::solver::Method;
 use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
-/// Name of the run in the manifest.
 const RUN: &str = "run";
 /// Pictures a second of a GIF, which viewers keep up with.
 const GIF_RATE_HZ: f64 = 25.0;
 
-/// Writes all that a run leaves.
 pub(super) struct RunWriter<'a> {
     options: &'a HeadlessOptions,
     scene: &'a Scene,
@@ -41,11 +39,9 @@ pub(super) struct RunWriter<'a> {
     /// Colours and widths that follow the state need one scale for all frames, so those frames wait
     /// for the end of the run, unless it is given. All others are drawn as the run comes by.
     waiting: Option<WaitingStates>,
-    /// What records the run as well.
     pub recording: Option<Recording>,
     manifest: Manifest,
     provenance: Provenance,
-    /// What saves it now and then.
     pub checkpoints: Option<Checkpoints>,
 }
 
@@ -55,7 +51,6 @@ impl<'a> RunWriter<'a> {
         options: &'a HeadlessOptions,
         scene: &'a Scene,
         end: u64,
-        provenance: Provenance,
         restarted_from: Option<Instant>,
     ) -> Result<Self> {
         let size = options.size()?;
@@ -67,6 +62,9 @@ impl<'a> RunWriter<'a> {
         let rate_hz = options.video_rate_hz()?;
         let film = |path: &Path| Video::start(path, rate_hz);
         let animate = |path: &Path| Animation::start(path, GIF_RATE_HZ);
+        // The command line of this process makes all of it again.
+        let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+        let words = words.filter(|word| word != "--headless").collect();
         let writer = Self {
             options,
             scene,
@@ -79,7 +77,7 @@ impl<'a> RunWriter<'a> {
             style,
             recording: None,
             manifest,
-            provenance,
+            provenance: Provenance { scene: scene.name.clone(), settings: scene.settings(), words },
             checkpoints: None,
         };
         writer.write_manifest()?;
@@ -107,7 +105,7 @@ impl<'a> RunWriter<'a> {
             Some(_) => Ok(()),
             None => self.checkpoint(simulation, tally),
         };
-        let saved = match (&self.options.saving.save, failure) {
+        let saved = match (&self.options.save, failure) {
             (None, _) | (_, Some(Error::NonFinite { .. })) => Ok(()),
             (Some(path), _) => {
                 let state = SavedState::new(self.scene.clone(), simulation.clone(), *tally);
@@ -173,7 +171,7 @@ impl<'a> RunWriter<'a> {
         if let Some(folder) = &self.options.frames {
             let file = format!("frame_{number:05}.png");
             let time_secs = asked_time_secs(snapshot.observables.time_secs);
-            let texts = self.options.texts_of_frame(&self.provenance, time_secs, &self.style);
+            let texts = self.provenance.texts(Some(time_secs), &[]);
             write_png(&folder.join(&file), &image, &texts)?;
             let moment = ShownMoment { run: RUN.to_owned(), observables: snapshot.observables };
             let entry = PictureEntry { file, shows: vec![moment] };
@@ -182,16 +180,11 @@ impl<'a> RunWriter<'a> {
         self.animate(image)
     }
 
-    /// Adds a picture to GIF and video. Each says of itself how to make it again.
+    /// Adds a picture to GIF and video.
     fn animate(&mut self, image: RgbaImage) -> Result<()> {
-        let Self { options, scene, provenance, style, .. } = self;
-        let texts = |words: &[&str]| {
-            options.texts_of_animation(provenance, scene.duration_secs, style, words)
-        };
-        let video_texts = texts(&["--video", "video.mp4"]);
-        let gif_texts = texts(&["--gif", "animation.gif"]);
-        let video = self.video.as_mut().map_or(Ok(()), |video| video.add(&image, &video_texts));
-        let gif = self.gif.as_mut().map_or(Ok(()), |gif| gif.add(image, &gif_texts));
+        let texts = self.provenance.texts(None, &[]);
+        let video = self.video.as_mut().map_or(Ok(()), |video| video.add(&image, &texts));
+        let gif = self.gif.as_mut().map_or(Ok(()), |gif| gif.add(image, &texts));
         video.and(gif)
     }
 
@@ -251,7 +244,7 @@ pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
     format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }
 
-/// Whether a run goes on: until a signal comes.
+/// A run goes on until a signal comes.
 pub(super) fn go_on() -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }

@@ -9,14 +9,12 @@ use image::RgbaImage;
 
 use crate::error::{Error, Result};
 
-/// The kinds of driver.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum GpuKind {
     Vulkan,
     Gl,
 }
 
-/// An opened GPU.
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
@@ -27,7 +25,6 @@ pub(crate) struct Gpu {
 }
 
 impl Gpu {
-    /// Opens a GPU of either kind.
     pub(crate) fn any() -> Result<Self> {
         Self::open(GpuKind::Vulkan).or_else(|_| Self::open(GpuKind::Gl))
     }

@@ -31,9 +31,6 @@ pub enum RendererChoice {
 const LARGEST_SIDE_PX: u32 = 16_384;
 
 /// Fails unless a picture of this size can be drawn.
-///
-/// # Errors
-/// Names `size`.
 pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
     if (1..=LARGEST_SIDE_PX).contains(&width) && (1..=LARGEST_SIDE_PX).contains(&height) {
         return Ok(());

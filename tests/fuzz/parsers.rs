@@ -120,18 +120,3 @@ fn problem_files() {
     let texts = vec![problem("arch", 0.01), problem("squeeze", 0.01), problem("cradle", 0.0)];
     fuzz_texts("problem-files", "json", texts, solve_briefly);
 }
-
-#[test]
-fn texts_of_siconos() {
-    let head = "CSparse Version 3.1.9";
-    let one = format!(
-        "2\n1\n2\n2\n2\n2\n{head}\n2-by-2\n    col 0 : locations 0 to 0\n      0 : 2.5\n    \
-         col 1 : locations 1 to 1\n      1 : 7\n-1 0.5\n0.3\n"
-    );
-    let two = format!(
-        "2\n2\n2\n4\n4\n2\n{head}\n4-by-4\n    col 0 : locations 0 to 1\n      0 : 2\n      2 : -1\n    \
-         col 1 : locations 2 to 2\n      1 : 6\n    col 2 : locations 3 to 4\n      0 : -1\n      \
-         2 : 2\n    col 3 : locations 5 to 5\n      3 : 6\n-1 0\n-0.1 0.5\n0.5 0\n"
-    );
-    fuzz_texts("siconos", "dat", vec![one, two], solve_briefly);
-}

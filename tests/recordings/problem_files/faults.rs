@@ -5,7 +5,7 @@ use std::path::Path;
 use assert_cmd::Command;
 use slump::interchange::{Friction, ProblemFile, Solution};
 
-use super::{SICONOS, folder};
+use super::folder;
 
 /// A sound problem of two contacts, to be spoilt.
 fn sound() -> serde_json::Value {
@@ -89,42 +89,20 @@ fn a_faulty_problem_is_refused_in_one_sentence() {
         ),
         (json(|p| drop(p.as_object_mut().map(|p| p.remove("q")))), "missing field `q`"),
         (sound().to_string()[..60].to_owned(), "EOF"),
-        (String::new(), "the dimension is missing"),
-        ("[1, 2]".into(), "the dimension is \"[1, 2]\""),
+        (String::new(), "EOF"),
+        ("[1, 2]".into(), "the problem is not readable"),
     ]);
 }
 
 #[test]
-fn a_faulty_file_of_siconos_is_refused_in_one_sentence() {
-    let siconos = std::fs::read_to_string(folder().join(SICONOS)).expect("a problem");
-    let siconos_with = |from: &str, to: &str| siconos.replacen(from, to, 1);
-    assert_refused(&[
-        (siconos_with("2\n667", "3\n667"), "the dimension is 3, but must be 2"),
-        (siconos_with("667\n2\n", "667\n0\n"), "the kind of storage is 0"),
-        (siconos_with("\n1334\n", "\n1333\n"), "the number of rows is 1333"),
-        (siconos_with("0 : 856.713", "0 : nan"), "W.val[0] is NaN"),
-        (siconos_with("0 : 856.713", "2000 : 856.713"), "W.row[0] is 2000"),
-        (siconos_with("649 : -454.43", "648 : -454.43"), "W is symmetric"),
-        (siconos[..20_000].to_owned(), "of W"),
-        (siconos[..siconos.len() - 100].to_owned(), "mu["),
-    ]);
-}
-
-#[test]
-fn bodies_that_are_not_those_of_the_problem_are_refused_in_one_sentence() {
+fn bodies_that_no_problem_has_are_refused_in_one_sentence() {
     let whole = std::fs::read_to_string(folder().join("bond_0_smooth.json")).expect("a problem");
     let whole: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
     let bodies = |change| spoilt(whole.clone(), change);
     assert_refused(&[
         (bodies(|p| p["bodies"]["mass"][0] = 1.0.into()), "bodies.inertia[0]"),
         (bodies(|p| p["bodies"]["pair"][0][0] = 900.into()), "bodies.pair[0]"),
-        (
-            bodies(|p| p["bodies"]["normal"][0] = serde_json::json!([0.6, 0.8])),
-            "the bodies make it",
-        ),
         (bodies(|p| p["bodies"]["radius"] = serde_json::json!([])), "bodies.radius"),
-        (bodies(|p| p["q"][2] = 1.0.into()), "the bodies'"),
-        (bodies(|p| p["c0"] = serde_json::json!(vec![1.0; 77])), "the bodies'"),
         (bodies(|p| p["bodies"]["axes"] = 3.into()), "bodies.axes is 3"),
     ]);
 }

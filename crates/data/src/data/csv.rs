@@ -11,17 +11,14 @@ use crate::error::Result;
 use crate::output::GrowingFile;
 use crate::sim::Observables;
 
-/// Where the tables are.
 pub(super) const FOLDER: &str = "csv";
 
-/// Writes text.
 pub(super) struct Csv {
     of_frames: [TextTable; 4],
     steps: TextTable,
 }
 
 impl Csv {
-    /// Starts.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
@@ -76,7 +73,6 @@ impl TextTable {
         Self { path, head, file: None, rows: Vec::new() }
     }
 
-    /// Adds rows.
     pub(super) fn add(&mut self, table: &Table) -> Result<()> {
         let mut rows = std::mem::take(&mut self.rows);
         rows.clear();

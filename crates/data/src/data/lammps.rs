@@ -18,7 +18,6 @@ use crate::error::Result;
 use crate::output::GrowingFile;
 use crate::sim::{Moment, OtherBody};
 
-/// Where the dumps are.
 pub(super) const FOLDER: &str = "ovito";
 /// Those of grains and contacts.
 pub(super) const FILES: [&str; 2] = ["grains.dump", "contacts.dump"];
@@ -46,7 +45,6 @@ const IN_WORDS: &str = "element";
 /// LAMMPS counts types from here.
 const FIRST_TYPE: u32 = 1;
 
-/// Writes dumps.
 pub(super) struct Lammps {
     folder: PathBuf,
     facts: RunFacts,
@@ -55,7 +53,6 @@ pub(super) struct Lammps {
 }
 
 impl Lammps {
-    /// Starts.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;

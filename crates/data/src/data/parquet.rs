@@ -28,14 +28,12 @@ const COLUMNS_KEY: &str = "columns";
 /// has and places in it, which then take nearly nothing.
 const FEW_CHANGES: usize = 8;
 
-/// Writes Parquet.
 pub(super) struct Parquet {
     of_frames: Vec<GrowingParts>,
     steps: GrowingParts,
 }
 
 impl Parquet {
-    /// Starts.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let start = |table| GrowingParts::start(folder, facts, table);
         let of_frames = empty_tables_of_frames().into_iter().map(start).collect::<Result<_>>()?;
@@ -66,11 +64,10 @@ struct GrowingParts {
     encoder: Encoder,
     /// Number of the part that grows.
     number: u64,
-    /// Its rows.
     rows: Table,
-    /// Whether it has rows that are not in its file.
+    /// True if it has rows that are not in its file.
     has_news: bool,
-    /// Whether there is a file: a table has one, even without rows, so that readers find its columns.
+    /// True if there is a file: a table has one, even without rows, so that readers find its columns.
     has_file: bool,
 }
 
@@ -95,10 +92,6 @@ impl GrowingParts {
         Ok(())
     }
 
-    /// Writes the part that grows.
-    ///
-    /// # Errors
-    /// Names the file and what the system says; what was there before stays.
     fn flush(&mut self) -> Result<()> {
         if !self.has_news && self.has_file {
             return Ok(());
@@ -135,7 +128,6 @@ impl Encoder {
         Ok(Self { schema: Arc::new(schema), metadata })
     }
 
-    /// The bytes of a file.
     fn encode(&self, table: &Table) -> ParquetResult<Vec<u8>> {
         let properties = WriterProperties::builder()
             .set_created_by(concat!("slump ", env!("CARGO_PKG_VERSION")).to_owned())
@@ -185,7 +177,6 @@ fn field(column: &Column) -> ParquetResult<Type> {
     field.build()
 }
 
-/// Says how a column is packed.
 fn packed(properties: WriterPropertiesBuilder, column: &Column) -> WriterPropertiesBuilder {
     let path = ColumnPath::from(column.name);
     let few_changes = match &column.values {

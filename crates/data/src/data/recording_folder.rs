@@ -11,13 +11,15 @@ use super::format::RunFacts;
 use super::table::{Column, Values};
 use super::{csv, lammps, vtk};
 use crate::error::{Error, Result};
-use crate::output::{FolderLock, Locked, check_writable, final_name, write_file};
+use crate::output::{FolderLock, check_writable, final_name, write_file};
 use crate::scene::FormatName;
 
 /// What a recording is made of.
 const MANIFEST: &str = "data.json";
 /// The list of frames that are there in every format.
 pub(super) const FRAMES: &str = "frames.csv";
+/// Locks the recording. Pictures may be in the same folder.
+const LOCK: &str = ".slump-data.lock";
 /// What the name of a part of a table in Parquet begins with, …
 const BEGINNING_OF_PART: &str = "part-";
 /// … and ends with.
@@ -38,7 +40,7 @@ impl RecordingFolder {
     /// earlier one is there.
     pub fn of(path: &Path, overwrite: bool) -> Result<Self> {
         check_writable("data", path)?;
-        let lock = FolderLock::of(path, Locked::Recording)?;
+        let lock = FolderLock::of(path, LOCK)?;
         if !overwrite && let Some(first) = files_of_a_recording(path)?.first() {
             let name = first.strip_prefix(path).unwrap_or(first).display();
             let allowed = format!(
@@ -101,12 +103,10 @@ pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Resu
     Ok(files)
 }
 
-/// Removes a file.
 pub(super) fn remove(path: &Path) -> Result<()> {
     std::fs::remove_file(path).map_err(|error| Error::file(path, error))
 }
 
-/// Makes a folder where it is not there.
 pub(super) fn make_folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path)
         .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))
@@ -134,7 +134,6 @@ pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
     Ok(numbered)
 }
 
-/// Writes the manifest of a recording.
 pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFacts) -> Result<()> {
     let path = folder.join(MANIFEST);
     let facts = run.facts.iter().map(|(name, said)| (name.clone(), Value::from(said.as_str())));

@@ -63,7 +63,7 @@ impl Values {
         each_kind!(self, list => list.len())
     }
 
-    /// Whether there is no row.
+    /// True if there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -188,7 +188,7 @@ impl Table {
         self.columns.first().map_or(0, |column| column.values.len())
     }
 
-    /// Whether there is no row.
+    /// True if there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -209,7 +209,6 @@ impl Table {
         }
     }
 
-    /// Drops all rows.
     pub(super) fn clear(&mut self) {
         for column in &mut self.columns {
             each_kind!(&mut column.values, list => list.clear());

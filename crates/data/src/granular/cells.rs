@@ -34,7 +34,6 @@ const LARGEST_POWER: f64 = 3.0;
 /// How much nearer than the border a closed cell's corners are, as a part of the distance squared: rounding.
 const CLOSED_WITHIN: f64 = 1e-9;
 
-/// The cells of all grains.
 pub(super) struct PowerCells {
     /// Areas, m²; NaN for a grain that does not count.
     pub areas: Vec<f64>,
@@ -46,7 +45,6 @@ pub(super) struct PowerCells {
     pub box_area: f64,
     /// Σ πr² over all grains, m².
     pub disc_area: f64,
-    /// Number of closed cells.
     pub closed: u32,
     /// Σ πr² over the grains with closed cells, in Σ areas of those; NaN without any.
     pub solid_fraction: f64,
@@ -360,7 +358,7 @@ impl CellPolygon {
         }
     }
 
-    /// Whether it is a cell of which all corners are nearer to the centre than `reach`, m.
+    /// True if it is a cell of which all corners are nearer to the centre than `reach`, m.
     fn is_closed(&self, reach: f64) -> bool {
         !self.corners.is_empty() && self.farthest_squared() < (1.0 - CLOSED_WITHIN) * reach * reach
     }

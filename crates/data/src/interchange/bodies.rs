@@ -1,7 +1,6 @@
 //! The bodies behind a problem's W and q: checked and made into a step's problem, for methods that work on bodies, and
 //! taken from a simulation.
 
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
@@ -12,8 +11,7 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{
-    Assembled, FixedRow, Kinematics, Model, ModelParts, ModelVisitor, PairRow, Row, StepProblem,
-    visit_model,
+    Assembled, FixedRow, Kinematics, Model, ModelParts, PairRow, Row, StepProblem,
 };
 use crate::world::{FrictionCone, Grains};
 
@@ -28,7 +26,7 @@ pub(super) const DISAGREEMENT: f64 = 1e-9;
 pub struct BodyForm {
     /// 1 (all on the x axis) or 2.
     pub axes: u8,
-    /// Whether bodies turn.
+    /// True if bodies turn.
     pub rotation: bool,
     /// Bond·g·Δt, m/s: c₀ = m_n times this.
     pub capture_speed: f64,
@@ -53,7 +51,7 @@ pub struct BodyForm {
 }
 
 impl BodyForm {
-    /// Checks the bodies, and that the file's W, q and c₀ are theirs.
+    /// Checks what a problem can be made of. That W and q are theirs shows in the residual of a solution.
     pub(super) fn check(&self, file: &ProblemFile) -> Result<()> {
         let (bodies, contacts) = (self.mass.len(), file.nc);
         let lengths = [
@@ -91,7 +89,7 @@ impl BodyForm {
                 }
             }
             let (inertia, solid) = (self.inertia[body], 0.5 * mass * radius * radius);
-            if !agree(inertia, solid, solid) {
+            if (inertia - solid).abs() > DISAGREEMENT * solid {
                 let allowed = format!("{solid}, that of a solid disc");
                 return Err(Error::value(format!("bodies.inertia[{body}]"), inertia, allowed));
             }
@@ -103,7 +101,7 @@ impl BodyForm {
                 return Err(Error::value(format!("bodies.pair[{contact}]"), found, allowed));
             }
         }
-        visit_model(self.parts(file)?, BodiesCheck { bodies: self, file })
+        self.parts(file).map(drop)
     }
 
     /// The model that solves this problem on its bodies.
@@ -171,67 +169,6 @@ impl BodyForm {
         }
         problem.form_velocities();
         problem
-    }
-}
-
-/// Whether two forms of one number are as near as rounding leaves them; not where one is NaN.
-fn agree(found: f64, expected: f64, scale: f64) -> bool {
-    (found - expected).abs() <= DISAGREEMENT * scale
-}
-
-struct BodiesCheck<'a> {
-    bodies: &'a BodyForm,
-    file: &'a ProblemFile,
-}
-
-impl ModelVisitor for BodiesCheck<'_> {
-    type Output = Result<()>;
-
-    /// Without friction tangential rows play no part, and need not agree.
-    fn visit<M: Model>(self) -> Result<()> {
-        let Self { bodies, file } = self;
-        let problem = bodies.step_problem::<M>(file);
-        let assembled = Assembled::of(&problem)?;
-        let place = |index: u32| 2 * problem.rows.contacts[index as usize / 2] + index % 2;
-        let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
-        let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();
-        let mut diagonal = vec![0.0; 2 * file.nc];
-        for (row, column, value) in assembled.matrix.entries() {
-            let (row, column) = (place(row), place(column));
-            *difference.entry((row, column)).or_default() += value;
-            if row == column {
-                diagonal[row as usize] = value;
-            }
-        }
-        for (row, column, value) in file.matrix.entries() {
-            *difference.entry((row, column)).or_default() -= value;
-        }
-        for (&(row, column), &off) in &difference {
-            let scale = (diagonal[row as usize] * diagonal[column as usize]).sqrt();
-            if counts(row) && counts(column) && !agree(off, 0.0, scale) {
-                let found = format!("{} off what the bodies make it", off.abs());
-                return Err(Error::value(format!("W[{row}, {column}]"), found, "theirs"));
-            }
-        }
-        let fastest = file.q.iter().fold(0f64, |most, q| most.max(q.abs()));
-        for (index, &q) in (0..).zip(&assembled.free_velocities) {
-            let at = place(index);
-            let found = file.q[at as usize];
-            if counts(index) && !agree(found, q, fastest) {
-                return Err(Error::value(format!("q[{at}]"), found, format!("{q}, the bodies'")));
-            }
-        }
-        let cohesion = file.cohesion_impulses();
-        let rows = problem.rows.iter();
-        for (row, &contact) in rows.zip(&problem.rows.contacts) {
-            let expected = row.effective_mass * bodies.capture_speed;
-            let found = cohesion[contact as usize];
-            if !agree(found, expected, expected) {
-                let allowed = format!("{expected}, the bodies'");
-                return Err(Error::value(format!("c0[{contact}]"), found, allowed));
-            }
-        }
-        Ok(())
     }
 }
 
@@ -343,7 +280,7 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
     }
 }
 
-/// Whether a file can hold a problem.
+/// Fails where a file cannot hold a problem.
 fn check_can_be_held<K: Kinematics>(problem: &StepProblem<K>) -> Result<()> {
     let refuse = |field: &str, holds: &str| {
         Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))
