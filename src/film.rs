@@ -70,20 +70,14 @@ impl Animation {
     pub(crate) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
         let added = self.encode(image, texts);
         let file = self.draft.file();
-        match (added, self.whole) {
-            (Ok(()), _) => {
-                self.pictures += 1;
-                self.whole = file.stream_position().ok();
-                return Ok(());
-            }
-            (Err(error), Some(whole)) => {
-                // A part of the picture may be there.
-                let _ = file.set_len(whole).and_then(|()| file.seek(SeekFrom::Start(whole)));
-                Err(error)
-            }
-            (Err(error), None) => Err(error),
+        if added.is_ok() {
+            self.pictures += 1;
+            self.whole = file.stream_position().ok();
+        } else if let Some(whole) = self.whole {
+            // A part of the picture may be there.
+            let _ = file.set_len(whole).and_then(|()| file.seek(SeekFrom::Start(whole)));
         }
-        .map_err(|error| Error::file(&self.path, error))
+        added.map_err(|error| Error::file(&self.path, error))
     }
 
     fn encode(

@@ -9,7 +9,7 @@ use glam::DVec2;
 use image::RgbaImage;
 use rayon::prelude::*;
 
-use super::folder::{EarlierFiles, RunFolder};
+use super::folder::{EarlierFiles, check_run_folder, clear_run_folder};
 use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
 use super::table::ObservablesTable;
 use super::writer::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
@@ -40,13 +40,13 @@ struct FigureRun {
 
 /// Simulates the runs on all cores and draws the figures into `folder`.
 pub(super) fn draw(folder: &Path, earlier: EarlierFiles) -> Result<()> {
-    let claimed = RunFolder::claim(folder, earlier)?;
+    check_run_folder(folder, earlier)?;
     let runs = paper_runs()?;
     let mut manifest = Manifest::new();
     for run in &runs {
         manifest.runs.push(RunEntry::start(&run.name, &run.scene)?);
     }
-    claimed.clear()?;
+    clear_run_folder(folder, earlier)?;
     let mut writer = FigureWriter { folder, manifest };
     writer.write_manifest()?;
     let mut runs = simulate(folder, runs)?;

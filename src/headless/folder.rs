@@ -1,10 +1,10 @@
-//! The folder that a run writes to, its own and of one run alone, and the checkpoint in it.
+//! The folder that a run writes to, and the checkpoint in it.
 
 use std::path::{Path, PathBuf};
 
 use crate::config::SavedState;
 use crate::error::{Error, Result};
-use crate::output::{FolderLock, check_writable, final_name, remove_if_there};
+use crate::output::{check_writable, final_name, remove_if_there};
 use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 
@@ -18,42 +18,34 @@ pub(super) enum EarlierFiles {
     Kept,
 }
 
-/// A folder that no other run writes to.
-pub(super) struct RunFolder {
-    pub path: PathBuf,
-    earlier: EarlierFiles,
-    _lock: FolderLock,
+/// Makes the folder of a run where it is not there.
+///
+/// Fails where it cannot be written to, or holds what is refused: names the first file.
+pub(super) fn check_run_folder(path: &Path, earlier: EarlierFiles) -> Result<()> {
+    check_writable("frames", path)?;
+    if earlier == EarlierFiles::Refused
+        && let Some(name) = files_of_a_run(path)?.first()
+    {
+        let allowed = format!(
+            "a folder without an earlier run's files ({name} is there), unless --overwrite is given to \
+             remove them"
+        );
+        return Err(Error::value("frames", path.display(), allowed));
+    }
+    Ok(())
 }
 
-impl RunFolder {
-    /// Makes the folder where it is not there, and takes it for this run.
-    pub(super) fn claim(path: &Path, earlier: EarlierFiles) -> Result<Self> {
-        check_writable("frames", path)?;
-        let lock = FolderLock::of(path, ".slump.lock")?;
-        if earlier == EarlierFiles::Refused
-            && let Some(name) = files_of_a_run(path)?.first()
-        {
-            let allowed = format!(
-                "a folder without an earlier run's files ({name} is there), unless --overwrite is given to \
-                 remove them"
-            );
-            return Err(Error::value("frames", path.display(), allowed));
-        }
-        Ok(Self { path: path.to_owned(), earlier, _lock: lock })
+/// Removes what is to be cleared. To be called when all that was asked is known to be sound.
+pub(super) fn clear_run_folder(path: &Path, earlier: EarlierFiles) -> Result<()> {
+    if earlier != EarlierFiles::Cleared {
+        return Ok(());
     }
-
-    /// Removes what is to be cleared. To be called when all that was asked is known to be sound.
-    pub(super) fn clear(&self) -> Result<()> {
-        if self.earlier != EarlierFiles::Cleared {
-            return Ok(());
-        }
-        let mut names = files_of_a_run(&self.path)?;
-        names.extend(told_of(&self.path));
-        for path in names.iter().map(|name| self.path.join(name)).filter(|path| is_plain(path)) {
-            std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
-        }
-        Ok(())
+    let mut names = files_of_a_run(path)?;
+    names.extend(told_of(path));
+    for path in names.iter().map(|name| path.join(name)).filter(|path| is_plain(path)) {
+        std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
     }
+    Ok(())
 }
 
 /// The names that every run uses, of those that are there.

@@ -1,13 +1,13 @@
 //! The run of one scene: where it begins, with a scene at t = 0 or with a run that was saved, and what it writes.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use super::HeadlessOptions;
-use super::folder::{Checkpoints, EarlierFiles, RunFolder};
+use super::folder::{Checkpoints, EarlierFiles, check_run_folder, clear_run_folder};
 use super::manifest::Instant;
 use super::writer::{RunWriter, interrupted};
 use crate::config::{Config, SavedState, scene_facts};
-use crate::data::{DataSettings, Recording, RecordingFolder, Times, formats_of};
+use crate::data::{DataSettings, Recording, RunFacts, Times, check_recording_folder, formats_of};
 use crate::error::{Error, Result};
 use crate::output::{Progress, caught_signal, check_file, warn_of_steps};
 use crate::render::check_size;
@@ -28,17 +28,16 @@ pub(super) fn draw(
     let PictureSchedule { times_secs, until_secs } = asked.schedule(config, options)?;
     let data = options.data_settings(asked.scene())?;
     check_size(size.width, size.height)?;
-    let claim = |path: &Path| RunFolder::claim(path, earlier);
-    let folder = options.frames.as_deref().map(claim).transpose()?;
+    let folder = options.frames.as_deref();
+    folder.map(|folder| check_run_folder(folder, earlier)).transpose()?;
     let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.save)];
     for (option, path) in files {
         path.as_deref().map(|path| check_file(option, path)).transpose()?;
     }
     let picture_times_secs = options.picture_times(asked.scene().duration_secs)?;
-    let recording = match data {
-        None => None,
-        Some((path, data)) => Some((RecordingFolder::of(&path, options.overwrite)?, data)),
-    };
+    if let Some((path, _)) = &data {
+        check_recording_folder(path, options.overwrite)?;
+    }
     let begun = asked.begin(config).map_err(|error| match caught_signal() {
         Some(signal) => interrupted(signal, &Observables::default()),
         None => error,
@@ -46,18 +45,21 @@ pub(super) fn draw(
     let (SavedState { scene, simulation, tally }, restarted_from) = begun?;
     let now = simulation.observables().step;
     let next_picture = times_secs.partition_point(|&secs| simulation.step_at(secs) < now);
-    if let Some(folder) = &folder {
-        folder.clear()?;
-    }
+    folder.map(|folder| clear_run_folder(folder, earlier)).transpose()?;
 
     let steps = simulation.step_at(until_secs);
     warn_of_steps(steps.saturating_sub(now));
-    let checkpoints = folder.as_ref().zip(options.checkpoint_every);
-    let checkpoints = checkpoints
-        .map(|(folder, every_secs)| Checkpoints::start(&folder.path, every_secs, &simulation));
-    let recording = recording
-        .map(|(folder, data)| start_recording(folder, &data, &scene, picture_times_secs))
-        .transpose()?;
+    let checkpoints = folder.zip(options.checkpoint_every);
+    let checkpoints =
+        checkpoints.map(|(folder, every_secs)| Checkpoints::start(folder, every_secs, &simulation));
+    let start = |(path, data): (PathBuf, DataSettings)| {
+        let times = data.every_secs.map_or(Times::At(picture_times_secs), Times::Every);
+        let formats = formats_of(&data)?;
+        let recording =
+            Recording::start(&path, &formats, &run_facts_of(&scene)?, options.overwrite)?;
+        Ok(recording.at(times))
+    };
+    let recording = data.map(start).transpose()?;
     let mut writer = RunWriter::open(options, &scene, steps, restarted_from)?;
     (writer.recording, writer.checkpoints) = (recording, checkpoints);
     let run = OnItsWay { simulation, tally, next_picture };
@@ -65,19 +67,13 @@ pub(super) fn draw(
     writer.end(recorded)
 }
 
-/// Starts a recording, at the times of the pictures unless it has its own.
-fn start_recording(
-    folder: RecordingFolder,
-    data: &DataSettings,
-    scene: &Scene,
-    picture_times_secs: Vec<f64>,
-) -> Result<Recording> {
+/// What a recording says of a run: its scene, and the command line.
+fn run_facts_of(scene: &Scene) -> Result<RunFacts> {
     let mut about = scene_facts(scene)?;
     let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
     let command = words.collect::<Vec<_>>().join(" ").replace(char::is_control, " ");
     about.facts.insert(1, ("command".to_owned(), command));
-    let times = data.every_secs.map_or(Times::At(picture_times_secs), Times::Every);
-    Ok(Recording::start_in(folder, &formats_of(data)?, &about)?.at(times))
+    Ok(about)
 }
 
 /// What is asked for, read and checked, but for grains that have to settle.

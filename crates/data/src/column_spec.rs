@@ -46,21 +46,21 @@ impl<Row> CellValue<Row> {
 /// Name of the column that every table has, and by which rows rise.
 pub(crate) const STEP: &str = "step";
 
-impl<Row> ColumnSpec<Row> {
-    pub(crate) const fn new(
-        name: &'static str,
-        unit: &'static str,
-        about: &'static str,
-        value: CellValue<Row>,
-    ) -> Self {
-        Self { name, unit, about, value }
-    }
+pub(crate) const fn column<Row>(
+    name: &'static str,
+    unit: &'static str,
+    about: &'static str,
+    value: CellValue<Row>,
+) -> ColumnSpec<Row> {
+    ColumnSpec { name, unit, about, value }
+}
 
+impl<Row> ColumnSpec<Row> {
     pub(crate) const fn step(of: fn(&Row) -> u64) -> Self {
-        Self::new(STEP, "", "steps since the start", CellValue::Count(of))
+        column(STEP, "", "steps since the start", CellValue::Count(of))
     }
 
     pub(crate) const fn time(of: fn(&Row) -> f64) -> Self {
-        Self::new("time", "s", "simulated time", CellValue::Number(of))
+        column("time", "s", "simulated time", CellValue::Number(of))
     }
 }

@@ -50,8 +50,6 @@ pub fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files: BTreeMap<_, _> = entries
         .map(|entry| (entry.file_name().to_string_lossy().into_owned(), content(&entry.path())))
         .collect();
-    // What was killed may leave its lock, which locks nothing then.
-    files.remove(".slump.lock");
     let manifest = files.get_mut("manifest.json").expect("a manifest");
     let mut said: serde_json::Value = serde_json::from_slice(manifest).expect("JSON");
     let said_of = said.as_object_mut().expect("a table");

@@ -1,6 +1,6 @@
-//! A folder is one run's alone.
+//! Folders with files of earlier runs.
 
-use super::{brief_run, ended, folder, manifest, pictures_in, rows_of, send, start_and_wait};
+use super::{brief_run, folder, pictures_in};
 
 #[test]
 fn a_folder_with_an_earlier_runs_files_is_refused_or_cleared() {
@@ -27,20 +27,4 @@ fn a_folder_with_an_earlier_runs_files_is_refused_or_cleared() {
     assert!(brief_run(folder.path(), &["--overwrite"]).status.success());
     assert_eq!(pictures_in(folder.path()), 2);
     assert_eq!(std::fs::read_to_string(&note).expect("a file"), "mine");
-}
-
-#[test]
-fn one_run_at_a_time_in_a_folder() {
-    let folder = folder();
-    let mut first = start_and_wait(folder.path());
-    for more in [&[][..], &["--overwrite"]] {
-        let second = brief_run(folder.path(), more);
-        assert_eq!(second.status.code(), Some(2));
-        let said = String::from_utf8(second.stderr).expect("UTF-8");
-        assert!(said.contains("is being written by another run"), "{said}");
-    }
-    send("TERM", &first);
-    assert_eq!(ended(&mut first).code(), Some(143), "the first was not disturbed");
-    let steps = rows_of(&folder.path().join("observables.csv"));
-    assert_eq!(manifest(folder.path())["runs"][0]["step"].as_u64(), Some(steps));
 }

@@ -1,4 +1,4 @@
-//! When frames are made, and what several recordings want of one folder.
+//! When frames are made, and what becomes of earlier recordings.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -54,22 +54,6 @@ fn frames_are_made_where_they_are_due() {
     let rows: Vec<_> = index.lines().skip_while(|line| !line.starts_with("step")).collect();
     assert_eq!(rows.len(), 6);
     assert!(rows[5].starts_with("8,") && rows[5].ends_with(",4"), "{rows:?}");
-}
-
-#[test]
-fn one_recording_at_a_time_in_a_folder() {
-    let folder = folder();
-    let pile = scene("pile");
-    let about = RunFacts::default();
-    let first = start(folder.path(), &[FormatName::Csv], &pile);
-    for overwrite in [false, true] {
-        let second = Recording::start(folder.path(), &[FormatName::Csv], &about, overwrite);
-        let said = second.err().expect("a refusal").to_string();
-        assert!(said.contains("is being written by another run"), "{said}");
-    }
-    first.finish().expect("a recording");
-    let second = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
-    second.expect("the folder is free").finish().expect("a recording");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::table::{Table, place_of};
 use crate::column_spec::CellValue::{Count, Flag, Name, Number, SomeNumber, Word};
-use crate::column_spec::ColumnSpec;
+use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{
     ContactState, ContactStatus, GrainState, Moment, Observables, OtherBody, Stepper,
@@ -70,36 +70,26 @@ struct GrainTableRow {
 const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    ColumnSpec::new(
-        "id",
-        "",
-        "number of the disc; fixed discs follow the grains",
-        Count(|row| row.id),
-    ),
-    ColumnSpec::new("x", "m", "centre", Number(|row| row.state.position.x)),
-    ColumnSpec::new("y", "m", "centre", Number(|row| row.state.position.y)),
-    ColumnSpec::new(
-        "angle",
-        "rad",
-        "turned since the start, anticlockwise",
-        Number(|row| row.state.angle),
-    ),
-    ColumnSpec::new("vx", "m/s", "velocity of the centre", Number(|row| row.state.velocity.x)),
-    ColumnSpec::new("vy", "m/s", "velocity of the centre", Number(|row| row.state.velocity.y)),
-    ColumnSpec::new(
+    column("id", "", "number of the disc; fixed discs follow the grains", Count(|row| row.id)),
+    column("x", "m", "centre", Number(|row| row.state.position.x)),
+    column("y", "m", "centre", Number(|row| row.state.position.y)),
+    column("angle", "rad", "turned since the start, anticlockwise", Number(|row| row.state.angle)),
+    column("vx", "m/s", "velocity of the centre", Number(|row| row.state.velocity.x)),
+    column("vy", "m/s", "velocity of the centre", Number(|row| row.state.velocity.y)),
+    column(
         "omega",
         "rad/s",
         "angular velocity, anticlockwise",
         Number(|row| row.state.angular_velocity),
     ),
-    ColumnSpec::new("radius", "m", "radius", Number(|row| row.state.radius)),
-    ColumnSpec::new(
+    column("radius", "m", "radius", Number(|row| row.state.radius)),
+    column(
         "mass",
         "kg",
         "mass; none of what is fixed",
         SomeNumber(|row| (row.kind != FIXED).then_some(row.state.mass)),
     ),
-    ColumnSpec::new(
+    column(
         "kind",
         "",
         "grain, fixed disc, or a grain that went through a wall or left the world",
@@ -168,38 +158,38 @@ struct ContactTableRow {
 const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    ColumnSpec::new("id_i", "", "grain i", Count(|row| row.state.grain.into())),
-    ColumnSpec::new(
+    column("id_i", "", "grain i", Count(|row| row.state.grain.into())),
+    column(
         "id_j",
         "",
         "body j: a grain, after them a fixed disc, after those a boundary",
         Count(|row| row.other_id),
     ),
-    ColumnSpec::new("kind_j", "", "what body j is", Word(OTHER_KINDS, |row| row.kind)),
-    ColumnSpec::new("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
-    ColumnSpec::new("x", "m", "contact point", Number(|row| row.state.point.x)),
-    ColumnSpec::new("y", "m", "contact point", Number(|row| row.state.point.y)),
-    ColumnSpec::new("nx", "1", "normal, from j to i", Number(|row| row.state.normal.x)),
-    ColumnSpec::new("ny", "1", "normal, from j to i", Number(|row| row.state.normal.y)),
-    ColumnSpec::new(
+    column("kind_j", "", "what body j is", Word(OTHER_KINDS, |row| row.kind)),
+    column("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
+    column("x", "m", "contact point", Number(|row| row.state.point.x)),
+    column("y", "m", "contact point", Number(|row| row.state.point.y)),
+    column("nx", "1", "normal, from j to i", Number(|row| row.state.normal.x)),
+    column("ny", "1", "normal, from j to i", Number(|row| row.state.normal.y)),
+    column(
         "gap",
         "m",
         "distance of the surfaces as the step began; negative is overlap",
         Number(|row| row.state.gap),
     ),
-    ColumnSpec::new(
+    column(
         "normal_force",
         "N",
         "on i along the normal, mean over the step; negative pulls",
         Number(|row| row.state.normal_force),
     ),
-    ColumnSpec::new(
+    column(
         "tangential_force",
         "N",
         "on i along (-ny, nx), mean over the step",
         Number(|row| row.state.tangential_force),
     ),
-    ColumnSpec::new(
+    column(
         "status",
         "",
         "what the laws of contact and friction make of it",
@@ -209,24 +199,19 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
             ContactStatus::Slip => 2,
         }),
     ),
-    ColumnSpec::new(
+    column(
         "bond",
         "",
         "whether its bond lives; none where the law knows no bonds",
         Flag(|row| row.has_bonds.then_some(row.state.bond_stretch.is_some())),
     ),
-    ColumnSpec::new(
+    column(
         "stretch",
         "m",
         "how far its bond is stretched",
         SomeNumber(|row| row.state.bond_stretch),
     ),
-    ColumnSpec::new(
-        "age",
-        "",
-        "steps since the pair was found to touch",
-        Count(|row| row.state.age_steps),
-    ),
+    column("age", "", "steps since the pair was found to touch", Count(|row| row.state.age_steps)),
 ];
 
 pub(super) fn contacts(moment: &Moment) -> Table {
@@ -272,16 +257,11 @@ struct Bin {
 const BIN_COLUMNS: &[ColumnSpec<Bin>] = &[
     ColumnSpec::step(|bin| bin.step),
     ColumnSpec::time(|bin| bin.time_secs),
-    ColumnSpec::new("quantity", "", "what is counted", Name(|bin| bin.quantity)),
-    ColumnSpec::new("unit", "", "unit of from and to", Name(|bin| bin.unit)),
-    ColumnSpec::new(
-        "from",
-        "",
-        "where the bin begins, which belongs to it",
-        Number(|bin| bin.from),
-    ),
-    ColumnSpec::new("to", "", "where it ends", Number(|bin| bin.to)),
-    ColumnSpec::new("count", "", "how many are in it", Count(|bin| bin.count)),
+    column("quantity", "", "what is counted", Name(|bin| bin.quantity)),
+    column("unit", "", "unit of from and to", Name(|bin| bin.unit)),
+    column("from", "", "where the bin begins, which belongs to it", Number(|bin| bin.from)),
+    column("to", "", "where it ends", Number(|bin| bin.to)),
+    column("count", "", "how many are in it", Count(|bin| bin.count)),
 ];
 
 pub(super) fn histogram_table(now: &Observables, histograms: &[Histogram]) -> Table {
@@ -308,7 +288,7 @@ pub(super) struct FrameRow {
 const FRAME_COLUMNS: &[ColumnSpec<FrameRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    ColumnSpec::new("number", "", "frames before this one", Count(|row| row.number)),
+    column("number", "", "frames before this one", Count(|row| row.number)),
 ];
 
 pub(super) fn frames(rows: &[FrameRow]) -> Table {
@@ -318,149 +298,124 @@ pub(super) fn frames(rows: &[FrameRow]) -> Table {
 const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    ColumnSpec::new("time_step", "s", "time step", Number(|row| row.time_step_secs)),
-    ColumnSpec::new("sweeps", "", "sweeps of the solver", Count(|row| row.sweeps.into())),
-    ColumnSpec::new(
+    column("time_step", "s", "time step", Number(|row| row.time_step_secs)),
+    column("sweeps", "", "sweeps of the solver", Count(|row| row.sweeps.into())),
+    column(
         "factorisations",
         "",
         "matrices that it factorised",
         Count(|row| row.factorisations.into()),
     ),
-    ColumnSpec::new(
+    column(
         "converged",
         "",
         "whether the step was solved as asked",
         Flag(|row| Some(row.converged)),
     ),
-    ColumnSpec::new(
-        "stalled",
-        "",
-        "whether more sweeps would be of no use",
-        Flag(|row| Some(row.stalled)),
-    ),
-    ColumnSpec::new(
-        "residual",
-        "1",
-        "common residual of the step's problem",
-        Number(|row| row.residual),
-    ),
-    ColumnSpec::new(
+    column("stalled", "", "whether more sweeps would be of no use", Flag(|row| Some(row.stalled))),
+    column("residual", "1", "common residual of the step's problem", Number(|row| row.residual)),
+    column(
         "model_residual",
         "1",
         "the same of the model of friction that was solved in the place of Coulomb's law",
         SomeNumber(|row| row.model_residual),
     ),
-    ColumnSpec::new(
+    column(
         "duality_gap",
         "1",
         "duality gap of that model, whose square root bounds the error of the velocities",
         SomeNumber(|row| row.duality_gap),
     ),
-    ColumnSpec::new(
+    column(
         "fell_back",
         "1",
         "1 where it was solved under bounds of friction in the place of Coulomb's law, else 0",
         SomeNumber(|row| row.fell_back.map(|fell_back| u8::from(fell_back).into())),
     ),
-    ColumnSpec::new("contacts", "", "contacts", Count(|row| row.contacts.into())),
-    ColumnSpec::new(
+    column("contacts", "", "contacts", Count(|row| row.contacts.into())),
+    column(
         "compressive_contacts",
         "",
         "contacts that push",
         Count(|row| row.compressive_contacts.into()),
     ),
-    ColumnSpec::new(
-        "tensile_contacts",
-        "",
-        "contacts that pull",
-        Count(|row| row.tensile_contacts.into()),
-    ),
-    ColumnSpec::new(
+    column("tensile_contacts", "", "contacts that pull", Count(|row| row.tensile_contacts.into())),
+    column(
         "mean_overlap",
         "1",
         "mean overlap of grains in touch, in mean diameters",
         Number(|row| row.mean_overlap),
     ),
-    ColumnSpec::new(
-        "max_overlap",
-        "1",
-        "largest overlap, in mean diameters",
-        Number(|row| row.max_overlap),
-    ),
-    ColumnSpec::new("kinetic_energy", "J", "kinetic energy", Number(|row| row.kinetic_energy)),
-    ColumnSpec::new(
+    column("max_overlap", "1", "largest overlap, in mean diameters", Number(|row| row.max_overlap)),
+    column("kinetic_energy", "J", "kinetic energy", Number(|row| row.kinetic_energy)),
+    column(
         "potential_energy",
         "J",
         "potential energy in the gravity field",
         Number(|row| row.potential_energy),
     ),
-    ColumnSpec::new(
+    column(
         "normal_work",
         "J",
         "work of the normal contact forces in the step",
         Number(|row| row.normal_work),
     ),
-    ColumnSpec::new(
+    column(
         "tangential_work",
         "J",
         "work of the tangential contact forces in the step",
         Number(|row| row.tangential_work),
     ),
-    ColumnSpec::new(
+    column(
         "wall_work",
         "J",
         "part of both that surfaces which move did in the step",
         Number(|row| row.wall_work),
     ),
-    ColumnSpec::new(
+    column(
         "drive_energy",
         "J",
         "kinetic energy of walls that a force drives",
         SomeNumber(|row| row.drive_energy),
     ),
-    ColumnSpec::new(
+    column(
         "drive_work",
         "J",
         "work in the step of the forces that drive walls, less that of their damping",
         SomeNumber(|row| row.drive_work),
     ),
-    ColumnSpec::new(
+    column(
         "border_work",
         "J",
         "work that borders which shear did in the step, beside the others",
         SomeNumber(|row| row.border_work),
     ),
-    ColumnSpec::new(
+    column(
         "gravity_work",
         "J",
         "work of the gravity field in the step",
         Number(|row| row.gravity_work),
     ),
-    ColumnSpec::new(
+    column(
         "slump",
         "1",
         "how far the centre of mass has sunk, in its first height",
         Number(|row| row.slump),
     ),
-    ColumnSpec::new(
-        "bond_work",
-        "J",
-        "work that bonds did in the step",
-        SomeNumber(|row| row.bond_work),
-    ),
-    ColumnSpec::new(
+    column("bond_work", "J", "work that bonds did in the step", SomeNumber(|row| row.bond_work)),
+    column(
         "bond_energy",
         "J",
         "what stretching the bonds that live took",
         SomeNumber(|row| row.bond_energy),
     ),
-    ColumnSpec::new(
+    column(
         "broken_bond_energy",
         "J",
         "what bonds took that have broken",
         SomeNumber(|row| row.broken_bond_energy),
     ),
-    ColumnSpec::new(
+    column(
         "lost_grains",
         "",
         "grains that went through a wall or left the world",

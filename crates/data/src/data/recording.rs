@@ -1,13 +1,13 @@
 //! A recording: what a run tells of itself goes to files while it goes on.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
 use super::columns::{FrameRow, frames};
 use super::csv::TextTable;
 use super::format::{Format, Frame, RunFacts, check_format, start_format};
-use super::recording_folder::{FRAMES, RecordingFolder, write_manifest};
+use super::recording_folder::{FRAMES, check_recording_folder, remove_recording, write_manifest};
 use crate::error::Result;
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{Moment, Observables, Simulation};
@@ -44,7 +44,7 @@ const FRAMES_AT_ONCE: usize = 8;
 /// # Ok::<(), slump_core::error::Error>(())
 /// ```
 pub struct Recording {
-    folder: RecordingFolder,
+    folder: PathBuf,
     /// Rows that wait for the next frame.
     rows: Vec<Observables>,
     frames: u64,
@@ -63,39 +63,30 @@ impl Recording {
     /// `overwrite` and refused without.
     ///
     /// # Errors
-    /// Where the folder cannot be written to, or another recording is being written or lies there.
+    /// Where the folder cannot be written to, or another recording lies there.
     pub fn start(
         folder: &Path,
         formats: &[FormatName],
         facts: &RunFacts,
         overwrite: bool,
     ) -> Result<Self> {
-        Self::start_in(RecordingFolder::of(folder, overwrite)?, formats, facts)
-    }
-
-    /// Starts a recording in a folder that has been taken.
-    ///
-    /// # Errors
-    /// Where the folder cannot be written to.
-    pub fn start_in(
-        folder: RecordingFolder,
-        formats: &[FormatName],
-        facts: &RunFacts,
-    ) -> Result<Self> {
+        check_recording_folder(folder, overwrite)?;
         formats.iter().try_for_each(|&format| check_format(format))?;
-        folder.clear()?;
+        if overwrite {
+            remove_recording(folder)?;
+        }
         // First of all: it is by this that others know a recording.
-        write_manifest(folder.path(), formats, facts)?;
-        let writer = FormatsWriter::start(folder.path(), formats, facts)?;
+        write_manifest(folder, formats, facts)?;
+        let writer = FormatsWriter::start(folder, formats, facts)?;
         let (sender, messages) = sync_channel(MOST_WAITING);
         let thread = std::thread::spawn(move || writer.run(&messages));
         let writer = Some(WriterThread { sender, thread });
-        Ok(Self { folder, rows: Vec::new(), frames: 0, schedule: None, writer })
+        Ok(Self { folder: folder.to_owned(), rows: Vec::new(), frames: 0, schedule: None, writer })
     }
 
     /// Where it is.
     pub fn folder(&self) -> &Path {
-        self.folder.path()
+        &self.folder
     }
 
     /// Frames that it has been given.

@@ -1,5 +1,5 @@
-//! The folder of a recording: which of its files are a recording's, the lock by which it is one recording's alone,
-//! and `data.json`, which says what a recording is made of.
+//! The folder of a recording: which of its files are a recording's, and `data.json`, which says what a recording is made
+//! of.
 
 use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
@@ -11,59 +11,40 @@ use super::format::RunFacts;
 use super::table::{Column, Values};
 use super::{csv, lammps, vtk};
 use crate::error::{Error, Result};
-use crate::output::{FolderLock, check_writable, final_name, write_file};
+use crate::output::{check_writable, final_name, write_file};
 use crate::scene::FormatName;
 
 /// What a recording is made of.
 const MANIFEST: &str = "data.json";
 /// The list of frames that are there in every format.
 pub(super) const FRAMES: &str = "frames.csv";
-/// Locks the recording. Pictures may be in the same folder.
-const LOCK: &str = ".slump-data.lock";
 /// What the name of a part of a table in Parquet begins with, …
 const BEGINNING_OF_PART: &str = "part-";
 /// … and ends with.
 const ENDING_OF_PART: &str = ".parquet";
 
-/// A folder that no other recording is written to while this is there.
-pub struct RecordingFolder {
-    path: PathBuf,
-    overwrite: bool,
-    _lock: FolderLock,
+/// Checks that a recording can go to a folder, which is made where it is not there.
+///
+/// # Errors
+/// Where it cannot be written to, or, without `overwrite`, an earlier recording is there.
+pub fn check_recording_folder(path: &Path, overwrite: bool) -> Result<()> {
+    check_writable("data", path)?;
+    if !overwrite && let Some(first) = files_of_a_recording(path)?.first() {
+        let name = first.strip_prefix(path).unwrap_or(first).display();
+        let allowed = format!(
+            "a folder without an earlier recording ({name} is there), unless --overwrite is given to \
+             remove it"
+        );
+        return Err(Error::value("data", path.display(), allowed));
+    }
+    Ok(())
 }
 
-impl RecordingFolder {
-    /// Makes the folder where it is not there, and takes it.
-    ///
-    /// # Errors
-    /// Where it cannot be written to, another recording is being written to it, or, without `overwrite`, an
-    /// earlier one is there.
-    pub fn of(path: &Path, overwrite: bool) -> Result<Self> {
-        check_writable("data", path)?;
-        let lock = FolderLock::of(path, LOCK)?;
-        if !overwrite && let Some(first) = files_of_a_recording(path)?.first() {
-            let name = first.strip_prefix(path).unwrap_or(first).display();
-            let allowed = format!(
-                "a folder without an earlier recording ({name} is there), unless --overwrite is given to \
-                 remove it"
-            );
-            return Err(Error::value("data", path.display(), allowed));
-        }
-        Ok(Self { path: path.to_owned(), overwrite, _lock: lock })
-    }
-
-    /// The folder.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Removes an earlier recording, where that was asked for.
-    pub(super) fn clear(&self) -> Result<()> {
-        if !self.overwrite {
-            return Ok(());
-        }
-        files_of_a_recording(&self.path)?.iter().try_for_each(|file| remove(file))
-    }
+/// Removes what is there of a recording.
+pub(super) fn remove_recording(path: &Path) -> Result<()> {
+    let remove =
+        |file: &PathBuf| std::fs::remove_file(file).map_err(|error| Error::file(file, error));
+    files_of_a_recording(path)?.iter().try_for_each(remove)
 }
 
 /// The files of a recording that are in a folder, whatever its formats and whatever this build can write, and what a
@@ -101,10 +82,6 @@ pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Resu
     }
     files.sort();
     Ok(files)
-}
-
-pub(super) fn remove(path: &Path) -> Result<()> {
-    std::fs::remove_file(path).map_err(|error| Error::file(path, error))
 }
 
 pub(super) fn make_folder(path: &Path) -> Result<()> {

@@ -1,12 +1,10 @@
-//! Files that are whole or not there, where they go, what they say of themselves, and folders in which one run
-//! writes at a time.
+//! Files that are whole or not there, where they go, and what they say of themselves.
 
 use std::ffi::OsString;
-use std::fs::{File, Metadata, OpenOptions, Permissions, TryLockError};
+use std::fs::{File, Metadata, Permissions};
 use std::io::{ErrorKind::NotFound, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use super::terminal::note_line;
 use crate::error::{Error, Result};
 
 /// Ending of the name that a file has until it is whole.
@@ -207,47 +205,6 @@ fn unless_absent(path: &Path, removed: std::io::Result<()>) -> Result<()> {
     match removed {
         Err(error) if error.kind() != NotFound => Err(Error::file(path, error)),
         _ => Ok(()),
-    }
-}
-
-/// A folder in which this process alone writes what is locked until this is dropped. The lock ends with the process,
-/// however that ends; a file that was left behind locks nothing.
-pub struct FolderLock {
-    path: PathBuf,
-    _file: File,
-}
-
-impl FolderLock {
-    /// Locks a folder that is there, by a file of that name.
-    ///
-    /// # Errors
-    /// Where another process has it, or no file can be written in it.
-    pub fn of(folder: &Path, name: &str) -> Result<Self> {
-        let path = folder.join(name);
-        let file = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
-        let file = file.map_err(|error| Error::file(&path, error))?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let reason = "is being written by another run, which must end first";
-                return Err(Error::file(folder, reason));
-            }
-            // Some file systems have no locks; to write there at all is worth more.
-            Err(TryLockError::Error(error)) => {
-                let folder = folder.display();
-                note_line(format_args!(
-                    "{folder}: cannot be locked ({error}), so nothing keeps a second run out"
-                ));
-            }
-        }
-        Ok(Self { path, _file: file })
-    }
-}
-
-impl Drop for FolderLock {
-    fn drop(&mut self) {
-        // While it is still locked. A file that stays does no harm.
-        let _ = std::fs::remove_file(&self.path);
     }
 }
 

@@ -7,8 +7,8 @@ mod seal;
 mod terminal;
 
 pub use files::{
-    FolderLock, PendingFile, Texts, check_file, check_writable, final_name, folder_of,
-    remove_folder_if_there, remove_if_there, write_file,
+    PendingFile, Texts, check_file, check_writable, final_name, folder_of, remove_folder_if_there,
+    remove_if_there, write_file,
 };
 pub use growing::GrowingFile;
 pub use seal::Seal;
