@@ -11,9 +11,9 @@ use rayon::prelude::*;
 
 use super::folder::{EarlierFiles, check_run_folder, clear_run_folder};
 use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
+use super::options::texts_of_panel;
 use super::table::ObservablesTable;
 use super::writer::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
-use crate::config::{Provenance, asked_time_secs};
 use crate::error::Result;
 use crate::output::{Progress, Texts, caught_signal, counted, print_line};
 use crate::render::{PanelGrid, Style, draw_scene};
@@ -229,11 +229,7 @@ impl FigureWriter<'_> {
             let style = Style { scale_bar: images.is_empty(), ..Style::default() };
             let snapshot = &panel.run.snapshots[panel.number];
             let image = draw_scene(snapshot, &style, &camera, width, height)?;
-            let time_secs = asked_time_secs(snapshot.observables.time_secs);
-            let scene = &panel.run.paper.scene;
-            let (scene, settings) = (scene.name.clone(), scene.settings());
-            let words = ["--frames", "figures"].map(str::to_owned).to_vec();
-            let texts = Provenance { scene, settings, words }.texts(Some(time_secs), &[]);
+            let texts = texts_of_panel(&panel.run.paper.scene, snapshot)?;
             let file = format!("{}.png", panel.name);
             self.write(&file, &image, vec![panel.moment()], &texts)?;
             images.push(image);

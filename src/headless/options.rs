@@ -1,13 +1,17 @@
-//! Options of pictures, recordings and saved runs.
+//! Options of pictures, recordings and saved runs, and what files say of the command that makes them again.
 
 use std::path::{Path, PathBuf};
 
-use crate::config::parser_of;
+use clap::ValueEnum;
+
+use crate::config::{Config, Provenance, asked_time_secs, parser_of, words_of, words_up_to};
 use crate::data::{DataSettings, FormatName};
 use crate::error::{Error, Result};
 use crate::film::{VIDEO_RATES_HZ, VIDEO_SIDES, check_ffmpeg};
+use crate::output::Texts;
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
 use crate::scene::Scene;
+use crate::sim::Snapshot;
 
 /// Width and height of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,72 +45,60 @@ pub(crate) enum Overlay {
 
 /// Options of pictures, recordings and saved runs.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+#[command(next_help_heading = "Pictures")]
 pub(crate) struct HeadlessOptions {
     /// Draw pictures without a window; with --frames alone, the paper's Fig. 3, 4 and 7
-    #[arg(long, help_heading = "Pictures")]
+    #[arg(long)]
     pub headless: bool,
     /// Folder for pictures, observables.csv and manifest.json
-    #[arg(long, value_name = "DIR", help_heading = "Pictures")]
+    #[arg(long, value_name = "DIR")]
     pub frames: Option<PathBuf>,
     /// Remove what earlier runs left in the folders; without it such a folder is refused
-    #[arg(long, help_heading = "Pictures")]
+    #[arg(long)]
     pub overwrite: bool,
     /// Size of a picture, pixels [default: 960x540]
-    #[arg(long, value_name = "WxH", help_heading = "Pictures")]
+    #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
     /// Pictures per simulated second: frame_00000.png and so on [default: 25]
-    #[arg(
-        long,
-        value_name = "N",
-        help_heading = "Pictures",
-        conflicts_with = "times",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "N", conflicts_with = "times", allow_negative_numbers = true)]
     pub fps: Option<f64>,
     /// Pictures at these simulated times, seconds; the last ends the run unless --duration is given
-    #[arg(
-        long,
-        value_name = "T1,T2",
-        help_heading = "Pictures",
-        value_delimiter = ',',
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "T1,T2", value_delimiter = ',', allow_negative_numbers = true)]
     pub times: Vec<f64>,
     /// Write the pictures as an animation too, 25 a second
-    #[arg(long, value_name = "FILE", help_heading = "Pictures")]
+    #[arg(long, value_name = "FILE")]
     pub gif: Option<PathBuf>,
     /// Write the pictures as a video too, at the pace of simulated time: MP4, by ffmpeg
-    #[arg(long, value_name = "FILE", help_heading = "Pictures", conflicts_with = "times")]
+    #[arg(long, value_name = "FILE", conflicts_with = "times")]
     pub video: Option<PathBuf>,
     /// Simulated seconds in a second of the video: 0.1 is ten times slower than it was, and asks for 250 pictures
     /// per simulated second unless --fps says otherwise [default: 1]
-    #[arg(long, value_name = "N", help_heading = "Pictures", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub video_speed: Option<f64>,
     /// What to lay over the grains
-    #[arg(long, value_name = "WHAT", help_heading = "Pictures", value_delimiter = ',')]
+    #[arg(long, value_name = "WHAT", value_delimiter = ',')]
     pub show: Vec<Overlay>,
     /// What the colours of the grains stand for
-    #[arg(long, value_name = "BY", help_heading = "Pictures", alias = "color")]
+    #[arg(long, value_name = "BY", alias = "color")]
     pub colour: Option<ColourBy>,
     /// Values at the two ends of the colours: m/s, diameters or N. Frames are then drawn as the run goes;
     /// without it they wait for its end, to share the scale that shows all of them
     #[arg(
         long,
         value_name = "LOW,HIGH",
-        help_heading = "Pictures",
         value_delimiter = ',',
         allow_negative_numbers = true,
         alias = "color-scale"
     )]
     pub colour_scale: Vec<f64>,
     /// Force of the widest link, N: the same for --show forces
-    #[arg(long, value_name = "N", help_heading = "Pictures", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub force_scale: Option<f64>,
     /// Ground and ink
-    #[arg(long, value_name = "THEME", help_heading = "Pictures")]
+    #[arg(long, value_name = "THEME")]
     pub theme: Option<Theme>,
     /// What draws the window: auto tries Vulkan and then OpenGL. Pictures are drawn by the processor
-    #[arg(long, value_name = "KIND", help_heading = "Pictures", default_value = "auto")]
+    #[arg(long, value_name = "KIND", default_value = "auto")]
     pub renderer: RendererChoice,
     /// Go on with a saved run: simulated time, slump and the numbers of pictures go on, and settings given besides change it from there on (--initial begins a new run at t = 0 with its grains)
     #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
@@ -295,5 +287,97 @@ impl HeadlessOptions {
             (None, Some(field)) => Err(Error::value(field, "given", "given with --data DIR")),
             (folder, _) => Ok(folder.map(|folder| (folder, settings))),
         }
+    }
+}
+
+/// What a panel of a figure says of itself, of a scene that is built in.
+pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
+    let settings = scene.settings();
+    let words = Config::of_scene(&scene.name).words(&settings)?;
+    let time_secs = asked_time_secs(snapshot.observables.time_secs);
+    let frames = ["--frames".to_owned(), "frames".to_owned()];
+    let run = Provenance { scene: scene.name.clone(), settings, words };
+    Ok(run.texts(Some(time_secs), &[words_up_to(time_secs), frames.into()].concat()))
+}
+
+impl HeadlessOptions {
+    /// What a run is made of that `config` and these options ask for.
+    pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
+        let settings = scene.settings();
+        let words = match &self.restart {
+            None => {
+                // Frames are the same however long the run goes on after them.
+                let mut config = config.clone();
+                config.source.duration = None;
+                config.words(&settings)?
+            }
+            Some(path) => {
+                let file = ["--restart".to_owned(), path.display().to_string()];
+                [&file[..], &words_of(&settings, None)].concat()
+            }
+        };
+        Ok(Provenance { scene: scene.name.clone(), settings, words })
+    }
+
+    /// What the picture at a simulated time (s) says of itself.
+    pub(super) fn texts_of_frame(&self, run: &Provenance, time_secs: f64, style: &Style) -> Texts {
+        let frames = ["--frames".to_owned(), "frames".to_owned()];
+        run.texts(
+            Some(time_secs),
+            &[words_up_to(time_secs), self.words_of_style(style), frames.into()].concat(),
+        )
+    }
+
+    /// What an animation of a run that lasts so long (s) says of itself; its command ends with `last_words`.
+    pub(super) fn texts_of_animation(
+        &self,
+        run: &Provenance,
+        duration_secs: f64,
+        style: &Style,
+        last_words: &[&str],
+    ) -> Texts {
+        let mut words = vec!["--duration".to_owned(), duration_secs.to_string()];
+        if let Some(fps) = self.fps {
+            words.extend(["--fps".to_owned(), fps.to_string()]);
+        }
+        if !self.times.is_empty() {
+            let times: Vec<_> = self.times.iter().map(f64::to_string).collect();
+            words = vec!["--times".to_owned(), times.join(",")];
+        }
+        words.extend(self.words_of_style(style));
+        if let Some(speed) = self.video_speed {
+            words.extend(["--video-speed".to_owned(), speed.to_string()]);
+        }
+        words.extend(last_words.iter().map(|&word| word.to_owned()));
+        run.texts(None, &words)
+    }
+
+    /// The options that draw alike, with the scales that the frames have.
+    fn words_of_style(&self, style: &Style) -> Vec<String> {
+        let named = |value: Option<clap::builder::PossibleValue>| {
+            value.map_or_else(String::new, |value| value.get_name().to_owned())
+        };
+        let mut words = Vec::new();
+        let mut say = |name: &str, value: String| words.extend([format!("--{name}"), value]);
+        if let Some(size) = &self.size {
+            say("size", size.clone());
+        }
+        let shown: Vec<_> = self.show.iter().map(|what| named(what.to_possible_value())).collect();
+        if !shown.is_empty() {
+            say("show", shown.join(","));
+        }
+        if let Some(colour) = self.colour {
+            say("colour", named(colour.to_possible_value()));
+        }
+        if let Some((low, high)) = style.range.filter(|_| style.colour_by.has_scale()) {
+            say("colour-scale", format!("{low},{high}"));
+        }
+        if let Some(force) = style.force_reference.filter(|_| style.show_forces) {
+            say("force-scale", force.to_string());
+        }
+        if let Some(theme) = self.theme {
+            say("theme", named(theme.to_possible_value()));
+        }
+        words
     }
 }

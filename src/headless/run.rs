@@ -60,7 +60,8 @@ pub(super) fn draw(
         Ok(recording.at(times))
     };
     let recording = data.map(start).transpose()?;
-    let mut writer = RunWriter::open(options, &scene, steps, restarted_from)?;
+    let provenance = options.provenance(config, &scene)?;
+    let mut writer = RunWriter::open(options, &scene, steps, provenance, restarted_from)?;
     (writer.recording, writer.checkpoints) = (recording, checkpoints);
     let run = OnItsWay { simulation, tally, next_picture };
     let recorded = go_on(run, &times_secs, until_secs, &mut writer);

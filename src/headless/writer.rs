@@ -51,6 +51,7 @@ impl<'a> RunWriter<'a> {
         options: &'a HeadlessOptions,
         scene: &'a Scene,
         end: u64,
+        provenance: Provenance,
         restarted_from: Option<Instant>,
     ) -> Result<Self> {
         let size = options.size()?;
@@ -62,9 +63,6 @@ impl<'a> RunWriter<'a> {
         let rate_hz = options.video_rate_hz()?;
         let film = |path: &Path| Video::start(path, rate_hz);
         let animate = |path: &Path| Animation::start(path, GIF_RATE_HZ);
-        // The command line of this process makes all of it again.
-        let words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
-        let words = words.filter(|word| word != "--headless").collect();
         let writer = Self {
             options,
             scene,
@@ -77,7 +75,7 @@ impl<'a> RunWriter<'a> {
             style,
             recording: None,
             manifest,
-            provenance: Provenance { scene: scene.name.clone(), settings: scene.settings(), words },
+            provenance,
             checkpoints: None,
         };
         writer.write_manifest()?;
@@ -171,7 +169,7 @@ impl<'a> RunWriter<'a> {
         if let Some(folder) = &self.options.frames {
             let file = format!("frame_{number:05}.png");
             let time_secs = asked_time_secs(snapshot.observables.time_secs);
-            let texts = self.provenance.texts(Some(time_secs), &[]);
+            let texts = self.options.texts_of_frame(&self.provenance, time_secs, &self.style);
             write_png(&folder.join(&file), &image, &texts)?;
             let moment = ShownMoment { run: RUN.to_owned(), observables: snapshot.observables };
             let entry = PictureEntry { file, shows: vec![moment] };
@@ -180,11 +178,16 @@ impl<'a> RunWriter<'a> {
         self.animate(image)
     }
 
-    /// Adds a picture to GIF and video.
+    /// Adds a picture to GIF and video. Each says of itself how to make it again.
     fn animate(&mut self, image: RgbaImage) -> Result<()> {
-        let texts = self.provenance.texts(None, &[]);
-        let video = self.video.as_mut().map_or(Ok(()), |video| video.add(&image, &texts));
-        let gif = self.gif.as_mut().map_or(Ok(()), |gif| gif.add(image, &texts));
+        let Self { options, scene, provenance, style, .. } = self;
+        let texts = |words: &[&str]| {
+            options.texts_of_animation(provenance, scene.duration_secs, style, words)
+        };
+        let video_texts = texts(&["--video", "video.mp4"]);
+        let gif_texts = texts(&["--gif", "animation.gif"]);
+        let video = self.video.as_mut().map_or(Ok(()), |video| video.add(&image, &video_texts));
+        let gif = self.gif.as_mut().map_or(Ok(()), |gif| gif.add(image, &gif_texts));
         video.and(gif)
     }
 

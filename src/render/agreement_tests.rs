@@ -3,12 +3,12 @@
 use image::RgbaImage;
 use rand::{RngExt, SeedableRng};
 
-use super::gpu::{FORMAT, GpuKind, OffscreenTarget};
+use super::gpu::{FORMAT, OffscreenTarget};
 use super::*;
 
 /// Every GPU of this machine. None at all is a failure: nothing would be compared.
 fn gpus() -> Vec<(Gpu, Painter)> {
-    let kinds = [GpuKind::Vulkan, GpuKind::Gl].into_iter();
+    let kinds = [wgpu::Backends::VULKAN, wgpu::Backends::GL].into_iter();
     let found: Vec<Gpu> = kinds.filter_map(|kind| Gpu::open(kind).ok()).collect();
     assert!(
         !found.is_empty(),

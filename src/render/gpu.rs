@@ -1,19 +1,12 @@
 //! A GPU, on Vulkan or OpenGL, and what it draws into memory.
 //!
-//! Each kind is asked for by itself, so that a missing driver can be named. Software drivers (Mesa's llvmpipe) count
-//! as GPUs: they draw the same pictures.
+//! Software drivers (Mesa's llvmpipe) count as GPUs: they draw the same pictures.
 
 use std::sync::{Arc, Mutex};
 
 use image::RgbaImage;
 
 use crate::error::{Error, Result};
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum GpuKind {
-    Vulkan,
-    Gl,
-}
 
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
@@ -26,15 +19,11 @@ pub(crate) struct Gpu {
 
 impl Gpu {
     pub(crate) fn any() -> Result<Self> {
-        Self::open(GpuKind::Vulkan).or_else(|_| Self::open(GpuKind::Gl))
+        Self::open(wgpu::Backends::VULKAN).or_else(|_| Self::open(wgpu::Backends::GL))
     }
 
     /// Opens the strongest device of one kind.
-    pub(super) fn open(kind: GpuKind) -> Result<Self> {
-        let (backends, said) = match kind {
-            GpuKind::Vulkan => (wgpu::Backends::VULKAN, "vulkan"),
-            GpuKind::Gl => (wgpu::Backends::GL, "gl"),
-        };
+    pub(super) fn open(backends: wgpu::Backends) -> Result<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends,
             // Debug builds would otherwise load validation layers and let them write to stderr.
@@ -45,14 +34,20 @@ impl Gpu {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..wgpu::RequestAdapterOptions::default()
         };
-        let adapter =
-            pollster::block_on(instance.request_adapter(&options)).map_err(|_| missing(kind))?;
+        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|_| {
+            Error::Renderer(
+                "no Vulkan or OpenGL (EGL) driver was found: install the Debian packages \
+                 mesa-vulkan-drivers and libvulkan1, or libegl1 and libgl1-mesa-dri"
+                    .into(),
+            )
+        })?;
         let available = adapter.limits();
         let limits = wgpu::Limits {
             max_buffer_size: available.max_buffer_size,
             ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(available)
         };
-        let name = format!("{said}: {}", adapter.get_info().name);
+        let about = adapter.get_info();
+        let name = format!("{}: {}", about.backend.to_str(), about.name);
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("slump"),
             required_limits: limits,
@@ -80,18 +75,6 @@ impl Gpu {
         let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
         Err(Error::Renderer(format!("{} failed: {message}", self.name)))
     }
-}
-
-/// What is missing and what brings it, as one sentence.
-fn missing(kind: GpuKind) -> Error {
-    let (driver, packages) = match kind {
-        GpuKind::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
-        GpuKind::Gl => ("OpenGL (EGL)", "libegl1 and libgl1-mesa-dri"),
-    };
-    Error::Renderer(format!(
-        "no {driver} driver was found: install the Debian packages {packages}, or use \
-         --renderer cpu, which needs no driver"
-    ))
 }
 
 /// Stores the numbers that are blended; an sRGB format would convert them.

@@ -174,12 +174,12 @@ fn a_frame_carries_the_command_that_draws_it_bit_for_bit() {
     let texts = &reader.info().uncompressed_latin1_text;
     let told = texts.iter().find(|text| text.keyword == "Command line").expect("a command");
     let words = shlex::split(&told.text).expect("words");
-    let time = texts.iter().find(|text| text.keyword == "Time").expect("a time");
-    assert_eq!(time.text, "0.15 s");
-    let before = std::fs::read(&frame).expect("a picture");
-    std::fs::remove_dir_all(&out).expect("gone");
-    slump().args(&words[1..]).assert().success();
-    assert!(std::fs::read(&frame).expect("a picture") == before);
+    assert!(words.contains(&"0.15".to_owned()), "{words:?}");
+    let again =
+        slump().current_dir(folder.path()).args(&words[1..]).args(["--renderer", "cpu"]).assert();
+    again.success();
+    let bytes = |path: &Path| std::fs::read(path).expect("a picture");
+    assert!(bytes(&folder.path().join("frames/frame_00000.png")) == bytes(&frame));
 }
 
 #[test]

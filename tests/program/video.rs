@@ -57,14 +57,15 @@ fn a_video_goes_at_the_pace_of_time_and_can_be_made_again() {
         .find_map(|line| line.strip_prefix("Command line: "))
         .expect("a command");
     let words = shlex::split(line).expect("words");
-    let read = || std::fs::read(&first).expect("a video");
-    let before = read();
-    std::fs::remove_file(&first).expect("gone");
-    let words: Vec<&str> = words[1..].iter().map(String::as_str).collect();
+    assert_eq!(words[words.len() - 2..], ["--video", "video.mp4"], "{line}");
+    let again = folder.path().join("again.mp4");
+    let mut words: Vec<&str> = words[1..words.len() - 1].iter().map(String::as_str).collect();
+    words.extend([again.to_str().expect("UTF-8"), "--renderer", "cpu"]);
     let output = slump(&words);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(read() == before, "{line}");
-    assert_eq!(names(folder.path()).len(), 1, "nothing else is left");
+    let read = |path| std::fs::read(path).expect("a video");
+    assert!(read(again) == read(first), "{line}");
+    assert_eq!(names(folder.path()).len(), 2, "nothing else is left");
 }
 
 #[test]

@@ -50,12 +50,7 @@ pub struct Recording {
     frames: u64,
     schedule: Option<FrameSchedule>,
     /// None once the recording has ended, be it by an error.
-    writer: Option<WriterThread>,
-}
-
-struct WriterThread {
-    sender: SyncSender<RecordingMessage>,
-    thread: JoinHandle<Result<()>>,
+    writer: Option<(SyncSender<RecordingMessage>, JoinHandle<Result<()>>)>,
 }
 
 impl Recording {
@@ -80,7 +75,7 @@ impl Recording {
         let writer = FormatsWriter::start(folder, formats, facts)?;
         let (sender, messages) = sync_channel(MOST_WAITING);
         let thread = std::thread::spawn(move || writer.run(&messages));
-        let writer = Some(WriterThread { sender, thread });
+        let writer = Some((sender, thread));
         Ok(Self { folder: folder.to_owned(), rows: Vec::new(), frames: 0, schedule: None, writer })
     }
 
@@ -100,7 +95,7 @@ impl Recording {
     /// Where something before could not be written.
     pub fn add_step(&mut self, observables: &Observables) -> Result<()> {
         self.rows.push(*observables);
-        let has_failed = self.writer.as_ref().is_some_and(|writer| writer.thread.is_finished());
+        let has_failed = self.writer.as_ref().is_some_and(|(_, thread)| thread.is_finished());
         if self.rows.len() < MOST_ROWS && !has_failed { Ok(()) } else { self.send_rows() }
     }
 
@@ -161,7 +156,7 @@ impl Recording {
 
     fn send(&mut self, message: RecordingMessage) -> Result<()> {
         match &self.writer {
-            Some(writer) if writer.sender.send(message).is_ok() => Ok(()),
+            Some((sender, _)) if sender.send(message).is_ok() => Ok(()),
             Some(_) => self.end(),
             None => Ok(()),
         }
@@ -169,7 +164,7 @@ impl Recording {
 
     /// Has the thread end, and tells what went wrong there, once.
     fn end(&mut self) -> Result<()> {
-        let Some(WriterThread { sender, thread }) = self.writer.take() else { return Ok(()) };
+        let Some((sender, thread)) = self.writer.take() else { return Ok(()) };
         drop(sender);
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     }
@@ -178,7 +173,7 @@ impl Recording {
 impl Drop for Recording {
     fn drop(&mut self) {
         // Before the folder is free for others. Whoever wants to know what went wrong calls `finish`.
-        if let Some(WriterThread { sender, thread }) = self.writer.take() {
+        if let Some((sender, thread)) = self.writer.take() {
             drop(sender);
             let _ = thread.join();
         }

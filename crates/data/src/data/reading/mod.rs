@@ -103,8 +103,8 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
 fn last_step(folder: &Path) -> Option<u64> {
     let text = std::fs::read_to_string(folder.join(FRAMES)).ok()?;
     // A row that a kill cut short is none.
-    let (whole, _) = text.rsplit_once('\n')?;
-    whole.lines().last()?.split(',').next()?.parse().ok()
+    let row = text.lines().rfind(|row| row.split(',').count() == 3)?;
+    row.split(',').next()?.parse().ok()
 }
 
 #[cfg(not(feature = "data"))]
