@@ -10,10 +10,8 @@ use criterion::Criterion;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use slump::sim::Simulation;
 use slump::solver::{
-    Memory, Method, Ordering, SolverSettings, SpinningPlane, StepModel, StopTest, solve, sweep,
+    Memory, Method, Ordering, SolverSettings, SpinningPlane, StopTest, solve, sweep,
 };
-
-type Full = StepModel<SpinningPlane, true>;
 
 /// Sweeps of every step that is timed: a fixed amount of work.
 const SWEEPS: u32 = 50;
@@ -35,7 +33,7 @@ fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) 
         let mut memory = Memory::default();
         let updates = problem.rows.len() * settings.max_sweeps as usize;
         let mut run = || {
-            let report = solve::<Full>(&mut problem, &mut memory, &settings);
+            let report = solve(&mut problem, &mut memory, &settings);
             assert_eq!(black_box(report).sweeps, settings.max_sweeps);
         };
         let name = format!("{name}/{count} discs");
@@ -75,7 +73,7 @@ fn main() {
         let mut problem = common::problem(&simulation, &SolverSettings::default());
         let updates = problem.rows.len();
         let of_sweep = least_secs(&mut criterion, &format!("sweep/{count} discs"), || {
-            black_box(sweep::<Full, false>(&mut problem));
+            black_box(sweep::<SpinningPlane, false>(&mut problem));
         });
         summary.push(by_colours(&mut criterion, &simulation, count));
         let of_step = least_secs(&mut criterion, &format!("step/{count} discs"), || {

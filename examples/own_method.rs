@@ -22,8 +22,7 @@ impl Advance for OverRelaxed {
         stage.prepare(settings, |approach| {
             parameters.restitution_velocity(approach.velocity, gravity)
         });
-        let mut root_masses = Vec::new();
-        let mut system = stage.system(&mut root_masses);
+        let mut system = stage.system();
         let (mut before, mut after) = (Vec::new(), Vec::new());
         let mut report = SolveReport::default();
         while !report.converged && report.sweeps < 5_000 {

@@ -16,14 +16,14 @@ struct Solve(SolverSettings);
 impl ProblemVisitor for Solve {
     type Output = String;
 
-    fn visit<M: Model>(self, problem: &mut StepProblem<M::Kinematics>, _: &ContactList) -> String {
-        let report = solve::<M>(problem, &mut Memory::default(), &self.0);
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> String {
+        let report = solve(problem, &mut Memory::default(), &self.0);
         format!(
             "{:8} {:5} sweeps, {:2} factorisations, residual {:.1e}",
             self.0.method,
             report.sweeps,
             report.factorisations,
-            residual::<M>(problem)
+            residual(problem)
         )
     }
 }

@@ -17,8 +17,10 @@
 //! [`next_problem`](sim::Simulation::next_problem) to a [`sim::ProblemVisitor`], and solved by
 //! [`solver::solve`]. Three such programs are in `examples/`.
 //!
-//! Without the feature `window` the program is a command line. The same from Python is a package of its own, in
-//! `python/`.
+//! Modules depend downward only: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`granular`] ← [`data`] ←
+//! [`scene`] ← [`render`], [`interchange`] ← the program, which is `study`, `headless`, the window (`app`, feature
+//! `window`) and `cli`; `tests/house` checks it. The physics knows no screen. Without the feature `gpu`
+//! pictures are drawn by the processor alone. The same from Python is a package of its own, in `python/`.
 
 #![warn(missing_docs, unreachable_pub)]
 // They panic where a stream is closed or full: `output` has lines that do not.

@@ -3,5 +3,7 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    // SAFETY: no other thread has been started yet.
+    unsafe { slump::render::quieten_drivers() };
     slump::cli::main()
 }

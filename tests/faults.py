@@ -28,7 +28,7 @@ grains = [0, 1, 2]
 """
 ENDINGS = {".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".json": b"}\n", ".csv": b"\n", ".md": b"\n"}
 # Figures of one study with courses, in a few seconds.
-FIGURES = ["reproduce", "fig8", "fig8-strip", "--quick"]
+FIGURES = ["reproduce", "fig8", "cradle-choices", "--quick"]
 CHART = ["chart", "--quick", "--only", "simulation"]
 random.seed(1)
 counts, losses, finished = collections.Counter(), collections.defaultdict(list), collections.Counter()

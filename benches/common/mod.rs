@@ -7,9 +7,7 @@ pub mod timing;
 use glam::DVec2;
 use slump::scene::{Scene, pile_of};
 use slump::sim::Simulation;
-use slump::solver::{
-    Approach, ProblemNumbers, SolverSettings, SpinningPlane, StepModel, StepProblem,
-};
+use slump::solver::{Approach, ProblemNumbers, SolverSettings, SpinningPlane, StepProblem};
 use slump::world::{Boundary, Grain, Parameters};
 
 /// d of the pile's scene, m.
@@ -23,13 +21,7 @@ pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProble
     let numbers = ProblemNumbers { time_step_secs, friction, capture_speed, cone };
     let rebound = |approach: Approach| restitution * approach.velocity;
     let mut problem = StepProblem::default();
-    problem.prepare::<StepModel<SpinningPlane, true>>(
-        world,
-        simulation.contacts(),
-        numbers,
-        settings,
-        rebound,
-    );
+    problem.prepare(world, simulation.contacts(), numbers, settings, rebound, None);
     problem
 }
 

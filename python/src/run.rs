@@ -78,7 +78,7 @@ impl Run {
         now.set_settings(*self.simulation.settings());
         let recording =
             Recording::start(folder, &formats_of(settings)?, &scene_facts(&now)?, overwrite)?;
-        let mut recording = recording.at(Times::of(settings));
+        let mut recording = recording.at(Times::of(settings), &self.simulation);
         recording.add_if_due(&self.simulation)?;
         self.recording = Some(recording);
         Ok(())

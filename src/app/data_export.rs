@@ -11,7 +11,7 @@ use super::opening::{Opened, TakenRun};
 use super::work::{Reporter, Work};
 use crate::config::run_facts;
 use crate::data::{
-    DEFAULT_FORMAT, DataSettings, FormatName, Recording, RunFacts, Times, check_recording_folder,
+    DEFAULT_FORMAT, DataSettings, FormatName, Recording, RecordingFolder, RunFacts, Times,
     formats_of,
 };
 use crate::error::{Error, Result};
@@ -127,10 +127,16 @@ fn write(order: &DataOrder, run: &Receiver<TakenRun>, reporter: &Reporter) -> Re
     let Some(run) = reporter.wait_for(run)? else { return Ok(NOTHING.to_owned()) };
     let record = &run.world.record;
     let stretch = order.stretch_of(record)?;
-    check_recording_folder(&order.folder, order.overwrite)?;
+    let claim = RecordingFolder::of(&order.folder, order.overwrite)?;
     let (first_secs, last_secs) = (record.start().time_secs(), stretch[1].min(record.end_secs()));
-    let mut writing =
-        Writing { order, opened: &run.opened, record, until_secs: last_secs, recording: None };
+    let mut writing = Writing {
+        order,
+        opened: &run.opened,
+        record,
+        until_secs: last_secs,
+        claim: Some(claim),
+        recording: None,
+    };
     let mut begun_at = None;
     let ended = record.replay(stretch, |simulation, is_within| {
         let from = *begun_at.get_or_insert(simulation.time_secs().max(first_secs));
@@ -192,14 +198,16 @@ struct Writing<'a> {
     opened: &'a Opened,
     record: &'a WorldRecord,
     until_secs: f64,
+    /// The folder, until the recording has it.
+    claim: Option<RecordingFolder>,
     recording: Option<Recording>,
 }
 
 impl Writing<'_> {
     /// Takes the next moment.
     fn take(&mut self, simulation: &Simulation) -> Result<()> {
-        if self.recording.is_none() {
-            self.recording = Some(self.start(simulation)?);
+        if let Some(claim) = self.claim.take() {
+            self.recording = Some(self.start(claim, simulation)?);
         }
         let Some(recording) = &mut self.recording else { return Ok(()) };
         // No step led to the moment that all began with.
@@ -212,13 +220,11 @@ impl Writing<'_> {
         }
     }
 
-    fn start(&self, simulation: &Simulation) -> Result<Recording> {
+    fn start(&self, claim: RecordingFolder, simulation: &Simulation) -> Result<Recording> {
         let formats = formats_of(&self.order.settings)?;
-        let DataOrder { folder, overwrite, .. } = self.order;
-        let about = self.about(simulation)?;
-        let recording = Recording::start(folder, &formats, &about, *overwrite)?;
+        let recording = Recording::start_in(claim, &formats, &self.about(simulation)?)?;
         Ok(match self.order.settings.every_secs {
-            Some(secs) => recording.at(Times::Every(secs)),
+            Some(secs) => recording.at(Times::Every(secs), simulation),
             None => recording,
         })
     }

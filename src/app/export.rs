@@ -14,7 +14,7 @@ use crate::config::SavedState;
 use crate::error::{Error, Result};
 use crate::live::Curve;
 use crate::output::{Texts, check_writable, write_file};
-use crate::render::{Camera, Style, WorldPanel, draw_scene, draw_worlds};
+use crate::render::{Camera, Renderer, RendererChoice, Style, WorldPanel, draw_scene, draw_worlds};
 use crate::sim::{Observables, Settings, Snapshot};
 use crate::world::Parameters;
 
@@ -48,11 +48,11 @@ impl ScenePicture {
     /// Draws it.
     ///
     /// # Errors
-    /// Where the picture is too large.
-    pub(super) fn draw(&self) -> Result<RgbaImage> {
+    /// Where the renderer cannot draw so large a picture, or fails.
+    pub(super) fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
         let Self { worlds, columns, style, camera, size, .. } = self;
         if let [PicturedWorld { snapshot, .. }] = &worlds[..] {
-            return draw_scene(snapshot, style, camera, size[0], size[1]);
+            return draw_scene(renderer, snapshot, style, camera, size[0], size[1]);
         }
         let panels = worlds.iter().map(|PicturedWorld { snapshot, title, note }| WorldPanel {
             snapshot,
@@ -60,7 +60,7 @@ impl ScenePicture {
             note,
         });
         let panels: Vec<_> = panels.collect();
-        draw_worlds(&panels, style, camera, *columns, *size)
+        draw_worlds(renderer, &panels, style, camera, *columns, *size)
     }
 }
 
@@ -80,13 +80,25 @@ pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String
     format!("slump-{name}-{which}-{time_secs:.4}s")
 }
 
-/// What plots are drawn with, opened by the first that needs it: opening a device takes longer than a picture.
+/// What pictures are drawn with, opened by the first that needs it: opening a device takes longer than a picture.
 #[derive(Default)]
 pub(crate) struct Printers {
+    renderer: Option<Renderer>,
     canvas: Option<Canvas>,
 }
 
 impl Printers {
+    /// Draws scenes.
+    ///
+    /// # Errors
+    /// Where the system has no device that draws.
+    pub(super) fn renderer(&mut self) -> Result<&mut Renderer> {
+        match &mut self.renderer {
+            Some(renderer) => Ok(renderer),
+            none => Ok(none.insert(Renderer::new(RendererChoice::Auto)?)),
+        }
+    }
+
     /// Draws plots.
     ///
     /// # Errors

@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::film::{Animation, Video};
 use crate::headless::WaitingStates;
 use crate::output::{Texts, check_writable, counted};
-use crate::render::{Style, speed_reference};
+use crate::render::{Renderer, RendererChoice, Style, speed_reference};
 use crate::sim::{Simulation, Snapshot};
 
 /// What the record is made into.
@@ -141,6 +141,7 @@ impl FilmOrder {
         moments.set_scales(&mut style);
         let path = free_path(&self.folder, &self.stem, self.format.ending());
         let mut film = self.format.start(&path, self.rate_hz)?;
+        let mut renderer = Renderer::new(RendererChoice::Auto)?;
         let (count, slumps) = (times.len(), self.slumps);
         let mut picture = ScenePicture { style, ..self.picture };
         for number in 0..count {
@@ -152,7 +153,7 @@ impl FilmOrder {
                 world.snapshot = moments.get(index, number)?.into();
                 world.note = slump(&world.snapshot, slumps);
             }
-            film.add(picture.draw()?, &picture.texts)?;
+            film.add(picture.draw(&mut renderer)?, &picture.texts)?;
         }
         film.finish()?;
         Ok(Some((path, count)))

@@ -131,8 +131,8 @@ fn run(cli: Cli) -> Result<()> {
 
 /// Prints the built-in scenes, the steppers, the methods and the models of friction.
 fn list() {
-    for group in SceneGroup::ALL {
-        print_line(format_args!("{}:", group.title()));
+    for &group in SceneGroup::ALL {
+        print_line(format_args!("{}:", group.hint()));
         for scene in SCENES.iter().filter(|scene| scene.group == group) {
             print_line(format_args!("  {:14} {}", scene.name, scene.summary));
         }
@@ -146,7 +146,11 @@ fn list() {
             stepper.info().solves,
             stepper.info().source
         ));
-        print_line(format_args!("  {:14} reads {}", "", stepper.info().settings.join(", ")));
+        print_line(format_args!(
+            "  {:14} reads {}",
+            "",
+            stepper.info().settings.replace(' ', ", ")
+        ));
     }
     print_line(format_args!("Methods, for steppers that solve each step's problem by one:"));
     for info in METHODS {
@@ -207,7 +211,7 @@ enum ProblemCommand {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// Solve a problem file, and say how well and how fast
+    /// Solve a problem file, or a text file of Siconos', and say how well and how fast
     Solve {
         /// The problem file
         file: PathBuf,

@@ -56,7 +56,7 @@ pub(super) enum StudyCommand {
         #[arg(long)]
         quick: bool,
     },
-    /// Chart speed against accuracy of every method: of steps, of simulations, and of lean models
+    /// Chart speed against accuracy of every method: of steps and of simulations
     Chart {
         /// Folder for pictures, tables and measurements; the same command goes on where it stopped
         #[arg(long, value_name = "DIR")]
@@ -64,7 +64,7 @@ pub(super) enum StudyCommand {
         /// Coarser, in a few minutes
         #[arg(long)]
         quick: bool,
-        /// Also race on steps of 500, 2,000 and 10,000 grains, and simulate 2,000
+        /// Also race on steps of 500, 2,000 and 10,000 grains
         #[arg(long)]
         large: bool,
         /// Chart these alone

@@ -9,14 +9,14 @@ use glam::DVec2;
 use image::RgbaImage;
 use rayon::prelude::*;
 
-use super::folder::{EarlierFiles, check_run_folder, clear_run_folder};
+use super::folder::{EarlierFiles, RunFolder};
 use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
 use super::options::texts_of_panel;
 use super::table::ObservablesTable;
 use super::writer::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
 use crate::error::Result;
-use crate::output::{Progress, Texts, caught_signal, counted, print_line};
-use crate::render::{PanelGrid, Style, draw_scene};
+use crate::output::{Progress, Texts, caught_signal, counted, note_line, print_line};
+use crate::render::{PanelGrid, Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::View;
 use crate::sim::{Observables, Snapshot};
 use crate::study::png::write_png;
@@ -39,15 +39,17 @@ struct FigureRun {
 }
 
 /// Simulates the runs on all cores and draws the figures into `folder`.
-pub(super) fn draw(folder: &Path, earlier: EarlierFiles) -> Result<()> {
-    check_run_folder(folder, earlier)?;
+pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoice) -> Result<()> {
+    let mut renderer = Renderer::new(renderer)?;
+    let claimed = RunFolder::claim(folder, earlier)?;
     let runs = paper_runs()?;
-    let mut manifest = Manifest::new();
+    let mut manifest = Manifest::new(renderer.name());
     for run in &runs {
         manifest.runs.push(RunEntry::start(&run.name, &run.scene)?);
     }
-    clear_run_folder(folder, earlier)?;
-    let mut writer = FigureWriter { folder, manifest };
+    claimed.clear()?;
+    note_line(format_args!("drawing with {}", renderer.name()));
+    let mut writer = FigureWriter { folder, renderer: &mut renderer, manifest };
     writer.write_manifest()?;
     let mut runs = simulate(folder, runs)?;
 
@@ -87,7 +89,7 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
             let until_secs = run.times_secs.iter().copied().fold(0.0, f64::max);
             // A run that takes no step has no table.
             let path = folder.join(format!("{}.csv", run.name));
-            let table = (until_secs > 0.0).then(|| ObservablesTable::start(path)).transpose()?;
+            let table = (until_secs > 0.0).then(|| ObservablesTable::start_as(path)).transpose()?;
             let mut recorder = FigureRecorder { table, snapshots: Vec::new(), progress: &progress };
             let mut recorded = record(&run.scene, &run.times_secs, until_secs, &mut recorder)?;
             let table = recorder.table.map_or(Ok(()), ObservablesTable::finish);
@@ -138,6 +140,7 @@ impl FigurePanel<'_> {
 
 struct FigureWriter<'a> {
     folder: &'a Path,
+    renderer: &'a mut Renderer,
     manifest: Manifest,
 }
 
@@ -228,7 +231,7 @@ impl FigureWriter<'_> {
             // The scale is the same in all panels: one bar says it.
             let style = Style { scale_bar: images.is_empty(), ..Style::default() };
             let snapshot = &panel.run.snapshots[panel.number];
-            let image = draw_scene(snapshot, &style, &camera, width, height)?;
+            let image = draw_scene(self.renderer, snapshot, &style, &camera, width, height)?;
             let texts = texts_of_panel(&panel.run.paper.scene, snapshot)?;
             let file = format!("{}.png", panel.name);
             self.write(&file, &image, vec![panel.moment()], &texts)?;

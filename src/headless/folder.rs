@@ -1,10 +1,19 @@
-//! The folder that a run writes to, and the checkpoint in it.
+//! The folder that a run writes to, its own and of one run alone, and the checkpoint in it, from which the same command
+//! goes on.
+//!
+//! A run is written by several things at once: rows of a table, pictures, states that wait for being drawn. Each tells a
+//! checkpoint how far it has come, once all of that is on the disk, and comes back to it when the run goes on: what was
+//! written later is cut off, and is written again just as it was. What is to be written besides has a mark of its own
+//! in [`Marks`], which `RunWriter::marks` asks for and `RunWriter::open` hands back.
 
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
+use super::manifest::{Instant, PictureEntry};
 use crate::config::SavedState;
 use crate::error::{Error, Result};
-use crate::output::{check_writable, final_name, remove_if_there};
+use crate::output::{FolderLock, Locked, check_writable, final_name, remove_if_there};
 use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 
@@ -13,39 +22,101 @@ use crate::sim::{Simulation, Tally};
 pub(super) enum EarlierFiles {
     /// Where there are any, the folder is refused.
     Refused,
+    /// They are removed.
     Cleared,
     /// They stay: the run goes on with what it began.
     Kept,
 }
 
-/// Makes the folder of a run where it is not there.
-///
-/// Fails where it cannot be written to, or holds what is refused: names the first file.
-pub(super) fn check_run_folder(path: &Path, earlier: EarlierFiles) -> Result<()> {
-    check_writable("frames", path)?;
-    if earlier == EarlierFiles::Refused
-        && let Some(name) = files_of_a_run(path)?.first()
-    {
-        let allowed = format!(
-            "a folder without an earlier run's files ({name} is there), unless --overwrite is given to \
-             remove them"
-        );
-        return Err(Error::value("frames", path.display(), allowed));
-    }
-    Ok(())
+/// A folder that no other run writes to.
+pub(super) struct RunFolder {
+    path: PathBuf,
+    earlier: EarlierFiles,
+    _lock: FolderLock,
 }
 
-/// Removes what is to be cleared. To be called when all that was asked is known to be sound.
-pub(super) fn clear_run_folder(path: &Path, earlier: EarlierFiles) -> Result<()> {
-    if earlier != EarlierFiles::Cleared {
-        return Ok(());
+impl RunFolder {
+    /// Makes the folder where it is not there, and takes it for this run.
+    ///
+    /// # Errors
+    /// Where it cannot be written to, another run has it, or it holds what is refused.
+    pub(super) fn claim(path: &Path, earlier: EarlierFiles) -> Result<Self> {
+        let folder = Self::lock(path, earlier)?;
+        folder.check("")?;
+        Ok(folder)
     }
-    let mut names = files_of_a_run(path)?;
-    names.extend(told_of(path));
-    for path in names.iter().map(|name| path.join(name)).filter(|path| is_plain(path)) {
-        std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
+
+    /// The same whatever it holds: that is to be looked at.
+    ///
+    /// # Errors
+    /// Where it cannot be written to, or another run has it.
+    pub(super) fn lock(path: &Path, earlier: EarlierFiles) -> Result<Self> {
+        check_writable("frames", path)?;
+        let lock = FolderLock::of(path, Locked::Pictures)?;
+        Ok(Self { path: path.to_owned(), earlier, _lock: lock })
     }
-    Ok(())
+
+    /// Its path.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether a run may go on with what it holds.
+    pub(super) fn may_go_on(&self) -> bool {
+        self.earlier == EarlierFiles::Refused
+    }
+
+    /// Refuses a folder that holds what is refused; `why` says why no run goes on there.
+    ///
+    /// # Errors
+    /// Names the first file.
+    pub(super) fn check(&self, why: &str) -> Result<()> {
+        if self.earlier != EarlierFiles::Refused {
+            return Ok(());
+        }
+        let Some(name) = files_of_a_run(&self.path)?.into_iter().next() else { return Ok(()) };
+        let allowed = format!(
+            "a folder without an earlier run's files ({name} is there{why}), unless --overwrite is \
+             given to remove them"
+        );
+        Err(Error::value("frames", self.path.display(), allowed))
+    }
+
+    /// Removes the pictures in it but for these, which the run goes on with, and what a kill has left half
+    /// named.
+    ///
+    /// # Errors
+    /// Names a picture that is not there, or that cannot be removed.
+    pub(super) fn keep_pictures(&self, pictures: &[PictureEntry]) -> Result<()> {
+        let is_kept = |name: &str| pictures.iter().any(|picture| picture.file == name);
+        let names = files_of_a_run(&self.path)?;
+        if let Some(lost) = pictures.iter().find(|picture| !names.contains(&picture.file)) {
+            let reason = "is missing, but must be where the checkpoint tells of it";
+            return Err(Error::file(self.path.join(&lost.file), reason));
+        }
+        let goes = |name: &String| final_name(name) != name || (is_frame(name) && !is_kept(name));
+        for name in names.iter().filter(|name| goes(name)) {
+            let path = self.path.join(name);
+            std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
+        }
+        Ok(())
+    }
+
+    /// Removes what is to be cleared. To be called when all that was asked is known to be sound.
+    ///
+    /// # Errors
+    /// Names the file that cannot be removed.
+    pub(super) fn clear(&self) -> Result<()> {
+        if self.earlier != EarlierFiles::Cleared {
+            return Ok(());
+        }
+        let mut names = files_of_a_run(&self.path)?;
+        names.extend(told_of(&self.path));
+        for path in names.iter().map(|name| self.path.join(name)).filter(|path| is_plain(path)) {
+            std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
+        }
+        Ok(())
+    }
 }
 
 /// The names that every run uses, of those that are there.
@@ -56,8 +127,8 @@ fn files_of_a_run(folder: &Path) -> Result<Vec<String>> {
         let name = entry.map_err(refuse)?.file_name();
         let name = name.to_string_lossy();
         let whole = final_name(&name);
-        let is_ours =
-            is_frame(whole) || ["manifest.json", "observables.csv", CHECKPOINT].contains(&whole);
+        let is_ours = is_frame(whole)
+            || ["manifest.json", "observables.csv", CHECKPOINT, WAITING].contains(&whole);
         if is_ours && is_plain(&folder.join(&*name)) {
             names.push(name.into_owned());
         }
@@ -91,20 +162,57 @@ fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
 
-const CHECKPOINT: &str = "checkpoint.slump";
+/// Name of a checkpoint.
+pub(super) const CHECKPOINT: &str = "checkpoint.slump";
+/// Name of the file in which states wait for being drawn, where they are to outlive the process.
+pub(super) const WAITING: &str = "checkpoint.states";
 
-/// Saves a run now and then, for another to go on with.
+/// How far everything had come that takes a run down.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Marks {
+    /// Tells whether a command is the same.
+    pub fingerprint: String,
+    /// The number of the first picture that is not taken yet.
+    pub next_picture: usize,
+    /// Length of `observables.csv`, bytes.
+    pub table: u64,
+    /// Length of the states that wait for being drawn, bytes.
+    pub waiting: u64,
+    /// Pictures in the folder.
+    pub pictures: Vec<PictureEntry>,
+    /// The moment of the saved run that the command went on with, where it did.
+    pub restarted_from: Option<Instant>,
+    /// Moments at which the same command went on; none in one that has just begun.
+    pub went_on_at: Vec<Instant>,
+}
+
+/// A run that is about to go on, from its start or from later.
+pub(super) struct Beginning {
+    pub state: SavedState,
+    /// How far it had come in the folder that it writes to.
+    pub marks: Marks,
+}
+
+/// Saves a run now and then, for the same command to go on with.
 pub(super) struct Checkpoints {
     path: PathBuf,
     every_secs: f64,
+    fingerprint: String,
     /// The number of the next one, in intervals since t = 0.
     next: f64,
 }
 
 impl Checkpoints {
     /// Those of a run in `folder` that begins at this moment.
-    pub(super) fn start(folder: &Path, every_secs: f64, simulation: &Simulation) -> Self {
-        let mut checkpoints = Self { path: folder.join(CHECKPOINT), every_secs, next: 0.0 };
+    pub(super) fn start(
+        folder: &Path,
+        every_secs: f64,
+        fingerprint: String,
+        simulation: &Simulation,
+    ) -> Self {
+        let mut checkpoints =
+            Self { path: folder.join(CHECKPOINT), every_secs, fingerprint, next: 0.0 };
         checkpoints.skip_to(simulation);
         checkpoints
     }
@@ -117,23 +225,61 @@ impl Checkpoints {
         }
     }
 
+    /// Whether one is due after this step.
     pub(super) fn is_due(&self, simulation: &Simulation) -> bool {
         simulation.step_at(self.next * self.every_secs) <= simulation.observables().step
     }
 
+    /// Writes one in the place of the one before.
+    ///
+    /// # Errors
+    /// Names the file and what the system says; the one before stays.
     pub(super) fn write(
         &mut self,
         scene: &Scene,
         simulation: &Simulation,
         tally: &Tally,
+        marks: Marks,
     ) -> Result<()> {
-        SavedState::new(scene.clone(), simulation.clone(), *tally).save(&self.path)?;
+        let marks = Marks { fingerprint: self.fingerprint.clone(), ..marks };
+        let mut state = SavedState::new(scene.clone(), simulation.clone(), *tally);
+        state.of_run = rmp_serde::to_vec_named(&marks)
+            .map_err(|error| Error::file(&self.path, format!("cannot be written ({error})")))?;
+        state.save(&self.path)?;
         self.skip_to(simulation);
         Ok(())
     }
 
     /// Removes it: the run is complete, and nothing goes on from there.
+    ///
+    /// # Errors
+    /// Names the file that stays.
     pub(super) fn remove(self) -> Result<()> {
-        remove_if_there(&self.path)
+        remove_if_there(&self.path)?;
+        remove_if_there(&self.path.with_file_name(WAITING))
+    }
+}
+
+/// The checkpoint of a command in its folder, if there is one.
+///
+/// # Errors
+/// Why this command cannot go on with the one that is there.
+pub(super) fn look(
+    folder: &Path,
+    fingerprint: &str,
+) -> std::result::Result<Option<Beginning>, String> {
+    let path = folder.join(CHECKPOINT);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let mut state = SavedState::open(&path).map_err(|error| error.to_string())?;
+    let marks: std::result::Result<Marks, _> = rmp_serde::from_slice(&state.of_run);
+    match marks {
+        Ok(mut marks) if marks.fingerprint == fingerprint => {
+            state.of_run.clear();
+            marks.went_on_at.push(Instant::of(state.simulation.observables()));
+            Ok(Some(Beginning { state, marks }))
+        }
+        _ => Err("it is of another command".to_owned()),
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant as Clock};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::output::PendingFile;
@@ -16,7 +16,9 @@ use crate::study::Recorded;
 pub(super) struct Manifest {
     pub program: &'static str,
     pub version: &'static str,
+    /// The command line.
     pub command: Vec<String>,
+    pub renderer: String,
     pub runs: Vec<RunEntry>,
     pub pictures: Vec<PictureEntry>,
     /// When it was last written while the run went on, and how long that took.
@@ -31,6 +33,7 @@ const WAIT: Duration = Duration::from_millis(500);
 /// A list that has become long is written less often: it takes no more than this part of the time.
 const PART: u32 = 20;
 
+/// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Ended {
@@ -47,6 +50,7 @@ pub(super) enum Ended {
 }
 
 impl Ended {
+    /// How a recorded run ended.
     pub(super) fn of(recorded: &Recorded) -> Self {
         match &recorded.failure {
             Some(Error::NonFinite { .. }) => Self::NotFinite,
@@ -57,6 +61,7 @@ impl Ended {
     }
 }
 
+/// One run.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RunEntry {
     pub name: String,
@@ -75,6 +80,9 @@ pub(super) struct RunEntry {
     /// The moment of the saved run that this one goes on with (`--restart`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restarted_from: Option<Instant>,
+    /// Where the same command went on with a checkpoint.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub went_on_at: Vec<Instant>,
     /// What went wrong, and what is most likely to help.
     pub alarms: Vec<AlarmEntry>,
     /// Dimensionless (paper §3.3).
@@ -98,7 +106,8 @@ pub(super) struct RunEntry {
 }
 
 /// A moment of a run.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Instant {
     pub step: u64,
     /// s.
@@ -106,12 +115,14 @@ pub(super) struct Instant {
 }
 
 impl Instant {
+    /// That of these observables.
     pub(super) fn of(observables: &Observables) -> Self {
         let Observables { step, time_secs, .. } = *observables;
         Self { step, time_secs }
     }
 }
 
+/// Something that went wrong.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct AlarmEntry {
     #[serde(flatten)]
@@ -119,26 +130,30 @@ pub(super) struct AlarmEntry {
     pub message: String,
 }
 
-#[derive(Clone, Debug, Serialize)]
+/// One picture.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct PictureEntry {
     pub file: String,
     /// A moment a panel.
     pub shows: Vec<ShownMoment>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+/// One moment of a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ShownMoment {
+    /// Name of the run.
     pub run: String,
     pub observables: Observables,
 }
 
 impl Manifest {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(renderer: &str) -> Self {
         Self {
             program: "slump",
             version: env!("CARGO_PKG_VERSION"),
             // What is not UTF-8 cannot be told in JSON as it is.
             command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
+            renderer: renderer.to_owned(),
             runs: Vec::new(),
             pictures: Vec::new(),
             written: Clock::now(),
@@ -146,6 +161,7 @@ impl Manifest {
         }
     }
 
+    /// Writes it.
     pub(super) fn write(&self, path: &Path) -> Result<()> {
         self.write_and(path, true)
     }
@@ -196,6 +212,7 @@ impl RunEntry {
             initial_state: format!("{:016x}", fingerprint(scene)),
             tally: Tally::default(),
             restarted_from: None,
+            went_on_at: Vec::new(),
             alarms: Vec::new(),
             cohesive_time: scene.parameters.cohesive_time(scene.mean_diameter, gravity),
             capture_speed: scene.parameters.capture_speed(gravity),

@@ -21,13 +21,20 @@ use crate::error::{Error, Result};
 use crate::output::heed_signals;
 use folder::EarlierFiles;
 
-/// Draws the paper's snapshots into a folder.
+/// Draws the paper's snapshots into a folder, with whatever renderer there is.
+///
+/// # Errors
+/// Where the folder cannot be written to.
 pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
-    figures::draw(folder, EarlierFiles::Kept)
+    figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
 }
 
 /// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
 /// figures.
+///
+/// # Errors
+/// In one sentence; nothing has been written where a value is refused. Where a signal or a full disk
+/// ends the run, what it came to until then has been written.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     let asks_for_files = options.draws() || options.save.is_some();
     let asks_for_data = || -> Result<bool> {
@@ -46,7 +53,7 @@ pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     let earlier = if options.overwrite { EarlierFiles::Cleared } else { EarlierFiles::Refused };
     match &options.frames {
         Some(folder) if config.is_empty() && !options.asks_for_frames() => {
-            figures::draw(folder, earlier)
+            figures::draw(folder, earlier, options.renderer)
         }
         _ => run::draw(config, options, earlier),
     }

@@ -97,7 +97,7 @@ pub(crate) struct HeadlessOptions {
     /// Ground and ink
     #[arg(long, value_name = "THEME")]
     pub theme: Option<Theme>,
-    /// What draws the window: auto tries Vulkan and then OpenGL. Pictures are drawn by the processor
+    /// What draws: auto tries Vulkan, OpenGL and then the processor
     #[arg(long, value_name = "KIND", default_value = "auto")]
     pub renderer: RendererChoice,
     /// Go on with a saved run: simulated time, slump and the numbers of pictures go on, and settings given besides change it from there on (--initial begins a new run at t = 0 with its grains)
@@ -106,7 +106,7 @@ pub(crate) struct HeadlessOptions {
     /// Save the run at its end, a signal's too, unless its state is no longer finite
     #[arg(long, value_name = "FILE", help_heading = "Saved runs", requires = "headless")]
     pub save: Option<PathBuf>,
-    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames, for --restart with another folder; a run that comes to its end removes it
+    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames: the same command, given again after whatever stopped it, goes on from there (--overwrite begins anew)
     #[arg(
         long,
         value_name = "SECONDS",

@@ -1,19 +1,20 @@
-//! The run of one scene: where it begins, with a scene at t = 0 or with a run that was saved, and what it writes.
+//! The run of one scene: where it begins, with a scene at t = 0, with a run that was saved, or with the checkpoint that
+//! the same command left in its folder, and what it writes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::HeadlessOptions;
-use super::folder::{Checkpoints, EarlierFiles, check_run_folder, clear_run_folder};
+use super::folder::{Beginning, Checkpoints, EarlierFiles, Marks, RunFolder, look};
 use super::manifest::Instant;
 use super::writer::{RunWriter, interrupted};
 use crate::config::{Config, SavedState, scene_facts};
-use crate::data::{DataSettings, Recording, RunFacts, Times, check_recording_folder, formats_of};
+use crate::data::{DataSettings, Recording, RecordingFolder, Times, formats_of};
 use crate::error::{Error, Result};
-use crate::output::{Progress, caught_signal, check_file, warn_of_steps};
-use crate::render::check_size;
+use crate::output::{Progress, caught_signal, check_file, note_line, warn_of_steps};
+use crate::render::{Renderer, RendererChoice};
 use crate::scene::{Scene, Settling};
-use crate::sim::{Observables, Tally};
-use crate::study::{OnItsWay, go_on};
+use crate::sim::{Observables, Simulation, Tally};
+use crate::study::{OnItsWay, go_on as go_on_with};
 
 /// Simulates the scene, or lets a saved run go on, and draws the frames.
 pub(super) fn draw(
@@ -27,58 +28,80 @@ pub(super) fn draw(
     let asked = RequestedRun::of(config, options)?;
     let PictureSchedule { times_secs, until_secs } = asked.schedule(config, options)?;
     let data = options.data_settings(asked.scene())?;
-    check_size(size.width, size.height)?;
-    let folder = options.frames.as_deref();
-    folder.map(|folder| check_run_folder(folder, earlier)).transpose()?;
+    let choice = if options.draws() { options.renderer } else { RendererChoice::Cpu };
+    let renderer = Renderer::new(choice)?;
+    renderer.check_size(size.width, size.height)?;
+    let lock = |path: &Path| RunFolder::lock(path, earlier);
+    let folder = options.frames.as_deref().map(lock).transpose()?;
+    let every_secs = options.checkpoint_every;
+    let fingerprint = every_secs.map(|_| asked.fingerprint(config, options)).transpose()?;
+    let found = left_in(folder.as_ref(), fingerprint.as_deref())?;
     let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.save)];
     for (option, path) in files {
         path.as_deref().map(|path| check_file(option, path)).transpose()?;
     }
     let picture_times_secs = options.picture_times(asked.scene().duration_secs)?;
-    if let Some((path, _)) = &data {
-        check_recording_folder(path, options.overwrite)?;
-    }
-    let begun = asked.begin(config).map_err(|error| match caught_signal() {
-        Some(signal) => interrupted(signal, &Observables::default()),
-        None => error,
-    });
-    let (SavedState { scene, simulation, tally }, restarted_from) = begun?;
-    let now = simulation.observables().step;
-    let next_picture = times_secs.partition_point(|&secs| simulation.step_at(secs) < now);
-    folder.map(|folder| clear_run_folder(folder, earlier)).transpose()?;
-
-    let steps = simulation.step_at(until_secs);
-    warn_of_steps(steps.saturating_sub(now));
-    let checkpoints = folder.zip(options.checkpoint_every);
-    let checkpoints =
-        checkpoints.map(|(folder, every_secs)| Checkpoints::start(folder, every_secs, &simulation));
-    let start = |(path, data): (PathBuf, DataSettings)| {
-        let times = data.every_secs.map_or(Times::At(picture_times_secs), Times::Every);
-        let formats = formats_of(&data)?;
-        let recording =
-            Recording::start(&path, &formats, &run_facts_of(&scene)?, options.overwrite)?;
-        Ok(recording.at(times))
+    let claim = |data| RecordingPlan::claim(data, options.overwrite, found.is_some());
+    let recording = data.map(claim).transpose()?;
+    let begun = match found {
+        Some(found) => found,
+        None => asked.begin(config, &times_secs).map_err(|error| match caught_signal() {
+            Some(signal) => interrupted(signal, &Observables::default()),
+            None => error,
+        })?,
     };
-    let recording = data.map(start).transpose()?;
+    let goes_on = !begun.marks.went_on_at.is_empty();
+    if let Some(folder) = &folder {
+        if goes_on { folder.keep_pictures(&begun.marks.pictures)? } else { folder.clear()? }
+    }
+    if options.draws() {
+        note_line(format_args!("drawing with {}", renderer.name()));
+    }
+
+    let Beginning { state: SavedState { scene, simulation, tally, .. }, marks } = begun;
+    let steps = simulation.step_at(until_secs);
+    warn_of_steps(steps.saturating_sub(simulation.observables().step));
+    let next_picture = marks.next_picture;
+    let asked_of = folder.as_ref().zip(every_secs.zip(fingerprint));
+    let mut checkpoints = asked_of.map(|(folder, (every_secs, fingerprint))| {
+        Checkpoints::start(folder.path(), every_secs, fingerprint, &simulation)
+    });
+    if let (Some(checkpoints), false) = (&mut checkpoints, goes_on) {
+        // Before anything else is there that another run would be refused for.
+        checkpoints.write(&scene, &simulation, &tally, marks.clone())?;
+    }
+    let start = |plan: RecordingPlan| plan.start(&scene, &simulation, &picture_times_secs);
+    let recording = recording.map(start).transpose()?;
     let provenance = options.provenance(config, &scene)?;
-    let mut writer = RunWriter::open(options, &scene, steps, provenance, restarted_from)?;
-    (writer.recording, writer.checkpoints) = (recording, checkpoints);
+    let mut writer =
+        RunWriter::open(options, renderer, &scene, steps, provenance, marks, checkpoints)?;
+    writer.recording = recording;
     let run = OnItsWay { simulation, tally, next_picture };
-    let recorded = go_on(run, &times_secs, until_secs, &mut writer);
+    let recorded = go_on_with(run, &times_secs, until_secs, &mut writer);
     writer.end(recorded)
 }
 
-/// What a recording says of a run: its scene, and the command line.
-fn run_facts_of(scene: &Scene) -> Result<RunFacts> {
-    let mut about = scene_facts(scene)?;
-    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
-    let command = words.collect::<Vec<_>>().join(" ").replace(char::is_control, " ");
-    about.facts.insert(1, ("command".to_owned(), command));
-    Ok(about)
+/// The run that the same command left in its folder, if there is one to go on with. Any other files of an
+/// earlier run are refused, unless they are to be removed.
+fn left_in(folder: Option<&RunFolder>, fingerprint: Option<&str>) -> Result<Option<Beginning>> {
+    let Some(folder) = folder else { return Ok(None) };
+    let Some(fingerprint) = fingerprint.filter(|_| folder.may_go_on()) else {
+        return folder.check("").map(|()| None);
+    };
+    match look(folder.path(), fingerprint) {
+        Ok(None) => folder.check("").map(|()| None),
+        Err(why) => folder.check(&format!(", and no run goes on with it: {why}")).map(|()| None),
+        Ok(Some(begun)) => {
+            let Observables { step, time_secs, .. } = begun.state.simulation.observables();
+            let place = folder.path().display();
+            note_line(format_args!("{place}: the run goes on at step {step}, t = {time_secs} s"));
+            Ok(Some(begun))
+        }
+    }
 }
 
 /// What is asked for, read and checked, but for grains that have to settle.
-enum RequestedRun {
+pub(super) enum RequestedRun {
     /// A scene from t = 0 on, with its grains where they start from.
     Scene(Box<Scene>),
     /// A run that was saved, with the changes asked for.
@@ -86,13 +109,17 @@ enum RequestedRun {
 }
 
 /// When pictures are taken, and when the run ends, s.
-struct PictureSchedule {
-    times_secs: Vec<f64>,
-    until_secs: f64,
+pub(super) struct PictureSchedule {
+    pub times_secs: Vec<f64>,
+    pub until_secs: f64,
 }
 
 impl RequestedRun {
-    fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
+    /// What the options ask for.
+    ///
+    /// # Errors
+    /// Names what is refused.
+    pub(super) fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
         options.check_checkpoints()?;
         let Some(path) = &options.restart else {
             let start = config.without_settling()?;
@@ -101,18 +128,28 @@ impl RequestedRun {
             return Ok(Self::Scene(Box::new(start)));
         };
         let mut state = SavedState::open(path)?;
+        state.of_run.clear();
         config.change_state(&mut state)?;
         Ok(Self::Run(Box::new(state)))
     }
 
-    fn scene(&self) -> &Scene {
+    /// The scene, with the settings asked for.
+    pub(super) fn scene(&self) -> &Scene {
         match self {
             Self::Scene(scene) => scene,
             Self::Run(state) => &state.scene,
         }
     }
 
-    fn schedule(&self, config: &Config, options: &HeadlessOptions) -> Result<PictureSchedule> {
+    /// When pictures are taken.
+    ///
+    /// # Errors
+    /// Where a time is none of the run's.
+    pub(super) fn schedule(
+        &self,
+        config: &Config,
+        options: &HeadlessOptions,
+    ) -> Result<PictureSchedule> {
         let times_secs = options.picture_times(self.scene().duration_secs)?;
         // Times alone ask for no more than the last of them.
         let until_secs = match times_secs.last() {
@@ -136,19 +173,56 @@ impl RequestedRun {
         }
     }
 
-    /// The run, once its grains have settled, and the moment of the saved one that it goes on with.
-    fn begin(self, config: &Config) -> Result<(SavedState, Option<Instant>)> {
-        match self {
+    /// Tells commands apart by what they compute and draw; where to, and what they save, is left out.
+    ///
+    /// # Errors
+    /// Where what is asked for cannot be put into bytes.
+    pub(super) fn fingerprint(&self, config: &Config, options: &HeadlessOptions) -> Result<String> {
+        let refuse = |error: &dyn std::fmt::Display| {
+            Error::value("scene", &self.scene().name, format!("written ({error})"))
+        };
+        let pictures = HeadlessOptions {
+            frames: None,
+            overwrite: false,
+            restart: None,
+            save: None,
+            checkpoint_every: None,
+            ..options.clone()
+        };
+        let start = match self {
+            Self::Scene(scene) => rmp_serde::to_vec_named(scene).map_err(|error| refuse(&error))?,
+            Self::Run(state) => state.to_bytes()?,
+        };
+        let config = serde_json::to_vec(config).map_err(|error| refuse(&error))?;
+        let mut hasher = blake3::Hasher::new();
+        for part in [&config[..], format!("{pictures:?}").as_bytes(), &start] {
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(part);
+        }
+        Ok(hasher.finalize().to_hex().to_string())
+    }
+
+    /// The run, once its grains have settled.
+    ///
+    /// # Errors
+    /// Where they do not come to rest.
+    pub(super) fn begin(self, config: &Config, times_secs: &[f64]) -> Result<Beginning> {
+        let (state, restarted_from) = match self {
             Self::Scene(_) => {
                 let scene = settled(config)?;
                 let simulation = scene.simulation()?;
-                Ok((SavedState::new(scene, simulation, Tally::default()), None))
+                (SavedState::new(scene, simulation, Tally::default()), None)
             }
             Self::Run(state) => {
                 let now = Instant::of(state.simulation.observables());
-                Ok((*state, Some(now)))
+                (*state, Some(now))
             }
-        }
+        };
+        let is_past =
+            |&secs: &f64| state.simulation.step_at(secs) < state.simulation.observables().step;
+        let next_picture = times_secs.partition_point(is_past);
+        let marks = Marks { next_picture, restarted_from, ..Marks::default() };
+        Ok(Beginning { state, marks })
     }
 }
 
@@ -161,4 +235,54 @@ pub(crate) fn settled(config: &Config) -> Result<Scene> {
     });
     progress.finish();
     scene
+}
+
+/// A recording that is to be.
+pub(super) struct RecordingPlan {
+    /// A folder of its own; none where a run goes on with the recording that it has.
+    claim: Option<RecordingFolder>,
+    folder: PathBuf,
+    settings: DataSettings,
+}
+
+impl RecordingPlan {
+    /// Takes the folder of a recording that is asked for, unless a run `goes_on` with what is there.
+    ///
+    /// # Errors
+    /// Names what is wrong with the folder.
+    pub(super) fn claim(
+        (folder, settings): (PathBuf, DataSettings),
+        overwrite: bool,
+        goes_on: bool,
+    ) -> Result<Self> {
+        let claim = (!goes_on).then(|| RecordingFolder::of(&folder, overwrite)).transpose()?;
+        Ok(Self { claim, folder, settings })
+    }
+
+    /// Starts it, or goes on with it, at the present state of a run.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written to.
+    pub(super) fn start(
+        self,
+        scene: &Scene,
+        simulation: &Simulation,
+        picture_times: &[f64],
+    ) -> Result<Recording> {
+        let mut about = scene_facts(scene)?;
+        let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+        let command = words.collect::<Vec<_>>().join(" ").replace(char::is_control, " ");
+        about.facts.insert(1, ("command".to_owned(), command));
+        let times = match self.settings.every_secs {
+            Some(secs) => Times::Every(secs),
+            None => Times::At(picture_times.to_vec()),
+        };
+        let formats = formats_of(&self.settings)?;
+        let step = simulation.observables().step;
+        let recording = match self.claim {
+            Some(claim) => Recording::start_in(claim, &formats, &about)?,
+            None => Recording::go_on(&self.folder, &formats, &about, step)?,
+        };
+        Ok(recording.at(times, simulation))
+    }
 }

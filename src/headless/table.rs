@@ -1,60 +1,111 @@
 //! `observables.csv`, there from the first row on.
 
-use std::path::PathBuf;
+use std::io::{Error as IoError, Result as IoResult, Write};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
-use crate::output::GrowingFile;
+use crate::output::{GrowingFile, end_of_last};
 use crate::sim::Observables;
 
 /// Rows wait no longer than this for being written, as long as steps come. Shorter: small scenes spend
 /// their time in system calls; longer: more is lost when the program is killed.
 const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
-/// Rows that wait, some 32 kB. Small scenes fill them sooner than [`LONGEST_WAIT`].
-const MOST_WAITING: usize = 128;
+/// Bytes of rows that wait. Small scenes fill them sooner than [`LONGEST_WAIT`].
+const MOST_WAITING: usize = 1 << 16;
 
 /// A row a step. Whole rows alone are written, so that a run that is killed, or that fills the disk,
 /// leaves a table that can be read.
 pub(super) struct ObservablesTable {
     path: PathBuf,
-    file: GrowingFile,
-    rows: csv::Writer<Vec<u8>>,
-    waiting: usize,
+    rows: csv::Writer<WholeRows>,
     written: Instant,
 }
 
 impl ObservablesTable {
-    pub(super) fn start(path: PathBuf) -> Result<Self> {
-        let file = GrowingFile::start(path.clone())?;
-        let rows = csv::Writer::from_writer(Vec::new());
-        Ok(Self { path, file, rows, waiting: 0, written: Instant::now() })
+    /// Starts `observables.csv` in a folder.
+    pub(super) fn start(folder: &Path) -> Result<Self> {
+        Self::start_as(folder.join("observables.csv"))
     }
 
+    /// Goes on with the first `length` bytes of `observables.csv` in a folder.
+    pub(super) fn go_on(folder: &Path, length: u64) -> Result<Self> {
+        Ok(Self::of(GrowingFile::go_on(folder.join("observables.csv"), length)?))
+    }
+
+    /// Starts a table at a path.
+    pub(super) fn start_as(path: PathBuf) -> Result<Self> {
+        Ok(Self::of(GrowingFile::start(path)?))
+    }
+
+    /// The names of the columns are in a file that has rows.
+    fn of(file: GrowingFile) -> Self {
+        let mut builder = csv::WriterBuilder::new();
+        builder.has_headers(file.length() == 0).buffer_capacity(MOST_WAITING);
+        let path = file.path().to_owned();
+        let rows = builder.from_writer(WholeRows::new(file));
+        Self { path, rows, written: Instant::now() }
+    }
+
+    /// Adds a row.
     pub(super) fn add(&mut self, observables: &Observables) -> Result<()> {
         self.rows.serialize(observables).map_err(|error| Error::file(&self.path, error))?;
-        self.waiting += 1;
-        let is_due = self.waiting >= MOST_WAITING || self.written.elapsed() >= LONGEST_WAIT;
-        if is_due { self.flush() } else { Ok(()) }
+        if self.written.elapsed() >= LONGEST_WAIT { self.flush() } else { Ok(()) }
     }
 
+    /// Writes the rows that wait.
     pub(super) fn flush(&mut self) -> Result<()> {
-        // Those that are written have had the names of the columns.
-        let later = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-        if self.waiting > 0 {
-            let rows = std::mem::replace(&mut self.rows, later).into_inner();
-            let rows = rows.map_err(|error| Error::file(&self.path, error.into_error()))?;
-            self.waiting = 0;
-            self.file.add_rows(&rows)?;
-        }
+        self.rows.flush().map_err(|error| Error::file(&self.path, error))?;
         self.written = Instant::now();
         Ok(())
     }
 
+    /// Has all rows on the disk, and tells their length, bytes.
+    pub(super) fn mark(&mut self) -> Result<u64> {
+        self.flush()?;
+        let file = &self.rows.get_ref().file;
+        file.sync();
+        Ok(file.length())
+    }
+
     /// Writes the rows that wait and has all of them on the disk.
     pub(super) fn finish(mut self) -> Result<()> {
-        self.flush()?;
-        self.file.sync();
+        self.mark().map(drop)
+    }
+}
+
+/// Takes bytes and writes whole rows.
+struct WholeRows {
+    file: GrowingFile,
+    /// The beginning of a row whose end has not come yet.
+    begun: Vec<u8>,
+    /// Whether it took no more; rows that come later would leave a gap.
+    is_full: bool,
+}
+
+impl WholeRows {
+    fn new(file: GrowingFile) -> Self {
+        Self { file, begun: Vec::new(), is_full: false }
+    }
+}
+
+impl Write for WholeRows {
+    fn write(&mut self, bytes: &[u8]) -> IoResult<usize> {
+        if self.is_full {
+            return Err(IoError::other("rows before could not be written"));
+        }
+        self.begun.extend_from_slice(bytes);
+        if let Some(end) = end_of_last(&self.begun) {
+            let mut rows = std::mem::take(&mut self.begun);
+            self.file.add_rows(&rows[..end]).inspect_err(|_| self.is_full = true)?;
+            rows.drain(..end);
+            self.begun = rows;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> IoResult<()> {
         Ok(())
     }
 }
@@ -64,11 +115,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_row_that_comes_in_parts_is_written_whole() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("rows.csv");
+        let mut rows = WholeRows::new(GrowingFile::start(path.clone()).expect("a file"));
+        let read = || std::fs::read_to_string(&path).expect("rows");
+        rows.write_all(b"a,b\n1,").expect("a file");
+        assert_eq!(read(), "a,b\n");
+        rows.write_all(b"2\n3,4\n5").expect("a file");
+        assert_eq!(read(), "a,b\n1,2\n3,4\n");
+    }
+
+    #[test]
     fn a_row_of_a_slow_scene_does_not_wait_for_others() {
         let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("observables.csv");
-        let mut table = ObservablesTable::start(path.clone()).expect("a table");
-        let rows = || std::fs::read_to_string(&path).expect("a table").lines().count();
+        let mut table = ObservablesTable::start(folder.path()).expect("a table");
+        let rows = || {
+            let text = std::fs::read_to_string(folder.path().join("observables.csv"));
+            text.expect("a table").lines().count()
+        };
         table.add(&Observables::default()).expect("a row");
         std::thread::sleep(LONGEST_WAIT);
         table.add(&Observables::default()).expect("a row");

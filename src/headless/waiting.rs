@@ -4,15 +4,19 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use super::HeadlessOptions;
+use super::folder::{Marks, WAITING};
 use crate::error::{Error, Result};
 use crate::render::{Style, automatic_range, force_reference};
 use crate::sim::Snapshot;
 
 /// States of a run whose colours and widths follow the state: all frames need one scale, and that is
-/// known at the end. They wait in a file that has no name, so that it is gone with the process.
+/// known at the end. They wait in a file that has no name, so that it is gone with the process, unless the
+/// run is to go on after that.
 pub(crate) struct WaitingStates {
-    folder: PathBuf,
+    path: PathBuf,
     file: File,
     /// Where in the file each state begins, and where the last one ends.
     places: Vec<u64>,
@@ -20,40 +24,95 @@ pub(crate) struct WaitingStates {
     force_reference: f64,
 }
 
+/// A state with the number of its picture.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WaitingState {
+    number: usize,
+    snapshot: Snapshot,
+}
+
 impl WaitingStates {
-    /// Where states wait if the style asks for it.
-    pub(super) fn asked_for(options: &HeadlessOptions, style: &Style) -> Result<Option<Self>> {
+    /// Where states wait if the style asks for it; in a file that can `outlive` the process if that is asked
+    /// for.
+    ///
+    /// # Errors
+    /// Names the file and what the system says.
+    pub(super) fn asked_for(
+        options: &HeadlessOptions,
+        style: &Style,
+        marks: &Marks,
+        outlive: bool,
+    ) -> Result<Option<Self>> {
         let waits = style.colour_by.has_scale() && style.range.is_none()
             || style.show_forces && style.force_reference.is_none();
+        if !waits {
+            return Ok(None);
+        }
         let beside = options.animation().and_then(Path::parent);
-        let folder = options.frames.as_deref().or(beside);
-        folder.filter(|_| waits).map(Self::start).transpose()
+        match (&options.frames, beside) {
+            (Some(folder), _) if outlive => {
+                Self::go_on(&folder.join(WAITING), marks.waiting, style).map(Some)
+            }
+            (Some(folder), _) => Self::start(folder).map(Some),
+            (None, Some(folder)) => Self::start(folder).map(Some),
+            (None, None) => Ok(None),
+        }
     }
 
     /// Starts with none. The file is in `folder`, or where the system has such files if none can be
     /// there.
     pub(crate) fn start(folder: &Path) -> Result<Self> {
         let file = tempfile::tempfile_in(folder).or_else(|_| tempfile::tempfile());
-        let file = file.map_err(|error| Error::file(folder, error))?;
-        let folder = folder.to_owned();
-        Ok(Self { folder, file, places: vec![0], range: None, force_reference: 0.0 })
+        Ok(Self::of(folder, file.map_err(|error| Error::file(folder, error))?))
     }
 
+    /// Goes on with the states in the first `length` bytes of a file of that name, which are to be drawn in
+    /// that style. With no length it begins with none.
+    pub(super) fn go_on(path: &Path, length: u64, style: &Style) -> Result<Self> {
+        let file = File::options().read(true).write(true).create(true).truncate(false).open(path);
+        let mut states = Self::of(path, file.map_err(|error| Error::file(path, error))?);
+        while states.end() < length {
+            let WaitingState { snapshot, .. } = states.read()?;
+            states.measure(style, &snapshot);
+            let end = states.file.stream_position().map_err(|error| states.refuse(error))?;
+            states.places.push(end);
+        }
+        states.file.set_len(states.end()).map_err(|error| states.refuse(error))?;
+        Ok(states)
+    }
+
+    fn of(path: &Path, file: File) -> Self {
+        Self { path: path.to_owned(), file, places: vec![0], range: None, force_reference: 0.0 }
+    }
+
+    /// Number of states.
     pub(crate) fn len(&self) -> usize {
         self.places.len() - 1
     }
 
-    /// Adds a state that is to be drawn in that style, with the number of its picture.
+    /// Has all states on the disk, and tells their length in the file, bytes.
+    pub(super) fn mark(&self) -> Result<u64> {
+        self.file.sync_data().map_err(|error| self.refuse(error))?;
+        Ok(self.end())
+    }
+
+    /// Adds a state that is to be drawn in that style.
     pub(crate) fn add(&mut self, style: &Style, number: usize, snapshot: Snapshot) -> Result<()> {
-        let (least, most) = automatic_range(style.colour_by, &snapshot);
+        self.measure(style, &snapshot);
+        let state = rmp_serde::to_vec_named(&WaitingState { number, snapshot });
+        let state = state.map_err(|error| self.refuse(error))?;
+        let bytes = [&(state.len() as u64).to_le_bytes()[..], &state].concat();
+        self.file.write_all(&bytes).map_err(|error| self.refuse(error))?;
+        self.places.push(self.end() + bytes.len() as u64);
+        Ok(())
+    }
+
+    fn measure(&mut self, style: &Style, snapshot: &Snapshot) {
+        let (least, most) = automatic_range(style.colour_by, snapshot);
         let all = self.range.map_or((least, most), |all| (all.0.min(least), all.1.max(most)));
         self.range = Some(all);
-        self.force_reference = self.force_reference.max(force_reference(style, &snapshot));
-        let state = rmp_serde::to_vec_named(&(number, snapshot));
-        let state = state.map_err(|error| self.refuse(error))?;
-        self.file.write_all(&state).map_err(|error| self.refuse(error))?;
-        self.places.push(self.places[self.len()] + state.len() as u64);
-        Ok(())
+        self.force_reference = self.force_reference.max(force_reference(style, snapshot));
     }
 
     /// Gives the style the scale that all states have in common, but for what it has.
@@ -65,16 +124,29 @@ impl WaitingStates {
 
     /// One of the states, by its place among them, with the number of its picture.
     pub(crate) fn get(&mut self, index: usize) -> Result<(usize, Snapshot)> {
-        let [start, end] = [self.places[index], self.places[index + 1]];
-        let mut state = vec![0; (end - start) as usize];
-        let read = self.file.seek(SeekFrom::Start(start));
-        let read = read.and_then(|_| self.file.read_exact(&mut state));
+        let place = SeekFrom::Start(self.places[index]);
+        self.file.seek(place).map_err(|error| self.refuse(error))?;
+        let WaitingState { number, snapshot } = self.read()?;
+        Ok((number, snapshot))
+    }
+
+    fn end(&self) -> u64 {
+        self.places.last().copied().unwrap_or(0)
+    }
+
+    /// The state that begins where the file is read from.
+    fn read(&self) -> Result<WaitingState> {
+        let (mut file, mut length, mut bytes) = (&self.file, [0; 8], Vec::new());
+        let read = file.read_exact(&mut length);
+        // As much room as there are bytes, whatever a damaged file asks for.
+        let read =
+            read.and_then(|()| file.take(u64::from_le_bytes(length)).read_to_end(&mut bytes));
         read.map_err(|error| self.refuse(error))?;
-        rmp_serde::from_slice(&state).map_err(|error| self.refuse(error))
+        rmp_serde::from_slice(&bytes).map_err(|error| self.refuse(error))
     }
 
     fn refuse(&self, error: impl std::fmt::Display) -> Error {
         let said = format!("states that wait for being drawn must be kept there ({error})");
-        Error::file(&self.folder, said)
+        Error::file(&self.path, said)
     }
 }

@@ -1,4 +1,5 @@
-//! What a run writes: its table, pictures, animations, recording and manifest, and its checkpoints.
+//! What a run writes: its table, pictures, animations, recording and manifest, and the checkpoints from which all of
+//! them go on.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -6,8 +7,8 @@ use std::path::Path;
 use image::RgbaImage;
 
 use super::HeadlessOptions;
-use super::folder::Checkpoints;
-use super::manifest::{Ended, Instant, Manifest, PictureEntry, RunEntry, ShownMoment};
+use super::folder::{Checkpoints, Marks};
+use super::manifest::{Ended, Manifest, PictureEntry, RunEntry, ShownMoment};
 use super::options::PictureSize;
 use super::table::ObservablesTable;
 use super::waiting::WaitingStates;
@@ -16,21 +17,24 @@ use crate::data::Recording;
 use crate::error::{Error, Result, legible};
 use crate::film::{Animation, Video};
 use crate::output::{Progress, Signal, caught_signal, counted, note_line, print_line};
-use crate::render::{Camera, Style, draw_scene};
+use crate::render::{Camera, Renderer, Style, draw_scene};
 use crate::scene::{Scene, View};
 use crate::sim::{Alarm, AlarmKind, Observables, Simulation, Snapshot, Tally};
 use crate::solver::Method;
 use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
+/// Name of the run in the manifest.
 const RUN: &str = "run";
 /// Pictures a second of a GIF, which viewers keep up with.
 const GIF_RATE_HZ: f64 = 25.0;
 
+/// Writes all that a run leaves.
 pub(super) struct RunWriter<'a> {
     options: &'a HeadlessOptions,
     scene: &'a Scene,
     progress: Progress,
+    renderer: Renderer,
     style: Style,
     camera: Camera,
     table: Option<ObservablesTable>,
@@ -39,47 +43,78 @@ pub(super) struct RunWriter<'a> {
     /// Colours and widths that follow the state need one scale for all frames, so those frames wait
     /// for the end of the run, unless it is given. All others are drawn as the run comes by.
     waiting: Option<WaitingStates>,
+    /// What records the run as well.
     pub recording: Option<Recording>,
     manifest: Manifest,
     provenance: Provenance,
-    pub checkpoints: Option<Checkpoints>,
+    checkpoints: Option<Checkpoints>,
+    /// Where the run begins, and where it has come to.
+    marks: Marks,
 }
 
 impl<'a> RunWriter<'a> {
-    /// Starts the files of a run to step `end`, which may go on with a saved one from a moment on.
+    /// Starts the files of a run that goes on from `marks` to step `end`.
     pub(super) fn open(
         options: &'a HeadlessOptions,
+        renderer: Renderer,
         scene: &'a Scene,
         end: u64,
         provenance: Provenance,
-        restarted_from: Option<Instant>,
+        marks: Marks,
+        checkpoints: Option<Checkpoints>,
     ) -> Result<Self> {
         let size = options.size()?;
         let View { min, max } = scene.view();
         let style = options.style()?;
-        let mut manifest = Manifest::new();
-        manifest.runs.push(RunEntry { restarted_from, ..RunEntry::start(RUN, scene)? });
-        let table = |folder: &Path| ObservablesTable::start(folder.join("observables.csv"));
+        let mut manifest = Manifest::new(renderer.name());
+        manifest.pictures.clone_from(&marks.pictures);
+        manifest.runs.push(RunEntry {
+            restarted_from: marks.restarted_from,
+            went_on_at: marks.went_on_at.clone(),
+            ..RunEntry::start(RUN, scene)?
+        });
+        let folder = options.frames.as_deref();
+        let table = |folder: &Path| match marks.went_on_at.is_empty() {
+            true => ObservablesTable::start(folder),
+            false => ObservablesTable::go_on(folder, marks.table),
+        };
         let rate_hz = options.video_rate_hz()?;
         let film = |path: &Path| Video::start(path, rate_hz);
         let animate = |path: &Path| Animation::start(path, GIF_RATE_HZ);
-        let writer = Self {
+        let mut writer = Self {
             options,
             scene,
             progress: Progress::new(&scene.name, end),
             camera: style.camera(min, max, size.width, size.height),
-            table: options.frames.as_deref().map(table).transpose()?,
+            table: folder.map(table).transpose()?,
             gif: options.gif.as_deref().map(animate).transpose()?,
             video: options.video.as_deref().map(film).transpose()?,
-            waiting: WaitingStates::asked_for(options, &style)?,
+            waiting: WaitingStates::asked_for(options, &style, &marks, checkpoints.is_some())?,
             style,
             recording: None,
             manifest,
             provenance,
-            checkpoints: None,
+            renderer,
+            checkpoints,
+            marks,
         };
+        writer.animate_earlier_pictures()?;
         writer.write_manifest()?;
         Ok(writer)
+    }
+
+    /// Gives GIF and video the pictures that a run has left before it goes on.
+    fn animate_earlier_pictures(&mut self) -> Result<()> {
+        if self.gif.is_none() && self.video.is_none() {
+            return Ok(());
+        }
+        let folder = self.options.frames.as_deref().unwrap_or(Path::new(""));
+        for PictureEntry { file, .. } in &self.marks.pictures.clone() {
+            let path = folder.join(file);
+            let image = image::open(&path).map_err(|error| Error::file(&path, error))?;
+            self.animate(image.into_rgba8())?;
+        }
+        Ok(())
     }
 
     fn end_recording(&mut self) -> Result<()> {
@@ -90,12 +125,28 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    fn checkpoint(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
-        let checkpoints = self.checkpoints.as_mut();
-        checkpoints.map_or(Ok(()), |it| it.write(self.scene, simulation, tally))
+    /// How far everything has come, once all of that is on the disk.
+    fn marks(&mut self) -> Result<Marks> {
+        // It knows itself what it has of which step.
+        self.recording.as_mut().map_or(Ok(()), Recording::flush)?;
+        Ok(Marks {
+            table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
+            waiting: self.waiting.as_ref().map_or(Ok(0), WaitingStates::mark)?,
+            pictures: self.manifest.pictures.clone(),
+            ..self.marks.clone()
+        })
     }
 
-    /// Saves the run as it has ended.
+    fn checkpoint(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
+        if self.checkpoints.is_none() {
+            return Ok(());
+        }
+        let marks = self.marks()?;
+        let checkpoints = self.checkpoints.as_mut();
+        checkpoints.map_or(Ok(()), |it| it.write(self.scene, simulation, tally, marks))
+    }
+
+    /// Saves the run as it has ended, for the same command and for others.
     fn save(&mut self, recorded: &Recorded) -> Result<()> {
         let Recorded { simulation, tally, failure, .. } = recorded;
         let checkpoint = match failure {
@@ -165,7 +216,7 @@ impl<'a> RunWriter<'a> {
     fn draw(&mut self, number: usize, snapshot: &Snapshot) -> Result<()> {
         let PictureSize { width, height } = self.options.size()?;
         let (style, camera) = (&self.style, &self.camera);
-        let image = draw_scene(snapshot, style, camera, width, height)?;
+        let image = draw_scene(&mut self.renderer, snapshot, style, camera, width, height)?;
         if let Some(folder) = &self.options.frames {
             let file = format!("frame_{number:05}.png");
             let time_secs = asked_time_secs(snapshot.observables.time_secs);
@@ -227,6 +278,7 @@ impl Recorder for RunWriter<'_> {
     }
 
     fn state(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
+        // Before the checkpoint, which is to have it.
         let recording = self.recording.as_mut();
         recording.map_or(Ok(()), |recording| recording.add_if_due(simulation))?;
         let is_due = self.checkpoints.as_ref().is_some_and(|it| it.is_due(simulation));
@@ -238,7 +290,9 @@ impl Recorder for RunWriter<'_> {
         match &mut self.waiting {
             Some(waiting) => waiting.add(&self.style, number, snapshot),
             None => self.draw(number, &snapshot),
-        }
+        }?;
+        self.marks.next_picture = number + 1;
+        Ok(())
     }
 }
 
@@ -247,7 +301,7 @@ pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
     format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }
 
-/// A run goes on until a signal comes.
+/// Whether a run goes on: until a signal comes.
 pub(super) fn go_on() -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }

@@ -1,53 +1,21 @@
-//! A GPU draws for the window what the processor draws.
+//! Every renderer draws the same picture.
 
 use image::RgbaImage;
 use rand::{RngExt, SeedableRng};
 
-use super::gpu::{FORMAT, OffscreenTarget};
 use super::*;
 
 /// Every GPU of this machine. None at all is a failure: nothing would be compared.
-fn gpus() -> Vec<(Gpu, Painter)> {
-    let kinds = [wgpu::Backends::VULKAN, wgpu::Backends::GL].into_iter();
-    let found: Vec<Gpu> = kinds.filter_map(|kind| Gpu::open(kind).ok()).collect();
+fn gpus() -> Vec<Renderer> {
+    let found: Vec<Renderer> = [RendererChoice::Vulkan, RendererChoice::Gl]
+        .into_iter()
+        .filter_map(|choice| Renderer::new(choice).ok())
+        .collect();
     assert!(
         !found.is_empty(),
         "no GPU driver: install mesa-vulkan-drivers and libvulkan1, or libegl1 and libgl1-mesa-dri"
     );
-    let with_painter = |gpu: Gpu| {
-        let painter = Painter::new(&gpu.device, FORMAT);
-        (gpu, painter)
-    };
-    found.into_iter().map(with_painter).collect()
-}
-
-fn draw(gpu: &Gpu, painter: &mut Painter, picture: &Picture, size: [u32; 2]) -> RgbaImage {
-    let [width, height] = size;
-    let target = OffscreenTarget::new(gpu, width, height).unwrap();
-    let area = PictureArea::new(0.0, 0.0, width as f32, height as f32);
-    painter.prepare(&gpu.device, &gpu.queue, picture, area);
-    // The exact value of each byte, so that no driver rounds it apart.
-    let [r, g, b, a] = picture.background.to_rgba8().0.map(|byte| f64::from(byte) / 255.0);
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &target.view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        ..wgpu::RenderPassDescriptor::default()
-    });
-    painter.draw(&mut pass);
-    drop(pass);
-    target.record_copy(&mut encoder);
-    gpu.queue.submit([encoder.finish()]);
-    let image = target.read(gpu).unwrap();
-    gpu.check().unwrap();
-    image
+    found
 }
 
 fn largest_difference(a: &RgbaImage, b: &RgbaImage) -> u8 {
@@ -55,13 +23,14 @@ fn largest_difference(a: &RgbaImage, b: &RgbaImage) -> u8 {
     a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
-/// Compares all GPUs with the processor; a difference of 3/255 is allowed.
+/// Compares all renderers with the processor; a difference of 3/255 is allowed.
 fn assert_agreement(picture: &Picture, width: u32, height: u32) {
     let expected = primitives::draw(picture, width, height);
-    for (gpu, mut painter) in gpus() {
-        let drawn = draw(&gpu, &mut painter, picture, [width, height]);
+    for mut renderer in gpus() {
+        let drawn = renderer.draw(picture, width, height).unwrap();
         let difference = largest_difference(&drawn, &expected);
-        assert!(difference <= 3, "{} differs by {difference}", gpu.name);
+        println!("{}: {difference}", renderer.name());
+        assert!(difference <= 3, "{} differs by {difference}", renderer.name());
     }
 }
 
@@ -121,20 +90,21 @@ fn random_primitives_agree() {
 #[test]
 fn an_empty_picture_is_its_ground() {
     let picture = Picture::new(Colour::hex(0x1180fe));
-    let mut images = vec![primitives::draw(&picture, 7, 5)];
-    images.extend(gpus().iter_mut().map(|(gpu, painter)| draw(gpu, painter, &picture, [7, 5])));
-    for image in images {
+    let mut renderers = gpus();
+    renderers.push(Renderer::new(RendererChoice::Cpu).unwrap());
+    for mut renderer in renderers {
+        let image = renderer.draw(&picture, 7, 5).unwrap();
         assert_eq!(image.dimensions(), (7, 5));
         assert!(image.pixels().all(|pixel| pixel.0 == [0x11, 0x80, 0xfe, 0xff]));
     }
 }
 
 #[test]
-fn a_painter_draws_pictures_of_changing_size() {
-    for (gpu, mut painter) in gpus() {
+fn a_renderer_draws_pictures_of_changing_size() {
+    for mut renderer in gpus() {
         for (width, height) in [(64, 48), (65, 33), (64, 48)] {
             let picture = random_picture(9, width, height, 10);
-            let drawn = draw(&gpu, &mut painter, &picture, [width, height]);
+            let drawn = renderer.draw(&picture, width, height).unwrap();
             assert!(largest_difference(&drawn, &primitives::draw(&picture, width, height)) <= 3);
         }
     }
@@ -142,11 +112,17 @@ fn a_painter_draws_pictures_of_changing_size() {
 
 #[test]
 fn impossible_sizes_are_named() {
-    for (width, height) in [(0, 10), (10, 0), (16_385, 10), (10, 16_385)] {
-        let message = check_size(width, height).unwrap_err().to_string();
-        assert!(message.starts_with(&format!("size is {width}x{height}, but must be")));
+    let picture = Picture::new(Colour::WHITE);
+    let mut renderers = gpus();
+    renderers.push(Renderer::new(RendererChoice::Cpu).unwrap());
+    for mut renderer in renderers {
+        let side = renderer.largest_side() + 1;
+        for (width, height) in [(0, 10), (10, 0), (side, 10), (10, side)] {
+            let message = renderer.draw(&picture, width, height).unwrap_err().to_string();
+            assert!(message.starts_with(&format!("size is {width}x{height}, but must be")));
+        }
+        assert!(renderer.draw(&picture, 10, 10).is_ok(), "a refused size must break nothing");
     }
-    assert!(check_size(10, 16_384).is_ok());
 }
 
 #[test]

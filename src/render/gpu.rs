@@ -1,29 +1,40 @@
-//! A GPU, on Vulkan or OpenGL, and what it draws into memory.
+//! A GPU, on Vulkan or OpenGL, and pictures that it draws into memory.
 //!
-//! Software drivers (Mesa's llvmpipe) count as GPUs: they draw the same pictures.
+//! Each kind is asked for by itself, so that a missing driver can be named. Software drivers (Mesa's llvmpipe) count
+//! as GPUs: they draw the same pictures.
 
 use std::sync::{Arc, Mutex};
 
 use image::RgbaImage;
 
+use super::painter::{Painter, PictureArea};
+use super::renderer::GpuKind;
+use super::{Colour, Picture};
 use crate::error::{Error, Result};
 
+/// An opened GPU.
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    /// Kind of driver and name of the device.
+    /// GpuKind of driver and name of the device.
     pub name: String,
     /// Message of the first failure that no call reported directly.
     failure: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
+    /// Opens a GPU of either kind.
+    #[cfg(feature = "window")]
     pub(crate) fn any() -> Result<Self> {
-        Self::open(wgpu::Backends::VULKAN).or_else(|_| Self::open(wgpu::Backends::GL))
+        Self::open(GpuKind::Vulkan).or_else(|_| Self::open(GpuKind::Gl))
     }
 
     /// Opens the strongest device of one kind.
-    pub(super) fn open(backends: wgpu::Backends) -> Result<Self> {
+    pub(super) fn open(kind: GpuKind) -> Result<Self> {
+        let backends = match kind {
+            GpuKind::Vulkan => wgpu::Backends::VULKAN,
+            GpuKind::Gl => wgpu::Backends::GL,
+        };
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends,
             // Debug builds would otherwise load validation layers and let them write to stderr.
@@ -34,20 +45,14 @@ impl Gpu {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..wgpu::RequestAdapterOptions::default()
         };
-        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|_| {
-            Error::Renderer(
-                "no Vulkan or OpenGL (EGL) driver was found: install the Debian packages \
-                 mesa-vulkan-drivers and libvulkan1, or libegl1 and libgl1-mesa-dri"
-                    .into(),
-            )
-        })?;
+        let adapter =
+            pollster::block_on(instance.request_adapter(&options)).map_err(|_| missing(kind))?;
         let available = adapter.limits();
         let limits = wgpu::Limits {
             max_buffer_size: available.max_buffer_size,
             ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(available)
         };
-        let about = adapter.get_info();
-        let name = format!("{}: {}", about.backend.to_str(), about.name);
+        let name = format!("{}: {}", kind.name(), adapter.get_info().name);
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("slump"),
             required_limits: limits,
@@ -77,11 +82,30 @@ impl Gpu {
     }
 }
 
+/// What is missing and what brings it, as one sentence.
+fn missing(kind: GpuKind) -> Error {
+    let (driver, packages) = match kind {
+        GpuKind::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
+        GpuKind::Gl => ("OpenGL (EGL)", "libegl1 and libgl1-mesa-dri"),
+    };
+    Error::Renderer(format!(
+        "no {driver} driver was found: install the Debian packages {packages}, or use \
+         --renderer cpu, which needs no driver"
+    ))
+}
+
 /// Stores the numbers that are blended; an sRGB format would convert them.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// What a GPU draws a picture of one size into, in memory. Rows of the readback buffer are padded to the 256 bytes that
-/// texture copies ask for.
+/// A GPU that draws pictures into memory. Rows of the readback buffer are padded to the 256 bytes that texture copies
+/// ask for. Texture and buffer live on while the size stays the same, as it does in a sequence of pictures.
+pub(super) struct Offscreen {
+    gpu: Gpu,
+    painter: Painter,
+    target: Option<OffscreenTarget>,
+}
+
+/// What depends on the size of the picture.
 pub(crate) struct OffscreenTarget {
     pub width: u32,
     pub height: u32,
@@ -89,6 +113,67 @@ pub(crate) struct OffscreenTarget {
     texture: wgpu::Texture,
     pub view: wgpu::TextureView,
     readback: wgpu::Buffer,
+}
+
+impl Offscreen {
+    /// Opens the strongest device of one kind.
+    pub(super) fn open(kind: GpuKind) -> Result<Self> {
+        let gpu = Gpu::open(kind)?;
+        let painter = Painter::new(&gpu.device, FORMAT);
+        gpu.check()?;
+        Ok(Self { gpu, painter, target: None })
+    }
+
+    pub(super) fn name(&self) -> &str {
+        &self.gpu.name
+    }
+
+    /// Largest width and height, pixels.
+    pub(super) fn largest_side(&self) -> u32 {
+        self.gpu.device.limits().max_texture_dimension_2d
+    }
+
+    pub(super) fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
+        if self.target.as_ref().is_some_and(|old| (old.width, old.height) != (width, height)) {
+            self.target = None;
+        }
+        let gpu = &self.gpu;
+        let target = match &mut self.target {
+            Some(target) => target,
+            empty => empty.insert(OffscreenTarget::new(gpu, width, height)?),
+        };
+        let area = PictureArea::new(0.0, 0.0, width as f32, height as f32);
+        self.painter.prepare(&gpu.device, &gpu.queue, picture, area);
+
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("picture"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &target.view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(clear_colour(picture.background)),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            self.painter.draw(&mut pass);
+        }
+        target.record_copy(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        let image = target.read(gpu);
+        // A failure on the device explains more than the readback that it spoiled.
+        gpu.check().and(image)
+    }
+}
+
+/// The ground as a clear colour, at the exact value of its byte so that no driver rounds it apart.
+fn clear_colour(colour: Colour) -> wgpu::Color {
+    let [r, g, b, _] = colour.to_rgba8().0.map(|byte| f64::from(byte) / 255.0);
+    wgpu::Color { r, g, b, a: 1.0 }
 }
 
 impl OffscreenTarget {

@@ -1,21 +1,21 @@
 //! Pictures of snapshots.
 //!
-//! From the bottom up: `colour`; `primitives`, discs and links in pixels, drawn by the processor, or for the window by
-//! Vulkan or OpenGL (`gpu`, `painter`, a shader a primitive); [`Camera`] and [`Style`], with which `scene` turns
+//! From the bottom up: `colour`; `primitives`, discs and links in pixels; [`Renderer`], which draws them on Vulkan,
+//! OpenGL (`gpu`, `painter`, a shader a primitive) or the processor; [`Camera`] and [`Style`], with which `scene` turns
 //! a snapshot into a picture of walls, discs and `overlays`; [`draw_scene`], which adds scale bar, legend and words;
 //! [`PanelGrid`], which arranges several pictures as a journal does.
 
-#[cfg(all(test, feature = "window"))]
+#[cfg(all(test, feature = "gpu"))]
 mod agreement_tests;
 mod camera;
 mod colour;
 mod figure;
-#[cfg(feature = "window")]
+#[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 mod legend;
 pub(crate) mod numbers;
 mod overlays;
-#[cfg(feature = "window")]
+#[cfg(feature = "gpu")]
 mod painter;
 mod primitives;
 mod renderer;
@@ -30,9 +30,10 @@ pub use camera::{Camera, bounds};
 pub(crate) use colour::{Colour, automatic_range};
 pub use figure::PanelGrid;
 pub(crate) use overlays::force_reference;
-pub(crate) use primitives::{Batch, DiscInstance, LinkInstance, Picture};
-pub use renderer::RendererChoice;
-pub(crate) use renderer::check_size;
+#[cfg(feature = "gpu")]
+pub(crate) use primitives::Batch;
+pub(crate) use primitives::{DiscInstance, LinkInstance, Picture};
+pub use renderer::{Renderer, RendererChoice, quieten_drivers};
 pub use scene::{WorldPanel, draw_scene, draw_worlds, panel_size};
 pub(crate) use style::Palette;
 pub use style::{ColourBy, Style, Theme};

@@ -1,8 +1,13 @@
-//! Which device draws the window, and how large pictures may be.
+//! One way to draw a picture, whatever draws it: Vulkan, OpenGL or the processor.
 
+use image::RgbaImage;
+
+#[cfg(feature = "gpu")]
+use super::gpu::Offscreen;
+use super::{Picture, primitives};
 use crate::error::{Error, Result};
 
-/// What draws the window.
+/// Which renderer to use.
 #[derive(
     Clone,
     Copy,
@@ -16,25 +21,138 @@ use crate::error::{Error, Result};
 )]
 #[serde(rename_all = "kebab-case")]
 pub enum RendererChoice {
-    /// Vulkan if there is a driver, else OpenGL.
+    /// Vulkan if there is a driver, else OpenGL, else the processor.
     #[default]
     Auto,
     /// Vulkan.
     Vulkan,
-    /// OpenGL.
+    /// OpenGL, without a window through EGL.
     Gl,
-    /// The processor alone, which draws pictures and no window.
+    /// The processor alone.
     Cpu,
 }
 
-/// Largest side of a picture, pixels.
-const LARGEST_SIDE_PX: u32 = 16_384;
-
-/// Fails unless a picture of this size can be drawn.
-pub(crate) fn check_size(width: u32, height: u32) -> Result<()> {
-    if (1..=LARGEST_SIDE_PX).contains(&width) && (1..=LARGEST_SIDE_PX).contains(&height) {
-        return Ok(());
+/// Keeps a layer of Mesa's Vulkan from writing to stderr where there is no desktop: it asks for a
+/// Wayland display, which complains if `XDG_RUNTIME_DIR` is not set. With a desktop nothing changes.
+///
+/// # Safety
+/// Changes the environment, so it must run before the program starts its second thread.
+pub unsafe fn quieten_drivers() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: the caller states that no other thread can be reading the environment.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
-    let allowed = format!("between 1x1 and {LARGEST_SIDE_PX}x{LARGEST_SIDE_PX} pixels");
-    Err(Error::value("size", format!("{width}x{height}"), allowed))
+}
+
+/// The kinds of GPU that can be asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum GpuKind {
+    Vulkan,
+    Gl,
+}
+
+impl GpuKind {
+    /// Its name on the command line.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Vulkan => "vulkan",
+            Self::Gl => "gl",
+        }
+    }
+}
+
+/// Largest side of a picture drawn by the processor, pixels: what most GPUs allow as well, so that
+/// a size that works here works there.
+const CPU_LARGEST_SIDE_PX: u32 = 16_384;
+
+/// Draws pictures into memory. Keep it between frames: making one costs more than a frame.
+pub struct Renderer {
+    backend: Backend,
+}
+
+enum Backend {
+    // Boxed because the other variant holds nothing.
+    #[cfg(feature = "gpu")]
+    Gpu(Box<Offscreen>),
+    Cpu,
+}
+
+impl Backend {
+    #[cfg(feature = "gpu")]
+    fn open(kind: GpuKind) -> Result<Self> {
+        Ok(Self::Gpu(Box::new(Offscreen::open(kind)?)))
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn open(kind: GpuKind) -> Result<Self> {
+        Err(Error::Renderer(format!(
+            "this build draws nothing by {}: build it with the feature gpu, or use --renderer cpu",
+            kind.name()
+        )))
+    }
+}
+
+impl Renderer {
+    /// Opens the renderer that was asked for.
+    ///
+    /// # Errors
+    /// Says which driver is missing and which package brings it. `Auto` and `Cpu` cannot fail.
+    pub fn new(choice: RendererChoice) -> Result<Self> {
+        let backend = match choice {
+            RendererChoice::Vulkan => Backend::open(GpuKind::Vulkan)?,
+            RendererChoice::Gl => Backend::open(GpuKind::Gl)?,
+            RendererChoice::Cpu => Backend::Cpu,
+            RendererChoice::Auto => Backend::open(GpuKind::Vulkan)
+                .or_else(|_| Backend::open(GpuKind::Gl))
+                .unwrap_or(Backend::Cpu),
+        };
+        Ok(Self { backend })
+    }
+
+    /// What draws, such as "vulkan: llvmpipe (LLVM 15.0.6, 256 bits)" or "cpu".
+    pub fn name(&self) -> &str {
+        match &self.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(offscreen) => offscreen.name(),
+            Backend::Cpu => "cpu",
+        }
+    }
+
+    /// Largest width and height that this renderer draws, pixels.
+    pub(crate) fn largest_side(&self) -> u32 {
+        match &self.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(offscreen) => offscreen.largest_side(),
+            Backend::Cpu => CPU_LARGEST_SIDE_PX,
+        }
+    }
+
+    /// Draws a picture of `width` × `height` pixels.
+    ///
+    /// # Errors
+    /// Names `size` if it is empty or too large; otherwise says what the device reported.
+    pub(crate) fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
+        self.check_size(width, height)?;
+        match &mut self.backend {
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(offscreen) => offscreen.draw(picture, width, height),
+            Backend::Cpu => Ok(primitives::draw(picture, width, height)),
+        }
+    }
+
+    /// Fails unless a picture of this size can be drawn.
+    ///
+    /// # Errors
+    /// Names `size`.
+    pub(crate) fn check_size(&self, width: u32, height: u32) -> Result<()> {
+        let largest = self.largest_side();
+        if (1..=largest).contains(&width) && (1..=largest).contains(&height) {
+            return Ok(());
+        }
+        Err(Error::value(
+            "size",
+            format!("{width}x{height}"),
+            format!("between 1x1 and {largest}x{largest} pixels on {}", self.name()),
+        ))
+    }
 }

@@ -9,7 +9,7 @@ use super::legend::{Legend, ScaleBar, fill};
 use super::overlays::{force_links, motion_links, velocity_links};
 use super::text::{Align, TextBlock, TextStyle};
 use super::walls::{border_links, boundary_links};
-use super::{Camera, Colour, DiscInstance, Picture, Style, check_size, primitives};
+use super::{Camera, Colour, DiscInstance, Picture, Renderer, Style};
 use crate::error::{Error, Result};
 use crate::sim::Snapshot;
 
@@ -17,20 +17,21 @@ use crate::sim::Snapshot;
 /// at the part left of the legend; [`Style::camera`] makes one.
 ///
 /// # Errors
-/// Names `size` if it is empty or too large.
+/// Names `size` if it is empty or too large; otherwise says what the device reported.
 pub fn draw_scene(
+    renderer: &mut Renderer,
     snapshot: &Snapshot,
     style: &Style,
     camera: &Camera,
     width: u32,
     height: u32,
 ) -> Result<RgbaImage> {
-    check_size(width, height)?;
+    renderer.check_size(width, height)?;
     let palette = style.theme.palette();
     let strip_width = style.legend_width(width, height);
     let scene_width = width - strip_width;
     let picture = scene_picture(snapshot, style, camera, scene_width, height);
-    let mut image = primitives::draw(&picture, scene_width, height);
+    let mut image = renderer.draw(&picture, scene_width, height)?;
     if style.scale_bar {
         let bar = ScaleBar::new(style, camera, scene_width, height);
         let label = TextBlock::new(&bar.label, &TextStyle::new(bar.text_px, palette.ink));
@@ -76,13 +77,14 @@ pub fn panel_size(style: &Style, size: [u32; 2], count: usize, columns: usize) -
 /// # Errors
 /// Where there is none, and what [`draw_scene`] says.
 pub fn draw_worlds(
+    renderer: &mut Renderer,
     panels: &[WorldPanel<'_>],
     style: &Style,
     camera: &Camera,
     columns: usize,
     [width, height]: [u32; 2],
 ) -> Result<RgbaImage> {
-    check_size(width, height)?;
+    renderer.check_size(width, height)?;
     let Some(first) = panels.first() else {
         return Err(Error::value("worlds", "none", "at least one for a picture"));
     };
@@ -96,7 +98,7 @@ pub fn draw_worlds(
     for (index, panel) in panels.iter().enumerate() {
         // The scale is the same in all of them: one bar says it.
         let alone = Style { scale_bar: style.scale_bar && index == 0, ..bare.clone() };
-        let mut image = draw_scene(panel.snapshot, &alone, camera, across, down)?;
+        let mut image = draw_scene(renderer, panel.snapshot, &alone, camera, across, down)?;
         let room = across as f32 - 2.0 * margin as f32;
         let title = TextBlock::wrapped(panel.title, &words, room);
         title.draw(&mut image, margin, margin, Align::Start, Align::Start);

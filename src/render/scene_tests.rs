@@ -51,9 +51,10 @@ fn row_of_grains(at: DVec2) -> Snapshot {
 }
 
 fn drawn(snapshot: &Snapshot, style: &Style) -> image::RgbaImage {
+    let mut renderer = Renderer::new(RendererChoice::Cpu).unwrap();
     let [min, max] = bounds(snapshot).unwrap();
     let camera = style.camera(min, max, 300, 200);
-    draw_scene(snapshot, style, &camera, 300, 200).unwrap()
+    draw_scene(&mut renderer, snapshot, style, &camera, 300, 200).unwrap()
 }
 
 fn links(picture: &Picture) -> Vec<LinkInstance> {
@@ -138,9 +139,10 @@ fn a_legend_changes_no_pixel_of_the_scene() {
     let strip = style.legend_width(600, 400);
     assert!(strip > 0);
     let camera = style.camera(DVec2::new(-0.5, -2.0), DVec2::new(3.5, 1.0), 600, 400);
-    let whole = draw_scene(&snapshot, &style, &camera, 600, 400).unwrap();
+    let mut renderer = Renderer::new(RendererChoice::Cpu).unwrap();
+    let whole = draw_scene(&mut renderer, &snapshot, &style, &camera, 600, 400).unwrap();
     let bare = Style { legend: false, ..style };
-    let scene = draw_scene(&snapshot, &bare, &camera, 600 - strip, 400).unwrap();
+    let scene = draw_scene(&mut renderer, &snapshot, &bare, &camera, 600 - strip, 400).unwrap();
     assert!(scene.enumerate_pixels().all(|(x, y, pixel)| whole.get_pixel(x, y) == pixel));
 }
 

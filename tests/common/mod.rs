@@ -1,19 +1,22 @@
-//! What the tests of physics share: short ways to write scenes, and comparisons that say what
-//! differs.
+//! What the tests of physics share: the names that all of them use, short ways to write scenes and to look at runs, and
+//! comparisons that say what differs.
 
-#![allow(dead_code, reason = "every test binary uses its own part of this")]
+#![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
 pub mod natural_map;
-pub mod schemes;
 
-use glam::DVec2;
-use rand::{RngExt, SeedableRng};
+pub use glam::DVec2;
+pub use rand::RngExt;
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use slump::scene::stability::logs;
-use slump::scene::{Scene, rough_base};
-use slump::sim::{Remedies, Simulation, Stepper};
-use slump::solver::{METHODS, Method, Ordering, SolverSettings, StopTest};
-use slump::world::{Disc, Grain, Gravity, Parameters, Physics};
+
+pub use slump::contact::*;
+pub use slump::granular::{measure, *};
+pub use slump::scene::*;
+pub use slump::sim::*;
+pub use slump::solver::*;
+pub use slump::world::*;
 
 /// g of the scenes made here, m/s².
 pub const G: f64 = 9.8;
@@ -56,7 +59,6 @@ pub fn ranged(
     }
 }
 
-/// A grain in free flight.
 pub fn weightless(grain: Grain) -> Grain {
     Grain { feels_gravity: false, ..grain }
 }
@@ -66,17 +68,12 @@ pub fn tight() -> SolverSettings {
     to_residual(1e-12)
 }
 
-/// Gauss–Seidel to the given residual.
+pub fn solved_by(method: Method, tolerance: f64) -> SolverSettings {
+    SolverSettings { method, stop: StopTest::Residual, tolerance, ..SolverSettings::default() }
+}
+
 pub fn to_residual(tolerance: f64) -> SolverSettings {
-    SolverSettings {
-        method: Method::Nsgs,
-        ordering: Ordering::default(),
-        stop: StopTest::Residual,
-        tolerance,
-        max_sweeps: 20_000,
-        warm_start: true,
-        ..SolverSettings::default()
-    }
+    SolverSettings { max_sweeps: 20_000, ..solved_by(Method::Nsgs, tolerance) }
 }
 
 /// Grains under uniform gravity and nothing else.
@@ -110,6 +107,15 @@ pub fn scene(
     }
 }
 
+/// Grains that fall with g.
+pub fn under_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
+    scene(Physics::FULL, -G * DVec2::Y, parameters, grains)
+}
+
+pub fn without_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
+    scene(Physics::FULL, DVec2::ZERO, parameters, grains)
+}
+
 /// Every stepper, with every method where it takes one.
 pub fn every_way() -> Vec<(Stepper, Method)> {
     let of = |&stepper: &Stepper| {
@@ -124,7 +130,6 @@ pub fn every_way_that_balances() -> Vec<(Stepper, Method)> {
     every_way().into_iter().filter(|way| way.0 != Stepper::Avbd).collect()
 }
 
-/// A simulation of a scene that has no fault.
 pub fn start(scene: &Scene) -> Simulation {
     scene.simulation().expect("a proper scene")
 }
@@ -140,14 +145,12 @@ pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     (0..grains.len()).map(of).collect()
 }
 
-/// Takes `count` steps.
 pub fn take_steps(simulation: &mut Simulation, count: usize) {
     for _ in 0..count {
         simulation.step().expect("a finite state");
     }
 }
 
-/// A disc with a velocity.
 pub fn moving(position: DVec2, radius: f64, velocity: DVec2) -> Grain {
     Grain { velocity, ..Grain::at_rest(position, radius) }
 }
@@ -163,7 +166,6 @@ pub fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
     );
 }
 
-/// A generator with a seed.
 pub fn random(seed: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed)
 }
@@ -193,10 +195,7 @@ pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters)
             }
         })
         .collect();
-    Scene {
-        fixed_discs: rough_base(columns as f64 + 2.0, diameter),
-        ..scene(Physics::FULL, DVec2::new(0.0, -G), parameters, grains)
-    }
+    Scene { fixed_discs: rough_base(columns as f64 + 2.0, diameter), ..under_g(parameters, grains) }
 }
 
 /// Logs at rest, and beside them a spinning disc that falls on the floor, one that has to be pushed out
@@ -217,7 +216,213 @@ pub fn at_rest_and_falling() -> Scene {
     scene
 }
 
-/// A fixed disc.
 pub fn fixed(position: DVec2, radius: f64) -> Disc {
     Disc { position, radius }
+}
+
+pub fn plane(point: DVec2, normal: DVec2) -> Boundary {
+    Boundary::HalfSpace { point, normal }
+}
+
+pub fn piston(point: DVec2, normal: DVec2, speed: f64, travel: f64) -> Boundary {
+    Boundary::Piston { point, normal, speed, travel }
+}
+
+pub fn level() -> Boundary {
+    plane(DVec2::ZERO, DVec2::Y)
+}
+
+pub fn goes(boundaries: &[usize], course: MotionCourse) -> Motion {
+    Motion { boundaries: boundaries.to_vec(), course: Some(course), ..Motion::default() }
+}
+
+pub fn discs_go(count: usize, course: MotionCourse) -> Motion {
+    Motion { fixed_discs: (0..count).collect(), course: Some(course), ..Motion::default() }
+}
+
+pub fn belt(boundaries: &[usize], surface_speed: f64) -> Motion {
+    Motion { boundaries: boundaries.to_vec(), surface_speed, ..Motion::default() }
+}
+
+pub fn straight(velocity: DVec2) -> MotionCourse {
+    MotionCourse::Straight { direction: velocity, speed: velocity.length(), travel: None }
+}
+
+pub fn round(pivot: DVec2, rate: f64) -> MotionCourse {
+    MotionCourse::Rotation { pivot, rate, travel: None }
+}
+
+pub fn after(scene: &Scene, steps: usize) -> Simulation {
+    let mut run = start(scene);
+    take_steps(&mut run, steps);
+    run
+}
+
+/// The sentence that a scene is refused with.
+#[track_caller]
+pub fn refused(scene: &Scene) -> String {
+    let said = scene.simulation().map(|_| ()).expect_err("a scene with a fault").to_string();
+    assert!(!said.contains('\n'), "one sentence: {said}");
+    said
+}
+
+/// A scene stepped in each of these ways, with the way in words.
+pub fn in_each_way(
+    scene: &Scene,
+    ways: Vec<(Stepper, Method)>,
+) -> impl Iterator<Item = (String, Scene)> {
+    let of = |(stepper, method)| {
+        let solver = SolverSettings { method, ..scene.solver };
+        (format!("{stepper}, {method}"), Scene { stepper, solver, ..scene.clone() })
+    };
+    ways.into_iter().map(of)
+}
+
+/// Takes a step: what it came to, what works leave unexplained of its change of kinetic energy, and the sum of the
+/// sizes of these works and of both energies, J.
+pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
+    let before = run.observables().kinetic_energy;
+    let after = *run.step().expect("a finite state");
+    let works = [after.gravity_work, after.normal_work, after.tangential_work];
+    let border = after.border_work.unwrap_or(0.0);
+    let off = (after.kinetic_energy - before - works.iter().sum::<f64>() - border).abs();
+    let sizes = works.iter().map(|work| work.abs()).sum::<f64>();
+    (after, off, before + after.kinetic_energy + sizes)
+}
+
+pub trait Look {
+    fn grains(&self) -> &Grains;
+
+    fn place(&self, grain: usize) -> DVec2 {
+        self.grains().positions[grain]
+    }
+
+    fn velocity(&self, grain: usize) -> DVec2 {
+        self.grains().velocities[grain]
+    }
+
+    fn places(&self) -> &[DVec2] {
+        &self.grains().positions
+    }
+
+    fn velocities(&self) -> &[DVec2] {
+        &self.grains().velocities
+    }
+
+    /// Speed of the fastest, m/s.
+    fn fastest(&self) -> f64 {
+        self.velocities().iter().map(|velocity| velocity.length()).fold(0.0, f64::max)
+    }
+}
+
+impl Look for Simulation {
+    fn grains(&self) -> &Grains {
+        &self.world().grains
+    }
+}
+
+pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
+    one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max)
+}
+
+/// The steppers that solve no problem of the whole step, and whose impulses are what moves the grains.
+pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
+
+/// Those, and the one whose bodies are moved a little past their impulses.
+pub const ALL_SCHEMES: [Stepper; 3] = [Stepper::TgsSoft, Stepper::Avbd, Stepper::Dem];
+
+pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {
+    scene.parameters.substeps = substeps;
+    Scene { stepper, ..scene }
+}
+
+/// Two unequal discs that are about to meet, tilted against the axes unless they are on a line.
+pub fn meeting(physics: Physics, restitution: f64, dt: f64) -> Scene {
+    let direction = if physics.axes == 1 { DVec2::X } else { DVec2::new(0.6, 0.8) };
+    let grains = [(0.0, 0.15, 0.7), (0.25 + 1e-9, 0.1, -0.3)].map(|(place, radius, speed)| Grain {
+        feels_gravity: false,
+        ..moving(place * direction, radius, speed * direction)
+    });
+    scene(physics, -G * direction, parameters(0.0, dt, restitution, 0.5), grains.into())
+}
+
+/// Velocity of the second grain relative to the first, m/s.
+pub fn relative_velocity(simulation: &Simulation) -> DVec2 {
+    let velocities = &simulation.world().grains.velocities;
+    velocities[1] - velocities[0]
+}
+
+pub fn momentum(simulation: &Simulation) -> DVec2 {
+    let grains = &simulation.world().grains;
+    grains.masses.iter().zip(&grains.velocities).map(|(&mass, &velocity)| mass * velocity).sum()
+}
+
+pub fn effective_mass(simulation: &Simulation) -> f64 {
+    let masses = &simulation.world().grains.masses;
+    1.0 / (1.0 / masses[0] + 1.0 / masses[1])
+}
+
+/// Fails unless a sentence is this one, or begins so where an ellipsis ends what is expected.
+#[track_caller]
+pub fn assert_said(said: &str, expected: &str) {
+    match expected.strip_suffix('…') {
+        Some(begin) => assert!(said.starts_with(begin), "{said}\nbegins not as\n{expected}"),
+        None => assert_eq!(said, expected),
+    }
+}
+
+/// A change that spoils a scene, and the sentence that it is refused with then.
+pub type Refusal<'a> = (&'a str, &'a dyn Fn(&mut Scene));
+
+/// Holds the refusals of a scene that is spoilt in each of these ways against what is expected.
+#[track_caller]
+pub fn refuses(good: &Scene, cases: &[Refusal]) {
+    for (expected, spoil) in cases {
+        let mut scene = good.clone();
+        spoil(&mut scene);
+        assert_said(&refused(&scene), expected);
+    }
+}
+
+/// Holds a property to so many random inputs, the same ones every time.
+pub fn for_random<S: proptest::strategy::Strategy>(
+    cases: u32,
+    inputs: S,
+    property: impl Fn(S::Value) -> Result<(), proptest::test_runner::TestCaseError>,
+) {
+    use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+    let config = Config { cases, failure_persistence: None, ..Config::default() };
+    let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let mut runner = TestRunner::new_with_rng(config, random);
+    runner.run(&inputs, property).unwrap_or_else(|failure| panic!("{failure}"));
+}
+
+/// Halves a stretch so many times: up to where something holds that holds at `low` and does not at `high`.
+#[track_caller]
+pub fn border(mut low: f64, mut high: f64, halvings: u32, holds: impl Fn(f64) -> bool) -> f64 {
+    assert!(holds(low) && !holds(high), "the border is between {low} and {high}");
+    for _ in 0..halvings {
+        let middle = 0.5 * (low + high);
+        *(if holds(middle) { &mut low } else { &mut high }) = middle;
+    }
+    low
+}
+
+/// Each of some with each of others.
+pub fn pairs<A: Clone, B: Clone>(
+    some: impl IntoIterator<Item = A>,
+    others: impl IntoIterator<Item = B>,
+) -> Vec<(A, B)> {
+    let others: Vec<B> = others.into_iter().collect();
+    let with_others = |one: A| others.clone().into_iter().map(move |other| (one.clone(), other));
+    some.into_iter().flat_map(with_others).collect()
+}
+
+/// The same of three kinds.
+pub fn triples<A: Clone, B: Clone, C: Clone>(
+    some: impl IntoIterator<Item = A>,
+    others: impl IntoIterator<Item = B>,
+    more: impl IntoIterator<Item = C>,
+) -> Vec<(A, B, C)> {
+    pairs(pairs(some, others), more).into_iter().map(|((a, b), c)| (a, b, c)).collect()
 }

@@ -3,13 +3,11 @@
 use std::path::Path;
 use std::process::Command;
 
-/// A video's one stream, and its comment.
 pub struct Probed {
     pub codec: String,
     pub pixels: String,
     pub colours: String,
     pub size: [u64; 2],
-    /// Pictures a second, as a fraction.
     pub rate_hz: String,
     pub pictures: usize,
     /// The numbers, from 1 on, of the pictures that need none before them.
@@ -17,7 +15,6 @@ pub struct Probed {
     pub comment: String,
 }
 
-/// Looks at a video.
 pub fn probe(video: &Path) -> Probed {
     let shown = "stream=codec_name,pix_fmt,color_space,width,height,r_frame_rate:packet=flags:format_tags=comment";
     let output = Command::new("ffprobe")

@@ -3,98 +3,71 @@
 //! An input is a text: an argument a line, and after an empty line the file that the word `FILE` stands
 //! for among them. `OUT` stands for a folder.
 
-use std::path::Path;
-use std::time::Duration;
-
 use arbitrary::{Result, Unstructured};
-use assert_cmd::Command;
+use serde_json::json;
 use slump::config::read_scene;
 use slump::interchange::ProblemFile;
+use slump::sim::{Observables, Tally};
 
-use super::parsers::is_legible;
+use super::Target;
+use super::parsers::{NUMBERS, WORDS, is_legible, one_of};
 use super::scenes::scene_text;
-use super::texts::{NUMBERS, WORDS};
-use super::{Target, books};
+use crate::program::*;
 
 /// Less than the patience of whoever tries the input.
-const PATIENCE: Duration = Duration::from_secs(180);
+const SLOWEST: Duration = Duration::from_secs(180);
 
 /// Of options that make a run long: no values but those that are good, or that must be refused.
-const REFUSED: [&str; 8] = ["-1", "nan", "inf", "-inf", "1e300", "-1e-300", "much", "0x10"];
+const REFUSED: &str = "-1 nan inf -inf 1e300 -1e-300 much 0x10";
 
 /// Options with values that mean something.
-const OPTIONS: [(&str, &[&str]); 25] = [
-    ("--stepper", &["moreau", "range", "tgs-soft", "avbd", "dem"]),
-    ("--bond", &["0", "1", "20", "1000"]),
-    ("--rho", &["0", "0.1", "0.9", "1"]),
-    ("--mu", &["0", "0.5", "5"]),
-    ("--cone", &["shifted", "compressive"]),
-    ("--restitution-threshold", &["0", "2"]),
-    ("--debonding-distance", &["1e-4", "0.01", "0.1"]),
-    (
-        "--solver",
-        &[
-            "nsgs",
-            "nsgs-parallel",
-            "newton",
-            "nncg",
-            "apgd",
-            "admm",
-            "jacobi",
-            "interior-point",
-            "auto",
-        ],
-    ),
-    ("--ordering", &["interleaved", "detected", "bottom-up", "symmetric", "coloured"]),
-    ("--stop", &["residual", "relative-change"]),
-    ("--tolerance", &["1e-14", "1e-6", "1e-2"]),
-    ("--warm-start", &["true", "false"]),
-    ("--friction-model", &["coulomb", "tresca", "associated", "desaxce"]),
-    ("--model-solves", &["1", "2", "5"]),
-    ("--fallback", &["of-method", "none", "tresca"]),
-    ("--push-out", &["true", "false"]),
-    ("--max-travel", &["0", "0.25", "1e-3"]),
-    ("--calm-unsolved", &["true", "false"]),
-    ("--sequential-impacts", &["true", "false"]),
-    ("--speculative", &["true", "false"]),
-    ("--preset", &["robust"]),
-    ("--colour", &["grey", "speed", "coordination", "overlap", "force"]),
-    ("--show", &["forces", "angles", "forces,angles"]),
-    ("--theme", &["light", "dark"]),
-    ("--start", &["6", "6.5", "8"]),
+const OPTIONS: [&str; 25] = [
+    "--stepper moreau range tgs-soft avbd dem",
+    "--bond 0 1 20 1000",
+    "--rho 0 0.1 0.9 1",
+    "--mu 0 0.5 5",
+    "--cone shifted compressive",
+    "--restitution-threshold 0 2",
+    "--debonding-distance 1e-4 0.01 0.1",
+    "--solver nsgs nsgs-parallel newton nncg apgd admm jacobi interior-point auto",
+    "--ordering interleaved detected bottom-up symmetric coloured",
+    "--stop residual relative-change",
+    "--tolerance 1e-14 1e-6 1e-2",
+    "--warm-start true false",
+    "--friction-model coulomb tresca associated desaxce",
+    "--model-solves 1 2 5",
+    "--fallback of-method none tresca",
+    "--push-out true false",
+    "--max-travel 0 0.25 1e-3",
+    "--calm-unsolved true false",
+    "--sequential-impacts true false",
+    "--speculative true false",
+    "--preset robust",
+    "--colour grey speed coordination overlap force",
+    "--show forces angles forces,angles",
+    "--theme light dark",
+    "--start 6 6.5 8",
 ];
 /// Options of which a value that is merely large is granted, and takes as long as it takes.
-const LONG: [(&str, &[&str]); 6] = [
-    ("--substeps", &["0", "1", "7"]),
-    ("--stiffness", &["0", "10", "1e4"]),
-    ("--damping-ratio", &["0", "0.05", "3"]),
-    ("--max-sweeps", &["1", "5", "300"]),
-    ("--times", &["0", "0.001", "0,0.001,0.002", "0.002,0.001"]),
-    ("--fps", &["25", "1000", "0.1"]),
+const LONG: [&str; 6] = [
+    "--substeps 0 1 7",
+    "--stiffness 0 10 1e4",
+    "--damping-ratio 0 0.05 3",
+    "--max-sweeps 1 5 300",
+    "--times 0 0.001 0,0.001,0.002 0.002,0.001",
+    "--fps 25 1000 0.1",
 ];
-const SCENES: [&str; 9] = [
-    "pile",
-    "cradle",
-    "collision",
-    "mass-ratio",
-    "squeeze",
-    "moving-walls",
-    "thin-wall",
-    "bounce",
-    "newtons-cradle",
-];
+const SCENES: &str =
+    "pile cradle collision mass-ratio squeeze moving-walls thin-wall bounce newtons-cradle";
 
 /// A good value, or now and then another one.
-fn value(u: &mut Unstructured<'_>, good: &[&str], long: bool) -> Result<String> {
-    if u.ratio(19, 20)? {
-        return Ok((*u.choose(good)?).to_owned());
-    }
-    let bad = match (long, u.arbitrary()?) {
-        (true, _) => u.choose(&REFUSED)?,
-        (false, true) => u.choose(&NUMBERS)?,
-        (false, false) => u.choose(&WORDS)?,
+fn value(u: &mut Unstructured<'_>, good: &str, long: bool) -> Result<String> {
+    let line = match (u.ratio(19, 20)?, long) {
+        (true, _) => good,
+        (false, true) => REFUSED,
+        (false, false) => *u.choose(&[NUMBERS, WORDS])?,
     };
-    Ok(bad.replace('\0', "0"))
+    Ok(one_of(u, line)?.replace('\0', "0"))
 }
 
 /// Where the scene comes from and how long it runs; whether from a file.
@@ -105,18 +78,18 @@ fn origin(u: &mut Unstructured<'_>, arguments: &mut Vec<String>) -> Result<bool>
         return Ok(true);
     }
     if u.ratio(1, 6)? {
-        for (name, good) in [("--grains", ["3", "1"]), ("--box-width", ["4", "9.5"])] {
-            arguments.extend([name.to_owned(), value(u, &good, true)?]);
+        for (name, good) in [("--grains", "3 1"), ("--box-width", "4 9.5")] {
+            arguments.extend([name.to_owned(), value(u, good, true)?]);
         }
     } else {
-        arguments.extend(["--scene".to_owned(), value(u, &SCENES, true)?]);
+        arguments.extend(["--scene".to_owned(), value(u, SCENES, true)?]);
     }
     let time_step_secs = *u.choose(&[1e-4, 1e-3, 5e-3, 0.1])?;
     let steps = f64::from(u.int_in_range(0..=1000)?) / 20.0;
     let duration = format!("{}", steps * time_step_secs);
     let time_step = format!("{time_step_secs}");
     for (name, good) in [("--dt", time_step), ("--duration", duration)] {
-        arguments.extend([name.to_owned(), value(u, &[&good], true)?]);
+        arguments.extend([name.to_owned(), value(u, &good, true)?]);
     }
     Ok(false)
 }
@@ -132,19 +105,20 @@ fn command_line(u: &mut Unstructured<'_>) -> Result<String> {
     arguments.extend(before.iter().map(|&word| word.to_owned()));
     let from_file = origin(u, &mut arguments)?;
     if command == "run" {
-        arguments.extend(["--size".to_owned(), value(u, &["16x9", "1x1", "64x36"], true)?]);
+        arguments.extend(["--size".to_owned(), value(u, "16x9 1x1 64x36", true)?]);
     } else if command == "dump" {
-        arguments.extend(["--at".to_owned(), value(u, &["0", "0.001", "0.003"], true)?]);
+        arguments.extend(["--at".to_owned(), value(u, "0 0.001 0.003", true)?]);
     }
     for _ in 0..u.int_in_range(0..=6)? {
         let long = u.ratio(1, 6)?;
-        let (name, good) = if long { u.choose(&LONG)? } else { u.choose(&OPTIONS)? };
+        let option = if long { *u.choose(&LONG)? } else { *u.choose(&OPTIONS)? };
+        let (name, good) = option.split_once(' ').expect("a value");
         if !arguments.iter().any(|known| known == name) || u.ratio(1, 20)? {
-            arguments.extend([(*name).to_owned(), value(u, good, long)?]);
+            arguments.extend([name.to_owned(), value(u, good, long)?]);
         }
     }
     if u.ratio(1, 30)? {
-        arguments.push((*u.choose(&WORDS)?).replace('\0', "0"));
+        arguments.push(one_of(u, WORDS)?.replace('\0', "0"));
     }
     let file = if from_file { scene_text(u)? } else { String::new() };
     Ok(format!("{}\n\n{file}", arguments.join("\n")))
@@ -153,11 +127,11 @@ fn command_line(u: &mut Unstructured<'_>) -> Result<String> {
 /// What has to hold of any command line; whether it was granted.
 fn check(input: &str) -> bool {
     let (arguments, file) = input.split_once("\n\n").expect("arguments, and a file or none");
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let scene = folder.path().join("scene.toml");
-    std::fs::write(&scene, file).expect("a file");
+    write(&scene, file);
     let out = folder.path().join("out");
-    let [scene_name, out_name] = [&scene, &out].map(|path| path.to_str().expect("UTF-8"));
+    let [scene_name, out_name] = [&scene, &out].map(|path| text(path));
     let arguments: Vec<String> = arguments
         .lines()
         .map(|word| word.replace("FILE", scene_name).replace("OUT", out_name))
@@ -166,8 +140,8 @@ fn check(input: &str) -> bool {
     if !is_run {
         std::fs::create_dir(&out).expect("a folder");
     }
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-    let output = command.args(&arguments).timeout(PATIENCE).output().expect("it starts");
+    let mut command = assert_cmd::Command::from_std(slump(""));
+    let output = command.args(&arguments).timeout(SLOWEST).output().expect("it starts");
     let said = String::from_utf8(output.stderr).expect("UTF-8");
     let code = output.status.code().unwrap_or_else(|| panic!("{}: {said}", output.status));
 
@@ -183,7 +157,7 @@ fn check(input: &str) -> bool {
     if !is_run {
         check_other(&arguments, code, &output.stdout, &out);
     } else if out.join("manifest.json").exists() {
-        books::check(&out, code, &said);
+        check_books(&out, code, &said);
     } else {
         assert_eq!(code, 2, "nothing was done, and nothing was wrong: {said}");
         let left = std::fs::read_dir(&out).map_or(0, Iterator::count);
@@ -196,7 +170,7 @@ fn check(input: &str) -> bool {
 fn check_other(arguments: &[String], code: i32, stdout: &[u8], out: &Path) {
     if arguments.first().is_some_and(|word| word == "scene") && code == 0 {
         let path = out.join("scene.toml");
-        std::fs::write(&path, stdout).expect("a file");
+        write(&path, stdout);
         read_scene(&path).expect("a scene that is printed can be read");
     }
     let problem = out.join("problem.json");
@@ -210,4 +184,76 @@ fn check_other(arguments: &[String], code: i32, stdout: &[u8], out: &Path) {
 fn command_lines_and_what_they_leave() {
     let target = Target { name: "command-lines", ending: "txt" };
     target.fuzz(&target.corpus(), |u, _| command_line(u), |text, _| check(text));
+}
+
+/// Checks the folder of a run that ended by itself with `code` and said `stderr`.
+pub fn check_books(folder: &Path, code: i32, stderr: &str) {
+    let rows = rows_of(&folder.join("observables.csv"));
+    let manifest = manifest(folder);
+    let run = &manifest["runs"][0];
+    let mut tally = Tally::default();
+    for (row, number) in rows.iter().zip(1..) {
+        assert_eq!(row.step, number, "a row a step");
+        assert!(!row.converged || row.residual.is_finite(), "{row:?}");
+        tally.add(row);
+    }
+    assert_eq!(run["tally"], json!(tally), "the tally is that of the table");
+    let end = rows.last().copied().unwrap_or_default();
+    assert_eq!(run["step"], json!(end.step));
+    assert_eq!(run["time_secs"], json!(end.time_secs));
+    assert_eq!(run["ended"], if code == 0 { "complete" } else { "not-finite" });
+
+    alarms(run, &rows, stderr);
+    let told = stderr.contains("did not reach tolerance");
+    assert_eq!(told, tally.unconverged_steps > 0, "steps that were not solved: {stderr}");
+    pictures(folder, &manifest, &rows);
+}
+
+/// What went wrong by the table is alarmed in the manifest, and every alarm is told.
+fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
+    let alarms = run["alarms"].as_array().expect("a list");
+    let has = |kind: &str| alarms.iter().any(|alarm| alarm["kind"] == kind);
+    let finite = |row: &Observables| {
+        let Observables { kinetic_energy, potential_energy, max_overlap, slump, .. } = row;
+        [kinetic_energy, potential_energy, max_overlap, slump].into_iter().all(|x| x.is_finite())
+    };
+    assert!(rows.iter().all(finite) || !alarms.is_empty(), "not finite in silence");
+    assert_eq!(run["ended"] == "not-finite", has("not-finite"), "{run}");
+    let any = |wrong: fn(&Observables) -> bool| rows.iter().any(wrong);
+    assert_eq!(any(|row| row.lost_grains > 0), has("grain-lost"), "{run}");
+    assert_eq!(any(|row| row.max_overlap > 0.05), has("overlap"), "{run}");
+    for alarm in alarms.iter().filter(|alarm| alarm["kind"] != "not-finite") {
+        let message = alarm["message"].as_str().expect("a sentence");
+        assert!(stderr.contains(message), "{message} is not in {stderr}");
+    }
+    if has("not-finite") {
+        assert!(stderr.contains("no longer finite"), "{stderr}");
+    }
+}
+
+/// The pictures that the manifest names are there, no others are, and each shows a row of the table.
+fn pictures(folder: &Path, manifest: &Value, rows: &[Observables]) {
+    let listed = manifest["pictures"].as_array().expect("a list");
+    for picture in listed {
+        let shown = &picture["shows"][0]["observables"];
+        let step = shown["step"].as_u64().expect("a step") as usize;
+        if step > 0 {
+            assert_eq!(*shown, json!(rows[step - 1]), "a picture shows a row");
+        }
+    }
+    let mut named: Vec<&str> = listed.iter().filter_map(|it| it["file"].as_str()).collect();
+    named.extend(["manifest.json", "observables.csv"]);
+    named.sort_unstable();
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut there: Vec<String> =
+        entries.flatten().map(|it| it.file_name().to_string_lossy().into_owned()).collect();
+    there.sort_unstable();
+    assert_eq!(there, named, "what is there and what the manifest names");
+}
+
+fn rows_of(table: &Path) -> Vec<Observables> {
+    let text = read(table);
+    assert!(text.is_empty() || text.ends_with('\n'), "a half row at the end");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    reader.deserialize().map(|row| row.expect("a row")).collect()
 }

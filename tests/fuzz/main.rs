@@ -7,19 +7,17 @@
 //! a file that the failure names. It goes to the target's folder in `corpus/`, whose files are tried first,
 //! and stays there.
 
-mod books;
+#[path = "../common/program.rs"]
+mod program;
+
 mod command_lines;
 mod parsers;
-mod run;
 mod scenes;
-mod texts;
 mod trial;
-
-use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use arbitrary::Unstructured;
 
+use program::*;
 use trial::Trial;
 
 /// Time that a target gets where nothing else is said, s.
@@ -28,12 +26,9 @@ const MOMENT_SECS: f64 = 1.0;
 /// What takes longer is not tried with changes: too few other inputs would be.
 const QUICK: Duration = Duration::from_millis(50);
 
-/// A kind of input.
 #[derive(Clone, Copy)]
 struct Target {
-    /// Its folder in the corpus.
     name: &'static str,
-    /// How the names of its files end.
     ending: &'static str,
 }
 
@@ -65,9 +60,7 @@ impl Target {
     /// Everything that ever failed, and what is known to be hostile.
     fn corpus(self) -> Vec<String> {
         let ours = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus");
-        let entries = std::fs::read_dir(ours.join(self.name)).expect("a folder of the corpus");
-        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-        paths.sort();
-        paths.iter().map(|path| std::fs::read_to_string(path).expect("a text")).collect()
+        let folder = ours.join(self.name);
+        names_in(&folder).iter().map(|name| read(folder.join(name))).collect()
     }
 }

@@ -1,7 +1,6 @@
 //! Every parser of a file that a user hands over, and what its file is first used for.
 
-use std::path::Path;
-
+use arbitrary::Unstructured;
 use slump::config::{Config, SceneSource, scene_to_toml};
 use slump::error::{Error, Result};
 use slump::interchange::{ProblemFile, problem_file_at, solve_file};
@@ -10,7 +9,7 @@ use slump::solver::{METHODS, SolverSettings, StopTest};
 use slump::study::Study;
 
 use super::Target;
-use super::texts::changed;
+use crate::program::*;
 
 /// The longest refusal that still is a sentence, bytes.
 const LONGEST: usize = 3_200;
@@ -18,7 +17,7 @@ const LONGEST: usize = 3_200;
 /// The longest word that still is one, characters.
 const LONGEST_WORD: usize = 150;
 
-/// Whether a line can be shown on any terminal: nothing moves the cursor, turns the direction of writing or
+/// True if a line can be shown on any terminal: nothing moves the cursor, turns the direction of writing or
 /// goes on and on. Words without a path, that is.
 pub fn is_legible(line: &str) -> bool {
     let moves = |c: char| c.is_control() || ('\u{2028}'..='\u{202e}').contains(&c);
@@ -49,7 +48,7 @@ fn fuzz_texts<T>(
 
 fn file(path: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    std::fs::read_to_string(path).expect("a file of ours")
+    read(path)
 }
 
 #[test]
@@ -64,7 +63,7 @@ fn scene_files() {
     texts.push(scene_to_toml(&rained).expect("TOML"));
     fuzz_texts("scene-files", "toml", texts, |_, path| {
         // Where grains are rained, many of them may well take their time.
-        let scene = Config::of_scene(path.to_str().expect("UTF-8")).without_settling()?;
+        let scene = Config::of_scene(text(path)).without_settling()?;
         scene.simulation()
     });
 }
@@ -119,4 +118,129 @@ fn problem_files() {
     };
     let texts = vec![problem("arch", 0.01), problem("squeeze", 0.01), problem("cradle", 0.0)];
     fuzz_texts("problem-files", "json", texts, solve_briefly);
+}
+
+#[test]
+fn texts_of_siconos() {
+    let head = "CSparse Version 3.1.9";
+    let one = format!(
+        "2\n1\n2\n2\n2\n2\n{head}\n2-by-2\n    col 0 : locations 0 to 0\n      0 : 2.5\n    \
+         col 1 : locations 1 to 1\n      1 : 7\n-1 0.5\n0.3\n"
+    );
+    let two = format!(
+        "2\n2\n2\n4\n4\n2\n{head}\n4-by-4\n    col 0 : locations 0 to 1\n      0 : 2\n      2 : -1\n    \
+         col 1 : locations 2 to 2\n      1 : 6\n    col 2 : locations 3 to 4\n      0 : -1\n      \
+         2 : 2\n    col 3 : locations 5 to 5\n      3 : 6\n-1 0\n-0.1 0.5\n0.5 0\n"
+    );
+    fuzz_texts("siconos", "dat", vec![one, two], solve_briefly);
+}
+
+/// Numbers that break what was not made for them.
+pub const NUMBERS: &str = "0 -0 1 -1 2 1e-300 -1e-300 1e300 1e308 1e309 nan inf -inf 1e17 1e9 4294967296 \
+    18446744073709551616 -9223372036854775809 0.1 1e-17 1000000 NaN 0x10 1e18";
+/// Words that files know, and some that they do not.
+pub const WORDS: &str = "true false null \"\" \"nsgs\" \"range\" \"moreau\" \"dem\" [] {} [[]] \"piston\" \
+    \"segment\" \"half-space\" \u{1b}[31m \u{0} \u{202e} ö , =";
+
+/// One of the words of a line.
+pub fn one_of<'a>(u: &mut Unstructured<'_>, line: &'a str) -> arbitrary::Result<&'a str> {
+    Ok(*u.choose(&line.split(' ').collect::<Vec<_>>())?)
+}
+
+/// One of the texts with a few changes, most often one.
+pub fn changed(u: &mut Unstructured<'_>, texts: &[String]) -> arbitrary::Result<String> {
+    let mut text = u.choose(texts)?.clone();
+    for _ in 0..*u.choose(&[1, 1, 1, 1, 2, 3, 6])? {
+        text = change(u, &text)?;
+    }
+    Ok(text)
+}
+
+fn change(u: &mut Unstructured<'_>, text: &str) -> arbitrary::Result<String> {
+    let mut lines: Vec<&str> = text.lines().collect();
+    if lines.is_empty() {
+        return Ok(one_of(u, WORDS)?.to_owned());
+    }
+    let at = u.choose_index(lines.len())?;
+    let line = lines[at].to_owned();
+    let changed = match u.int_in_range(0..=15)? {
+        0 => {
+            lines.remove(at);
+            return Ok(lines.join("\n"));
+        }
+        1 => {
+            let again = lines[u.choose_index(lines.len())?];
+            lines.insert(at, again);
+            return Ok(lines.join("\n"));
+        }
+        2 => {
+            let mut end = u.choose_index(text.len() + 1)?;
+            while !text.is_char_boundary(end) {
+                end -= 1;
+            }
+            return Ok(text[..end].to_owned());
+        }
+        3 => with_bit_flipped(u, line)?,
+        4 | 5 => {
+            let word = one_of(u, WORDS)?;
+            with_token(u, &line, word)?
+        }
+        6 => {
+            let digits = "7".repeat(u.int_in_range(1..=400)?);
+            with_token(u, &line, &digits)?
+        }
+        7..=10 => {
+            let number = one_of(u, NUMBERS)?;
+            with_token(u, &line, number)?
+        }
+        // What one place can say, another one may have to hear.
+        _ => {
+            let other = lines[u.choose_index(lines.len())?];
+            let tokens = tokens(other);
+            if tokens.is_empty() {
+                return Ok(text.to_owned());
+            }
+            let (from, to) = *u.choose(&tokens)?;
+            with_token(u, &line, &other[from..to])?
+        }
+    };
+    lines[at] = &changed;
+    Ok(lines.join("\n"))
+}
+
+fn with_bit_flipped(u: &mut Unstructured<'_>, line: String) -> arbitrary::Result<String> {
+    let mut bytes = line.into_bytes();
+    if !bytes.is_empty() {
+        let place = u.choose_index(bytes.len())?;
+        bytes[place] ^= 1 << u.int_in_range(0..=6)?;
+    }
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Where the words and numbers of a line begin and end.
+fn tokens(line: &str) -> Vec<(usize, usize)> {
+    let is_part = |c: char| c.is_alphanumeric() || "._-+\"".contains(c);
+    let mut ends = Vec::new();
+    let mut begin = None;
+    for (place, c) in line.char_indices().chain([(line.len(), ' ')]) {
+        match (begin, is_part(c)) {
+            (None, true) => begin = Some(place),
+            (Some(from), false) => {
+                ends.push((from, place));
+                begin = None;
+            }
+            _ => {}
+        }
+    }
+    ends
+}
+
+/// The line with one of its words or numbers replaced.
+fn with_token(u: &mut Unstructured<'_>, line: &str, token: &str) -> arbitrary::Result<String> {
+    let tokens = tokens(line);
+    if tokens.is_empty() {
+        return Ok(format!("{line}{token}"));
+    }
+    let (from, to) = *u.choose(&tokens)?;
+    Ok(format!("{}{token}{}", &line[..from], &line[to..]))
 }

@@ -1,24 +1,20 @@
 //! One input after the other, each in a file while it is tried.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
 
 use super::Target;
+use crate::program::*;
 
 /// More than an input takes on a busy machine: it would be a hang to whoever waits for it. Fifty long steps of
 /// small grains with as many substeps as are stable take ten seconds of an idle one.
-const PATIENCE: Duration = Duration::from_secs(200);
+const SLOWEST: Duration = Duration::from_secs(200);
 
 /// Tries inputs. The one that fails stays in its file, whether it panics, hangs or takes the process along.
 pub struct Trial {
     path: PathBuf,
-    /// When the input that is being tried began.
     begun: Arc<Mutex<Option<Instant>>>,
-    /// How many there were.
     pub inputs: u64,
-    /// How many were no faults.
     pub taken: u64,
 }
 
@@ -34,7 +30,7 @@ impl Trial {
 
     /// Tries one, and says how long that took.
     pub fn of(&mut self, text: &str, check: &mut impl FnMut(&str, &Path) -> bool) -> Duration {
-        std::fs::write(&self.path, text).expect("a file");
+        write(&self.path, text);
         let begun = Instant::now();
         *self.begun.lock().expect("a time") = Some(begun);
         let taken = check(text, &self.path);
@@ -62,10 +58,10 @@ fn watch(path: PathBuf, begun: Arc<Mutex<Option<Instant>>>) {
         // The trial has the other one.
         while Arc::strong_count(&begun) > 1 {
             std::thread::sleep(Duration::from_millis(200));
-            let hangs = |begun: Instant| begun.elapsed() > PATIENCE;
+            let hangs = |begun: Instant| begun.elapsed() > SLOWEST;
             if begun.lock().expect("a time").is_some_and(hangs) {
                 // Printed lines are held back where tests run, and the process ends here.
-                let said = format!("no end after {PATIENCE:?}; the input is {}\n", path.display());
+                let said = format!("no end after {SLOWEST:?}; the input is {}\n", path.display());
                 let _ = std::io::stderr().write_all(said.as_bytes());
                 std::process::exit(1);
             }

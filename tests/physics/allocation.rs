@@ -3,13 +3,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use crate::common::{start, take_steps};
-use glam::DVec2;
-use slump::scene::paper_pile;
-use slump::sim::Stepper;
-use slump::world::Boundary;
+use crate::common::*;
 
-/// The system's allocator, counting.
 struct Counting;
 
 thread_local! {
@@ -57,11 +52,10 @@ fn a_step_at_rest_allocates_nothing() {
     scene.solver.tolerance = 1e-4;
     for law in [Stepper::Moreau, Stepper::Range] {
         scene.stepper = law;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 50);
+        let mut run = after(&scene, 50);
         let before = allocations();
-        take_steps(&mut simulation, 500);
+        take_steps(&mut run, 500);
         assert_eq!(allocations() - before, 0, "{law:?}");
-        assert!(simulation.observables().contacts > 138, "the pile stands");
+        assert!(run.observables().contacts > 138, "the pile stands");
     }
 }

@@ -1,14 +1,6 @@
 //! The same run is the same, bit for bit; and physics does not depend on how a scene is written.
 
-use crate::common::{
-    G, SMOOTH, assert_close, bits, every_way, fixed, moving, parameters, pressed_pile, scene,
-    start, take_steps, tight, to_residual,
-};
-use glam::DVec2;
-use slump::scene::{Scene, paper_pile};
-use slump::sim::Simulation;
-use slump::solver::{Method, SolverSettings};
-use slump::world::{Disc, Grain, Physics};
+use crate::common::*;
 
 fn collapse() -> Scene {
     let mut scene = paper_pile().expect("the shipped state");
@@ -17,24 +9,18 @@ fn collapse() -> Scene {
     scene
 }
 
-fn run(scene: &Scene, steps: usize) -> Simulation {
-    let mut simulation = start(scene);
-    take_steps(&mut simulation, steps);
-    simulation
-}
-
 #[test]
 fn a_run_repeats_bitwise_alone_and_in_pools_of_threads() {
-    let first = run(&collapse(), 200);
+    let first = after(&collapse(), 200);
     assert!(first.observables().slump > 0.02, "the pile has moved");
-    let again = run(&collapse(), 200);
+    let again = after(&collapse(), 200);
     assert!(bits(&first) == bits(&again));
     assert_eq!(first.observables(), again.observables());
     for threads in [1, 4] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let runs: Vec<Simulation> = pool.install(|| {
             use rayon::prelude::*;
-            (0..3).into_par_iter().map(|_| run(&collapse(), 200)).collect()
+            (0..3).into_par_iter().map(|_| after(&collapse(), 200)).collect()
         });
         for inside in runs {
             assert!(bits(&first) == bits(&inside), "{threads} threads");
@@ -57,16 +43,14 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
         moving(0.01 * (DVec2::new(column + 0.5 * row, 0.87 * row) + shift), 0.005, velocity)
     };
     for (stepper, method) in every_way() {
-        let parameters = parameters(20.0, 1e-3, 0.3, 0.5);
-        let mut scene =
-            scene(Physics::FULL, -G * DVec2::Y, parameters, (0..110 * 160).map(at).collect());
+        let mut scene = under_g(parameters(20.0, 1e-3, 0.3, 0.5), (0..110 * 160).map(at).collect());
         (scene.stepper, scene.solver.method, scene.solver.max_sweeps) = (stepper, method, 3);
         // What a direct method does is its own; three steps of it would take the time of all the others.
         if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {
             continue;
         }
-        let shared = run(&scene, 3);
-        let by_one = alone.install(|| run(&scene, 3));
+        let shared = after(&scene, 3);
+        let by_one = alone.install(|| after(&scene, 3));
         let what = format!("{stepper} {}", method.name());
         assert!(
             shared.contacts().contacts().len() > 9_000,
@@ -80,15 +64,36 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
 }
 
 #[test]
-fn a_clone_goes_on_as_the_original_does() {
-    // Steps 50 … 250 build the candidate list anew at times that depend on the past.
-    let mut original = run(&collapse(), 50);
-    let mut clone = original.clone();
-    take_steps(&mut original, 200);
-    take_steps(&mut clone, 200);
-    assert!(bits(&original) == bits(&clone));
-    assert_eq!(original.contacts().impulses(), clone.contacts().impulses());
-    assert_eq!(original.observables(), clone.observables());
+fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
+    let ranged = Parameters { restitution: 0.1, restitution_threshold: 2.0, ..range(20.0, 1e-3) };
+    let bonded = Scene {
+        stepper: Stepper::Range,
+        solver: SolverSettings { max_sweeps: 20_000, ..solved_by(Method::Newton, 1e-8) },
+        ..pressed_pile(60, 0.3, 5, ranged)
+    };
+    let by_scheme = |stepper: Stepper| {
+        let mut pile = by(stepper, 0, paper_pile().expect("the shipped state"));
+        pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
+        (pile, 100, 20, 0.01)
+    };
+    // Steps 50 … 250 of the first build the candidate list anew at times that depend on the past.
+    let runs = ALL_SCHEMES.map(by_scheme);
+    for (scene, before, later, least) in
+        [(collapse(), 50, 200, 0.0), (bonded, 30, 30, -1.0)].into_iter().chain(runs)
+    {
+        let stepper = scene.stepper;
+        let (mut one, other) = (after(&scene, before), after(&scene, before));
+        assert!(one.observables().slump > least, "{stepper}: it moves");
+        assert!(bits(&one) == bits(&other), "{stepper}");
+        assert_eq!(one.observables(), other.observables(), "{stepper}");
+        let mut clone = one.clone();
+        take_steps(&mut one, later);
+        take_steps(&mut clone, later);
+        assert!(bits(&one) == bits(&clone), "{stepper}");
+        assert_eq!(one.world(), clone.world(), "{stepper}");
+        assert_eq!(one.contacts().impulses(), clone.contacts().impulses(), "{stepper}");
+        assert_eq!(one.observables(), clone.observables(), "{stepper}");
+    }
 }
 
 /// A pile with overlaps, solved far enough that only the scene's symmetry decides.
@@ -111,8 +116,8 @@ fn a_moved_scene_moves_alike() {
         there.grains.iter_mut().for_each(|grain| grain.position += shift);
         there.fixed_discs.iter_mut().for_each(|disc| disc.position += shift);
         // A few steps: a pile is chaotic, and roundings grow.
-        let (here, there) = (run(&here, 5), run(&there, 5));
-        let (a, b) = (&here.world().grains, &there.world().grains);
+        let (here, there) = (after(&here, 5), after(&there, 5));
+        let (a, b) = (here.grains(), there.grains());
         assert!(here.observables().contacts > 60, "{}", here.observables().contacts);
         assert!(here.observables().kinetic_energy > 1e-7, "{}", here.observables().kinetic_energy);
         assert!(largest_distance(&a.velocities, &b.velocities, |v| v) < 1e-11);
@@ -126,7 +131,7 @@ fn a_mirrored_scene_moves_mirrored() {
     let mirror = |vector: DVec2| DVec2::new(-vector.x, vector.y);
     for bond in [0.0, 20.0] {
         let mut scene = pressed(bond);
-        let right = run(&scene, 30);
+        let right = after(&scene, 30);
         for grain in &mut scene.grains {
             grain.position = mirror(grain.position);
             grain.velocity = mirror(grain.velocity);
@@ -135,8 +140,8 @@ fn a_mirrored_scene_moves_mirrored() {
         scene.fixed_discs.iter_mut().for_each(|disc: &mut Disc| {
             disc.position = mirror(disc.position);
         });
-        let left = run(&scene, 30);
-        let (a, b) = (&right.world().grains, &left.world().grains);
+        let left = after(&scene, 30);
+        let (a, b) = (right.grains(), left.grains());
         // No operation of a step knows left from right, so not even roundings differ.
         assert_eq!(largest_distance(&a.positions, &b.positions, mirror), 0.0);
         assert_eq!(largest_distance(&a.velocities, &b.velocities, mirror), 0.0);
@@ -152,14 +157,14 @@ fn renumbered_grains_move_alike_where_the_solution_is_unique() {
     for bond in [0.0, 20.0] {
         let mut scene = Scene { physics: SMOOTH, solver: tight(), ..pressed(bond) };
         scene.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
-        let forth = run(&scene, 5);
+        let forth = after(&scene, 5);
         assert!(forth.observables().converged && forth.observables().contacts > 60);
         scene.grains.reverse();
         scene.fixed_discs.reverse();
-        let back = run(&scene, 5);
-        let mut velocities = back.world().grains.velocities.clone();
+        let back = after(&scene, 5);
+        let mut velocities = back.grains().velocities.clone();
         velocities.reverse();
-        let off = largest_distance(&forth.world().grains.velocities, &velocities, |v| v);
+        let off = largest_distance(forth.velocities(), &velocities, |v| v);
         assert!(off < 1e-9, "off by {off:e}");
         assert!(off > 0.0, "another order of the sweep was taken");
     }
@@ -172,9 +177,7 @@ fn chain() -> Scene {
     Scene {
         fixed_discs: vec![fixed(DVec2::ZERO, radius)],
         solver: to_residual(1e-11),
-        ..scene(
-            Physics::FULL,
-            -G * DVec2::Y,
+        ..under_g(
             parameters(50.0, 1e-3, 0.1, 0.5),
             (1..=12).map(|k| Grain::at_rest(place(k), radius)).collect(),
         )
@@ -182,11 +185,11 @@ fn chain() -> Scene {
 }
 
 /// Sweeps of the next step to a residual of 1e-8.
-fn sweeps_of_next_step(simulation: &mut Simulation, warm_start: bool) -> u32 {
+fn sweeps_of_next_step(run: &mut Simulation, warm_start: bool) -> u32 {
     let settings = SolverSettings { warm_start, ..to_residual(1e-8) };
-    simulation.set_solver(settings).expect("proper settings");
-    simulation.step().expect("a finite state");
-    simulation.observables().sweeps
+    run.set_solver(settings).expect("proper settings");
+    run.step().expect("a finite state");
+    run.observables().sweeps
 }
 
 #[test]
@@ -196,33 +199,31 @@ fn a_contact_that_goes_leaves_the_others_their_impulses() {
     let place = DVec2::new(0.1 - 1e-9, 0.0);
     let velocity = DVec2::new(3.0, 0.0);
     scene.grains.insert(0, Grain { velocity, ..Grain::at_rest(place, 0.05) });
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 1);
-    assert_eq!(simulation.observables().contacts, 13);
-    let next = sweeps_of_next_step(&mut simulation.clone(), false);
+    let mut run = after(&scene, 1);
+    assert_eq!(run.observables().contacts, 13);
+    let next = sweeps_of_next_step(&mut run.clone(), false);
     assert!(next > 20, "a cold start is dear: {next} sweeps");
-    assert_eq!(sweeps_of_next_step(&mut simulation, true), 1);
-    assert_eq!(simulation.observables().contacts, 12, "one has gone");
+    assert_eq!(sweeps_of_next_step(&mut run, true), 1);
+    assert_eq!(run.observables().contacts, 12, "one has gone");
 }
 
 #[test]
 fn a_change_of_the_time_step_leaves_the_forces() {
-    let mut simulation = start(&chain());
-    take_steps(&mut simulation, 10);
-    assert!(sweeps_of_next_step(&mut simulation.clone(), false) > 20, "a cold start is dear");
-    let forces = |simulation: &Simulation| -> Vec<f64> {
-        simulation.snapshot().contacts.iter().map(|contact| contact.normal_force).collect()
+    let mut run = after(&chain(), 10);
+    assert!(sweeps_of_next_step(&mut run.clone(), false) > 20, "a cold start is dear");
+    let forces = |run: &Simulation| -> Vec<f64> {
+        run.snapshot().contacts.iter().map(|contact| contact.normal_force).collect()
     };
-    let before = forces(&simulation);
+    let before = forces(&run);
     for dt in [5e-4, 4e-3, 1e-3] {
-        let mut parameters = *simulation.parameters();
+        let mut parameters = *run.parameters();
         parameters.time_step_secs = dt;
-        simulation.set_parameters(parameters).expect("proper parameters");
-        for (now, then) in forces(&simulation).iter().zip(&before) {
+        run.set_parameters(parameters).expect("proper parameters");
+        for (now, then) in forces(&run).iter().zip(&before) {
             assert_close(*now, *then, 1e-7, "a force between two steps");
         }
-        assert_eq!(sweeps_of_next_step(&mut simulation, true), 1, "Δt {dt}");
-        for (now, then) in forces(&simulation).iter().zip(&before) {
+        assert_eq!(sweeps_of_next_step(&mut run, true), 1, "Δt {dt}");
+        for (now, then) in forces(&run).iter().zip(&before) {
             assert_close(*now, *then, 1e-7, "a force");
         }
     }

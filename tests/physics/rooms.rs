@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use crate::common::{parameters, pressed_pile};
+use crate::common::*;
+use crate::program::*;
 use slump::config::read_scene;
-use slump::scene::Scene;
 use slump::setting::{About, Kind, Value};
-use slump::sim::{Observables, REMEDIES, Settings, Stepper};
 
 /// Enough for grains to meet, and for a step to start from the impulses of another.
 const STEPS: usize = 6;
@@ -33,15 +32,15 @@ fn values(about: &About) -> Vec<Value> {
 fn course(pile: &Scene, settings: Settings) -> Option<String> {
     let mut scene = pile.clone();
     scene.set_settings(settings);
-    let mut simulation = scene.simulation().ok()?;
+    let mut run = scene.simulation().ok()?;
     for _ in 0..STEPS {
-        simulation.step().ok()?;
+        run.step().ok()?;
     }
-    let grains = &simulation.world().grains;
-    Some(format!("{:?}{:?}{:?}", grains.positions, grains.velocities, simulation.observables()))
+    let grains = run.grains();
+    Some(format!("{:?}{:?}{:?}", grains.positions, grains.velocities, run.observables()))
 }
 
-/// Whether a setting changes anything, or can only be what it is.
+/// True if a setting changes anything, or can only be what it is.
 fn matters(about: &About, stepper: Stepper) -> bool {
     let mut taken = 0;
     for pile in piles() {
@@ -79,7 +78,7 @@ fn a_setting_that_a_stepper_reads_and_a_remedy_that_it_takes_change_its_steps() 
 #[test]
 fn scene_files_that_do_not_know_the_newest_settings_are_read() {
     let hourglass = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/hourglass.toml");
-    let text = std::fs::read_to_string(&hourglass).expect("it is there");
+    let text = read(&hourglass);
     assert!(!text.contains("substeps") && !text.contains("remedies"), "it is older than they are");
     read_scene(&hourglass).expect("a sound scene");
 }
@@ -89,14 +88,14 @@ fn a_stepper_has_the_observables_that_it_says() {
     for &stepper in Stepper::ALL {
         let [mut pile, ..] = piles();
         pile.stepper = stepper;
-        let mut simulation = pile.simulation().expect("a sound scene");
-        simulation.step().expect("a finite state");
+        let mut run = start(&pile);
+        run.step().expect("a finite state");
         let columns = |row: &Observables| match serde_json::to_value(row) {
             Ok(serde_json::Value::Object(columns)) => columns,
             other => panic!("{other:?}"),
         };
         let of_all = columns(&Observables::default());
-        let mut more = columns(simulation.observables());
+        let mut more = columns(run.observables());
         more.retain(|column, _| !of_all.contains_key(column));
         let said = stepper.info().observables;
         let has_all = said.iter().all(|column| more.contains_key(*column));

@@ -39,6 +39,25 @@ def read_json(path):
     return nc, matrix, q, q - matrix @ shift, mu
 
 
+def read_siconos(path):
+    lines = path.read_text().split("\n")
+    nc = int(lines[1])
+    rows, columns, values = [], [], []
+    at = 8
+    while ":" in lines[at]:
+        left, right = lines[at].split(":")
+        if left.split()[0] == "col":
+            column = int(left.split()[1])
+        else:
+            rows.append(int(left))
+            columns.append(column)
+            values.append(float(right))
+        at += 1
+    matrix = sp.csr_matrix((values, (rows, columns)), shape=(2 * nc, 2 * nc))
+    q = np.array(lines[at].split(), float)
+    return nc, matrix, q, q, np.array(lines[at + 1].split(), float)
+
+
 def residual(matrix, q, free, mu, p):
     """Slump's residual: the natural map over the free impulses. `free` has no cohesion in it."""
     diagonal = matrix.diagonal()
@@ -102,7 +121,8 @@ def main():
     timing = "--time" in sys.argv
     for name in [name for name in sys.argv[1:] if name != "--time"]:
         path = pathlib.Path(name)
-        nc, matrix, free, q, mu = read_json(path)
+        read = read_json if path.suffix == ".json" else read_siconos
+        nc, matrix, free, q, mu = read(path)
         if timing:
             for dimension in [2, 3]:
                 # The loosest of its tolerances that gets Slump's residual to 1e-6.

@@ -4,8 +4,8 @@
 mod common;
 #[path = "../common/probed.rs"]
 mod probed;
-#[path = "../common/tested.rs"]
-mod tested;
+#[path = "../common/program.rs"]
+mod program;
 
 mod command_line;
 mod house;

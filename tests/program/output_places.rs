@@ -4,34 +4,18 @@
 use std::ffi::{OsStr, OsString};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::time::Duration;
 
-use tempfile::TempDir;
+use crate::program::*;
 
 const PROBLEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/problems/bond_0.json");
 
-fn slump() -> Command {
-    Command::new(crate::tested::program())
-}
-
-fn folder() -> TempDir {
-    tempfile::tempdir().expect("a temporary folder")
-}
-
 /// Has a solution written to `out`.
 fn solve_to(out: &Path) -> Output {
-    let mut command = slump();
-    command.args(["problem", "solve", PROBLEM, "--out"]).arg(out);
-    command.output().expect("the program starts")
+    run(slump("problem solve").arg(PROBLEM).arg("--out").arg(out))
 }
 
-fn said(output: &Output) -> String {
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(!said.contains("panicked"), "{said}");
-    said
-}
+const TINY: &str =
+    "name = 'tiny'\n[base]\nscene = 'collision'\nduration = 0.01\n[vary]\nbond = [0, 1, 2]\n";
 
 fn is_solution(bytes: &[u8]) -> bool {
     serde_json::from_slice::<serde_json::Value>(bytes).is_ok_and(|it| it["converged"] == true)
@@ -42,7 +26,7 @@ fn a_link_is_followed_and_stays() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     std::fs::create_dir(at("far")).expect("a folder");
-    std::fs::write(at("far/old.json"), "old").expect("a file");
+    write(at("far/old.json"), "old");
     let link = |to: &str, name: &str| std::os::unix::fs::symlink(to, at(name)).expect("a link");
     link("far/old.json", "to-file");
     link("to-file", "to-link");
@@ -52,8 +36,8 @@ fn a_link_is_followed_and_stays() {
     {
         assert!(solve_to(&at(name)).status.success());
         assert!(at(name).symlink_metadata().expect("a link").is_symlink(), "{name} stays a link");
-        assert!(is_solution(&std::fs::read(at(target)).expect("a file")), "{target}");
-        std::fs::write(at("far/old.json"), "old").expect("a file");
+        assert!(is_solution(&bytes(at(target))), "{target}");
+        write(at("far/old.json"), "old");
     }
     link("round-b", "round-a");
     link("round-a", "round-b");
@@ -78,7 +62,6 @@ fn a_pipe_and_a_device_are_written_to_and_stay() {
     assert!(pipe.symlink_metadata().expect("a pipe").file_type().is_fifo(), "it stays a pipe");
     assert!(output.status.success(), "{}", said(&output));
     assert!(is_solution(&reader.wait_with_output().expect("cat").stdout));
-
     // A link, so that a program that replaces what is there does no harm to the system.
     let full = folder.path().join("full");
     std::os::unix::fs::symlink("/dev/full", &full).expect("a link");
@@ -95,22 +78,24 @@ fn permissions_follow_the_umask_or_what_was_there() {
     for (mask, expected) in [("077", 0o600), ("027", 0o640), ("022", 0o644), ("000", 0o666)] {
         let out = folder.path().join(mask);
         let mut masked = Command::new("sh");
-        masked.args(["-c", &format!("umask {mask}; exec \"$@\""), "sh"]).arg(slump().get_program());
+        masked
+            .args(["-c", &format!("umask {mask}; exec \"$@\""), "sh"])
+            .arg(slump("").get_program());
         masked.args(["problem", "solve", PROBLEM, "--out"]).arg(&out).stdout(Stdio::null());
         assert!(masked.status().expect("sh").success());
         assert_eq!(mode(&out), expected, "umask {mask}");
     }
     let private = folder.path().join("private");
-    std::fs::write(&private, "old").expect("a file");
+    write(&private, "old");
     std::fs::set_permissions(&private, PermissionsExt::from_mode(0o600)).expect("mode");
     assert!(solve_to(&private).status.success());
     assert_eq!(mode(&private), 0o600);
-    assert!(is_solution(&std::fs::read(&private).expect("a file")));
+    assert!(is_solution(&bytes(&private)));
 }
 
 /// Runs to the end, or fails the test after a while that is far less than the work would take.
 fn at_once(arguments: &[&str], out: &Path) -> Output {
-    let mut command = assert_cmd::Command::from_std(slump());
+    let mut command = assert_cmd::Command::from_std(slump(""));
     command.args(arguments).arg(out).timeout(Duration::from_secs(10)).output().expect("it starts")
 }
 
@@ -118,7 +103,7 @@ fn at_once(arguments: &[&str], out: &Path) -> Output {
 fn where_nothing_can_be_written_is_told_before_the_work() {
     let folder = folder();
     let kept = folder.path().join("kept");
-    std::fs::write(&kept, "mine").expect("a file");
+    write(&kept, "mine");
     std::fs::set_permissions(&kept, PermissionsExt::from_mode(0o444)).expect("mode");
     // Each would take minutes.
     let works: [&[&str]; 5] = [
@@ -164,7 +149,7 @@ fn where_nothing_can_be_written_is_told_before_the_work() {
             assert!(said(&output).starts_with(&sentence), "{work:?}: {}", said(&output));
         }
     }
-    assert_eq!(std::fs::read_to_string(&kept).expect("a file"), "mine");
+    assert_eq!(read(&kept), "mine");
 }
 
 #[test]
@@ -178,7 +163,7 @@ fn a_full_or_closed_stdout_is_no_panic() {
     ];
     for arguments in printing {
         let run = |stdout: Stdio| {
-            let mut command = slump();
+            let mut command = slump("");
             command.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
             command.stdout(stdout).stderr(Stdio::piped());
             command.spawn().and_then(std::process::Child::wait_with_output).expect("it starts")
@@ -201,22 +186,19 @@ fn a_full_or_closed_stdout_is_no_panic() {
 fn work_goes_on_when_stderr_goes_away() {
     let folder = folder();
     let study = folder.path().join("tiny.toml");
-    let text =
-        "name = 'tiny'\n[base]\nscene = 'collision'\nduration = 0.01\n[vary]\nbond = [0, 1, 2]\n";
-    std::fs::write(&study, text).expect("a file");
+    write(&study, TINY);
     let out = folder.path().join("out");
     let sweep = |shard: &[&str]| {
         let (reader, writer) = std::io::pipe().expect("a pipe");
         drop(reader);
-        let mut command = slump();
-        command.arg("sweep").arg(&study).arg("--out").arg(&out).args(shard).stderr(writer);
+        let mut command = slump("sweep");
+        command.arg(&study).arg("--out").arg(&out).args(shard).stderr(writer);
         command.stdout(Stdio::null()).status().expect("it starts")
     };
     assert!(sweep(&["--shard", "1/2"]).success());
     // Now it has something to say: that some runs were there.
     assert!(sweep(&[]).success());
-    let rows = std::fs::read_to_string(out.join("runs.csv")).expect("rows");
-    assert_eq!(rows.lines().count(), 1 + 3);
+    assert_eq!(read(out.join("runs.csv")).lines().count(), 1 + 3);
 }
 
 #[test]
@@ -228,24 +210,19 @@ fn names_that_are_not_utf8_work() {
         folder.path().join(name)
     };
     let out = odd(".out");
-    let run = |arguments: &[&str], path: &Path, more: &[&OsStr]| {
-        let output = slump().args(arguments).arg(path).args(more).output().expect("it starts");
-        assert!(output.status.success(), "{arguments:?}: {}", said(&output));
+    let made = |arguments: &[&str], path: &Path, more: &[&OsStr]| {
+        succeed(slump("").args(arguments).arg(path).args(more));
     };
-    let frames =
-        ["--headless", "--scene", "collision", "--times", "0", "--renderer", "cpu", "--frames"];
-    run(&frames, &out, &[OsStr::new("--gif"), odd(".gif").as_os_str()]);
-    let manifest = std::fs::read_to_string(out.join("manifest.json")).expect("a manifest");
+    let line = "--headless --scene collision --times 0 --renderer cpu --frames";
+    let frames: Vec<&str> = line.split(' ').collect();
+    made(&frames, &out, &[OsStr::new("--gif"), odd(".gif").as_os_str()]);
+    let manifest = read(out.join("manifest.json"));
     assert!(manifest.contains("\"ended\": \"complete\""), "{manifest}");
     assert!(odd(".gif").exists() && out.join("frame_00000.png").exists());
-    run(&["generate", "--grains", "10", "--out"], &odd(".csv"), &[]);
-    run(&["scene", "--initial"], &odd(".csv"), &[]);
-    run(&["problem", "solve", PROBLEM, "--out"], &odd(".json"), &[]);
+    made(&["generate", "--grains", "10", "--out"], &odd(".csv"), &[]);
+    made(&["scene", "--initial"], &odd(".csv"), &[]);
+    made(&["problem", "solve", PROBLEM, "--out"], &odd(".json"), &[]);
     let study = odd(".toml");
-    std::fs::write(
-        &study,
-        "name = 'tiny'\n[base]\nscene = 'collision'\nduration = 0.01\n[vary]\nbond = [0, 1, 2]\n",
-    )
-    .expect("a file");
-    run(&["sweep"], &study, &[OsStr::new("--out"), odd(".sweep").as_os_str()]);
+    write(&study, TINY);
+    made(&["sweep"], &study, &[OsStr::new("--out"), odd(".sweep").as_os_str()]);
 }

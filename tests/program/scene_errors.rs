@@ -1,27 +1,14 @@
 //! Values that no scene can have are refused in one sentence; good scenes survive being written.
 
-use std::path::Path;
-
-use crate::common::{G, fixed, moving, parameters, random, scene};
-use glam::DVec2;
-use rand::RngExt;
 use slump::config::{parse_discs, read_scene, scene_to_toml, write_discs};
 use slump::error::Error;
-use slump::scene::{GrainSource, NewPile, SCENES, Scene, built_in, collision, settle};
-use slump::world::{Boundary, Grain, Gravity, Physics};
 
-/// A scene without fault, in the plane.
+use crate::common::*;
+use crate::program::*;
+
 fn good() -> Scene {
     let grains = vec![Grain::at_rest(DVec2::Y, 0.1), Grain::at_rest(2.0 * DVec2::Y, 0.1)];
-    scene(Physics::FULL, -G * DVec2::Y, parameters(20.0, 1e-3, 0.1, 0.5), grains)
-}
-
-/// The message for a scene with a fault.
-#[track_caller]
-fn refusal(scene: &Scene) -> String {
-    let message = scene.simulation().map(|_| ()).expect_err("a scene with a fault").to_string();
-    assert!(!message.contains('\n'), "one sentence: {message}");
-    message
+    under_g(parameters(20.0, 1e-3, 0.1, 0.5), grains)
 }
 
 /// Spoils a good scene and compares the message.
@@ -30,7 +17,7 @@ fn check(spoil: impl FnOnce(&mut Scene), expected: &str) {
     let mut scene = good();
     scene.simulation().expect("it was good");
     spoil(&mut scene);
-    assert_eq!(refusal(&scene), expected);
+    assert_eq!(refused(&scene), expected);
 }
 
 #[test]
@@ -67,12 +54,12 @@ fn parameters_outside_their_range_are_named_with_value_and_range() {
 fn a_running_simulation_refuses_them_too_and_keeps_what_it_had() {
     let mut simulation = good().simulation().expect("good");
     let before = *simulation.parameters();
-    let spoilt = slump::world::Parameters { restitution: 2.0, ..before };
+    let spoilt = Parameters { restitution: 2.0, ..before };
     let error = simulation.set_parameters(spoilt).expect_err("outside its range");
     assert!(matches!(error, Error::Value { ref field, .. } if field == "rho"));
     assert_eq!(*simulation.parameters(), before);
     let settings = *simulation.solver();
-    let spoilt = slump::solver::SolverSettings { tolerance: f64::NAN, ..settings };
+    let spoilt = SolverSettings { tolerance: f64::NAN, ..settings };
     assert!(simulation.set_solver(spoilt).is_err());
     assert_eq!(*simulation.solver(), settings);
 }
@@ -97,13 +84,13 @@ fn bodies_and_lengths_outside_their_range_are_named() {
     ] {
         let mut scene = good();
         spoil(&mut scene.grains[1]);
-        let message = refusal(&scene);
+        let message = refused(&scene);
         assert!(message.starts_with("grains[1] is ") && message.ends_with("finite throughout"));
     }
     for tolerance in [-1e-9, f64::NAN, 0.1] {
         let mut scene = good();
         scene.gap_tolerance = tolerance;
-        assert!(refusal(&scene).starts_with(&format!("gap_tolerance is {tolerance}, but must be")));
+        assert!(refused(&scene).starts_with(&format!("gap_tolerance is {tolerance}, but must be")));
     }
 }
 
@@ -117,7 +104,7 @@ fn gravity_that_is_none_is_refused() {
     {
         let mut scene = good();
         scene.gravity = gravity;
-        assert!(refusal(&scene).starts_with("gravity"), "{gravity:?}");
+        assert!(refused(&scene).starts_with("gravity"), "{gravity:?}");
     }
 }
 
@@ -126,7 +113,7 @@ fn a_line_scene_off_its_line_is_refused() {
     let bad = |spoil: fn(&mut Scene), field: &str| {
         let mut scene = collision();
         spoil(&mut scene);
-        let message = refusal(&scene);
+        let message = refused(&scene);
         assert!(message.starts_with(field), "{message}");
     };
     bad(|s| s.grains[0].position.y = 1e-9, "grains[0] is ");
@@ -170,9 +157,9 @@ fn a_bad_line_of_discs_is_named() {
 
 /// Writes a file into a folder of its own and reads it as a scene.
 fn read_text(text: &str) -> Result<Scene, String> {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let path = folder.path().join("test.toml");
-    std::fs::write(&path, text).expect("a file");
+    write(&path, text);
     read_scene(&path).map_err(|error| {
         let message = error.to_string();
         assert!(!message.trim_end().contains('\n'), "one sentence: {message}");
@@ -227,18 +214,6 @@ fn grains_come_from_one_place() {
 }
 
 #[test]
-fn a_rain_outside_its_range_is_refused() {
-    let refused = |rain: NewPile| settle(&rain, |_| true).expect_err("no rain").to_string();
-    assert!(refused(NewPile { grains: 0, ..NewPile::default() }).starts_with("grains is 0, but"));
-    for width in [0.0, 1.0, f64::NAN, -3.0, 1e9] {
-        let message = refused(NewPile { box_width_in_diameters: width, ..NewPile::default() });
-        assert!(message.starts_with("box-width is "), "{message}");
-    }
-    let interrupted = settle(&NewPile { grains: 5, ..NewPile::default() }, |_| false);
-    assert!(interrupted.is_err_and(|error| error.to_string().contains("interrupted")));
-}
-
-#[test]
 fn an_unknown_built_in_scene_is_told_of_with_those_there_are() {
     let message = built_in("heap").expect_err("no such scene").to_string();
     assert!(message.starts_with("scene is heap, but must be one of pile, cradle, collision"));
@@ -251,12 +226,13 @@ fn every_built_in_scene_survives_its_own_file() {
         let text = scene_to_toml(&scene).expect("it can be written");
         assert_eq!(read_text(&text).expect("it can be read"), scene, "{}", info.name);
     }
+    let points = || vec![DVec2::ZERO, DVec2::X, DVec2::ONE];
     let shapes = Scene {
         boundaries: vec![
-            Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::new(0.1, 0.3) },
+            plane(DVec2::ZERO, DVec2::new(0.1, 0.3)),
             Boundary::Segment { from: DVec2::ZERO, to: DVec2::new(1.0 / 3.0, 0.0) },
-            Boundary::Polyline { points: vec![DVec2::ZERO, DVec2::X, DVec2::ONE] },
-            Boundary::ConvexPolygon { points: vec![DVec2::ZERO, DVec2::X, DVec2::ONE] },
+            Boundary::Polyline { points: points() },
+            Boundary::ConvexPolygon { points: points() },
         ],
         gravity: Gravity::Attraction { centre: DVec2::ONE, magnitude: 0.1 },
         ..good()

@@ -1,12 +1,6 @@
 //! What the window says of a run that goes wrong, and the button that mends what can be mended.
 
-use egui_kittest::kittest::Queryable;
-use slump::config::Config;
-use slump::scene::{SCENES, SceneGroup};
-use slump::sim::{AlarmKind, Stepper};
-use slump::solver::{Fallback, Method, SolverChanges, StopTest};
-
-use crate::robot::Robot;
+use crate::robot::*;
 
 fn scene(name: &str) -> Config {
     Config::of_scene(name)
@@ -16,10 +10,7 @@ fn scene(name: &str) -> Config {
 fn an_alarm_stands_in_the_status_bar_until_the_run_is_reset() {
     let mut robot = Robot::open(scene("thin-wall"));
     assert!(robot.world().alarms.is_empty() && !robot.state().controls.contains_key("alarm"));
-    for _ in 0..40 {
-        robot.state_mut().step();
-    }
-    robot.settle();
+    robot.take_steps(40);
     let lost = robot.world().alarms.iter().find(|alarm| alarm.kind == AlarmKind::GrainLost);
     assert!(lost.expect("an alarm").text.contains("try a time step below"));
     robot.harness.step();
@@ -42,12 +33,11 @@ fn a_state_that_begins_in_alarm_says_so_before_the_first_step() {
 #[test]
 fn an_alarm_advises_on_the_settings_that_it_was_raised_under() {
     let mut robot = Robot::open(scene("overlap"));
-    let before = robot.world().controls.settings;
+    let before = robot.settings();
     robot.click("Step");
     let mut settings = before;
     settings.parameters.time_step_secs *= 0.1;
-    robot.state_mut().change(0, settings);
-    robot.settle();
+    robot.change(0, settings);
     let alarm = robot.world().alarms[0].clone();
     let asked = format!("below {} s", before.parameters.time_step_secs);
     assert!(alarm.is_earlier && alarm.text.contains(&asked), "{alarm:?}");
@@ -71,27 +61,25 @@ fn a_break_that_is_not_seen_is_told_of_with_the_time_step_that_sees_it() {
 #[test]
 fn the_robust_button_pushes_the_overlap_out() {
     let mut robot = Robot::open(scene("overlap"));
-    robot.click("Solver");
-    robot.click("Robust");
-    assert!(robot.world().controls.settings.remedies.push_out);
-    assert_eq!(robot.world().controls.settings.parameters.restitution_threshold, 2.0);
+    robot.clicks(&["Solver", "Robust"]);
+    assert!(robot.settings().remedies.push_out);
+    assert_eq!(robot.settings().parameters.restitution_threshold, 2.0);
     robot.click("Step");
-    let before = robot.world().snapshot.observables.max_overlap;
+    let before = robot.observables().max_overlap;
     for _ in 0..10 {
         robot.click("Step");
     }
-    assert!(robot.world().snapshot.observables.max_overlap < 0.5 * before);
+    assert!(robot.observables().max_overlap < 0.5 * before);
 }
 
 #[test]
 fn the_law_range_takes_the_remedies_that_it_has_its_own_ways_for_away() {
     let mut robot = Robot::open(scene("pile"));
-    robot.click("Solver");
-    robot.click("Robust");
-    assert!(robot.world().controls.settings.remedies.sequential_impacts);
+    robot.clicks(&["Solver", "Robust"]);
+    assert!(robot.settings().remedies.sequential_impacts);
     robot.click("range");
     robot.settle();
-    let settings = robot.world().controls.settings;
+    let settings = robot.settings();
     let left = settings.remedies;
     assert_eq!(settings, settings.with_only_what_is_taken());
     assert!(!left.push_out && left.max_travel > 0.0);
@@ -124,11 +112,10 @@ fn a_stalled_step_of_the_stepper_range_is_told_of() {
         ..SolverChanges::default()
     };
     let mut robot = Robot::open(config);
-    robot.click("Solver");
-    robot.click("Step");
-    assert!(robot.world().snapshot.observables.stalled);
+    robot.clicks(&["Solver", "Step"]);
+    assert!(robot.observables().stalled);
     robot.harness.step();
-    assert!(robot.harness.query_by_label_contains("stalled").is_some());
+    assert!(robot.shows("stalled"));
 }
 
 #[test]
@@ -143,7 +130,7 @@ fn a_step_that_is_not_solved_falls_back_unless_it_must_not_and_the_window_says_s
         for _ in 0..5 {
             robot.click("Step");
         }
-        let row = robot.world().snapshot.observables;
+        let row = robot.observables();
         assert!(!row.converged, "three sweeps are too few");
         robot.harness.step();
         let says = |text: &str| robot.harness.query_all_by_label_contains(text).count();

@@ -1,10 +1,7 @@
 //! Sliders, fields, buttons and keys reach the solver's thread.
 
-use egui_kittest::kittest::Queryable;
-use slump::config::{Config, SceneSource};
-use slump::scene::Deposition;
-
-use crate::robot::{File, Robot, bits, pile};
+use crate::robot::*;
+use slump::config::SceneSource;
 
 #[test]
 fn a_slider_changes_the_time_step_of_the_next_snapshot() {
@@ -13,18 +10,17 @@ fn a_slider_changes_the_time_step_of_the_next_snapshot() {
     robot.drag(from, to);
     robot.button(to, false);
     robot.settle();
-    let wanted = robot.world().controls.settings.parameters.time_step_secs;
+    let wanted = robot.settings().parameters.time_step_secs;
     assert!((5e-3..=1e-2).contains(&wanted), "the slider's right end means 1e-2 s, not {wanted}");
     robot.click("Step");
-    assert_eq!(robot.world().snapshot.observables.time_step_secs, wanted);
+    assert_eq!(robot.observables().time_step_secs, wanted);
 }
 
 #[test]
 fn a_paper_value_is_one_click_away() {
     let mut robot = Robot::open(pile());
-    robot.click("5e-4");
-    robot.click("Step");
-    assert_eq!(robot.world().snapshot.observables.time_step_secs, 5e-4);
+    robot.clicks(&["5e-4", "Step"]);
+    assert_eq!(robot.observables().time_step_secs, 5e-4);
 }
 
 #[test]
@@ -35,7 +31,7 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
     robot.type_number("Bond", "20");
     robot.type_number("k, stiffness", "2000");
     robot.settle();
-    assert_eq!(robot.world().controls.settings.parameters.stiffness, 2000.0);
+    assert_eq!(robot.settings().parameters.stiffness, 2000.0);
     let (mass, g, d) = (std::f64::consts::PI * 6.25e-6, 9.8, 5e-3);
     // C₀²/2k of two grains whose mass is near that of a disc of the mean diameter.
     let expected = (20.0 * 0.5 * mass * g).powi(2) / 4000.0 / (mass * g * d);
@@ -43,7 +39,7 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
     assert!((told / expected - 1.0).abs() < 0.05, "{told} is not {expected}");
     robot.harness.step();
     for words in ["contact time t_c", "work of fracture", &format!("= {told:.1e} m g d")] {
-        assert!(robot.harness.query_by_label_contains(words).is_some(), "{words}");
+        assert!(robot.shows(words), "{words}");
     }
 }
 
@@ -102,24 +98,18 @@ fn what_makes_no_sense_is_refused_visibly() {
         [("-5", "bond is -5, but must be a finite number ≥ 0"), ("strong", "“strong” is no number")]
     {
         robot.type_number("Bond", text);
-        assert_eq!(robot.world().controls.settings.parameters.bond, 20.0);
+        assert_eq!(robot.settings().parameters.bond, 20.0);
         assert!(robot.harness.query_by_label(complaint).is_some(), "{complaint}");
     }
     robot.type_number("Bond", "500");
-    assert_eq!(
-        robot.world().controls.settings.parameters.bond,
-        500.0,
-        "beyond the slider is no mistake"
-    );
-    assert!(robot.harness.query_by_label_contains("is no number").is_none());
+    assert_eq!(robot.settings().parameters.bond, 500.0, "beyond the slider is no mistake");
+    assert!(!robot.shows("is no number"));
 }
 
 #[test]
 fn a_scene_that_cannot_be_opened_says_why_and_leaves_the_old_one() {
     let mut robot = Robot::open(pile());
-    let config = Config::of_scene("no-such.toml");
-    robot.state_mut().load(config);
-    robot.settle();
+    robot.load(Config::of_scene("no-such.toml"));
     let (notice, _) = robot.state().notice().expect("a complaint");
     assert!(notice.text.starts_with("no-such.toml: "), "{}", notice.text);
     assert_eq!(robot.world().snapshot.grains.len(), 138);
@@ -127,14 +117,12 @@ fn a_scene_that_cannot_be_opened_says_why_and_leaves_the_old_one() {
 
 #[test]
 fn a_dropped_list_of_discs_is_opened_and_anything_else_is_not() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let discs = folder.path().join("three.csv");
-    std::fs::write(&discs, "x,y,radius\n0,0.01,0.002\n0.01,0.01,0.002\n0.02,0.01,0.002\n").unwrap();
+    write(&discs, "x,y,radius\n0,0.01,0.002\n0.01,0.01,0.002\n0.02,0.01,0.002\n");
     let mut robot = Robot::open(pile());
     for (path, grains) in [(discs, 3), (folder.path().join("photograph.jpeg"), 3)] {
-        robot.harness.input_mut().dropped_files.push(std::sync::Arc::new(File(path)));
-        robot.harness.step();
-        robot.settle();
+        robot.drop(&path);
         assert_eq!(robot.world().snapshot.grains.len(), grains);
     }
     let (notice, _) = robot.state().notice().expect("a complaint");
@@ -169,9 +157,8 @@ fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
         "{failure}"
     );
     assert!(!robot.state().frame.playing);
-    assert!(robot.harness.query_by_label_contains("no longer finite").is_some());
-    robot.state_mut().live.send(slump::live::Command::Seek(1e-3));
-    robot.settle();
+    assert!(robot.shows("no longer finite"));
+    robot.seek(1e-3);
     assert!(robot.world().failure.is_none());
     assert_eq!(robot.steps(), 1);
 }
@@ -179,26 +166,21 @@ fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
 #[test]
 fn gravity_is_tilted_while_the_pile_runs_and_the_record_knows() {
     let mut robot = Robot::open(pile());
-    let step = |robot: &mut Robot, steps: u64| {
-        (0..steps).for_each(|_| robot.state_mut().step());
-        robot.settle();
-    };
-    step(&mut robot, 5);
+    robot.take_steps(5);
     robot.type_number("Tilt", "25");
     let g = robot.world().gravity.expect("uniform gravity");
     assert!((g.x / g.length() - 25f64.to_radians().sin()).abs() < 1e-12, "{g}");
-    step(&mut robot, 40);
-    let (end, end_secs) = (bits(robot.world()), robot.state().frame.time_secs());
+    robot.take_steps(40);
+    let (end, end_secs) = (robot.bits(), robot.state().frame.time_secs());
     let mean_x = |robot: &Robot| {
         let grains = &robot.world().snapshot.grains;
         grains.iter().map(|grain| grain.velocity.x).sum::<f64>() / grains.len() as f64
     };
     assert!(mean_x(&robot) > 0.0, "the pile slides to the right");
     for secs in [0.002, end_secs] {
-        robot.state_mut().live.send(slump::live::Command::Seek(secs));
-        robot.settle();
+        robot.seek(secs);
     }
-    assert_eq!(bits(robot.world()), end);
+    assert_eq!(robot.bits(), end);
     assert!(robot.state().command_line().expect("a command line").contains("--tilt 25"));
     // Where gravity pulls to a point, there is nothing to tilt.
     let cradle = Robot::open(Config::of_scene("cradle"));
@@ -209,21 +191,20 @@ fn gravity_is_tilted_while_the_pile_runs_and_the_record_knows() {
 fn a_large_pile_says_what_it_costs_and_is_rolled_in_place() {
     let mut robot = Robot::open(pile());
     robot.click("Physics");
-    assert!(robot.harness.query_by_label_contains("rain takes some").is_none());
+    assert!(!robot.shows("rain takes some"));
     let grains = |robot: &mut Robot, count: &str| {
         robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Grains").focus();
-        (0..3).for_each(|_| robot.harness.step());
+        robot.frames(3);
         robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
         robot.harness.event(egui::Event::Text(count.to_owned()));
         robot.harness.step();
         robot.harness.key_press(egui::Key::Enter);
-        (0..3).for_each(|_| robot.harness.step());
+        robot.frames(3);
     };
     grains(&mut robot, "2500");
-    assert!(robot.harness.query_by_label_contains("2500 grains: rain takes some 3 min").is_some());
+    assert!(robot.shows("2500 grains: rain takes some 3 min"));
     grains(&mut robot, "600");
-    robot.click("Roll");
-    robot.click("New pile");
+    robot.clicks(&["Roll", "New pile"]);
     robot.until("the pile", |state| {
         state.world().is_some_and(|world| world.snapshot.grains.len() == 600)
     });
@@ -244,14 +225,12 @@ fn a_large_pile_that_is_swept_is_offered_what_is_certain() {
         robot.click(section);
     }
     let offered = "Certified solves each step";
-    assert!(robot.harness.query_by_label_contains(offered).is_none(), "no step yet");
-    robot.state_mut().step();
-    robot.settle();
-    assert!(robot.harness.query_by_label_contains(offered).is_some(), "after 40 sweeps");
+    assert!(!robot.shows(offered), "no step yet");
+    robot.take_steps(1);
+    assert!(robot.shows(offered), "after 40 sweeps");
     robot.click("Certified");
-    robot.state_mut().step();
-    robot.settle();
-    let last = robot.world().snapshot.observables;
+    robot.take_steps(1);
+    let last = robot.observables();
     assert!(last.converged && last.duality_gap.is_some_and(|gap| gap < 1e-6), "{last:?}");
-    assert!(robot.harness.query_by_label_contains(offered).is_none(), "taken");
+    assert!(!robot.shows(offered), "taken");
 }

@@ -2,20 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use slump::config::Config;
-use slump::data::FormatName;
-use slump::live::Command as Live;
-use slump::sim::{Pull, Simulation};
-
-use crate::recordings::{assert_same, export, facts, headless, open, said_in, take_steps};
-use crate::robot::{Robot, pile};
+use crate::recordings::{assert_same, export, facts, headless, open, said_in};
+use crate::robot::*;
 use crate::tables::{Cell, Columns, number, parquet, steps, whole};
 
 #[test]
 fn the_window_exports_what_data_writes() {
     // The one has rough ground and cohesion, one loses a grain, and one has walls that move.
     for (scene, duration_secs) in [("pile", 0.03), ("thin-wall", 0.04), ("moving-walls", 0.03)] {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder();
         let (exported, written) = (folder.path().join("window"), folder.path().join("headless"));
         let mut config = Config::of_scene(scene);
         config.source.duration = Some(duration_secs);
@@ -27,10 +22,9 @@ fn the_window_exports_what_data_writes() {
             .collect();
         let mut robot = open(config, &exported, &formats);
         let steps = (duration_secs * 1e3).round() as u64;
-        take_steps(&mut robot, steps);
+        robot.take_steps(steps);
         // Where the timeline stands is no matter.
-        robot.state_mut().live.send(Live::Seek(0.01));
-        robot.settle();
+        robot.seek(0.01);
         let told = export(&mut robot);
         assert_eq!(told, format!("{} frames of data in {}", steps + 1, exported.display()));
 
@@ -52,7 +46,7 @@ fn the_window_exports_what_data_writes() {
 
 #[test]
 fn frames_are_at_the_times_that_data_has_them_at() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let (exported, written) = (folder.path().join("window"), folder.path().join("headless"));
     let mut config = Config::of_scene("cradle");
     config.source.duration = Some(0.05);
@@ -60,7 +54,7 @@ fn frames_are_at_the_times_that_data_has_them_at() {
     let mut robot = open(config, &exported, &[slump::data::DEFAULT_FORMAT]);
     robot.state_mut().preferences.data.each_step = false;
     robot.state_mut().preferences.data.every_secs = 0.0073;
-    take_steps(&mut robot, 50);
+    robot.take_steps(50);
     export(&mut robot);
     let options =
         ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.05", "--fallback", "tresca"];
@@ -91,7 +85,7 @@ fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
     let scene = pile().scene(|_| true).expect("a scene");
     let mut simulation = scene.simulation().expect("a sound scene");
     let mut settings = *simulation.settings();
-    let pull = Pull { grain: 100, target: glam::DVec2::new(0.0, 0.1) };
+    let pull = Pull { grain: 100, target: DVec2::new(0.0, 0.1) };
     let (mut times, mut moments) = (vec![0.0], BTreeMap::new());
     for step in 0..80 {
         match step {
@@ -101,8 +95,8 @@ fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
             _ => {}
         }
         let pull = (45..55).contains(&step).then_some(pull);
-        robot.state_mut().live.send(Live::Change(0, settings));
-        robot.state_mut().live.send(Live::SetPull(0, pull));
+        robot.state_mut().live.send(Command::Change(0, settings));
+        robot.state_mut().live.send(Command::SetPull(0, pull));
         robot.state_mut().step();
         simulation.change(settings).expect("sound settings");
         simulation.set_pull(pull);
@@ -116,15 +110,14 @@ fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
 /// Asks for what is between two steps.
 fn choose(robot: &mut Robot, stretch: [f64; 2]) {
     for (label, secs) in ["From here", "To here"].into_iter().zip(stretch) {
-        robot.state_mut().live.send(Live::Seek(secs));
-        robot.settle();
+        robot.seek(secs);
         robot.click(label);
     }
 }
 
 #[test]
 fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = open(pile(), folder.path(), &[FormatName::Parquet]);
     let (times, mut moments) = changed_run(&mut robot);
     robot.click("The whole recording");
@@ -150,7 +143,6 @@ fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
     assert_eq!(changes, expected);
     assert_eq!(about["pulled_by_hand"], "grain 100 in steps 46 to 55");
     assert_eq!(about["exported"], format!("from the window, from step 33 to {} s", times[60]));
-
     // What is changed after a stretch is none of its changes, even where its frames end there.
     choose(&mut robot, [times[20], times[40]]);
     robot.click("Overwrite");
@@ -159,7 +151,6 @@ fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
     let about = facts(folder.path());
     assert_eq!(about.get("changes"), None);
     assert_eq!(about.get("pulled_by_hand"), None);
-
     // An empty stretch leaves what is there alone.
     choose(&mut robot, [times[41], times[40]]);
     robot.click("Overwrite");
@@ -171,8 +162,114 @@ fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
 
 #[test]
 fn a_run_that_has_not_begun_is_one_frame() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = open(pile(), folder.path(), &[FormatName::Csv]);
     let told = export(&mut robot);
     assert!(told.starts_with("1 frame of data in"), "{told}");
+}
+
+#[test]
+fn a_run_goes_on_while_it_is_exported() {
+    let folder = folder();
+    let mut robot = open(pile(), folder.path(), &[FormatName::Csv]);
+    robot.state_mut().preferences.full_speed = true;
+    robot.key(egui::Key::Space);
+    robot.until("some steps", |state| state.world().unwrap().snapshot.observables.step >= 40);
+    robot.click("Export data");
+    let asked = robot.steps();
+    robot.until("the export", |state| !state.is_writing());
+    assert!(robot.state().frame.playing && robot.steps() > asked);
+    let mut scene = pile().scene(|_| true).expect("a scene");
+    // The window solves steps that are not solved otherwise, and how many steps there are is the machine's affair.
+    scene.set_settings(robot.settings());
+    let mut simulation = scene.simulation().expect("a sound scene");
+    let text = said_in(&folder.path().join("csv/grains.csv"));
+    let last = text.last().and_then(|row| row.split(',').next()?.parse().ok()).expect("a step");
+    assert!(last >= 40, "step {last}");
+    simulation.take_steps(last).expect("finite states");
+    let found = read_grains(folder.path(), None).expect("grains").grains;
+    assert!(found.iter().map(|it| it.position).eq(simulation.world().grains.positions.clone()));
+}
+
+#[test]
+fn an_export_that_is_stopped_leaves_whole_frames() {
+    let folder = folder();
+    let mut robot = open(pile(), folder.path(), FormatName::ALL);
+    robot.take_steps(400);
+    robot.click("Export data");
+    let index = folder.path().join("frames.csv");
+    let has_frames = || std::fs::read_to_string(&index).is_ok_and(|it| it.lines().count() > 10);
+    robot.until("frames", |_| has_frames());
+    robot.click("Stop export");
+    let told = robot.written();
+    let frames: u64 = told
+        .strip_prefix("Stopped with ")
+        .and_then(|rest| rest.split(' ').next()?.parse().ok())
+        .unwrap_or_else(|| panic!("{told}"));
+    assert!((10..400).contains(&frames), "{told}");
+    for table in ["grains", "contacts", "measures"] {
+        let found = steps(&parquet(folder.path(), table));
+        assert_eq!(found, (0..frames).collect::<Vec<_>>(), "{table}");
+    }
+    assert!(robot.harness.query_by_label("Export data").is_some(), "another can be asked for");
+}
+
+#[test]
+fn what_cannot_be_exported_is_refused_as_data_refuses_it() {
+    let folder = folder();
+    let there = folder.path().join("there");
+    let mut robot = open(Config::of_scene("cradle"), &there, &[FormatName::Csv]);
+    robot.take_steps(3);
+    assert!(export(&mut robot).starts_with("4 frames of data"));
+    let before = bytes(there.join("csv/grains.csv"));
+    // An earlier recording, and a place that no folder can be made at.
+    robot.take_steps(2);
+    let file = folder.path().join("file");
+    write(&file, "");
+    for place in [there.clone(), file.join("below")] {
+        robot.state_mut().preferences.data.folder.clone_from(&place);
+        let refused = headless(&["--scene", "cradle", "--duration", "0.01"], &place);
+        assert_eq!(format!("slump: {}\n", export(&mut robot)), refused);
+        assert!(refused.contains("but must be a folder"), "{refused}");
+    }
+    assert_eq!(bytes(there.join("csv/grains.csv")), before);
+    // As --overwrite does, once.
+    robot.state_mut().preferences.data.folder = there;
+    robot.click("Overwrite");
+    assert!(export(&mut robot).starts_with("6 frames of data"));
+    assert!(export(&mut robot).contains("without an earlier recording"));
+    let shown = robot.harness.query_all_by_label_contains("without an earlier recording");
+    assert_eq!(shown.count(), 2, "in the status bar and beside the button");
+    // Where nothing is chosen to be written, there is nothing to be asked for.
+    robot.clicks(&["Text (CSV)", "Export data"]);
+    assert!(!robot.state().is_writing());
+}
+
+#[test]
+fn a_run_that_blew_up_is_exported_up_to_its_last_finite_state() {
+    let folder = folder();
+    let mut robot = open(pile(), folder.path(), &[FormatName::Csv]);
+    robot.take_steps(2);
+    robot.type_number("Δt, time step", "1e200");
+    robot.take_steps(3);
+    assert!(robot.world().failure.is_some());
+    let told = export(&mut robot);
+    let last = robot.steps() - 1;
+    assert!(told.starts_with(&format!("{} frames of data in", last + 1)), "{told}");
+    assert!(told.ends_with("up to the last step with a finite state"), "{told}");
+}
+
+#[test]
+fn of_compared_worlds_the_selected_one_is_exported() {
+    let folder = folder();
+    let mut robot = open(pile(), folder.path(), &[FormatName::Csv]);
+    let same = robot.settings();
+    let mut other = same;
+    other.parameters.bond = 0.0;
+    robot.send(Command::Compare(vec![other, same]));
+    robot.take_steps(2);
+    let title = robot.harness.query_by_label_contains("Data of world 1");
+    assert!(title.is_some(), "the panel says which");
+    export(&mut robot);
+    assert_eq!(facts(folder.path())["parameters.bond"], "0.0");
 }

@@ -1,14 +1,8 @@
-//! Grains that the mouse adds and takes out, and walls that it draws.
+//! The mouse in the scene: what it pins, drags, adds, takes out and draws.
 
 use egui::{Event, Modifiers, PointerButton, Pos2};
-use egui_kittest::kittest::{NodeT, Queryable};
-use glam::DVec2;
-use slump::config::Config;
-use slump::live::Command;
-use slump::sim::place_of;
 
-use crate::recordings::take_steps;
-use crate::robot::{Robot, bits, pile};
+use crate::robot::*;
 
 fn press(robot: &mut Robot, at: Pos2, pressed: bool) {
     let (button, modifiers) = (PointerButton::Primary, Modifiers::SHIFT);
@@ -17,7 +11,6 @@ fn press(robot: &mut Robot, at: Pos2, pressed: bool) {
     robot.harness.step();
 }
 
-/// Clicks with Shift held.
 fn shift_click(robot: &mut Robot, at: Pos2) {
     // Two clicks in quick succession would be a double click.
     robot.harness.input_mut().time = Some(robot.harness.input().time.unwrap_or(0.0) + 2.0);
@@ -35,8 +28,8 @@ fn count(robot: &Robot) -> usize {
 #[test]
 fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
     let mut robot = Robot::open(pile());
-    take_steps(&mut robot, 10);
-    let (before, grains) = (bits(robot.world()), count(&robot));
+    robot.take_steps(10);
+    let (before, grains) = (robot.bits(), count(&robot));
     robot.state_mut().preferences.new_grain_diameters = 1.5;
     let free = robot.place("scene", 0.5, 0.08);
     shift_click(&mut robot, free);
@@ -44,124 +37,90 @@ fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
     let added = robot.world().snapshot.grains[grains];
     let diameter = robot.world().snapshot.surroundings.mean_diameter;
     assert!((added.radius - 0.75 * diameter).abs() < 1e-12 && added.velocity == DVec2::ZERO);
-    assert_eq!(bits(robot.world())[..grains], before, "the others stay as they are");
+    assert_eq!(robot.bits()[..grains], before, "the others stay as they are");
     assert!(!robot.world().is_even, "no command line makes this");
-
     // It falls, and its way is recorded.
-    take_steps(&mut robot, 40);
-    let fallen = bits(robot.world());
+    robot.take_steps(40);
+    let fallen = robot.bits();
     assert!(robot.world().snapshot.grains[grains].position.y < added.position.y - 1e-3);
     let end = robot.state().frame.recorded_secs();
     for goal in [0.0, end] {
-        robot.state_mut().live.send(Command::Seek(goal));
-        robot.settle();
+        robot.seek(goal);
     }
-    assert_eq!(bits(robot.world()), fallen, "computed again, bit for bit");
-    robot.state_mut().live.send(Command::Seek(0.005));
-    robot.settle();
+    assert_eq!(robot.bits(), fallen, "computed again, bit for bit");
+    robot.seek(0.005);
     assert_eq!(count(&robot), grains, "before, it was not there");
-    robot.state_mut().live.send(Command::Seek(end));
-    robot.settle();
-
+    robot.seek(end);
     // On a grain, the click takes that one out.
     let taken = robot.world().snapshot.grains[60].position;
     let there = at(&robot, taken);
     shift_click(&mut robot, there);
     assert_eq!(count(&robot), grains, "one less");
-    take_steps(&mut robot, 5);
+    robot.take_steps(5);
     assert_eq!(robot.steps(), 55);
 }
 
 #[test]
 fn a_grain_that_finds_no_room_is_refused_with_a_notice() {
     let mut robot = Robot::open(pile());
-    take_steps(&mut robot, 2);
+    robot.take_steps(2);
     let grains = count(&robot);
     robot.state_mut().preferences.new_grain_diameters = 5.0;
     // Just above the heap: its middle is free, and its rim is not.
-    let top = robot
-        .world()
-        .snapshot
-        .grains
-        .iter()
-        .map(|it| it.position.y + it.radius)
-        .fold(0.0, f64::max);
-    let edit = slump::sim::Edit::Add(slump::world::Disc {
-        position: DVec2::new(0.0, top),
-        radius: 0.0125,
-    });
-    robot.state_mut().live.send(Command::Edit(0, edit));
-    robot.settle();
+    let grains_then = robot.world().snapshot.grains.iter();
+    let top = grains_then.map(|it| it.position.y + it.radius).fold(0.0, f64::max);
+    let edit = Edit::Add(slump::world::Disc { position: DVec2::new(0.0, top), radius: 0.0125 });
+    robot.send(Command::Edit(0, edit));
     assert_eq!(count(&robot), grains);
-    let told = robot.state().notice().expect("a notice").0.text.clone();
-    assert_eq!(told, "place of a new grain is on another one, but must be free");
+    assert_eq!(robot.notice(), "place of a new grain is on another one, but must be free");
 }
 
 #[test]
 fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
     let mut robot = Robot::open(pile());
-    take_steps(&mut robot, 30);
-    robot.state_mut().live.send(Command::Seek(0.01));
-    robot.settle();
+    robot.take_steps(30);
+    robot.seek(0.01);
     assert_eq!(robot.steps(), 10);
     let free = robot.place("scene", 0.5, 0.08);
     shift_click(&mut robot, free);
     assert_eq!(robot.state().frame.past.len(), 1, "the run before is kept");
     assert!((robot.state().frame.recorded_secs() - 0.01).abs() < 1e-9);
-    take_steps(&mut robot, 5);
+    robot.take_steps(5);
     assert_eq!(robot.steps(), 15);
     // A session brings all of it back.
-    let folder = tempfile::tempdir().expect("a folder");
-    robot.state_mut().preferences.folder = folder.path().to_owned();
-    robot.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::S);
-    robot.harness.step();
-    robot.until("the file", |state| !state.is_writing());
-    let told = robot.state().notice().expect("what became of it").0.text.clone();
-    let path = told.strip_prefix("Saved ").unwrap_or_else(|| panic!("{told}")).to_owned();
-    let now = bits(robot.world());
-    let mut again = Robot::open(Config::of_scene("cradle"));
-    again.state_mut().load_saved(path.as_ref());
-    again.settle();
-    assert_eq!(bits(again.world()), now);
-    again.state_mut().live.send(Command::Seek(0.0));
-    again.settle();
-    let end = again.state().frame.recorded_secs();
-    again.state_mut().live.send(Command::Seek(end));
-    again.settle();
-    assert_eq!(bits(again.world()), now, "and its way");
-
+    let folder = folder();
+    let path = robot.save_session(folder.path());
+    let now = robot.bits();
+    let mut again = Robot::open_saved(&path);
+    assert_eq!(again.bits(), now);
+    again.seek(0.0);
+    again.seek(again.state().frame.recorded_secs());
+    assert_eq!(again.bits(), now, "and its way");
     // A link says that it does not tell of it.
     robot.state_mut().copy_link();
     robot.until("the link", |state| {
         state.notice().is_some_and(|(notice, _)| notice.text.starts_with("The link is copied"))
     });
-    let told = robot.state().notice().expect("a notice").0.text.clone();
+    let told = robot.notice();
     assert!(told.contains("added or removed"), "{told}");
 }
 
 #[test]
 fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut scene = pile().scene(|_| true).expect("a scene");
-    scene.name = "wall".into();
-    scene.grains.truncate(1);
-    scene.grains[0].position = DVec2::new(0.05, 0.02);
-    scene.fixed_discs.clear();
-    scene.gravity = slump::world::Gravity::Uniform { acceleration: DVec2::ZERO };
     let ends = [DVec2::new(-0.02, 0.0), DVec2::new(-0.02, 0.04)];
-    scene.boundaries = vec![slump::world::Boundary::Segment { from: ends[0], to: ends[1] }];
-    let view = slump::scene::View { min: DVec2::new(-0.04, -0.02), max: DVec2::new(0.06, 0.06) };
-    scene.view = Some(view);
-    let path = folder.path().join("wall.toml");
-    std::fs::write(&path, slump::config::scene_to_toml(&scene).expect("TOML")).expect("a file");
-    let mut robot = Robot::open(Config::of_scene(path.to_str().expect("UTF-8")));
+    let (_folder, config) = one_grain(|scene| {
+        scene.name = "wall".into();
+        scene.grains[0].position = DVec2::new(0.05, 0.02);
+        scene.boundaries = vec![slump::world::Boundary::Segment { from: ends[0], to: ends[1] }];
+        scene.view = Some(View { min: DVec2::new(-0.04, -0.02), max: DVec2::new(0.06, 0.06) });
+    });
+    let mut robot = Robot::open(config);
     robot.state_mut().preferences.full_speed = true;
     let place = |robot: &Robot| place_of(&robot.world().snapshot.surroundings.boundaries[0]);
     assert_eq!(place(&robot), ends[0]);
 
     let from = at(&robot, DVec2::new(-0.02, 0.02));
     let to = at(&robot, DVec2::new(0.01, 0.02));
-
     // While time stands still it says what to do.
     robot.harness.hover_at(from);
     press(&mut robot, from, true);
@@ -180,7 +139,7 @@ fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
     robot.settle();
     let there = place(&robot);
     robot.state_mut().live.send(Command::Pause);
-    take_steps(&mut robot, 20);
+    robot.take_steps(20);
     assert_eq!(place(&robot), there, "it stays");
     assert!((there.y - ends[0].y).abs() < 1e-3, "and went straight: {there}");
 }
@@ -208,15 +167,15 @@ fn the_panel_says_how_and_how_large() {
 
 #[test]
 fn exported_data_has_the_new_grain_and_says_who_put_it_there() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = crate::recordings::open(pile(), folder.path(), slump::data::FormatName::ALL);
-    take_steps(&mut robot, 5);
+    robot.take_steps(5);
     let grains = count(&robot);
     let disc = slump::world::Disc { position: DVec2::new(0.0, 0.2), radius: 2e-3 };
-    robot.state_mut().live.send(Command::Edit(0, slump::sim::Edit::Add(disc)));
-    take_steps(&mut robot, 5);
-    robot.state_mut().live.send(Command::Edit(0, slump::sim::Edit::Remove(3)));
-    take_steps(&mut robot, 1);
+    robot.state_mut().live.send(Command::Edit(0, Edit::Add(disc)));
+    robot.take_steps(5);
+    robot.state_mut().live.send(Command::Edit(0, Edit::Remove(3)));
+    robot.take_steps(1);
     assert_eq!(count(&robot), grains);
     crate::recordings::export(&mut robot);
     let at = |step| {
@@ -230,4 +189,69 @@ fn exported_data_has_the_new_grain_and_says_who_put_it_there() {
     let told = &crate::recordings::facts(folder.path())["changed_by_hand"];
     assert!(told.contains("a grain of radius 0.002 m added at 0, 0.2 m after step 5"), "{told}");
     assert!(told.ends_with("grain 3 removed after step 10"), "{told}");
+}
+
+/// The one grain of a scene, which lies in the middle of its view.
+fn in_the_middle() -> (tempfile::TempDir, Config) {
+    one_grain(|scene| {
+        scene.name = "one".into();
+        scene.grains = vec![slump::world::Grain::at_rest(DVec2::new(0.0, 0.02), 2e-3)];
+        scene.view = Some(View { min: DVec2::new(-0.01, 0.01), max: DVec2::new(0.01, 0.03) });
+    })
+}
+
+#[test]
+fn a_click_pins_a_grain_and_another_lets_it_go() {
+    let (_folder, config) = in_the_middle();
+    let mut robot = Robot::open(config);
+    let at = robot.place("scene", 0.5, 0.5);
+    for expected in [Some(GrainRef { world: 0, grain: 0 }), None] {
+        // Two clicks in quick succession would be a double click.
+        robot.harness.input_mut().time = Some(robot.harness.input().time.unwrap_or(0.0) + 2.0);
+        robot.harness.hover_at(at);
+        robot.button(at, true);
+        robot.button(at, false);
+        assert_eq!(robot.state().mouse.pinned, expected);
+        robot.harness.step();
+        assert_eq!(robot.harness.query_by_label("Unpin").is_some(), expected.is_some());
+        robot.frames(40);
+    }
+}
+
+#[test]
+fn a_dragged_grain_follows_the_mouse_and_stays_when_let_go() {
+    let (_folder, config) = in_the_middle();
+    let mut robot = Robot::open(config);
+    robot.state_mut().preferences.full_speed = true;
+    let (from, to) = (robot.place("scene", 0.5, 0.45), robot.place("scene", 0.7, 0.3));
+    robot.key(egui::Key::Space);
+    robot.drag(from, to);
+    robot.until("the grain to follow", |state| {
+        let grain = &state.world().unwrap().snapshot.grains[0];
+        grain.position.x > 4e-3 && grain.position.y > 0.022 && grain.velocity.length() < 1e-3
+    });
+    robot.button(to, false);
+    robot.settle();
+    assert_eq!(robot.world().controls.pull, None);
+    assert!(robot.state().mouse.grabbed.is_none());
+}
+
+#[test]
+fn the_wheel_zooms_and_f_frames_the_scene_again() {
+    let (_folder, config) = in_the_middle();
+    let mut robot = Robot::open(config);
+    let before = robot.state().camera;
+    let at = robot.place("scene", 0.8, 0.2);
+    robot.harness.hover_at(at);
+    robot.harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: egui::vec2(0.0, 120.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: egui::Modifiers::NONE,
+    });
+    robot.frames(30);
+    assert_ne!(robot.state().camera, before);
+    robot.key(egui::Key::F);
+    assert_eq!(robot.state().camera, before);
 }

@@ -1,20 +1,14 @@
-//! What can be looked at and asked besides the pile itself, and that controls stay where they are.
+//! What can be looked at, compared and asked besides the pile itself, and that controls stay where they are.
 
-use egui_kittest::kittest::Queryable;
-use slump::app::GrainRef;
-use slump::config::Config;
-
-use crate::robot::{Robot, pile};
+use crate::robot::*;
 
 #[test]
 fn any_quantity_is_plotted_against_any_other() {
     let mut robot = Robot::open(pile());
-    robot.click("Step");
-    robot.click("y over x");
+    robot.clicks(&["Step", "y over x"]);
     assert!(robot.state().preferences.chosen_plot.on);
     robot.harness.step();
-    let title = "kinetic energy (J) against slump";
-    assert!(robot.harness.query_by_label(title).is_some());
+    assert!(robot.harness.query_by_label("kinetic energy (J) against slump").is_some());
     robot.click("log y");
     assert_eq!(robot.state().preferences.chosen_plot.logarithmic, [false, true]);
 }
@@ -22,13 +16,11 @@ fn any_quantity_is_plotted_against_any_other() {
 #[test]
 fn histograms_count_the_moment_that_is_shown() {
     let mut robot = Robot::open(pile());
-    robot.click("Step");
-    robot.click("Distributions");
-    robot.click("contacts");
+    robot.clicks(&["Step", "Distributions", "contacts"]);
     // Each of the grains has its place.
     let counted = "contacts of a grain: 138 in all";
     let start = std::time::Instant::now();
-    while robot.harness.query_by_label_contains(counted).is_none() {
+    while !robot.shows(counted) {
         assert!(start.elapsed().as_secs() < 60, "waited in vain for {counted}");
         robot.harness.step();
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -41,10 +33,7 @@ fn the_view_goes_with_a_grain_that_is_followed() {
     robot.state_mut().mouse.pinned = Some(GrainRef { world: 0, grain: 100 });
     robot.harness.step();
     robot.click("Follow");
-    for _ in 0..10 {
-        robot.state_mut().step();
-    }
-    robot.settle();
+    robot.take_steps(10);
     robot.harness.step();
     let place = robot.world().snapshot.grains[100].position;
     let middle = robot.state().camera.centre();
@@ -59,16 +48,14 @@ fn slump_and_what_to_try_are_told_of_piles_alone() {
     robot.harness.step();
     assert!(robot.harness.query_by_label("slump").is_none());
     assert!(robot.harness.query_by_label("overlap").is_some());
-    robot.state_mut().load(Config::of_scene("chain"));
-    robot.settle();
+    robot.load(Config::of_scene("chain"));
     robot.harness.step();
-    assert!(robot.world().controls.settings.parameters.bond > 0.0, "it sticks");
-    assert!(robot.harness.query_by_label_contains(tried).is_none(), "no pile");
-    robot.state_mut().load(pile());
-    robot.settle();
+    assert!(robot.settings().parameters.bond > 0.0, "it sticks");
+    assert!(!robot.shows(tried), "no pile");
+    robot.load(pile());
     robot.harness.step();
     assert!(robot.harness.query_by_label("slump").is_some());
-    assert!(robot.harness.query_by_label_contains(tried).is_some());
+    assert!(robot.shows(tried));
 }
 
 #[test]
@@ -78,8 +65,7 @@ fn a_refusal_moves_no_control() {
     let before = place(&robot);
     robot.type_number("Bond", "-1");
     robot.harness.step();
-    let said = robot.harness.query_by_label_contains("bond is -1");
-    assert!(said.is_some(), "the refusal is told");
+    assert!(robot.harness.query_by_label_contains("bond is -1").is_some(), "the refusal is told");
     assert_eq!(place(&robot), before);
 }
 
@@ -89,9 +75,7 @@ fn the_end_of_the_help_is_within_reach_on_a_low_window() {
     robot.harness.set_size(egui::vec2(720.0, 480.0));
     robot.key(egui::Key::H);
     robot.harness.get_by_label("Restart graphics").scroll_to_me();
-    for _ in 0..10 {
-        robot.harness.step();
-    }
+    robot.frames(10);
     let button = robot.harness.get_by_label("Restart graphics").rect();
     assert!(button.bottom() < 480.0 && button.top() > 0.0, "{button:?}");
 }
@@ -104,9 +88,7 @@ fn long_names_do_not_widen_the_panel() {
     let before = robot.state().controls["scene"].left();
     for line_up in ["Methods", "Two laws", "Friction", "Steppers"] {
         robot.click(line_up);
-        for _ in 0..10 {
-            robot.harness.step();
-        }
+        robot.frames(10);
         // The selected world is the first.
         let now = robot.state().controls["scene"].left();
         assert!(now <= before + 1.0, "{line_up}: the panel ends at {now}, not at {before}");
@@ -116,18 +98,110 @@ fn long_names_do_not_widen_the_panel() {
 #[test]
 fn a_step_is_measured_by_all_methods() {
     let mut robot = Robot::open(pile());
-    for _ in 0..5 {
-        robot.state_mut().step();
-    }
-    robot.settle();
-    robot.click("Speed and accuracy");
-    robot.click("Measure this step");
+    robot.take_steps(5);
+    robot.clicks(&["Speed and accuracy", "Measure this step"]);
     let start = std::time::Instant::now();
-    while robot.harness.query_by_label_contains("measured here").is_none() {
+    while !robot.shows("measured here") {
         assert!(start.elapsed().as_secs() < 120, "waited in vain for the methods");
         robot.harness.step();
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     assert!(robot.harness.query_by_label("newton").is_some());
     assert_eq!(robot.steps(), 5, "the run has taken no step");
+}
+
+/// True if the panel says where the run is.
+fn tells(robot: &Robot, residual: f64) -> bool {
+    let text = format!(" ms a step, residual {residual:.1e}");
+    robot.shows(&text)
+}
+
+#[test]
+fn the_run_has_its_place_on_the_chart() {
+    let mut robot = Robot::open(pile());
+    robot.click("Speed and accuracy");
+    let waiting = "The run shows here from its first step on.";
+    assert!(robot.harness.query_by_label(waiting).is_some());
+    for _ in 0..3 {
+        robot.key(egui::Key::ArrowRight);
+    }
+    assert!(robot.harness.query_by_label(waiting).is_none());
+    let residual = |robot: &Robot| robot.observables().residual;
+    let loose = residual(&robot);
+    assert!(tells(&robot, loose));
+
+    let mut settings = robot.settings();
+    (settings.solver.stop, settings.solver.tolerance) = (StopTest::Residual, 1e-7);
+    settings.solver.max_sweeps = 20_000;
+    // By Coulomb's law bounds of friction may err by any amount.
+    settings.solver.fallback = Fallback::None;
+    robot.change(0, settings);
+    robot.key(egui::Key::ArrowRight);
+    assert!(residual(&robot) < 0.1 * loose, "{} after {loose}", residual(&robot));
+    assert!(tells(&robot, residual(&robot)));
+}
+
+#[test]
+fn compared_worlds_share_their_simulated_time() {
+    let mut robot = Robot::open(pile());
+    robot.clicks(&["Compare", "Paper Fig. 4"]);
+    assert_eq!(robot.state().frame.worlds.len(), 6);
+    let parameters = robot.of_worlds(|world| world.controls.settings.parameters);
+    let numbers: Vec<_> = parameters.iter().map(|it| (it.bond, it.time_step_secs)).collect();
+    let expected =
+        [(20.0, 1e-4), (20.0, 1e-3), (20.0, 2e-3), (100.0, 1e-4), (100.0, 1e-3), (100.0, 2e-3)];
+    assert_eq!(numbers, expected);
+    for tick in 1..=10 {
+        robot.key(egui::Key::ArrowRight);
+        for world in &robot.state().frame.worlds {
+            let last = &world.snapshot.observables;
+            let apart = last.time_secs - f64::from(tick) * 2e-3;
+            assert!(apart.abs() < 1e-9, "{} s after tick {tick}", last.time_secs);
+        }
+    }
+    robot.seek(0.01);
+    let times = robot.of_worlds(|world| world.snapshot.observables.time_secs);
+    assert!(times.into_iter().all(|time| (time - 0.01).abs() < 1e-9));
+}
+
+#[test]
+fn two_laws_stand_side_by_side() {
+    let mut robot = Robot::open(pile());
+    robot.clicks(&["Compare", "Two laws"]);
+    let told = robot.of_worlds(|world| {
+        let Settings { stepper, parameters, .. } = world.controls.settings;
+        (stepper, parameters.bond, parameters.time_step_secs)
+    });
+    let of_law = |law| [1e-4, 1e-3, 5e-3].map(|time| (law, 20.0, time));
+    assert_eq!(told, [of_law(Stepper::Moreau), of_law(Stepper::Range)].concat());
+}
+
+#[test]
+fn models_of_friction_stand_side_by_side() {
+    let mut robot = Robot::open(pile());
+    robot.clicks(&["Compare", "Friction"]);
+    robot.key(egui::Key::ArrowRight);
+    let solved = robot.of_worlds(|world| {
+        let solver = world.controls.settings.solver;
+        let residual = world.snapshot.observables.model_residual;
+        (solver.friction_model, solver.model_solves, residual.is_some())
+    });
+    let once = FrictionModel::ALL.iter().map(|&model| (model, 1, model != FrictionModel::Coulomb));
+    let expected: Vec<_> = once.chain([(FrictionModel::Tresca, 4, true)]).collect();
+    assert_eq!(solved, expected);
+}
+
+#[test]
+fn a_world_computes_what_it_computes_alone() {
+    let mut robot = Robot::open(pile());
+    robot.take_steps(20);
+    let alone = robot.world().snapshot.grains.clone();
+    let same = robot.settings();
+    let mut other = same;
+    other.parameters.bond = 0.0;
+    robot.send(Command::Compare(vec![other, same]));
+    robot.take_steps(20);
+    let worlds = &robot.state().frame.worlds;
+    assert_eq!(worlds[1].snapshot.grains, alone);
+    assert_ne!(worlds[0].snapshot.grains, alone);
 }

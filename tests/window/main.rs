@@ -9,30 +9,25 @@
 //! ```
 
 mod alarms;
-mod animations;
-mod compare;
 mod controls;
-mod export_ends;
 mod exports;
 mod hand;
 mod looking;
-mod making;
-mod mouse;
 mod other_piles;
 mod pictures;
 mod provenance;
 mod recording;
 mod recordings;
 mod robot;
-mod saved;
 mod sessions;
-mod speed;
 mod tour;
 mod videos;
 
 #[path = "../common/probed.rs"]
 #[allow(dead_code, reason = "tests of the command line use more of it")]
 mod probed;
+#[path = "../common/program.rs"]
+mod program;
 #[path = "../recordings/data/tables.rs"]
 #[allow(dead_code, reason = "tests of recordings use more of it")]
 mod tables;

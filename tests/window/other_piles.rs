@@ -1,15 +1,6 @@
-//! The mean over other piles: whose it is, when it is there, and when it is not.
+//! New piles while they are made, and the mean over other piles: whose it is, and when there is one.
 
-use std::path::Path;
-use std::time::{Duration, Instant};
-
-use egui_kittest::kittest::Queryable;
-use slump::config::Config;
-use slump::live::Command;
-use slump::scene::{NewPile, Scene, settle};
-use slump::sim::Settings;
-
-use crate::robot::Robot;
+use crate::robot::*;
 
 /// They give way to whatever else the machine does.
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -44,8 +35,7 @@ fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
         }
         assert!(begun.elapsed() < PATIENCE, "waited in vain for eight piles: {told:?}");
         // Someone is looking: what stands still for long is not computed for.
-        robot.state_mut().live.send(Command::SetPull(0, None));
-        robot.settle();
+        robot.send(Command::SetPull(0, None));
         std::thread::sleep(Duration::from_millis(50));
     }
 }
@@ -77,15 +67,14 @@ fn assert_near((mean, half, count): (f64, f64, usize), expected: (f64, f64)) {
 
 #[test]
 fn the_mean_is_that_of_the_same_seeds_without_a_window() {
-    let cache = tempfile::tempdir().expect("a folder");
+    let cache = folder();
     let mut robot = open(cache.path());
-    let settings = robot.world().controls.settings;
+    let settings = robot.settings();
     let at_end = mean(&mut robot, 0, 0.1);
     let expected = headless(&settings);
     assert_near(at_end, expected);
     let kept: Vec<_> = std::fs::read_dir(cache.path()).expect("a folder").collect();
     assert_eq!(kept.len(), 8, "initial states are kept");
-
     // The run itself changes nothing of it, and the number stands beside its own.
     robot.state_mut().live.send(Command::SetPace(slump::live::Pace::Max));
     robot.state_mut().live.send(Command::Play);
@@ -93,13 +82,11 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     robot.settle();
     assert_near(mean(&mut robot, 0, 0.1), expected);
     robot.harness.step();
-    assert!(robot.harness.query_by_label_contains("(n = 8)").is_some());
-
+    assert!(robot.shows("(n = 8)"));
     // Other settings begin anew, from the kept states.
     let mut other = settings;
     other.parameters.bond = 0.0;
-    robot.state_mut().change(0, other);
-    robot.settle();
+    robot.change(0, other);
     let told = robot.state().ensemble.mean_at(0, 0.1);
     assert_eq!(told, None, "the settings of the run changed on its way");
     robot.key(egui::Key::R);
@@ -108,12 +95,11 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
 
 #[test]
 fn compared_worlds_have_others_each() {
-    let cache = tempfile::tempdir().expect("a folder");
+    let cache = folder();
     let mut robot = open(cache.path());
-    let strong = robot.world().controls.settings.with_bond(100.0);
+    let strong = robot.settings().with_bond(100.0);
     let weak = strong.with_bond(0.0);
-    robot.state_mut().live.send(Command::Compare(vec![strong, weak]));
-    robot.settle();
+    robot.send(Command::Compare(vec![strong, weak]));
     for (world, settings) in [strong, weak].iter().enumerate() {
         assert_near(mean(&mut robot, world, 0.1), headless(settings));
     }
@@ -121,21 +107,20 @@ fn compared_worlds_have_others_each() {
 
 #[test]
 fn a_run_that_was_pulled_or_changed_on_its_way_has_none() {
-    let cache = tempfile::tempdir().expect("a folder");
+    let cache = folder();
     let mut robot = open(cache.path());
     mean(&mut robot, 0, 0.1);
-    let pull = slump::sim::Pull { grain: 3, target: glam::DVec2::new(0.0, 0.1) };
+    let pull = Pull { grain: 3, target: DVec2::new(0.0, 0.1) };
     robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
     robot.click("Step");
-    robot.state_mut().live.send(Command::SetPull(0, None));
-    robot.settle();
+    robot.send(Command::SetPull(0, None));
     assert_eq!(robot.state().ensemble.mean_at(0, 0.1), None);
     assert!(robot.state().ensemble.threads() > 0);
 }
 
 #[test]
 fn switched_off_there_is_no_thread() {
-    let cache = tempfile::tempdir().expect("a folder");
+    let cache = folder();
     let mut robot = open(cache.path());
     robot.until("a thread", |state| state.ensemble.threads() > 0);
     robot.click("other piles");
@@ -144,9 +129,54 @@ fn switched_off_there_is_no_thread() {
     // A scene that is no pile has none either.
     robot.click("other piles");
     robot.until("a thread", |state| state.ensemble.threads() > 0);
-    robot.state_mut().load(Config::of_scene("cradle"));
-    robot.settle();
+    robot.load(Config::of_scene("cradle"));
     robot.harness.step();
     assert_eq!(robot.state().ensemble.threads(), 0);
     assert!(robot.harness.query_by_label("other piles").is_none());
+}
+
+/// So many grains that they fall for a while.
+fn rain() -> Config {
+    let mut config = pile();
+    config.source.grains = Some(400);
+    config.source.box_width = Some(NewPile::default().box_width_in_diameters);
+    config
+}
+
+#[test]
+fn grains_are_seen_as_they_rain_and_the_world_before_comes_back() {
+    let mut robot = Robot::open(pile());
+    robot.take_steps(5);
+    let (before, steps) = (robot.bits(), robot.steps());
+    robot.state_mut().load(rain());
+    let preview = |state: &slump::app::AppState| {
+        state.frame.loading.as_ref().and_then(|loading| loading.preview.clone())
+    };
+    robot.until("the rain", |state| preview(state).is_some());
+    assert_eq!(preview(robot.state()).expect("the rain").snapshot.grains.len(), 400);
+    robot.until("grains that have fallen", |state| {
+        preview(state).is_some_and(|now| now.snapshot.observables.time_secs > 0.05)
+    });
+    let told = robot.state().frame.loading.as_ref().expect("progress").text.clone();
+    assert!(
+        told.starts_with("Raining a new pile: ") && told.contains(" of 400 grains have landed"),
+        "{told}"
+    );
+    assert!(robot.state().controls.contains_key("pile in the making"), "it is drawn");
+    let shown = robot.harness.query_all_by_label_contains("of 400 grains have landed").count();
+    assert!(shown >= 1, "and told");
+    // Nothing can be played, and nothing that is asked for waits.
+    for key in [egui::Key::Space, egui::Key::ArrowRight, egui::Key::R] {
+        robot.harness.key_press(key);
+        robot.harness.step();
+    }
+    assert!(robot.state().frame.loading.is_some(), "the situation: it still rains");
+    assert_eq!((robot.bits(), robot.steps()), (before.clone(), steps), "the world waits");
+
+    robot.click("Cancel");
+    assert!(robot.state().frame.loading.is_none() && !robot.state().frame.playing);
+    assert_eq!((robot.bits(), robot.steps()), (before, steps), "it is there again");
+    robot.take_steps(1);
+    assert_eq!(robot.steps(), steps + 1, "and goes on");
+    assert_eq!(robot.state().frame.worlds[0].curve.rows().count(), 7, "with its record");
 }

@@ -1,14 +1,7 @@
 //! What files of the window say of themselves, and what their names say.
 
+use crate::robot::*;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
-use slump::app::Preferences;
-use slump::config::Config;
-use slump::live;
-
-use crate::robot::Robot;
 
 /// A window with a folder for its files.
 fn open(folder: &Path) -> Robot {
@@ -24,9 +17,9 @@ fn open(folder: &Path) -> Robot {
 fn written(robot: &mut Robot, ask: impl Fn(&mut Robot), ending: &str) -> PathBuf {
     let folder = robot.state().preferences.folder.clone();
     ask(robot);
-    robot.until("the file", |state| !state.is_writing());
-    let files = std::fs::read_dir(folder).expect("a folder");
-    let mut files: Vec<_> = files.map(|entry| entry.expect("an entry").path()).collect();
+    robot.written();
+    let files = names_in(&folder).into_iter();
+    let mut files: Vec<_> = files.map(|name| folder.join(name)).collect();
     files.retain(|path| path.extension().is_some_and(|found| found == ending));
     files.sort_by_key(|path| std::fs::metadata(path).and_then(|about| about.modified()).ok());
     files.pop().expect("a file")
@@ -53,41 +46,32 @@ fn name(path: &Path) -> &str {
 
 #[test]
 fn a_picture_of_a_run_carries_the_command_that_makes_it() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = open(folder.path());
-    let mut settings = robot.world().controls.settings.with_bond(35.0);
+    let mut settings = robot.settings().with_bond(35.0);
     settings.parameters.time_step_secs = 2e-3;
     robot.state_mut().change(0, settings);
-    for _ in 0..5 {
-        robot.state_mut().step();
-    }
-    robot.settle();
+    robot.take_steps(5);
     let path = written(&mut robot, |robot| robot.key(egui::Key::S), "png");
     assert_eq!(name(&path), "slump-pile-bond35-dt2e-3-0.0100s.png");
-    let notice = robot.state().notice().expect("what became of it").0.text.clone();
-    assert_eq!(notice, format!("Saved {}", path.display()), "the whole path");
+    assert_eq!(robot.notice(), format!("Saved {}", path.display()), "the whole path");
     let (texts, size) = texts(&path);
     assert_eq!(size, [640, 400]);
     assert!(texts["Settings"].contains("--bond 35 --dt 0.002"), "{texts:?}");
     assert_eq!((texts["Scene"].as_str(), texts["Time"].as_str()), ("pile", "0.01 s"));
     assert_eq!(texts.get("Changes"), None);
-
     // The command comes to the same state: its last row is that of the window.
     let words = shlex::split(&texts["Command line"]).expect("words");
     let frames = folder.path().join("frames");
-    let mut program = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-    let ended = program.args(&words[1..]).arg("--frames").arg(&frames).output();
-    let ended = ended.expect("the program starts");
-    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
-    let table = std::fs::read_to_string(frames.join("observables.csv")).expect("a table");
+    succeed(slump("").args(&words[1..]).arg("--frames").arg(&frames));
+    let table = read(frames.join("observables.csv"));
     let last: Vec<&str> = table.lines().last().expect("a row").split(',').collect();
     let header: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
     let column =
         |name: &str| last[header.iter().position(|found| *found == name).expect("a column")];
-    let row = robot.world().snapshot.observables;
+    let row = robot.observables();
     assert_eq!(column("step"), row.step.to_string());
     assert_eq!(column("slump").parse::<f64>(), Ok(row.slump), "to the last bit");
-
     // What no command makes says so.
     settings.parameters.bond = 5.0;
     robot.state_mut().change(0, settings);
@@ -98,13 +82,12 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
 
 #[test]
 fn compared_worlds_are_one_picture() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = open(folder.path());
     robot.state_mut().preferences.style.colour_by = slump::render::ColourBy::Speed;
-    let base = robot.world().controls.settings;
+    let base = robot.settings();
     let worlds = [0.0, 20.0, 50.0, 100.0].map(|bond| base.with_bond(bond)).to_vec();
-    robot.state_mut().live.send(live::Command::Compare(worlds));
-    robot.settle();
+    robot.send(Command::Compare(worlds));
     robot.click("Step");
     let path = written(&mut robot, |robot| robot.key(egui::Key::S), "png");
     assert!(name(&path).starts_with("slump-pile-4worlds-"), "{}", name(&path));
@@ -121,13 +104,13 @@ fn compared_worlds_are_one_picture() {
 
 #[test]
 fn a_table_stays_plain_and_a_text_beside_it_says_what_it_is_of() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = open(folder.path());
     robot.click("Step");
     let table = written(&mut robot, |robot| robot.click("CSV"), "csv");
-    let text = std::fs::read_to_string(&table).expect("a table");
+    let text = read(&table);
     assert!(text.starts_with("world,step,time_secs,"), "{text}");
-    let beside = std::fs::read_to_string(table.with_extension("csv.txt")).expect("a text");
+    let beside = read(table.with_extension("csv.txt"));
     assert!(beside.starts_with("Software: slump "), "{beside}");
     assert!(beside.contains("\nCommand line: slump --headless --scene pile"), "{beside}");
 }

@@ -1,10 +1,11 @@
 //! The recording gives back what was computed, bit for bit.
 
-use slump::live::{Command, Live, LiveOptions, LiveStart, Pace};
-use slump::sim::{Pull, Tally};
-use slump::sim::{Settings, Stepper};
+use crate::robot::*;
+use slump::live::LiveStart;
 
-use crate::robot::{Robot, bits, pile};
+fn curve_of(robot: &Robot) -> Vec<Observables> {
+    robot.world().curve.rows().copied().collect()
+}
 
 #[test]
 fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
@@ -20,9 +21,8 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     }
     robot.settle();
     assert_eq!(robot.steps(), 90);
-    let uninterrupted = bits(robot.world());
-    let curve: Vec<_> = robot.world().curve.rows().copied().collect();
-
+    let uninterrupted = robot.bits();
+    let curve = curve_of(&robot);
     // Drag the timeline to a moment before both changes, and go on.
     let (from, to) = (robot.place("timeline", 0.99, 0.5), robot.place("timeline", 0.1, 0.5));
     robot.drag(from, to);
@@ -30,50 +30,35 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     robot.settle();
     let scrubbed = robot.steps();
     assert!((1..30).contains(&scrubbed), "step {scrubbed}");
-    let settings = robot.world().controls.settings;
+    let settings = robot.settings();
     assert_eq!((settings.parameters.bond, settings.parameters.time_step_secs), (20.0, 1e-3));
     assert_eq!(robot.state().frame.recorded_secs(), curve[90].time_secs, "nothing is lost yet");
-
     // To the end again, without stepping: a replay of the recording.
-    robot.state_mut().live.send(Command::Seek(curve[90].time_secs));
-    robot.settle();
-    assert_eq!(bits(robot.world()), uninterrupted);
-    let parameters = robot.world().controls.settings.parameters;
+    robot.seek(curve[90].time_secs);
+    assert_eq!(robot.bits(), uninterrupted);
+    let parameters = robot.settings().parameters;
     assert_eq!((parameters.bond, parameters.time_step_secs), (80.0, 2e-3));
-
     // From step 60 on, stepping: a continuation.
-    robot.state_mut().live.send(Command::Seek(curve[60].time_secs));
-    robot.settle();
+    robot.seek(curve[60].time_secs);
     assert_eq!(robot.steps(), 60);
-    for _ in 60..90 {
-        robot.state_mut().step();
-    }
-    robot.settle();
-    assert_eq!(bits(robot.world()), uninterrupted);
-    let again: Vec<_> = robot.world().curve.rows().copied().collect();
-    assert_eq!(again, curve);
+    robot.take_steps(30);
+    assert_eq!(robot.bits(), uninterrupted);
+    assert_eq!(curve_of(&robot), curve);
 }
 
 #[test]
 fn a_step_in_the_past_deletes_nothing() {
     let mut robot = Robot::open(pile());
-    for _ in 0..50 {
-        robot.state_mut().step();
-    }
-    robot.settle();
-    let (end, until) = (bits(robot.world()), robot.state().frame.recorded_secs());
-    robot.state_mut().live.send(Command::Seek(0.02));
-    robot.settle();
+    robot.take_steps(50);
+    let (end, until) = (robot.bits(), robot.state().frame.recorded_secs());
+    robot.seek(0.02);
     assert!(robot.state().frame.replaying);
     robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.steps(), 21);
     assert_eq!(robot.state().frame.recorded_secs(), until);
     assert_eq!(robot.world().curve.len(), 51);
-    for _ in 21..50 {
-        robot.state_mut().step();
-    }
-    robot.settle();
-    assert_eq!(bits(robot.world()), end);
+    robot.take_steps(29);
+    assert_eq!(robot.bits(), end);
     assert!(!robot.state().frame.replaying && robot.state().frame.past.is_empty());
     robot.key(egui::Key::ArrowRight);
     assert_eq!((robot.steps(), robot.world().curve.len()), (51, 52));
@@ -82,13 +67,9 @@ fn a_step_in_the_past_deletes_nothing() {
 #[test]
 fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     let mut robot = Robot::open(pile());
-    for _ in 0..50 {
-        robot.state_mut().step();
-    }
-    robot.settle();
-    let curve: Vec<_> = robot.world().curve.rows().copied().collect();
-    robot.state_mut().live.send(Command::Seek(0.02));
-    robot.settle();
+    robot.take_steps(50);
+    let curve = curve_of(&robot);
+    robot.seek(0.02);
     robot.click("5e-3");
     assert!(robot.state().frame.branching);
     robot.click("Step");
@@ -97,17 +78,13 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     assert!((robot.state().frame.recorded_secs() - 0.025).abs() < 1e-12);
     assert_eq!(robot.state().frame.past.len(), 1);
 
-    robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
-    robot.harness.step();
+    robot.command_key(egui::Key::Z);
     robot.settle();
-    let again: Vec<_> = robot.world().curve.rows().copied().collect();
-    assert_eq!(again, curve);
+    assert_eq!(curve_of(&robot), curve);
     let past = robot.state().frame.past.clone();
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
-
     // What is undone can be done again, as often as one likes.
-    robot.state_mut().live.send(Command::Return(past[0].number));
-    robot.settle();
+    robot.send(Command::Return(past[0].number));
     assert_eq!(robot.world().curve.len(), 22);
 }
 
@@ -115,21 +92,17 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
 fn a_reset_and_other_worlds_keep_the_run_and_four_are_kept() {
     let mut robot = Robot::open(pile());
     for round in 1..=6 {
-        for _ in 0..3 * round {
-            robot.state_mut().step();
-        }
-        robot.settle();
+        robot.take_steps(3 * round);
         robot.key(egui::Key::R);
         assert_eq!(robot.steps(), 0);
-        assert_eq!(robot.state().frame.past.len(), round.min(4));
+        assert_eq!(robot.state().frame.past.len() as u64, round.min(4));
     }
     // A reset of nothing keeps nothing.
     robot.key(egui::Key::R);
     let lengths: Vec<usize> =
         robot.state().frame.past.iter().map(|run| run.worlds[0].curve.len()).collect();
     assert_eq!(lengths, [10, 13, 16, 19]);
-    robot.state_mut().load(pile());
-    robot.settle();
+    robot.load(pile());
     assert!(robot.state().frame.past.is_empty(), "they are of another start");
 }
 
@@ -152,7 +125,7 @@ fn little_memory_is_enough_to_get_anywhere() {
             tally: Tally::default(),
             duration_secs: 1.0,
             held_by: Vec::new(),
-            view: [glam::DVec2::ZERO, glam::DVec2::ONE],
+            view: [DVec2::ZERO, DVec2::ONE],
             slumps: true,
             worlds: Vec::new(),
             history: None,
@@ -179,8 +152,8 @@ fn little_memory_is_enough_to_get_anywhere() {
 #[test]
 fn stepping_schemes_and_a_pull_are_played_back_bitwise() {
     let mut robot = Robot::open(pile());
-    let settings = robot.world().controls.settings;
-    let pull = Pull { grain: 100, target: glam::DVec2::new(0.0, 0.1) };
+    let settings = robot.settings();
+    let pull = Pull { grain: 100, target: DVec2::new(0.0, 0.1) };
     for (stepper, steps) in [(Stepper::Dem, 40), (Stepper::TgsSoft, 20), (Stepper::Dem, 20)] {
         robot.state_mut().live.send(Command::Change(0, Settings { stepper, ..settings }));
         robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
@@ -189,14 +162,12 @@ fn stepping_schemes_and_a_pull_are_played_back_bitwise() {
         }
     }
     robot.settle();
-    let (uninterrupted, end_secs) = (bits(robot.world()), robot.state().frame.time_secs());
+    let (uninterrupted, end_secs) = (robot.bits(), robot.state().frame.time_secs());
     for time_secs in [0.015, 0.05] {
-        robot.state_mut().live.send(Command::Seek(time_secs));
-        robot.settle();
-        assert_ne!(bits(robot.world()), uninterrupted);
-        robot.state_mut().live.send(Command::Seek(end_secs));
-        robot.settle();
-        assert_eq!(bits(robot.world()), uninterrupted, "from {time_secs} s on");
+        robot.seek(time_secs);
+        assert_ne!(robot.bits(), uninterrupted);
+        robot.seek(end_secs);
+        assert_eq!(robot.bits(), uninterrupted, "from {time_secs} s on");
     }
 }
 
@@ -204,17 +175,16 @@ fn stepping_schemes_and_a_pull_are_played_back_bitwise() {
 fn play_shows_stored_moments_and_computes_where_they_end() {
     let mut robot = Robot::open(pile());
     let steps = 60;
-    let mut recorded = vec![bits(robot.world())];
+    let mut recorded = vec![robot.bits()];
     for step in 1..=steps {
         if step == 30 {
             robot.type_number("Bond", "80");
         }
         robot.key(egui::Key::ArrowRight);
-        recorded.push(bits(robot.world()));
+        recorded.push(robot.bits());
     }
     let at = |robot: &Robot| robot.steps() as usize;
-    robot.state_mut().live.send(Command::Seek(0.0));
-    robot.settle();
+    robot.seek(0.0);
     // Slowly, so that there is time to look.
     robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.02)));
     robot.state_mut().live.send(Command::Play);
@@ -222,16 +192,15 @@ fn play_shows_stored_moments_and_computes_where_they_end() {
         state.frame.stored && state.world().expect("a world").snapshot.observables.step >= 5
     });
     let shown = at(&robot);
-    assert_eq!(bits(robot.world()), recorded[shown]);
+    assert_eq!(robot.bits(), recorded[shown]);
     assert!(robot.state().frame.playing && robot.state().frame.replaying);
     // Stopped on the way, that moment is there to go on from.
     robot.key(egui::Key::Space);
     let stopped = at(&robot);
     assert!(!robot.state().frame.stored && (shown..30).contains(&stopped), "step {stopped}");
-    assert_eq!(bits(robot.world()), recorded[stopped]);
+    assert_eq!(robot.bits(), recorded[stopped]);
     robot.key(egui::Key::ArrowRight);
-    assert_eq!(bits(robot.world()), recorded[stopped + 1]);
-
+    assert_eq!(robot.bits(), recorded[stopped + 1]);
     // Played again, a change branches off at the moment that is shown.
     robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.5)));
     robot.state_mut().live.send(Command::Play);
@@ -240,18 +209,14 @@ fn play_shows_stored_moments_and_computes_where_they_end() {
     });
     robot.key(egui::Key::Space);
     assert!(robot.state().frame.past.is_empty(), "a replay is no branch");
-    robot.state_mut().live.send(Command::Seek(0.06));
-    robot.settle();
-    assert_eq!(bits(robot.world()), recorded[steps]);
+    robot.seek(0.06);
+    assert_eq!(robot.bits(), recorded[steps]);
     robot.state_mut().live.send(Command::Seek(0.01));
     robot.state_mut().live.send(Command::SetPace(Pace::RealTime(0.02)));
     robot.state_mut().live.send(Command::Play);
     robot.until("stored moments", |state| state.frame.stored);
-    let mut settings = robot.world().controls.settings;
-    settings.parameters.bond = 5.0;
-    robot.state_mut().change(0, settings);
-    robot.settle();
-    assert_eq!(robot.world().controls.settings.parameters.bond, 5.0);
+    robot.set(|settings| settings.parameters.bond = 5.0);
+    assert_eq!(robot.settings().parameters.bond, 5.0);
     robot.until("a branch", |state| !state.frame.past.is_empty());
     assert!(!robot.state().frame.stored);
 }
@@ -259,13 +224,9 @@ fn play_shows_stored_moments_and_computes_where_they_end() {
 #[test]
 fn runs_have_the_names_that_they_are_given() {
     let mut robot = Robot::open(pile());
-    let steps = |robot: &mut Robot, count: u32| {
-        (0..count).for_each(|_| robot.state_mut().step());
-        robot.settle();
-    };
-    steps(&mut robot, 3);
+    robot.take_steps(3);
     robot.key(egui::Key::R);
-    steps(&mut robot, 2);
+    robot.take_steps(2);
     robot.click("Physics");
     let number = robot.state().frame.past[0].number;
     robot.type_number(&format!("Name of run {number}"), "first try");
@@ -276,12 +237,11 @@ fn runs_have_the_names_that_they_are_given() {
     assert_eq!((robot.steps(), &*robot.state().frame.name), (3, "first try"));
     assert_eq!(robot.state().frame.past[0].name, "second");
     // What branches off is another run.
-    robot.state_mut().live.send(Command::Seek(0.001));
-    robot.settle();
-    let mut settings = robot.world().controls.settings;
+    robot.seek(0.001);
+    let mut settings = robot.settings();
     settings.parameters.bond = 3.0;
     robot.state_mut().change(0, settings);
-    steps(&mut robot, 1);
+    robot.take_steps(1);
     let names: Vec<_> = robot.state().frame.past.iter().map(|run| &*run.name).collect();
     assert_eq!((names, &*robot.state().frame.name), (vec!["second", "first try"], ""));
 }

@@ -1,17 +1,12 @@
 //! Recordings that the window exports, and those that the program writes without one.
 
+use crate::robot::*;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use slump::app::DataChoices;
-use slump::config::Config;
-use slump::data::FormatName;
 
-use crate::robot::Robot;
 use crate::tables::parquet;
 
-/// The tables of a recording.
 pub const TABLES: [&str; 5] = ["grains", "contacts", "steps", "measures", "histograms"];
 
 /// A window with the panel open, that exports each step into a folder.
@@ -23,25 +18,15 @@ pub fn open(config: Config, folder: &Path, formats: &[FormatName]) -> Robot {
     robot
 }
 
-pub fn take_steps(robot: &mut Robot, steps: u64) {
-    for _ in 0..steps {
-        robot.state_mut().step();
-    }
-    robot.settle();
-}
-
-/// Exports, and gives what is told of it.
 pub fn export(robot: &mut Robot) -> String {
     robot.click("Export data");
-    robot.until("the export", |state| !state.is_writing());
-    robot.state().notice().expect("what became of it").0.text.clone()
+    robot.written()
 }
 
 /// Runs the program without a window and gives what it says on stderr.
 pub fn headless(arguments: &[&str], folder: &Path) -> String {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-    let output = command.arg("--headless").args(arguments).arg("--data").arg(folder).output();
-    String::from_utf8(output.expect("the program starts").stderr).expect("UTF-8")
+    let mut command = slump("--headless");
+    said(&run(command.args(arguments).arg("--data").arg(folder)))
 }
 
 /// All files of a recording, by their paths in it.
@@ -63,7 +48,7 @@ pub fn files(folder: &Path) -> BTreeSet<PathBuf> {
 
 /// A text file without what says how it came about: facts by lines, or many of them in a line.
 pub fn said_in(path: &Path) -> Vec<String> {
-    let text = std::fs::read_to_string(path).expect("text");
+    let text = read(path);
     let is_origin = |said: &str| {
         let fact = said.trim_start_matches("# ");
         fact.starts_with("command: ") || fact.starts_with("exported: ")
@@ -74,14 +59,13 @@ pub fn said_in(path: &Path) -> Vec<String> {
 
 /// What is told of a recording, and what of that is of the scene.
 pub fn facts(folder: &Path) -> BTreeMap<String, String> {
-    let text = std::fs::read(folder.join("data.json")).expect("a manifest");
-    let manifest: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    let manifest = json(folder.join("data.json"));
     serde_json::from_value(manifest["about"].clone()).expect("words by words")
 }
 
 /// The arrays of a `.vtp` file by their names, but for the one that says how it came about.
 fn arrays(path: &Path) -> BTreeMap<String, Vec<u8>> {
-    let bytes = std::fs::read(path).expect("a file");
+    let bytes = bytes(path);
     let start = bytes.windows(2).position(|two| two == b" _").expect("the arrays") + 2;
     let xml = String::from_utf8_lossy(&bytes[..start]);
     let offset = |line: &str| line.split_once("offset=\"")?.1.split('"').next()?.parse().ok();

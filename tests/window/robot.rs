@@ -1,18 +1,24 @@
 //! A user who waits for the solver's thread before looking.
 
-use std::time::{Duration, Instant};
+pub use egui_kittest::kittest::{NodeT, Queryable};
+pub use glam::DVec2;
+pub use slump::app::{AppState, GrainRef, Preferences};
+pub use slump::config::{Config, SavedState};
+pub use slump::data::{FormatName, read_grains};
+pub use slump::live::{Command, Live, LiveOptions, Pace, WorldFrame};
+pub use slump::scene::*;
+pub use slump::sim::*;
+pub use slump::solver::{Fallback, FrictionModel, Method, SolverChanges, StopTest};
+
+pub use crate::program::{
+    Duration, Instant, PATIENCE, Path, PathBuf, bytes, folder, json, names_in, read, run, said,
+    slump, succeed, text, write,
+};
 
 use egui::{Event, Modifiers, PointerButton, Pos2, Vec2};
-use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, HarnessBuilder};
-use slump::app::{AppState, Preferences, theme, ui};
-use slump::config::Config;
-use slump::live::{Live, LiveOptions, WorldFrame};
+use slump::app::{theme, ui};
 
-/// Longer than anything that these tests wait for takes.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-/// A window without a screen.
 pub struct Robot {
     pub harness: Harness<'static, AppState>,
 }
@@ -21,6 +27,22 @@ impl Robot {
     /// A window of 1000 × 700 points with a scene open.
     pub fn open(config: Config) -> Self {
         Self::build(config, Preferences::default(), |window| window)
+    }
+
+    /// A window that opens a saved file.
+    pub fn open_saved(path: &Path) -> Self {
+        let mut robot = Self::open(Config::of_scene("cradle"));
+        robot.state_mut().load_saved(path);
+        robot.settle();
+        robot
+    }
+
+    /// A window with the panel of data open, whose files go into a folder.
+    pub fn open_in(folder: &Path, config: Config) -> Self {
+        let mut robot = Self::open(config);
+        robot.state_mut().preferences.folder = folder.to_owned();
+        robot.click("Data");
+        robot
     }
 
     /// The same, able to draw pictures of itself.
@@ -62,7 +84,82 @@ impl Robot {
         self.world().snapshot.observables.step
     }
 
-    /// Draws frames until the state is as wanted.
+    pub fn settings(&self) -> Settings {
+        self.world().controls.settings
+    }
+
+    pub fn observables(&self) -> Observables {
+        self.world().snapshot.observables
+    }
+
+    pub fn notice(&self) -> String {
+        self.state().notice().expect("a notice").0.text.clone()
+    }
+
+    pub fn shows(&self, words: &str) -> bool {
+        self.harness.query_all_by_label_contains(words).count() > 0
+    }
+
+    pub fn of_worlds<T>(&self, value: impl Fn(&WorldFrame) -> T) -> Vec<T> {
+        self.state().frame.worlds.iter().map(value).collect()
+    }
+
+    pub fn bits(&self) -> Vec<[u64; 6]> {
+        bits(self.world())
+    }
+
+    pub fn frames(&mut self, count: usize) {
+        (0..count).for_each(|_| self.harness.step());
+    }
+
+    pub fn send(&mut self, command: Command) {
+        self.state_mut().live.send(command);
+        self.settle();
+    }
+
+    pub fn seek(&mut self, secs: f64) {
+        self.send(Command::Seek(secs));
+    }
+
+    pub fn take_steps(&mut self, steps: u64) {
+        (0..steps).for_each(|_| self.state_mut().step());
+        self.settle();
+    }
+
+    pub fn change(&mut self, world: usize, settings: Settings) {
+        self.state_mut().change(world, settings);
+        self.settle();
+    }
+
+    pub fn set(&mut self, change: impl FnOnce(&mut Settings)) {
+        let mut settings = self.settings();
+        change(&mut settings);
+        self.change(0, settings);
+    }
+
+    pub fn load(&mut self, config: Config) {
+        self.state_mut().load(config);
+        self.settle();
+    }
+
+    pub fn paste(&mut self, text: impl Into<String>) {
+        self.harness.event(Event::Paste(text.into()));
+        self.harness.step();
+        self.settle();
+    }
+
+    pub fn drop(&mut self, path: &Path) {
+        self.harness.input_mut().dropped_files.push(std::sync::Arc::new(File(path.to_owned())));
+        self.harness.step();
+        self.settle();
+    }
+
+    /// Waits until a file is written, and gives what is told of it.
+    pub fn written(&mut self) -> String {
+        self.until("the file", |state| !state.is_writing());
+        self.notice()
+    }
+
     pub fn until(&mut self, what: &str, condition: impl Fn(&AppState) -> bool) {
         let start = Instant::now();
         loop {
@@ -93,6 +190,26 @@ impl Robot {
         self.harness.get_by_label(label).click();
         self.harness.step();
         self.settle();
+    }
+
+    pub fn clicks(&mut self, labels: &[&str]) {
+        labels.iter().for_each(|label| self.click(label));
+    }
+
+    pub fn command_key(&mut self, key: egui::Key) {
+        self.harness.key_press_modifiers(Modifiers::COMMAND, key);
+        self.harness.step();
+    }
+
+    pub fn saved(&mut self) -> PathBuf {
+        let told = self.written();
+        told.strip_prefix("Saved ").unwrap_or_else(|| panic!("{told}")).into()
+    }
+
+    pub fn save_session(&mut self, folder: &Path) -> PathBuf {
+        self.state_mut().preferences.folder = folder.to_owned();
+        self.command_key(egui::Key::S);
+        self.saved()
     }
 
     pub fn key(&mut self, key: egui::Key) {
@@ -136,12 +253,11 @@ impl Robot {
     }
 }
 
-/// A file in the hand of the mouse.
 #[derive(Debug)]
-pub struct File(pub std::path::PathBuf);
+struct File(PathBuf);
 
 impl egui::DroppedFile for File {
-    fn path(&self) -> &std::path::Path {
+    fn path(&self) -> &Path {
         &self.0
     }
 
@@ -152,16 +268,9 @@ impl egui::DroppedFile for File {
 
 /// Positions and velocities of all grains, bit for bit.
 pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
-    let bits = |grain: &slump::sim::GrainView| {
-        [
-            grain.position.x,
-            grain.position.y,
-            grain.velocity.x,
-            grain.velocity.y,
-            grain.angle,
-            grain.angular_velocity,
-        ]
-        .map(f64::to_bits)
+    let bits = |grain: &GrainView| {
+        let (at, velocity) = (grain.position, grain.velocity);
+        [at.x, at.y, velocity.x, velocity.y, grain.angle, grain.angular_velocity].map(f64::to_bits)
     };
     world.snapshot.grains.iter().map(bits).collect()
 }
@@ -171,4 +280,18 @@ pub fn pile() -> Config {
     let mut config = Config::default();
     (config.solver.tolerance, config.solver.max_sweeps) = (Some(1e-3), Some(500));
     config
+}
+
+/// A scene of one grain in the pile's place, changed in some way, in a file of its own.
+pub fn one_grain(change: impl FnOnce(&mut Scene)) -> (tempfile::TempDir, Config) {
+    let folder = folder();
+    let mut scene = pile().scene(|_| true).expect("a scene");
+    scene.grains.truncate(1);
+    scene.fixed_discs.clear();
+    scene.gravity = slump::world::Gravity::Uniform { acceleration: DVec2::ZERO };
+    change(&mut scene);
+    let path = folder.path().join("one.toml");
+    write(&path, slump::config::scene_to_toml(&scene).expect("TOML"));
+    let config = Config::of_scene(text(&path));
+    (folder, config)
 }

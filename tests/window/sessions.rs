@@ -1,73 +1,38 @@
-//! Sessions and links: what is open now, opened again later or elsewhere.
+//! Sessions, links and saved runs: what is open now, opened again later or elsewhere.
 
-use std::path::{Path, PathBuf};
-
-use slump::app::AppState;
-use slump::config::Config;
-use slump::live::Command;
-use slump::sim::{Pull, Stepper};
-
-use crate::recordings::take_steps;
-use crate::robot::{Robot, bits, pile};
+use crate::robot::*;
 
 /// All that is recorded of a window's worlds, and where they are.
 fn shown(robot: &Robot) -> Vec<(u64, f64, Vec<[u64; 6]>)> {
-    let of_world = |world: &slump::live::WorldFrame| {
-        (world.snapshot.observables.step, world.recorded_secs, bits(world))
-    };
-    robot.state().frame.worlds.iter().map(of_world).collect()
+    robot.of_worlds(|world| (world.snapshot.observables.step, world.recorded_secs, bits(world)))
 }
 
 /// Two worlds with a change on the way, looked at before their end, and a run before them.
 fn two_worlds() -> Robot {
     let mut robot = Robot::open(pile());
-    let base = robot.world().controls.settings;
-    take_steps(&mut robot, 5);
+    let base = robot.settings();
+    robot.take_steps(5);
     let variants = vec![base.over(1e-3), base.over(2e-3)];
     robot.state_mut().live.send(Command::Compare(variants));
-    take_steps(&mut robot, 20);
+    robot.take_steps(20);
     robot.state_mut().change(0, base.over(1e-3).with_bond(3.0));
-    take_steps(&mut robot, 20);
-    robot.state_mut().live.send(Command::Seek(0.06));
-    robot.settle();
-    robot
-}
-
-/// Saves a session into a folder, and gives the file.
-fn saved(robot: &mut Robot, folder: &Path) -> PathBuf {
-    robot.state_mut().preferences.folder = folder.to_owned();
-    robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::S);
-    robot.harness.step();
-    written(robot)
-}
-
-/// The file that is being written.
-fn written(robot: &mut Robot) -> PathBuf {
-    robot.until("the file", |state| !state.is_writing());
-    let told = robot.state().notice().expect("what became of it").0.text.clone();
-    told.strip_prefix("Saved ").unwrap_or_else(|| panic!("{told}")).into()
-}
-
-/// A window that opens a file.
-fn opened(path: &Path) -> Robot {
-    let mut robot = Robot::open(Config::of_scene("cradle"));
-    robot.state_mut().load_saved(path);
-    robot.settle();
+    robot.take_steps(20);
+    robot.seek(0.06);
     robot
 }
 
 #[test]
 fn a_session_brings_back_worlds_record_past_and_window() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = two_worlds();
     robot.state_mut().preferences.theme = egui::ThemePreference::Dark;
     robot.state_mut().preferences.plots = false;
     robot.click("Solver");
-    let path = saved(&mut robot, folder.path());
+    let path = robot.save_session(folder.path());
     assert!(path.extension().is_some_and(|ending| ending == "session"));
     let (before, past) = (shown(&robot), robot.state().frame.past.len());
 
-    let mut again = opened(&path);
+    let mut again = Robot::open_saved(&path);
     assert!(again.state().frame.refusal.is_none(), "{:?}", again.state().frame.refusal);
     assert_eq!(shown(&again), before);
     assert_eq!((again.state().frame.past.len(), past), (1, 1), "the run before is there");
@@ -76,20 +41,17 @@ fn a_session_brings_back_worlds_record_past_and_window() {
     // The panel that was open is so again: its contents are there.
     use egui_kittest::kittest::Queryable;
     for window in [&mut robot, &mut again] {
-        (0..20).for_each(|_| window.harness.step());
+        window.frames(20);
         assert!(window.harness.query_by_label("Trusted").is_some());
     }
-
     // Every recorded moment, and what comes after it, is the same.
     for window in [&mut robot, &mut again] {
-        window.state_mut().live.send(Command::Seek(0.024));
-        window.settle();
+        window.seek(0.024);
     }
     assert_eq!(shown(&again), shown(&robot));
     for window in [&mut robot, &mut again] {
-        window.state_mut().live.send(Command::Seek(1.0));
-        window.settle();
-        take_steps(window, 7);
+        window.seek(1.0);
+        window.take_steps(7);
     }
     assert_eq!(shown(&again), shown(&robot));
     assert_ne!(shown(&again), before);
@@ -97,30 +59,28 @@ fn a_session_brings_back_worlds_record_past_and_window() {
 
 #[test]
 fn the_tour_goes_on_at_its_place() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = Robot::open(Config::default());
     robot.state_mut().visit(2);
     robot.settle();
-    let path = saved(&mut robot, folder.path());
-    let mut again = opened(&path);
+    let path = robot.save_session(folder.path());
+    let mut again = Robot::open_saved(&path);
     assert!(again.state().touring);
     assert_eq!(again.state().preferences.tour.at, 2);
-    let before = robot.state().preferences.speed;
-    assert_eq!(again.state().preferences.speed, before);
+    assert_eq!(again.state().preferences.speed, robot.state().preferences.speed);
     again.click("Leave");
     assert!(!again.state().touring);
 }
 
 #[test]
 fn a_file_that_is_no_whole_session_is_refused_in_a_sentence() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = Robot::open(Config::of_scene("cradle"));
-    take_steps(&mut robot, 3);
+    robot.take_steps(3);
     robot.state_mut().preferences.folder = folder.path().to_owned();
-    robot.click("Data");
-    robot.click("Save session");
-    let path = written(&mut robot);
-    let bytes = std::fs::read(&path).expect("a file");
+    robot.clicks(&["Data", "Save session"]);
+    let path = robot.saved();
+    let bytes = bytes(&path);
     let mut flipped = bytes.clone();
     flipped[bytes.len() / 2] ^= 1;
     let cases: [(&str, &[u8], &str); 4] = [
@@ -129,23 +89,20 @@ fn a_file_that_is_no_whole_session_is_refused_in_a_sentence() {
         ("text", b"x,y,radius\n", "holds no session, but must be a session that the window saved"),
         ("empty", b"", "holds no session"),
     ];
-    for (name, bytes, said) in cases {
+    for (name, bytes, expected) in cases {
         let file = folder.path().join(format!("{name}.session"));
-        std::fs::write(&file, bytes).expect("a file");
+        write(&file, bytes);
         robot.state_mut().load_saved(&file);
         robot.settle();
-        let notice = robot.state().notice().expect("a complaint").0.text.clone();
-        assert!(notice.contains(said), "{name}: {notice}");
+        let notice = robot.notice();
+        assert!(notice.contains(expected), "{name}: {notice}");
         assert_eq!(robot.steps(), 3, "the run before is still there");
         // And before a window opens.
-        let mut program = std::process::Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-        let output = program.arg("--session").arg(&file).output().expect("the program starts");
-        let stderr = String::from_utf8(output.stderr).expect("UTF-8");
-        assert_eq!((output.status.code(), stderr), (Some(2), format!("slump: {notice}\n")));
+        let output = run(slump("--session").arg(&file));
+        assert_eq!((output.status.code(), said(&output)), (Some(2), format!("slump: {notice}\n")));
     }
 }
 
-/// The text that was copied last.
 fn copied(robot: &mut Robot) -> String {
     robot.state_mut().copy_link();
     for _ in 0..200 {
@@ -165,27 +122,22 @@ fn a_link_opens_the_moment_that_it_was_copied_at() {
     let mut robot = two_worlds();
     let mut settings = robot.state().frame.worlds[1].controls.settings;
     settings.stepper = Stepper::Range;
-    robot.state_mut().change(1, settings);
-    robot.settle();
+    robot.change(1, settings);
     let text = copied(&mut robot);
     assert!(text.starts_with("slump://run?") && !text.contains(' '), "{text}");
     let places = |robot: &Robot| -> Vec<_> {
         shown(robot).into_iter().map(|(step, _, bits)| (step, bits)).collect()
     };
     let mut again = Robot::open(Config::of_scene("cradle"));
-    again.harness.event(egui::Event::Paste(format!(" {text}\n")));
-    again.harness.step();
-    again.settle();
+    again.paste(format!(" {text}\n"));
     assert!(again.state().frame.refusal.is_none(), "{:?}", again.state().frame.refusal);
     assert_eq!(places(&again), places(&robot), "{text}");
-    let settings = |state: &AppState| -> Vec<_> {
-        state.frame.worlds.iter().map(|world| world.controls.settings).collect()
-    };
-    assert_eq!(settings(again.state()), settings(robot.state()));
+    let settings = |robot: &Robot| robot.of_worlds(|world| world.controls.settings);
+    assert_eq!(settings(&again), settings(&robot));
     // It is a run like any other: its link is the same, and it goes on alike.
     assert_eq!(copied(&mut again), text);
     for window in [&mut robot, &mut again] {
-        take_steps(window, 3);
+        window.take_steps(3);
     }
     assert_eq!(places(&again), places(&robot));
 }
@@ -193,19 +145,188 @@ fn a_link_opens_the_moment_that_it_was_copied_at() {
 #[test]
 fn a_link_says_what_it_leaves_out_and_what_is_none_is_refused() {
     let mut robot = Robot::open(pile());
-    let pull = Pull { grain: 100, target: glam::DVec2::new(0.0, 0.1) };
+    let pull = Pull { grain: 100, target: DVec2::new(0.0, 0.1) };
     robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
-    take_steps(&mut robot, 3);
+    robot.take_steps(3);
     copied(&mut robot);
-    assert!(robot.state().notice().expect("a word").0.text.contains("pulled by hand"));
-    robot.harness.event(egui::Event::Paste("slump://run?scene=no-such&to=3".into()));
-    robot.harness.step();
-    robot.settle();
-    let said = robot.state().notice().expect("a complaint").0.text.clone();
+    assert!(robot.notice().contains("pulled by hand"));
+    robot.paste("slump://run?scene=no-such&to=3");
+    let said = robot.notice();
     assert!(said.contains("no-such"), "{said}");
-    robot.harness.event(egui::Event::Paste("slump://walk".into()));
-    robot.harness.step();
-    let said = robot.state().notice().expect("a complaint").0.text.clone();
+    robot.paste("slump://walk");
+    let said = robot.notice();
     assert!(said.starts_with("link is slump://walk, but must be"), "{said}");
     assert_eq!(robot.steps(), 3);
+}
+
+#[test]
+fn a_saved_run_goes_on_in_the_window_as_it_would_have_without() {
+    let scene = built_in("moving-walls").expect("a scene");
+    let mut simulation = scene.simulation().expect("a sound scene");
+    simulation.take_steps(40).expect("finite states");
+    let saved = SavedState::new(scene, simulation.clone(), Tally::default());
+    let saved = SavedState::from_bytes(&saved.to_bytes().expect("bytes"), "a.slump");
+
+    let mut robot = Robot::open(pile());
+    robot.state_mut().load_run(saved.expect("a sound state"));
+    robot.until("the saved run", |state| {
+        state.world().is_some_and(|world| world.snapshot.observables.step == 40)
+    });
+    assert_eq!(robot.state().frame.time_secs(), simulation.time_secs());
+    robot.take_steps(20);
+    simulation.take_steps(20).expect("finite states");
+    assert_eq!(robot.steps(), 60);
+    let positions = |place: [u64; 6]| [place[0], place[1]].map(f64::from_bits);
+    let shown: Vec<_> = robot.bits().into_iter().map(positions).collect();
+    let expected = simulation.world().grains.positions.iter().map(|place| place.to_array());
+    assert!(shown.into_iter().eq(expected));
+}
+
+fn save(robot: &mut Robot) -> String {
+    robot.click("Save state");
+    robot.written()
+}
+
+fn saved(robot: &mut Robot) -> PathBuf {
+    robot.click("Save state");
+    robot.saved()
+}
+
+/// Runs the program without a window and gives what it says on stderr.
+fn headless(arguments: &[&str], out: &Path) -> String {
+    said(&run(slump("--headless").args(arguments).arg("--save").arg(out)))
+}
+
+#[test]
+fn the_window_saves_what_save_writes() {
+    let ways =
+        [("pile", Stepper::Moreau), ("thin-wall", Stepper::Moreau), ("pile", Stepper::Range)];
+    for (scene, stepper) in ways {
+        let folder = folder();
+        let mut config = Config::of_scene(scene);
+        config.source.duration = Some(0.04);
+        config.parameters.time_step_secs = Some(1e-3);
+        config.stepper = Some(stepper);
+        let mut robot = Robot::open_in(folder.path(), config);
+        robot.take_steps(40);
+        let found = saved(&mut robot);
+        let bond = robot.settings().parameters.bond;
+        let name = format!("slump-{scene}-bond{bond}-dt1e-3-0.0400s.slump");
+        assert_eq!(found.file_name().and_then(|name| name.to_str()), Some(&*name));
+
+        let written = folder.path().join("headless.slump");
+        let line = robot.state().command_line().expect("a command line");
+        let options: Vec<&str> = line.split(' ').skip(2).collect();
+        headless(&options, &written);
+        assert!(bytes(&found) == bytes(&written), "{scene}, {stepper:?}");
+    }
+}
+
+#[test]
+fn an_earlier_moment_is_saved_as_it_was() {
+    let folder = folder();
+    let mut robot = Robot::open_in(folder.path(), pile());
+    robot.take_steps(30);
+    robot.click("2e-3");
+    robot.take_steps(20);
+    let then = saved(&mut robot);
+    let at_secs = robot.state().frame.time_secs();
+    let mut settings = robot.settings();
+    settings.parameters.bond = 80.0;
+    robot.take_steps(5);
+    robot.state_mut().change(0, settings);
+    robot.take_steps(60);
+    let end = saved(&mut robot);
+    robot.state_mut().live.send(Command::Seek(at_secs));
+    // The seek may still be going on when this is asked for.
+    let again = saved(&mut robot);
+    assert!(again != then && then != end, "no file replaces another");
+    assert!(bytes(&again) == bytes(&then));
+    // And it goes on as the run did, without a window as well.
+    let state = SavedState::open(&again).expect("a state");
+    assert_eq!(state.scene.parameters.time_step_secs, 2e-3);
+    let mut simulation = state.simulation;
+    simulation.take_steps(5).expect("finite states");
+    simulation.change(settings).expect("sound settings");
+    simulation.take_steps(60).expect("finite states");
+    let expected = SavedState::open(&end).expect("a state").simulation;
+    assert_eq!(simulation.world().grains.positions, expected.world().grains.positions);
+}
+
+#[test]
+fn a_hand_that_pulls_is_not_saved() {
+    let folder = folder();
+    let mut robot = Robot::open_in(folder.path(), pile());
+    let pull = Pull { grain: 100, target: DVec2::new(0.0, 0.1) };
+    robot.state_mut().live.send(Command::SetPull(0, Some(pull)));
+    robot.take_steps(3);
+    assert!(robot.world().controls.pull.is_some());
+    assert_eq!(SavedState::open(&saved(&mut robot)).expect("a state").simulation.pull(), None);
+}
+
+#[test]
+fn a_state_that_is_saved_can_be_opened_and_is_a_run_of_its_own() {
+    let folder = folder();
+    let mut robot = Robot::open_in(folder.path(), pile());
+    robot.take_steps(25);
+    let before = robot.bits();
+    saved(&mut robot);
+    robot.take_steps(10);
+    let end = robot.bits();
+    // The file that was just saved is the one that the panel offers.
+    robot.click("Open");
+    assert_eq!((robot.steps(), robot.bits()), (25, before.clone()));
+    assert_eq!(robot.world().recorded_from_secs, robot.state().frame.time_secs());
+    robot.take_steps(10);
+    assert_eq!(robot.bits(), end);
+    robot.key(egui::Key::R);
+    assert_eq!((robot.steps(), robot.bits()), (25, before), "reset goes back to the file");
+    // Sums over all steps since t = 0 go along.
+    robot.take_steps(1);
+    assert_eq!(SavedState::open(&saved(&mut robot)).expect("a state").tally.steps, 26);
+}
+
+#[test]
+fn a_dropped_run_is_opened_and_a_damaged_one_is_told_of_as_restart_does() {
+    let folder = folder();
+    let mut robot = Robot::open_in(folder.path(), Config::of_scene("cradle"));
+    robot.take_steps(7);
+    let path = saved(&mut robot);
+    let mut robot = Robot::open_in(folder.path(), pile());
+    robot.drop(&path);
+    assert_eq!(robot.steps(), 7);
+    let settings = robot.settings();
+    let opens_it_again = Config::of_scene("cradle").with_settings(&settings);
+    assert_eq!(robot.state().preferences.scene, opens_it_again);
+
+    let mut bytes = bytes(&path);
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    write(&path, bytes);
+    robot.drop(&path);
+    let said = robot.notice();
+    let options = ["--duration", "1", "--restart", text(&path)];
+    assert_eq!(format!("slump: {said}\n"), headless(&options, &folder.path().join("new")));
+    assert!(said.contains("is damaged"), "{said}");
+    assert_eq!(robot.steps(), 7, "the run before is still there");
+}
+
+#[test]
+fn what_cannot_be_saved_is_told_of() {
+    let folder = folder();
+    let file = folder.path().join("file");
+    write(&file, "");
+    let mut robot = Robot::open_in(&file, pile());
+    let said = save(&mut robot);
+    assert!(said.contains("but must be a folder that can be written to"), "{said}");
+    robot.state_mut().preferences.folder = folder.path().to_owned();
+    robot.take_steps(1);
+    robot.type_number("Δt, time step", "1e200");
+    robot.take_steps(3);
+    assert!(robot.world().failure.is_some());
+    let said = save(&mut robot);
+    let expected = "state is no longer finite, but must be an earlier one: drag the timeline back";
+    assert_eq!(said, expected);
+    let shown = robot.harness.query_all_by_label(expected).count();
+    assert_eq!(shown, 1, "a run that cannot go on hides no answer");
 }

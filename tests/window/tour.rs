@@ -1,12 +1,7 @@
 //! What the stations of the tour say comes out when they are run.
 
+use crate::robot::*;
 use slump::app::tour::STATIONS;
-use slump::app::{AppState, Preferences};
-use slump::config::Config;
-use slump::live::{Command, Pace, WorldFrame};
-use slump::sim::Observables;
-
-use crate::robot::Robot;
 
 /// A window at the station of that title.
 fn visit(title: &str) -> Robot {
@@ -19,24 +14,16 @@ fn visit(title: &str) -> Robot {
 }
 
 /// Runs the station to its end, as fast as it goes.
-fn run(title: &str) -> Robot {
+fn run_station(title: &str) -> Robot {
     let mut robot = visit(title);
-    robot.state_mut().live.send(Command::SetPace(Pace::Max));
-    robot.state_mut().live.send(Command::Play);
-    robot.settle();
-    let is_over = |state: &AppState| !state.frame.playing;
-    robot.until("the end of the station", is_over);
+    robot.send(Command::SetPace(Pace::Max));
+    robot.send(Command::Play);
+    robot.until("the end of the station", |state| !state.frame.playing);
     robot
 }
 
-/// A number of each world's last step.
-fn of_worlds<T>(robot: &Robot, value: impl Fn(&Observables) -> T) -> Vec<T> {
-    let worlds = robot.state().frame.worlds.iter();
-    worlds.map(|world| value(&world.snapshot.observables)).collect()
-}
-
 fn slumps(title: &str) -> Vec<f64> {
-    of_worlds(&run(title), |row| row.slump)
+    run_station(title).of_worlds(|world| world.snapshot.observables.slump)
 }
 
 // Solved to ten tolerances from 1e-7 to 1e-6, which turn the fall by its smallest differences, this pile
@@ -55,22 +42,21 @@ fn a_strong_pile_holds_best_at_the_small_time_step() {
 
 #[test]
 fn the_bond_of_the_cradle_is_torn_at_the_smaller_of_two_steps() {
-    let robot = run("Why: three grains on a line");
+    let robot = run_station("Why: three grains on a line");
     let apart = |world: &WorldFrame| {
         let [i, j] = [0, 1].map(|grain| &world.snapshot.grains[grain]);
         i.position.distance(j.position) / (i.radius + j.radius)
     };
-    let apart: Vec<f64> = robot.state().frame.worlds.iter().map(apart).collect();
+    let apart = robot.of_worlds(apart);
     assert!(apart[0] > 1.01 && apart[1] < 1.0 + 1e-6, "apart by {apart:?} diameters");
 }
 
 #[test]
 fn too_few_sweeps_look_like_weaker_glue() {
-    let robot = run("The solver's part");
-    let slumps = of_worlds(&robot, |row| row.slump);
+    let robot = run_station("The solver's part");
+    let slumps = robot.of_worlds(|world| world.snapshot.observables.slump);
     assert!(slumps[..2].iter().all(|&few| few > slumps[2] + 0.15), "slumps {slumps:?}");
-    let unsolved: Vec<u64> =
-        robot.state().frame.worlds.iter().map(|world| world.unconverged_steps).collect();
+    let unsolved = robot.of_worlds(|world| world.unconverged_steps);
     assert!(unsolved[0] > 50 && unsolved[1] > 10, "{unsolved:?} steps are not solved");
 }
 
@@ -89,7 +75,8 @@ fn a_strong_pile_slumps_where_friction_knows_nothing_of_cohesion() {
 
 #[test]
 fn ten_sweeps_do_not_carry_a_heavy_disc() {
-    let overlaps = of_worlds(&run("Where a method breaks"), |row| row.max_overlap);
+    let robot = run_station("Where a method breaks");
+    let overlaps = robot.of_worlds(|world| world.snapshot.observables.max_overlap);
     assert!(overlaps[0] > 0.03 && overlaps[1] < 1e-4, "overlaps {overlaps:?}");
 }
 
@@ -108,13 +95,11 @@ fn the_tour_goes_on_where_it_was_left_and_gives_back_what_was_chosen() {
         robot.key(egui::Key::ArrowRight);
         assert!(robot.steps() > 0 && worlds > 0, "station {station}");
     }
-    robot.click("◀ Back");
-    robot.click("Leave");
+    robot.clicks(&["◀ Back", "Leave"]);
     let Preferences { tour, quantities, .. } = &robot.state().preferences;
     assert!((tour.at, tour.on) == (STATIONS.len() - 2, false) && *quantities == chosen);
     robot.click("Tour: 8 of 9");
     assert!(robot.state().touring && robot.state().preferences.tour.on);
-    robot.state_mut().load(Config::of_scene("cradle"));
-    robot.settle();
+    robot.load(Config::of_scene("cradle"));
     assert!(!robot.state().touring, "another scene ends the tour");
 }

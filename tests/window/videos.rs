@@ -1,38 +1,34 @@
-//! Videos that the window makes of its record.
+//! Videos and animations that the window makes of its record.
 
-use std::path::PathBuf;
+use std::io::BufReader;
 
-use egui_kittest::kittest::{NodeT, Queryable};
-use slump::live::Command;
+use image::codecs::gif::GifDecoder;
+use image::{AnimationDecoder, Frame, RgbaImage};
 
-use crate::animations::{self, open};
 use crate::probed::probe;
-use crate::recordings::take_steps;
-use crate::robot::Robot;
+use crate::robot::*;
 
-fn made(robot: &mut Robot) -> (PathBuf, String) {
-    animations::made(robot, "Save video")
+fn film(robot: &mut Robot) -> (PathBuf, String) {
+    made(robot, "Save video")
 }
 
 #[test]
 fn the_record_is_a_video_at_the_pace_of_time() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     // A side that is odd is one pixel longer.
     let mut robot = open(folder.path(), [161, 100]);
-    take_steps(&mut robot, 200);
+    robot.take_steps(200);
     // Where the timeline stands is no matter.
-    robot.state_mut().live.send(Command::Seek(0.05));
-    robot.settle();
-    let (path, told) = made(&mut robot);
+    robot.seek(0.05);
+    let (path, told) = film(&mut robot);
     assert!(told.ends_with(" of 6 pictures"), "0 to 0.2 s at 25 a second: {told}");
     let video = probe(&path);
     assert_eq!((video.pictures, &*video.rate_hz, video.size), (6, "25/1", [162, 100]));
     let lines = video.comment;
     assert!(lines.contains("Command line: slump --headless "), "{lines}");
     assert!(lines.contains("--duration 0.2"), "{lines}");
-
     // The same record makes the same file, and ten times slower ten times as many pictures.
-    let (again, _) = made(&mut robot);
+    let (again, _) = film(&mut robot);
     assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
     for (label, value) in [("Film", 25.0), ("pace ×", 1.0)] {
         let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, label);
@@ -40,22 +36,21 @@ fn the_record_is_a_video_at_the_pace_of_time() {
     }
     robot.state_mut().preferences.video_rate_hz = 50.0;
     robot.state_mut().preferences.video_speed = 0.1;
-    let (slow, _) = made(&mut robot);
+    let (slow, _) = film(&mut robot);
     assert_eq!(probe(&slow).pictures, 101);
 }
 
 #[test]
 fn compared_worlds_stand_side_by_side_in_one_video() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = open(folder.path(), [240, 120]);
     robot.state_mut().preferences.style.colour_by = slump::render::ColourBy::Speed;
-    let base = robot.world().controls.settings;
+    let base = robot.settings();
     // The second steps so far that pictures show some of its moments twice.
-    robot.state_mut().live.send(Command::Compare(vec![base.over(1e-3), base.over(5e-3)]));
-    robot.settle();
-    take_steps(&mut robot, 20);
+    robot.send(Command::Compare(vec![base.over(1e-3), base.over(5e-3)]));
+    robot.take_steps(20);
     robot.state_mut().preferences.video_rate_hz = 240.0;
-    let (path, _) = made(&mut robot);
+    let (path, _) = film(&mut robot);
     let name = path.file_name().and_then(|name| name.to_str()).expect("a name");
     assert!(name.starts_with("slump-pile-2worlds-"), "{name}");
     assert_eq!(probe(&path).pictures, 25);
@@ -63,32 +58,115 @@ fn compared_worlds_stand_side_by_side_in_one_video() {
 
 #[test]
 fn a_video_that_is_stopped_leaves_nothing_and_the_run_goes_on_meanwhile() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut robot = open(folder.path(), [640, 400]);
-    take_steps(&mut robot, 300);
+    robot.take_steps(300);
     robot.state_mut().preferences.video_rate_hz = 240.0;
     robot.state_mut().preferences.video_speed = 0.1;
     robot.click("Save video");
     assert!(robot.harness.query_by_label("Save video").is_none(), "one at a time");
     let before = robot.steps();
-    take_steps(&mut robot, 3);
+    robot.take_steps(3);
     assert!(robot.state().is_writing() && robot.steps() == before + 3, "the run goes on");
     robot.click("Stop video");
-    robot.until("the end", |state| !state.is_writing());
-    let told = robot.state().notice().expect("what became of it").0.text.clone();
-    assert_eq!(told, "Stopped: there is no video");
+    assert_eq!(robot.written(), "Stopped: there is no video");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
     assert!(robot.harness.query_by_label("Save video").is_some(), "another can be asked for");
 }
 
 #[test]
 fn a_place_that_takes_no_video_is_named() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let file = folder.path().join("file");
-    std::fs::write(&file, "").expect("a file");
+    write(&file, "");
     let mut robot = open(&file.join("below"), [160, 100]);
     robot.click("Save video");
-    robot.until("the refusal", |state| !state.is_writing());
-    let told = robot.state().notice().expect("a refusal").0.text.clone();
+    let told = robot.written();
     assert!(told.contains("folder is") && told.contains("can be written to"), "{told}");
+}
+
+/// A window whose pictures are so large.
+pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
+    let preferences =
+        Preferences { folder: folder.to_owned(), picture_size: size, ..Preferences::default() };
+    let mut robot = Robot::open_with_gpu(pile(), preferences);
+    robot.click("See");
+    robot
+}
+
+/// Has a button make a file of moving pictures, and gives it and what is told of it.
+pub(crate) fn made(robot: &mut Robot, button: &str) -> (PathBuf, String) {
+    robot.click(button);
+    let told = robot.written();
+    let path = told.strip_prefix("Saved ").and_then(|rest| rest.split(" of ").next());
+    (path.unwrap_or_else(|| panic!("{told}")).into(), told)
+}
+
+fn animation(robot: &mut Robot) -> PathBuf {
+    made(robot, "Save GIF").0
+}
+
+fn pictures(path: &Path) -> Vec<Frame> {
+    let file = BufReader::new(std::fs::File::open(path).expect("an animation"));
+    let decoder = GifDecoder::new(file).expect("a GIF");
+    decoder.into_frames().collect_frames().expect("pictures")
+}
+
+fn shown_ms(frame: &Frame) -> f64 {
+    let (numerator, denominator) = frame.delay().numer_denom_ms();
+    f64::from(numerator) / f64::from(denominator)
+}
+
+/// Mean difference of the channels of two pictures, 0 … 255.
+fn difference(one: &RgbaImage, other: &RgbaImage) -> f64 {
+    let differences = one.as_raw().iter().zip(other.as_raw());
+    let sum: u64 = differences.map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / one.as_raw().len() as f64
+}
+
+#[test]
+fn the_record_is_an_animation_at_the_pace_of_time() {
+    let folder = folder();
+    let mut robot = open(folder.path(), [161, 100]);
+    robot.take_steps(200);
+    let path = animation(&mut robot);
+    let frames = pictures(&path);
+    assert_eq!(frames.len(), 6, "0 to 0.2 s at 25 a second");
+    for frame in &frames {
+        assert_eq!(shown_ms(frame), 40.0);
+        assert_eq!(frame.buffer().dimensions(), (161, 100));
+    }
+    assert!(difference(frames[0].buffer(), frames[5].buffer()) > 0.5, "the pile moves");
+    // It says what it is of, and the same record makes the same file.
+    let bytes = bytes(&path);
+    let said = String::from_utf8_lossy(&bytes);
+    assert!(said.contains("Command line: slump --headless "), "no command line");
+    assert!(bytes == std::fs::read(animation(&mut robot)).unwrap());
+}
+
+/// What a file cannot say is not asked of it: pictures follow each other by whole hundredths of a second, and by no
+/// fewer than two; the pace of time stays that which was asked for.
+#[test]
+fn an_animation_keeps_its_pace_where_it_cannot_have_the_pictures_asked_for() {
+    let folder = folder();
+    let mut robot = open(folder.path(), [161, 100]);
+    robot.take_steps(200);
+    for (rate_hz, pictures_made, each_ms) in [(240.0, 11, 20.0), (60.0, 11, 20.0), (30.0, 7, 30.0)]
+    {
+        robot.state_mut().preferences.video_rate_hz = rate_hz;
+        let frames = pictures(&animation(&mut robot));
+        assert_eq!(frames.len(), pictures_made, "{rate_hz}");
+        assert!(frames.iter().all(|frame| shown_ms(frame) == each_ms), "{rate_hz}");
+    }
+}
+
+#[test]
+fn an_animation_that_is_stopped_leaves_nothing() {
+    let folder = folder();
+    let mut robot = open(folder.path(), [640, 400]);
+    robot.take_steps(300);
+    robot.state_mut().preferences.video_speed = 0.01;
+    robot.clicks(&["Save GIF", "Stop GIF"]);
+    assert_eq!(robot.written(), "Stopped: there is no GIF");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
 }

@@ -93,6 +93,19 @@ impl Error {
     }
 }
 
+/// Says that the value of a field must be otherwise, unless it is sound.
+///
+/// # Errors
+/// [`Error::Value`].
+pub fn check(
+    is_sound: bool,
+    field: impl Into<String>,
+    value: impl std::fmt::Display,
+    allowed: impl Into<String>,
+) -> Result<()> {
+    if is_sound { Ok(()) } else { Err(Error::value(field, value, allowed)) }
+}
+
 /// What a parser says of `form`, as a sentence that says what is allowed.
 pub fn with_allowed(said: &str, form: &str) -> String {
     let said = said.trim_end();

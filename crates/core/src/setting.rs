@@ -55,7 +55,7 @@ pub struct Control {
     pub hint: &'static str,
     /// Ends of a number's slider. Typed values may lie outside.
     pub range: [f64; 2],
-    /// Whether equal distances on the slider are equal factors.
+    /// True where equal distances on the slider are equal factors.
     pub logarithmic: bool,
 }
 
@@ -65,22 +65,22 @@ impl Control {
         Self { label: "", symbol: "", unit: "", hint: "", range: [0.0, 1.0], logarithmic: false };
 }
 
-/// The declaration of a setting of one type.
+/// A control of which no more is said.
+pub(crate) const fn shown(label: &'static str, hint: &'static str) -> Option<Control> {
+    Some(Control { label, hint, ..Control::PLAIN })
+}
+
+/// The declaration of a setting of one type: what [`About`] has, and which values it may have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Declaration<T> {
-    /// See [`About::name`].
     pub name: &'static str,
-    /// See [`About::value_name`].
     pub value_name: &'static str,
-    /// See [`About::help`].
     pub help: &'static str,
     /// What it may be, for messages.
     pub allowed: &'static str,
-    /// Whether a value is allowed. NaN must not be.
+    /// True where a value is allowed. NaN must not be.
     pub holds: fn(T) -> bool,
-    /// See [`About::needs`].
     pub needs: Needs,
-    /// See [`About::control`].
     pub control: Option<Control>,
 }
 
@@ -88,7 +88,7 @@ impl<T: Settable> Declaration<T> {
     /// A setting that may be any value and that the window does not show.
     pub(crate) const ANY: Self = Self {
         name: "",
-        value_name: "",
+        value_name: T::VALUE_NAME,
         help: "",
         allowed: "",
         holds: |_| true,
@@ -149,47 +149,34 @@ pub struct Word {
 pub trait Settable: Copy + PartialEq {
     /// The kind of its values.
     const KIND: Kind;
+    /// Stands for the value in the help of the command line, where no declaration says otherwise.
+    const VALUE_NAME: &'static str = "";
     /// It as a value.
     fn value(self) -> Value;
     /// It from a value of its kind; nothing from any other.
     fn of(value: Value) -> Option<Self>;
 }
 
-impl Settable for f64 {
-    const KIND: Kind = Kind::Number;
+macro_rules! settable {
+    ($type:ty, $Variant:ident, $value_name:literal) => {
+        impl Settable for $type {
+            const KIND: Kind = Kind::$Variant;
+            const VALUE_NAME: &'static str = $value_name;
 
-    fn value(self) -> Value {
-        Value::Number(self)
-    }
+            fn value(self) -> Value {
+                Value::$Variant(self)
+            }
 
-    fn of(value: Value) -> Option<Self> {
-        if let Value::Number(number) = value { Some(number) } else { None }
-    }
+            fn of(value: Value) -> Option<Self> {
+                if let Value::$Variant(value) = value { Some(value) } else { None }
+            }
+        }
+    };
 }
 
-impl Settable for u32 {
-    const KIND: Kind = Kind::Count;
-
-    fn value(self) -> Value {
-        Value::Count(self)
-    }
-
-    fn of(value: Value) -> Option<Self> {
-        if let Value::Count(count) = value { Some(count) } else { None }
-    }
-}
-
-impl Settable for bool {
-    const KIND: Kind = Kind::Switch;
-
-    fn value(self) -> Value {
-        Value::Switch(self)
-    }
-
-    fn of(value: Value) -> Option<Self> {
-        if let Value::Switch(on) = value { Some(on) } else { None }
-    }
-}
+settable!(f64, Number, "");
+settable!(u32, Count, "N");
+settable!(bool, Switch, "BOOL");
 
 /// A structure of settings.
 pub trait Group: Sized + 'static {
@@ -230,19 +217,22 @@ pub trait Changes: Default {
     fn write<S: SerializeMap>(&self, map: &mut S) -> Result<(), S::Error>;
 }
 
-/// Declares a structure of settings and the one of their changes. Each field is followed by its default and
-/// by what [`crate::setting::Declaration`] says of it.
+/// Declares a structure of settings and the one of their changes. Each field is followed by its default, by name, stand-in
+/// and help of its option (which is its documentation, too), and by what else [`crate::setting::Declaration`] says of it.
 macro_rules! settings {
     (
         $(#[$meta:meta])* $vis:vis struct $Name:ident, changes $Changes:ident, heading $heading:literal {
-            $($(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr, { $($said:tt)* })*
+            $(
+                $(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr,
+                $flag:literal $(($value_name:literal))?, $help:literal, { $($said:tt)* }
+            )*
         }
     ) => {
         #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
         #[serde(deny_unknown_fields)]
         $(#[$meta])*
         $vis struct $Name {
-            $($(#[$field_meta])* pub $field: $type,)*
+            $(#[doc = $help] $(#[$field_meta])* pub $field: $type,)*
         }
 
         #[doc = concat!("What is given of [`", stringify!($Name), "`].")]
@@ -270,10 +260,15 @@ macro_rules! settings {
                 #[allow(unused_imports, reason = "not every declaration needs them all")]
                 use super::*;
                 #[allow(unused_imports, reason = "not every declaration needs them all")]
-                use $crate::setting::{Control, Declaration, Needs};
+                use $crate::setting::{Control, Declaration, Needs, shown};
                 $(
-                    pub(super) const $field: Declaration<$type> =
-                        Declaration { $($said)* ..Declaration::ANY };
+                    pub(super) const $field: Declaration<$type> = Declaration {
+                        name: $flag,
+                        $(value_name: $value_name,)?
+                        help: $help,
+                        $($said)*
+                        ..Declaration::ANY
+                    };
                 )*
             }
 
@@ -353,7 +348,8 @@ macro_rules! settings {
 
 pub(crate) use settings;
 
-/// Declares a setting that is one of a few words, each with its name and a line that explains it.
+/// Declares a setting that is one of a few words, each with its name and a line that explains it, which is its
+/// documentation, too.
 macro_rules! words {
     (
         $(#[$meta:meta])* $vis:vis enum $Name:ident {
@@ -363,7 +359,7 @@ macro_rules! words {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
         $(#[$meta])*
         $vis enum $Name {
-            $($(#[$variant_meta])* #[serde(rename = $word)] $Variant,)*
+            $(#[doc = $hint] $(#[$variant_meta])* #[serde(rename = $word)] $Variant,)*
         }
 
         impl $Name {

@@ -20,9 +20,9 @@ const WORTH_IT: usize = 16_384;
 const PATIENCE: Duration = Duration::from_micros(200);
 
 thread_local! {
-    /// Whether what this thread does is shared out.
+    /// True where what this thread does is shared out.
     static SHARES: Cell<bool> = const { Cell::new(false) };
-    /// Whether this thread is kept awake.
+    /// True where this thread is kept awake.
     static IS_AWAKE: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn share<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Whether parts of what is done now go to other threads.
+/// True where parts of what is done now go to other threads.
 pub(crate) fn are_there() -> bool {
     SHARES.get()
 }

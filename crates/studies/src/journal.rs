@@ -15,15 +15,12 @@ use crate::error::{Error, Result};
 use crate::output::note_line;
 use crate::runner::FinishedCase;
 
-/// Ending of a journal's name.
 const ENDING: &str = "jsonl";
 
-/// Where the journal of that name lies.
 pub(super) fn path_of(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{name}.{ENDING}"))
 }
 
-/// A journal that this program writes.
 pub(super) struct Journal {
     path: PathBuf,
     file: Mutex<File>,
@@ -32,9 +29,6 @@ pub(super) struct Journal {
 impl Journal {
     /// Opens a journal for appending and cuts off a half line at its end. Damaged lines are named and
     /// blanked.
-    ///
-    /// # Errors
-    /// Where it cannot be written, or another program is at it.
     pub(super) fn open(folder: &Path, name: &str) -> Result<Self> {
         let path = path_of(folder, name);
         let refuse = |error: std::io::Error| Error::file(&path, error);
@@ -50,7 +44,6 @@ impl Journal {
         Ok(Self { path, file: Mutex::new(file) })
     }
 
-    /// Adds something finished.
     pub(super) fn add(&self, entry: &impl Serialize) -> Result<()> {
         let line = serde_json::to_string(entry).map_err(|error| Error::file(&self.path, error))?;
         let line = sealed_line(&line);
@@ -65,9 +58,6 @@ impl Journal {
 }
 
 /// All finished cases in the journals of some folders, by key.
-///
-/// # Errors
-/// Where a journal cannot be read, or two disagree about a case.
 pub(super) fn read_all<T: Serialize + DeserializeOwned>(
     folders: &[PathBuf],
 ) -> Result<HashMap<String, FinishedCase<T>>> {
@@ -89,9 +79,6 @@ pub(super) fn read_all<T: Serialize + DeserializeOwned>(
 }
 
 /// The records of one journal. Damaged lines are named and left out.
-///
-/// # Errors
-/// Where it cannot be read.
 pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
     let mut entries = Vec::new();
@@ -134,7 +121,6 @@ fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The journals of some folders, in the order of their names.
 pub(super) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for folder in folders {
@@ -150,9 +136,6 @@ pub(super) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
 }
 
 /// Removes the journals of a folder that no program is at. Whoever is at one has begun anew.
-///
-/// # Errors
-/// Where one cannot be removed.
 pub(super) fn remove_all(folder: &Path) -> Result<()> {
     for path in journals(&[folder.to_owned()])? {
         let is_in_use = File::open(&path).is_ok_and(|file| file.try_lock_shared().is_err());
@@ -170,7 +153,6 @@ const BETWEEN: &str = "\",\"record\":";
 /// What stands before the checksum at the end of a file whose comments begin with `#`.
 const COMMENT: &str = "# checksum ";
 
-/// The checksum of some bytes.
 pub(super) fn checksum(text: &[u8]) -> String {
     blake3::hash(text).to_hex()[..DIGITS].to_owned()
 }

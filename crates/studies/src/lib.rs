@@ -24,8 +24,8 @@ mod speed;
 pub mod stability;
 mod states;
 mod statistics;
-pub mod sweep;
-pub mod validate;
+mod sweep;
+mod validate;
 
 pub use figures::{figure_names, reproduce};
 pub use paper::PILE_SOLVER;
@@ -40,5 +40,4 @@ pub use speed::{ChartOptions, ChartPart, chart_speed};
 pub use states::settled_pile;
 pub use statistics::{Mean, mean};
 pub use sweep::{Shard, SweepOptions, merge, sweep};
-pub use validate::Agreement as Verdict;
 pub use validate::{ValidateOptions, experiment_names, validate};

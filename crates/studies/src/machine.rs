@@ -9,26 +9,18 @@ use super::runner::Runner;
 use crate::error::{Error, Result};
 use crate::output::check_writable;
 
-/// Where and when times were measured.
 #[derive(Clone, Debug)]
 pub(super) struct Machine {
-    /// The processor's name.
     pub processor: String,
-    /// Cores that this program may use.
     pub cores: usize,
     /// UTC, year-month-day.
     pub date: String,
-    /// The command line.
     pub command: String,
     /// Tells programs and processors apart: times of another one are no times of this one.
     pub fingerprint: String,
 }
 
 impl Machine {
-    /// This one, now.
-    ///
-    /// # Errors
-    /// Where the program cannot read itself.
     pub(super) fn this() -> Result<Self> {
         let processor = processor();
         let program = std::env::current_exe().map_err(|error| Error::file("slump", error))?;
@@ -48,9 +40,6 @@ impl Machine {
 
     /// A runner of the measurements of this program on this machine, whose journal lies below `folder`. A quick pass
     /// has its own.
-    ///
-    /// # Errors
-    /// Where the journal cannot be read or written.
     pub(super) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         folder: &Path,
@@ -63,7 +52,6 @@ impl Machine {
         Runner::open(name, &folder, name)
     }
 
-    /// A line for a caption.
     pub(super) fn words(&self) -> String {
         let Self { processor, cores, date, command, .. } = self;
         let cores = if *cores == 1 { "1 core".into() } else { format!("{cores} cores") };

@@ -63,7 +63,7 @@ pub struct Study {
     pub name: String,
     /// Tells studies apart: hash of the keys of all runs.
     pub fingerprint: String,
-    /// Whether these are the runs of a quick pass, which differs from the full one.
+    /// True if these are the runs of a quick pass, which differs from the full one.
     pub is_quick_pass: bool,
     /// Which rows each run writes over time, if any.
     pub series: Option<SeriesSettings>,
@@ -270,9 +270,6 @@ impl Known {
 impl PlannedRun {
     /// That of a config. Series have these grains; `outputs` is what is written of the run besides its result, and
     /// `bases` what has been read, by name.
-    ///
-    /// # Errors
-    /// Where the config is not sound, or has fewer grains.
     fn new(
         config: &Config,
         grains_asked_for: &[usize],
@@ -326,9 +323,6 @@ const MOST_VALUES: i64 = 1_000_000;
 ///
 /// A list is `[0, 20, 50]`. A range is `{ from = 1, to = 16 }`, whole numbers one by one, or
 /// `{ from = 1e-4, to = 1e-2, count = 20 }`, evenly spaced, with `scale = "log"` in ratio.
-///
-/// # Errors
-/// Where it is neither, holds no value, or holds one twice.
 fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
     let values = match said {
         Value::Array(list) => list.clone(),
@@ -428,7 +422,7 @@ fn not_above(field: &str, least: &str, from: impl Display, to: impl Display) -> 
     Error::value(format!("{field}.to"), to, format!("{least} from, which is {from}"))
 }
 
-/// Whether values are evenly spaced in ratio.
+/// True if values are evenly spaced in ratio.
 fn is_logarithmic(field: &str, range: &Table, from: f64) -> Result<bool> {
     let Some(scale) = range.get("scale") else { return Ok(false) };
     match scale.as_str() {

@@ -13,8 +13,7 @@ use crate::output::{PendingFile, Texts};
 /// # Errors
 /// Names the file and what the system says.
 pub fn write_png(path: &Path, image: &RgbaImage, texts: &Texts) -> Result<()> {
-    let size = image.dimensions();
-    let bytes = encoded(size, ColorType::Rgba, image.as_raw(), texts);
+    let bytes = encoded([image.width(), image.height()], ColorType::Rgba, image.as_raw(), texts);
     let mut draft = PendingFile::start(path)?;
     draft.write(&bytes.map_err(|error| Error::file(path, error))?)?;
     draft.finish(false)
@@ -25,18 +24,18 @@ pub fn write_png(path: &Path, image: &RgbaImage, texts: &Texts) -> Result<()> {
 /// # Errors
 /// Where the picture has no pixel.
 pub fn png_of_rgb(image: &RgbImage, texts: &Texts) -> Result<Vec<u8>> {
-    encoded(image.dimensions(), ColorType::Rgb, image.as_raw(), texts)
+    encoded([image.width(), image.height()], ColorType::Rgb, image.as_raw(), texts)
         .map_err(|error| Error::file("picture", error))
 }
 
 fn encoded(
-    (width, height): (u32, u32),
+    size: [u32; 2],
     colours: ColorType,
     pixels: &[u8],
     texts: &Texts,
 ) -> std::result::Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, height);
+    let mut encoder = Encoder::new(&mut bytes, size[0], size[1]);
     encoder.set_color(colours);
     encoder.set_depth(BitDepth::Eight);
     for (keyword, text) in texts.iter() {

@@ -7,9 +7,6 @@ use crate::error::{Error, Result};
 use crate::output::write_file;
 
 /// Writes a sheet of charts as `name.csv`, `.png` and `.svg`. The picture says which command made it.
-///
-/// # Errors
-/// Names the file and what the system says.
 pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &str) -> Result<()> {
     let path = |ending: &str| folder.join(format!("{name}.{ending}"));
     write_file(&path("csv"), &sheet.to_csv()?)?;
@@ -19,29 +16,22 @@ pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &st
 
 /// Numbers that a figure's claims rest on.
 pub(crate) struct ReportTable {
-    /// Name of its file, without the ending.
-    pub name: &'static str,
+    pub name: String,
     pub columns: Vec<&'static str>,
-    /// A cell a column.
     pub rows: Vec<Vec<String>>,
 }
 
 impl ReportTable {
-    /// The table as CSV.
-    ///
-    /// # Errors
-    /// Where a row has not a cell a column.
     pub(crate) fn to_csv(&self) -> Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let refuse = |error: csv::Error| Error::file(self.name, error);
+        let refuse = |error: csv::Error| Error::file(&self.name, error);
         writer.write_record(&self.columns).map_err(refuse)?;
         for row in &self.rows {
             writer.write_record(row).map_err(refuse)?;
         }
-        writer.into_inner().map_err(|error| Error::file(self.name, error.error()))
+        writer.into_inner().map_err(|error| Error::file(&self.name, error.error()))
     }
 
-    /// The table as Markdown.
     pub(crate) fn to_markdown(&self) -> String {
         let line = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
         let words: Vec<String> = self.columns.iter().map(|name| name.replace('_', " ")).collect();

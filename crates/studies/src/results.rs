@@ -2,12 +2,10 @@
 //! its result.
 
 use std::collections::HashMap;
-use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::Study;
@@ -34,7 +32,7 @@ pub enum Status {
 
 /// What a run comes to. A row of the study's table. Numbers of a run whose state was no longer finite are those that
 /// it ended with, finite or not.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
     /// How it ended.
     pub status: Status,
@@ -49,8 +47,8 @@ pub struct RunResult {
     pub first_gap: f64,
     /// Grains that went through a wall or left the world.
     pub lost_grains: u32,
-    /// The kinds of alarms that it raised.
-    pub alarms: Alarms,
+    /// The names of the kinds of alarms that it raised, with spaces between them.
+    pub alarms: String,
 }
 
 impl RunResult {
@@ -58,9 +56,8 @@ impl RunResult {
     const COLUMNS: &str = "status,steps,slump,mean_overlap,max_overlap,mean_contacts,first_gap,\
         unconverged_steps,stalled_steps,fallback_steps,sweeps,largest_residual,lost_grains,alarms";
 
-    /// What stands in these columns.
-    fn cells(&self) -> impl Serialize {
-        let Self { status, tally, slump, first_gap, lost_grains, alarms } = *self;
+    fn cells(&self) -> impl Serialize + '_ {
+        let Self { status, tally, slump, first_gap, lost_grains, alarms } = self;
         (
             status,
             tally.steps,
@@ -85,15 +82,11 @@ impl RunResult {
     /// Of a run of which all is well, for tests.
     pub(crate) fn of_slump(slump: f64) -> Self {
         let tally = Tally { steps: 1, sweeps: 1, ..Tally::default() };
-        let (status, alarms) = (Status::Done, Alarms::default());
+        let (status, alarms) = (Status::Done, String::new());
         Self { status, tally, slump, first_gap: 0.0, lost_grains: 0, alarms }
     }
 }
 
-/// Takes a scene to its end.
-///
-/// # Errors
-/// Where the scene is not sound, or series or recording cannot be written. A state that is no longer finite is a result.
 pub(super) fn run_to_end(
     scene: &Scene,
     mut series: Option<&mut Series<'_>>,
@@ -129,13 +122,15 @@ pub(super) fn run_to_end(
         RunEnding::Done | RunEnding::Stopped => Status::Done,
     };
     let observables = simulation.observables();
+    let raised: Vec<AlarmKind> = simulation.alarms().iter().map(|alarm| alarm.kind).collect();
+    let kinds = AlarmKind::ALL.into_iter().filter(|kind| raised.contains(kind));
     Ok(RunResult {
         status,
         tally,
         slump: observables.slump,
         first_gap: first_gap(&simulation),
         lost_grains: observables.lost_grains,
-        alarms: simulation.alarms().iter().map(|alarm| alarm.kind).collect(),
+        alarms: kinds.map(|kind| kind.name()).collect::<Vec<_>>().join(" "),
     })
 }
 
@@ -160,7 +155,6 @@ pub struct RunsTable {
 }
 
 impl RunsTable {
-    /// Puts finished runs in the study's order.
     pub(super) fn new(
         study: &Study,
         finished: &HashMap<String, FinishedCase<SweptRun>>,
@@ -170,7 +164,7 @@ impl RunsTable {
         for run in &study.runs {
             if let Some(case) = finished.get(&run.key) {
                 core_secs += case.wall_secs;
-                rows.push((run.key.clone(), run.config.clone(), case.result.outcome));
+                rows.push((run.key.clone(), run.config.clone(), case.result.outcome.clone()));
             }
         }
         let (done, all) = (rows.len(), study.runs.len());
@@ -192,9 +186,6 @@ impl RunsTable {
     }
 
     /// Writes the table as CSV. Numbers read back bit for bit.
-    ///
-    /// # Errors
-    /// Names the file and what the system says.
     pub(super) fn write(&self, path: &Path) -> Result<()> {
         let refuse = |error: csv::Error| Error::file("runs.csv", error);
         let fields = Config::names();
@@ -223,57 +214,13 @@ pub(super) fn alarms_of<'a>(results: impl Iterator<Item = &'a RunResult>) -> Opt
     let (mut all, mut alarmed, mut by_kind) = (0, 0, [0; AlarmKind::ALL.len()]);
     for result in results {
         all += 1;
-        alarmed += u32::from(result.alarms != Alarms::default());
+        alarmed += u32::from(!result.alarms.is_empty());
         for (count, kind) in by_kind.iter_mut().zip(AlarmKind::ALL) {
-            *count += u32::from(result.alarms.has(kind));
+            *count += u32::from(result.alarms.split(' ').any(|name| name == kind.name()));
         }
     }
     let counts = AlarmKind::ALL.iter().zip(by_kind).filter(|(_, count)| *count > 0);
     let counts: Vec<_> = counts.map(|(kind, count)| format!("{} {count}", kind.name())).collect();
     let counts = counts.join(", ");
     (alarmed > 0).then(|| format!("{alarmed} of {all} runs raised alarms ({counts})"))
-}
-
-/// Kinds of alarms, each once. In files their names, with spaces between them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Alarms(u8);
-
-impl Alarms {
-    /// Whether there are some of that kind.
-    pub(crate) fn has(self, kind: AlarmKind) -> bool {
-        self.0 & (1 << kind as u8) != 0
-    }
-
-    fn kinds(self) -> impl Iterator<Item = AlarmKind> {
-        AlarmKind::ALL.into_iter().filter(move |kind| self.has(*kind))
-    }
-}
-
-impl FromIterator<AlarmKind> for Alarms {
-    fn from_iter<I: IntoIterator<Item = AlarmKind>>(kinds: I) -> Self {
-        Self(kinds.into_iter().fold(0, |all, kind| all | 1 << kind as u8))
-    }
-}
-
-impl fmt::Display for Alarms {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<_> = self.kinds().map(AlarmKind::name).collect();
-        formatter.write_str(&names.join(" "))
-    }
-}
-
-impl Serialize for Alarms {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-impl<'de> Deserialize<'de> for Alarms {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        let kind = |name: &str| {
-            let found = AlarmKind::ALL.into_iter().find(|kind| kind.name() == name);
-            found.ok_or_else(|| D::Error::custom(format!("{name} is no kind of alarm")))
-        };
-        String::deserialize(deserializer)?.split_whitespace().map(kind).collect()
-    }
 }

@@ -9,24 +9,15 @@ use crate::sim::{Observables, RunEnding, Simulation, Snapshot, Tally};
 /// What takes down a run while it goes on.
 pub trait Recorder {
     /// Called after every step. Breaking ends the run.
-    ///
-    /// # Errors
-    /// Where it cannot be taken down; the run ends.
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>>;
 
     /// Called at the start, and after every step, before its pictures, with the whole state and the sums so
     /// far.
-    ///
-    /// # Errors
-    /// Where it cannot be taken down; the run ends.
     fn state(&mut self, _simulation: &Simulation, _tally: &Tally) -> Result<()> {
         Ok(())
     }
 
     /// Called at each time that was asked for, with its number and the state at the nearest step.
-    ///
-    /// # Errors
-    /// Where it cannot be taken down; the run ends.
     fn picture(&mut self, number: usize, snapshot: Snapshot) -> Result<()>;
 }
 
@@ -48,7 +39,7 @@ pub struct Recorded {
     pub simulation: Simulation,
     /// Sums over its steps.
     pub tally: Tally,
-    /// Whether the recorder ended it.
+    /// True if the recorder ended it.
     pub interrupted: bool,
     /// Why it ended early, if it failed: its state was no longer finite, or it could not be recorded.
     pub failure: Option<Error>,

@@ -17,29 +17,24 @@ use crate::output::{Progress, note_line};
 /// Lines that report progress where there is no terminal to draw a bar on.
 const LINES_OF_PROGRESS: usize = 20;
 
-/// One case of an experiment.
 pub(crate) struct Case<C> {
     /// Tells it apart from all other cases of its journal.
     pub key: String,
     /// How long it may take, in any unit: for the order of work and for progress.
     pub cost: f64,
-    /// What it is computed from.
     pub setup: C,
 }
 
 /// A line of a journal: a case and its result, whose fields stand beside the others.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct FinishedCase<T> {
-    /// The key of its case.
     pub key: String,
-    /// Wall-clock time that it took, s.
     pub wall_secs: f64,
     /// A structure without a field `key` or `wall_secs`.
     #[serde(flatten)]
     pub result: T,
 }
 
-/// How many cases run at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Threads {
     /// As many as there are threads, the longest first, so that no thread waits long for the last one.
@@ -48,7 +43,6 @@ pub(crate) enum Threads {
     One,
 }
 
-/// Runs the cases of one experiment.
 pub(crate) struct Runner<T> {
     name: String,
     journal: Journal,
@@ -57,9 +51,6 @@ pub(crate) struct Runner<T> {
 
 impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
     /// A runner with a journal in `folder` that goes on where the journal ends, and says so.
-    ///
-    /// # Errors
-    /// Where the journal cannot be read or written, or another program is at it.
     pub(crate) fn open(name: &str, folder: &Path, journal_name: &str) -> Result<Self> {
         // Opening cuts off a half line, so it comes first.
         let journal = Journal::open(folder, journal_name)?;
@@ -80,15 +71,11 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         Self { name: name.to_owned(), journal, finished }
     }
 
-    /// Whether the case of that key is finished.
     pub(crate) fn has(&self, key: &str) -> bool {
         self.finished.contains_key(key)
     }
 
     /// Runs the cases that are not finished, and gives all of them in their order.
-    ///
-    /// # Errors
-    /// The first error of a case, or where the journal cannot be written. What is finished by then is in the journal.
     pub(crate) fn run<C: Sync>(
         &self,
         cases: &[Case<C>],
@@ -129,9 +116,6 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
     }
 
     /// The result of a case that depends on others, so that it cannot be one of many: from the journal, or computed.
-    ///
-    /// # Errors
-    /// That of the case, or where the journal cannot be written.
     pub(crate) fn result(
         &self,
         key: &str,

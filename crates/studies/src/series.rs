@@ -11,7 +11,6 @@ use crate::output::{note_line, write_file};
 use crate::scene::Scene;
 use crate::sim::{Observables, Simulation};
 
-/// Folder of the runs' series.
 pub(super) const SERIES: &str = "series";
 
 /// Where the series of the run with a key lies.
@@ -29,7 +28,6 @@ pub(super) struct Series<'a> {
 }
 
 impl<'a> Series<'a> {
-    /// Starts with no row.
     pub(super) fn start(settings: &'a SeriesSettings, scene: &Scene) -> Self {
         let time_step_secs = scene.parameters.time_step_secs;
         let writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
@@ -38,9 +36,6 @@ impl<'a> Series<'a> {
 
     /// Adds the observables and the chosen grains' places, where a row is due: at the first step that reaches its
     /// time, but for rounding.
-    ///
-    /// # Errors
-    /// Where it cannot be written as CSV.
     pub(super) fn add_if_due(&mut self, simulation: &Simulation) -> Result<()> {
         let reached = simulation.time_secs() + 1e-6 * self.time_step_secs;
         if reached < f64::from(self.next) * self.settings.interval {
@@ -63,9 +58,6 @@ impl<'a> Series<'a> {
     }
 
     /// Writes the file and gives its checksum.
-    ///
-    /// # Errors
-    /// Names the file and what the system says.
     pub(super) fn finish(self, folder: &Path, key: &str) -> Result<String> {
         let bytes = self.writer.into_inner().map_err(|error| Error::file(SERIES, error.error()))?;
         let series = folder.join(SERIES);
@@ -83,7 +75,7 @@ fn column_names(observables: &Observables) -> Result<String> {
     Ok(String::from_utf8_lossy(&bytes).lines().next().unwrap_or_default().to_owned())
 }
 
-/// Whether the series of a finished run is there as it was written. One that is damaged is named.
+/// True if the series of a finished run is there as it was written. One that is damaged is named.
 pub(super) fn is_whole(folder: &Path, case: &FinishedCase<SweptRun>) -> bool {
     let path = series_path(folder, &case.key);
     let Ok(bytes) = std::fs::read(&path) else { return false };

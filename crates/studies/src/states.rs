@@ -12,16 +12,12 @@ use crate::output::{Progress, check_writable, note_line, write_file};
 use crate::scene::{Deposition, NewPile, Scene, Settling, settle};
 use crate::world::Grain;
 
-/// Settled grains by the pile they come from.
 pub(super) struct States {
     settled: HashMap<String, Vec<Grain>>,
 }
 
 impl States {
     /// Reads or makes the states that `configs` start from. They lie in `folder`.
-    ///
-    /// # Errors
-    /// Where a state does not settle, or the folder cannot be written.
     pub(super) fn of<'a>(
         folder: PathBuf,
         configs: impl Iterator<Item = &'a Config>,

@@ -1,5 +1,6 @@
 //! Means with intervals, tests and shares. Distributions come from statrs.
 
+use glam::{DMat3, DVec3};
 use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
 
 /// Share of intervals that hold the true value.
@@ -35,7 +36,6 @@ pub fn mean(values: &[f64]) -> Mean {
     Mean { mean, low: mean - half, high: mean + half, standard_error, count }
 }
 
-/// Student's distribution for the mean of `count` values.
 fn student(count: usize) -> Option<StudentsT> {
     if count < 2 { None } else { StudentsT::new(0.0, 1.0, (count - 1) as f64).ok() }
 }
@@ -102,44 +102,21 @@ pub(super) fn turning_point(points: &[(f64, f64)], candidates: &[f64]) -> Option
         if left < 2 || points.len() - left < 2 {
             return None;
         }
-        // y = a + b·min(x − at, 0) + c·max(x − at, 0): normal equations by Cramer's rule.
-        let row = |(x, y): &(f64, f64)| ([1.0, (x - at).min(0.0), (x - at).max(0.0)], *y);
-        let mut matrix = [[0.0; 3]; 3];
-        let mut right = [0.0; 3];
+        // y = a + b·min(x − at, 0) + c·max(x − at, 0): normal equations.
+        let row = |(x, y): &(f64, f64)| (DVec3::new(1.0, (x - at).min(0.0), (x - at).max(0.0)), *y);
+        let (mut matrix, mut right) = (DMat3::ZERO, DVec3::ZERO);
         for (basis, y) in points.iter().map(row) {
-            for i in 0..3 {
-                right[i] += basis[i] * y;
-                for j in 0..3 {
-                    matrix[i][j] += basis[i] * basis[j];
-                }
-            }
+            matrix += DMat3::from_cols(basis * basis.x, basis * basis.y, basis * basis.z);
+            right += basis * y;
         }
-        let all = determinant(&matrix);
-        let coefficient = |column: usize| {
-            let mut replaced = matrix;
-            for (line, value) in replaced.iter_mut().zip(right) {
-                line[column] = value;
-            }
-            determinant(&replaced) / all
-        };
-        let fit = [coefficient(0), coefficient(1), coefficient(2)];
-        let squares = points
-            .iter()
-            .map(row)
-            .map(|(basis, y)| (y - basis.iter().zip(fit).map(|(b, c)| b * c).sum::<f64>()).powi(2));
+        let fit = matrix.inverse() * right;
+        let squares = points.iter().map(row).map(|(basis, y)| (y - basis.dot(fit)).powi(2));
         Some(squares.sum()).filter(|sum: &f64| sum.is_finite())
     };
     let best = candidates.iter().filter_map(|&at| Some((misfit(at)?, at)));
     best.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, at)| at)
 }
 
-fn determinant(m: &[[f64; 3]; 3]) -> f64 {
-    m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
-        - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
-        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
-}
-
-/// A p-value as it is written.
 pub(super) fn p_value(p: f64) -> String {
     if p < 1e-4 { "p < 0.0001".into() } else { format!("p = {p:.4}") }
 }

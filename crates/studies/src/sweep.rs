@@ -27,9 +27,7 @@ use crate::scene::Scene;
 
 /// File that says which study a folder holds.
 const STUDY_FILE: &str = "study.json";
-/// Folder of the runs' recordings.
 const DATA: &str = "data";
-/// The table of a finished study.
 const TABLE: &str = "runs.csv";
 
 /// Part `index` of `count`, counted from 1. Every count-th run belongs to it, so that cheap and dear
@@ -43,7 +41,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Whether the run of that number belongs to this part.
+    /// True if the run of that number belongs to this part.
     fn has(self, run: usize) -> bool {
         run % self.count == self.index - 1
     }
@@ -73,7 +71,6 @@ pub struct SweepOptions {
     pub states: Option<PathBuf>,
 }
 
-/// What a journal has of one run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SweptRun {
     pub outcome: RunResult,
@@ -82,7 +79,6 @@ pub(super) struct SweptRun {
     pub series: Option<String>,
 }
 
-/// What `study.json` says.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Label {
     study: String,
@@ -142,7 +138,6 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     join(study, &folders, folder).map(Some)
 }
 
-/// Runs one run to its end.
 fn swept(study: &Study, folder: &Path, states: &States, run: &PlannedRun) -> Result<SweptRun> {
     let scene = states.scene(&run.config)?;
     let mut series = study.series.as_ref().map(|settings| Series::start(settings, &scene));
@@ -191,10 +186,9 @@ fn recording_of(
     let Some(data) = &study.data else { return Ok(None) };
     let path = data_path(folder, &run.key);
     let recording = Recording::start(&path, &formats_of(data)?, &scene_facts(scene)?, true)?;
-    Ok(Some(recording.at(Times::of(data))))
+    Ok(Some(recording.at(Times::of(data), &scene.simulation()?)))
 }
 
-/// Where the recording of the run with a key lies.
 fn data_path(folder: &Path, key: &str) -> PathBuf {
     folder.join(DATA).join(key)
 }

@@ -105,8 +105,8 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             let list = ComboBox::from_id_salt("scene").width(150.0).selected_text(&current);
             let shown = list.show_ui(ui, |ui| {
-                for group in SceneGroup::ALL {
-                    ui.label(RichText::new(group.title()).small().weak());
+                for &group in SceneGroup::ALL {
+                    ui.label(RichText::new(group.hint()).small().weak());
                     for info in SCENES.iter().filter(|info| info.group == group) {
                         let entry = ui.selectable_label(info.name == current, info.name);
                         if entry.on_hover_text(info.summary).clicked() {

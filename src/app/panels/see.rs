@@ -172,9 +172,9 @@ pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
     let style = shared_style(state, context.theme() == egui::Theme::Dark);
     let picture = scene_picture(state, style, state.preferences.picture_size, true);
     let stem = file_stem(state);
-    state.export(context, move |folder, _| {
+    state.export(context, move |folder, printers| {
         let path = free_path(folder, &stem, "png");
-        write_png(&path, &picture.draw()?, &picture.texts)?;
+        write_png(&path, &picture.draw(printers.renderer()?)?, &picture.texts)?;
         Ok(path)
     });
 }

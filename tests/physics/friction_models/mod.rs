@@ -1,17 +1,9 @@
 //! The models of friction beside Coulomb's law: what each does to one contact, exactly, and that the problem it
 //! puts in the place of Coulomb's has one solution, which is found.
 
-mod certificates;
-mod fallback;
-mod one_contact;
 mod piles;
 
-use crate::common::{G, UNTURNING, moving, parameters, scene};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::solver::{FrictionModel, Method, SolverSettings};
-use slump::world::{Boundary, FrictionCone};
+use crate::common::*;
 
 const RADIUS: f64 = 0.1;
 const MU: f64 = 0.3;
@@ -23,7 +15,7 @@ fn on_incline(model: FrictionModel, slope: f64, speed: f64) -> Scene {
     let gravity = G * DVec2::new(slope, -1.0).normalize();
     let grain = moving(place, RADIUS, DVec2::new(speed, 0.0));
     let mut scene = Scene {
-        boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }],
+        boundaries: vec![level()],
         ..scene(UNTURNING, gravity, parameters(0.0, DT, 0.0, MU), vec![grain])
     };
     scene.solver.friction_model = model;
@@ -33,39 +25,173 @@ fn on_incline(model: FrictionModel, slope: f64, speed: f64) -> Scene {
 #[test]
 fn what_does_not_go_with_a_model_is_refused_in_one_sentence() {
     let good = on_incline(FrictionModel::Tresca, 0.2, 0.0);
-    let refusal = |spoil: &dyn Fn(&mut Scene)| {
-        let mut scene = good.clone();
-        spoil(&mut scene);
-        scene.simulation().expect_err("it does not go together").to_string()
+    let two = |model: FrictionModel| {
+        move |scene: &mut Scene| {
+            (scene.solver.friction_model, scene.solver.model_solves) = (model, 2);
+        }
     };
-    let newton = refusal(&|scene| scene.solver.method = Method::Newton);
-    assert_eq!(
-        newton,
-        "friction-model is tresca, but must be coulomb where solver is newton: other models go with nsgs and interior-point"
-    );
-    let range = refusal(&|scene| scene.stepper = Stepper::Range);
-    assert_eq!(
-        range,
-        "friction-model is tresca, but must be coulomb where stepper is range: other models go with moreau"
-    );
-    let cone = refusal(&|scene| {
-        scene.parameters.cone = FrictionCone::Compressive;
-        scene.solver.friction_model = FrictionModel::Associated;
-    });
-    assert!(cone.starts_with("cone is compressive, but must be shifted where friction-model is"));
-    let never = refusal(&|scene| scene.solver.model_solves = 0);
-    assert_eq!(never, "model-solves is 0, but must be between 1 and 1000");
-    for model in [FrictionModel::Coulomb, FrictionModel::Associated] {
-        let again = refusal(&|scene| {
-            scene.solver.friction_model = model;
-            scene.solver.model_solves = 2;
-        });
-        assert!(again.starts_with("model-solves is 2, but must be 1 where friction-model is"));
+    let again = "model-solves is 2, but must be 1 where friction-model is…";
+    let cases: [Refusal; 6] = [
+        (
+            "friction-model is tresca, but must be coulomb where solver is newton: other models go with nsgs and interior-point",
+            &|scene| scene.solver.method = Method::Newton,
+        ),
+        (
+            "friction-model is tresca, but must be coulomb where stepper is range: other models go with moreau",
+            &|scene| scene.stepper = Stepper::Range,
+        ),
+        ("cone is compressive, but must be shifted where friction-model is…", &|scene| {
+            scene.parameters.cone = FrictionCone::Compressive;
+            scene.solver.friction_model = FrictionModel::Associated;
+        }),
+        ("model-solves is 0, but must be between 1 and 1000", &|scene| {
+            scene.solver.model_solves = 0
+        }),
+        (again, &two(FrictionModel::Coulomb)),
+        (again, &two(FrictionModel::Associated)),
+    ];
+    refuses(&good, &cases);
+    let tresca = SolverSettings { friction_model: FrictionModel::Tresca, ..good.solver };
+    assert!(tresca.by(Method::Newton).friction_model == FrictionModel::Coulomb);
+}
+
+#[test]
+fn a_block_sticks_up_to_mu_under_every_model_and_slides_above() {
+    for &model in FrictionModel::ALL {
+        let stuck = after(&on_incline(model, MU * (1.0 - 1e-6), 0.0), 300);
+        assert!(stuck.velocity(0).length() < 1e-14, "{model}");
+        assert_eq!(stuck.observables().contacts, 1, "{model}");
+        let sliding = after(&on_incline(model, MU * (1.0 + 1e-6), 0.0), 1);
+        assert!(sliding.velocity(0).x > 1e-10, "{model}");
     }
-    assert!(
-        SolverSettings { friction_model: FrictionModel::Tresca, ..good.solver }
-            .by(Method::Newton)
-            .friction_model
-            == FrictionModel::Coulomb
-    );
+}
+
+#[test]
+fn what_slides_keeps_its_level_under_tresca_and_is_lifted_by_the_cone_models() {
+    let (slope, speed) = (0.5f64, 2.0);
+    let hypotenuse = slope.hypot(1.0);
+    let (along, onto) = (G * slope / hypotenuse, G / hypotenuse);
+    for &model in FrictionModel::ALL {
+        let mut sliding = start(&on_incline(model, slope, speed));
+        let level = sliding.place(0).y;
+        take_steps(&mut sliding, 1);
+        let after = sliding.velocity(0);
+        let lift = sliding.place(0).y - level;
+        let expected = match model {
+            FrictionModel::Coulomb | FrictionModel::Tresca => 0.0,
+            FrictionModel::Associated => DT * MU * after.x,
+            FrictionModel::Desaxce => DT * MU * (after.x - speed),
+        };
+        assert!((lift - expected).abs() < 1e-15, "{model}: lifted by {lift:e}, not {expected:e}");
+        // σ from v_n = σ − g_n Δt and v_t = v + g_t Δt − μσ.
+        let risen = expected / DT;
+        let pressure = risen + onto * DT;
+        assert_close(after.x, speed + along * DT - MU * pressure, 1e-13, model.name());
+        if expected == 0.0 {
+            take_steps(&mut sliding, 299);
+            let velocity = sliding.velocity(0);
+            assert_close(velocity.x, speed + (along - MU * onto) * DT * 300.0, 1e-10, model.name());
+            assert!(velocity.y.abs() < 1e-12, "{model}");
+        }
+    }
+    let dilated = DT * MU * speed;
+    assert!(dilated > 5e-4, "{dilated}: that the lift is there is seen");
+}
+
+/// (P_n, P_t) of the only contact.
+fn impulse(run: &Simulation) -> [f64; 2] {
+    let [impulse] = run.contacts().impulses() else { panic!("one contact") };
+    [impulse.normal, impulse.tangential]
+}
+
+#[test]
+fn tresca_lags_a_step_behind_the_pressure_on_what_slides() {
+    for (bond, cone) in [
+        (0.0, FrictionCone::Shifted),
+        (5.0, FrictionCone::Shifted),
+        (5.0, FrictionCone::Compressive),
+    ] {
+        let mut scene = on_incline(FrictionModel::Tresca, 0.0, 5.0);
+        (scene.parameters.bond, scene.parameters.cone) = (bond, cone);
+        let mut run = start(&scene);
+        let cohesion = match cone {
+            FrictionCone::Shifted => bond * run.grains().masses[0] * G * DT,
+            FrictionCone::Compressive => 0.0,
+        };
+        take_steps(&mut run, 1);
+        let [mut pressure, rubbing] = impulse(&run);
+        // A new contact has Coulomb's bound.
+        assert_close(rubbing.abs(), MU * (pressure + cohesion), 1e-13, "the first step");
+        let mut most = 0f64;
+        for step in 0..5 {
+            let place = run.place(0);
+            let target = place - DVec2::new(0.0, RADIUS * f64::from(step));
+            run.set_pull(Some(Pull { grain: 0, target }));
+            take_steps(&mut run, 1);
+            let [now, rubbing] = impulse(&run);
+            assert_close(rubbing.abs(), MU * (pressure + cohesion), 1e-12, "a later step");
+            most = most.max(now / pressure);
+            pressure = now;
+        }
+        assert!(most > 1.5, "{most}: the pressure did not change");
+        let coulomb = SolverSettings { friction_model: FrictionModel::Coulomb, ..scene.solver };
+        run.set_solver(coulomb).expect("sound settings");
+        take_steps(&mut run, 1);
+        let [pressure, rubbing] = impulse(&run);
+        assert_close(rubbing.abs(), MU * (pressure + cohesion), 1e-13, "Coulomb's law");
+        assert_eq!(run.observables().model_residual, None);
+    }
+}
+
+/// A disc that slides on the floor and one that rolls down on it, a step on their way.
+fn two_bodies(model: FrictionModel, solves: u32) -> Simulation {
+    let below = moving(DVec2::new(0.0, 0.999 * RADIUS), RADIUS, DVec2::new(0.8, 0.0));
+    let above = Grain::at_rest(below.position + 1.998 * RADIUS * DVec2::new(0.6, 0.8), RADIUS);
+    let mut scene = Scene {
+        boundaries: vec![level()],
+        ..under_g(parameters(0.0, DT, 0.0, MU), vec![below, above])
+    };
+    scene.solver.friction_model = model;
+    scene.solver.model_solves = solves;
+    let mut run = after(&scene, 1);
+    // What presses them now did not do so in the step before.
+    let target = run.place(1) - DVec2::new(0.0, 8.0 * RADIUS);
+    run.set_pull(Some(Pull { grain: 1, target }));
+    take_steps(&mut run, 1);
+    run
+}
+
+#[test]
+fn more_solves_a_step_lead_to_coulombs_law() {
+    let coulomb = two_bodies(FrictionModel::Coulomb, 1);
+    let residual = |solves| two_bodies(FrictionModel::Tresca, solves).observables().residual;
+    let mut last = residual(1);
+    assert!(last > 1e-2, "{last}: one solve lags behind");
+    for solves in [2, 4, 8] {
+        let now = residual(solves);
+        assert!(now < 0.7 * last, "{solves} solves: {now:e} after {last:e}");
+        last = now;
+    }
+    let many = two_bodies(FrictionModel::Tresca, 200);
+    assert!(many.observables().residual < 1e-11, "{:e}", many.observables().residual);
+    // Both start from the same first step, whose contacts are new.
+    let pairs = many.velocities().iter().zip(coulomb.velocities());
+    for (one, other) in pairs {
+        assert!((*one - *other).length() < 1e-10, "{one} and {other}");
+    }
+}
+
+#[test]
+fn a_fixed_disc_holds_by_friction_as_a_grain_does() {
+    // Between two fixed discs, held by friction on both sides alone: a wedge that Coulomb's law holds.
+    for &model in FrictionModel::ALL {
+        let mut scene =
+            under_g(parameters(3.0, DT, 0.0, 2.0), vec![Grain::at_rest(DVec2::ZERO, RADIUS)]);
+        scene.fixed_discs =
+            [-1.0, 1.0].map(|side| fixed(DVec2::new(side * 1.999 * RADIUS, 0.0), RADIUS)).to_vec();
+        scene.solver.friction_model = model;
+        let run = after(&scene, 100);
+        let fallen = -run.place(0).y;
+        assert!(fallen.abs() < 1e-12, "{model}: fell by {fallen:e}");
+    }
 }

@@ -1,17 +1,10 @@
-//! Piles under every convex model: what is solved is the model, and has one solution.
+//! Piles under every convex model: what is solved is the model, has one solution and is certified; and what becomes of a
+//! step that is not solved under Coulomb's law.
 
-use rand::RngExt;
-use slump::contact::ContactList;
-use slump::scene::Scene;
-use slump::sim::ProblemVisitor;
-use slump::solver::{
-    BodySystem, ContactSystem, FrictionModel, Kinematics, Memory, Method, Model, SolverSettings,
-    StepProblem, solve,
-};
-use slump::world::{FrictionCone, Parameters, Physics};
+use proptest::prelude::*;
 
 use crate::common::natural_map::judge;
-use crate::common::{UNTURNING, parameters, pressed_pile, random, start, take_steps};
+use crate::common::*;
 
 pub const CONVEX: [FrictionModel; 3] =
     [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce];
@@ -19,26 +12,22 @@ pub const CONVEX: [FrictionModel; 3] =
 /// Piles under every convex model, with both cones where the model takes them.
 fn piles(count: usize, bond: f64, speed: f64, dt: f64) -> Vec<Scene> {
     let mut all = Vec::new();
-    for model in CONVEX {
-        for restitution in [0.0, 0.9] {
-            for cone in FrictionCone::ALL {
-                if model != FrictionModel::Tresca && *cone == FrictionCone::Compressive {
-                    continue;
-                }
-                for physics in [UNTURNING, Physics::FULL] {
-                    let parameters = parameters(bond, dt, restitution, MU_OF_PILES);
-                    let mut pile = pressed_pile(count, speed, 11, parameters);
-                    (pile.physics, pile.parameters.cone) = (physics, *cone);
-                    if !physics.rotation {
-                        pile.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
-                    }
-                    pile.solver.friction_model = model;
-                    (pile.solver.tolerance, pile.solver.max_sweeps) = (1e-11, 300_000);
-                    for method in [Method::Nsgs, Method::InteriorPoint] {
-                        pile.solver.method = method;
-                        all.push(pile.clone());
-                    }
-                }
+    for (model, restitution, cone) in triples(CONVEX, [0.0, 0.9], FrictionCone::ALL) {
+        if model != FrictionModel::Tresca && *cone == FrictionCone::Compressive {
+            continue;
+        }
+        for physics in [UNTURNING, Physics::FULL] {
+            let parameters = parameters(bond, dt, restitution, MU_OF_PILES);
+            let mut pile = pressed_pile(count, speed, 11, parameters);
+            (pile.physics, pile.parameters.cone) = (physics, *cone);
+            if !physics.rotation {
+                pile.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
+            }
+            pile.solver.friction_model = model;
+            (pile.solver.tolerance, pile.solver.max_sweeps) = (1e-11, 300_000);
+            for method in [Method::Nsgs, Method::InteriorPoint] {
+                pile.solver.method = method;
+                all.push(pile.clone());
             }
         }
     }
@@ -56,11 +45,10 @@ fn what(pile: &Scene) -> String {
 fn solved_steps_obey_the_model_as_world_data_show_it() {
     for pile in piles(30, 2.0, 0.3, 1e-3) {
         let what = what(&pile);
-        let mut simulation = start(&pile);
-        take_steps(&mut simulation, 2);
+        let mut simulation = after(&pile, 2);
         let (contacts, impulses) =
             (simulation.contacts().contacts().to_vec(), simulation.contacts().impulses().to_vec());
-        let before = simulation.world().grains.clone();
+        let before = simulation.grains().clone();
         let row = *simulation.step().expect("a finite state");
         assert!(row.converged, "{what}: {:?} after {} sweeps", row.model_residual, row.sweeps);
         assert!(row.model_residual.is_some_and(|residual| residual <= 1e-11), "{what}");
@@ -119,22 +107,17 @@ struct FromRandomStarts<'a>(&'a SolverSettings, u64);
 impl ProblemVisitor for FromRandomStarts<'_> {
     type Output = Vec<f64>;
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Vec<f64> {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Vec<f64> {
         let mut random = random(self.1);
-        let mut root_masses = Vec::new();
-        let mut system = BodySystem::<M>::new(problem, &mut root_masses);
+        let mut system = BodySystem::<M>::new(problem);
         let mut impulse = || random.random_range(-1.0..1.0) * 0.05;
         let impulses: Vec<_> = (0..system.len())
             .map(|contact| [0, 1].map(|_| impulse() * system.root_mass(contact)))
             .collect();
         system.write(&impulses);
-        let report = solve::<M>(problem, &mut Memory::default(), self.0);
+        let report = solve(problem, &mut Memory::default(), self.0);
         assert!(report.converged, "{report:?}");
-        problem.bodies.now.iter().flat_map(M::Kinematics::coordinates).collect()
+        problem.bodies.now.iter().flat_map(M::coordinates).collect()
     }
 }
 
@@ -142,10 +125,9 @@ impl ProblemVisitor for FromRandomStarts<'_> {
 fn the_velocities_of_a_convex_model_are_the_same_from_any_start() {
     for pile in piles(25, 20.0, 0.05, 1e-5) {
         let what = what(&pile);
-        let mut simulation = start(&pile);
-        take_steps(&mut simulation, 3);
+        let run = after(&pile, 3);
         let settings = pile.solver;
-        let solution = |seed| simulation.next_problem(FromRandomStarts(&settings, seed));
+        let solution = |seed| run.next_problem(FromRandomStarts(&settings, seed));
         let first = solution(0);
         let fastest = first.iter().fold(0f64, |fastest, speed| fastest.max(speed.abs()));
         assert!(fastest > 1e-3, "{what}: nothing moves");
@@ -153,6 +135,248 @@ fn the_velocities_of_a_convex_model_are_the_same_from_any_start() {
             for (one, other) in first.iter().zip(solution(seed)) {
                 assert!((one - other).abs() < 1e-8 * fastest, "{what}: {one:e} and {other:e}");
             }
+        }
+    }
+}
+
+/// A pile that slumps, as `fallback` says, with too few sweeps a step to solve most of them.
+fn pile(method: Method, fallback: Fallback, cone: FrictionCone) -> Simulation {
+    let mut scene = built_in("pile").expect("a scene");
+    scene.parameters.bond = 20.0;
+    scene.parameters.time_step_secs = 1e-3;
+    scene.parameters.cone = cone;
+    scene.solver = SolverSettings { fallback, max_sweeps: 60, ..solved_by(method, 1e-9) };
+    start(&scene)
+}
+
+#[test]
+fn a_step_that_is_not_solved_falls_back_on_one_that_is_and_says_so() {
+    for (cone, method) in pairs(
+        FrictionCone::ALL,
+        [Method::Nsgs, Method::Nncg, Method::Newton, Method::InteriorPoint],
+    ) {
+        let what = format!("{method}, {cone}");
+        let mut run = pile(method, Fallback::Tresca, *cone);
+        let (mut fell_back, mut solved) = (0, 0);
+        for _ in 0..60 {
+            let row = *run.step().expect("a finite state");
+            let told = row.fell_back.expect("it could fall back");
+            let of_model = row.model_residual.expect("a residual of what was solved");
+            let gap = row.duality_gap.expect("a gap");
+            if told {
+                fell_back += 1;
+                assert!(!row.converged && of_model <= 1e-8, "{what}: {of_model:e}");
+                assert!((-1e-14..1e-3).contains(&gap), "{what}: {gap:e}");
+                assert!(row.factorisations > 0, "{what}");
+            } else {
+                solved += 1;
+                assert!(row.converged, "{what}: neither");
+                assert_eq!((of_model, gap), (row.residual, f64::INFINITY), "{what}");
+            }
+        }
+        assert!(fell_back > 10, "{what}: {fell_back} fell back, {solved} were solved");
+    }
+}
+
+#[test]
+fn auto_falls_back_unless_told_not_to_and_others_do_where_told() {
+    let told = |method, fallback| {
+        let mut run = pile(method, fallback, FrictionCone::Shifted);
+        take_steps(&mut run, 30);
+        let places = bits(&run);
+        (run.observables().fell_back.is_some(), places)
+    };
+    let auto = told(Method::Auto, Fallback::OfMethod);
+    assert!(auto.0);
+    assert_eq!(auto, told(Method::Auto, Fallback::Tresca));
+    let without = told(Method::Auto, Fallback::None);
+    assert!(!without.0 && without.1 != auto.1);
+    assert_eq!(without, told(Method::Newton, Fallback::OfMethod), "auto takes newton here");
+}
+
+/// Remedies and the law `range` solve a problem several times; one of the earlier solves may have fallen back.
+#[test]
+fn a_problem_is_solved_again_after_it_fell_back() {
+    let plain = Remedies::default();
+    for (stepper, remedies, bond) in [
+        (Stepper::Moreau, Remedies { calm_unsolved: true, ..plain }, 20.0),
+        (Stepper::Moreau, Remedies { sequential_impacts: true, ..plain }, 0.0),
+        (Stepper::Range, plain, 20.0),
+    ] {
+        let mut scene = built_in("pile").expect("a scene");
+        (scene.stepper, scene.remedies, scene.parameters.bond) = (stepper, remedies, bond);
+        (scene.parameters.time_step_secs, scene.parameters.restitution) = (1e-3, 0.5);
+        scene.solver = SolverSettings {
+            fallback: Fallback::Tresca,
+            stop: StopTest::Residual,
+            tolerance: 1e-9,
+            max_sweeps: 40,
+            ..SolverSettings::default()
+        };
+        let mut run = start(&scene);
+        let mut fell_back = 0;
+        for _ in 0..40 {
+            let row = *run.step().expect("a finite state");
+            fell_back += u32::from(row.fell_back == Some(true));
+            assert!(row.model_residual.is_some() && row.residual.is_finite());
+        }
+        assert!(fell_back > 10, "{stepper}, {remedies:?}: {fell_back}");
+    }
+}
+
+fn by_interior_point(model: FrictionModel, tolerance: f64) -> SolverSettings {
+    SolverSettings { friction_model: model, ..solved_by(Method::InteriorPoint, tolerance) }
+}
+
+fn falling(model: FrictionModel, bond: f64, time_step_secs: f64, restitution: f64) -> Simulation {
+    let mut scene = built_in("pile").expect("a scene");
+    scene.parameters.bond = bond;
+    scene.parameters.time_step_secs = time_step_secs;
+    scene.parameters.restitution = restitution;
+    scene.solver = by_interior_point(model, 1e-8);
+    start(&scene)
+}
+
+#[test]
+fn every_step_of_a_pile_that_slumps_is_certified() {
+    for model in CONVEX {
+        for (bond, time_step_secs, restitution) in
+            [(0.0, 1e-3, 0.2), (20.0, 1e-3, 0.9), (100.0, 5e-3, 0.2), (0.0, 5e-3, 0.9)]
+        {
+            let what = format!("{model}, Bond {bond}, dt {time_step_secs}, rho {restitution}");
+            let mut run = falling(model, bond, time_step_secs, restitution);
+            let mut factorisations = Vec::new();
+            for step in 0..60 {
+                let row = *run.step().expect("a finite state");
+                assert!(row.converged, "{what}, step {step}: {:?}", row.model_residual);
+                assert!(row.model_residual.is_some_and(|residual| residual <= 1e-8), "{what}");
+                let gap = row.duality_gap.expect("a gap");
+                assert!((-1e-14..1e-4).contains(&gap), "{what}, step {step}: {gap:e}");
+                factorisations.push(row.factorisations);
+            }
+            assert!(run.observables().slump > 1e-3, "{what}: it slumps");
+            factorisations.sort_unstable();
+            let [median, most] = [30, 59].map(|at| factorisations[at]);
+            assert!(median <= 20 && most <= 80, "{what}: {median} in the median, {most} at most");
+        }
+    }
+}
+
+/// Σ m (σ(w + 2z) + g|v| + λv) from world data, as `solver::problem::residual` states it, and Σ m (v^free)².
+fn gap_of_world(run: &Simulation, pile: &Scene, bounds: &[f64], before: &Simulation) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    let friction = pile.parameters.friction;
+    let impulses = run.contacts().impulses();
+    let judged = judge(run, before.grains());
+    for ((contact, impulse), bound) in judged.iter().zip(impulses).zip(bounds) {
+        let p = impulse.normal + contact.cohesion_impulse;
+        let rebound = pile.parameters.restitution * contact.before[0];
+        let (mut w, v) = (contact.after[0] + rebound, contact.after[1]);
+        let least = match pile.solver.friction_model {
+            FrictionModel::Tresca => 0.0,
+            FrictionModel::Desaxce => {
+                w += friction * contact.before[1].abs();
+                friction * v.abs()
+            }
+            _ => friction * v.abs(),
+        };
+        let lacking = (least - w).max(0.0);
+        sums[0] += p * (w + 2.0 * lacking) + bound * v.abs() + impulse.tangential * v;
+        let free = contact.free[0] + rebound;
+        sums[1] +=
+            contact.normal_mass * free * free + contact.tangential_mass * contact.free[1].powi(2);
+    }
+    sums
+}
+
+#[test]
+fn the_gap_is_what_world_data_make_it() {
+    for model in CONVEX {
+        let mut pile = pressed_pile(30, 0.3, 11, parameters(2.0, 1e-6, 0.3, 0.5));
+        // Far from solved, so that the gap is far above rounding.
+        pile.solver = SolverSettings { max_sweeps: 2, ..by_interior_point(model, 1e-8) };
+        pile.solver.method = Method::Nsgs;
+        let mut run = after(&pile, 3);
+        let before = run.clone();
+        let row = *run.step().expect("a finite state");
+        let pairs = |run: &Simulation| -> Vec<_> {
+            run.contacts().contacts().iter().map(|c| (c.grain, c.other)).collect()
+        };
+        assert_eq!(pairs(&before), pairs(&run), "bounds are those of the same contacts");
+        let bound = |(index, impulse): (usize, &Impulse)| {
+            let cohesion = judge(&run, before.grains())[index].cohesion_impulse;
+            0.5 * (impulse.normal + cohesion).max(0.0)
+        };
+        let bounds: Vec<f64> = match model {
+            FrictionModel::Tresca => {
+                before.contacts().impulses().iter().enumerate().map(bound).collect()
+            }
+            _ => vec![0.0; before.contacts().impulses().len()],
+        };
+        let [gap, scale] = gap_of_world(&run, &pile, &bounds, &before);
+        let told = row.duality_gap.expect("a gap");
+        assert!(told > 1e-6, "{model}: {told:e}");
+        assert_close(told, gap / scale, 1e-9, &format!("{model}"));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn the_gap_is_never_negative_and_falls_with_the_tolerance(
+        seed in 0u64..1000,
+        bond in prop_oneof![Just(0.0), 0.0..50.0],
+        restitution in 0.0..1.0,
+        // Cones this narrow leave any pile of discs a way to come apart (see below).
+        friction in 0.02..0.2,
+        model in prop::sample::select(CONVEX.to_vec()),
+    ) {
+        let mut pile = pressed_pile(40, 0.2, seed, parameters(bond, 1e-3, restitution, friction));
+        pile.solver = by_interior_point(model, 1e-9);
+        let mut run = start(&pile);
+        run.step().expect("a finite state");
+        let mut last = f64::INFINITY;
+        for tolerance in [1e-2, 1e-5, 1e-8] {
+            let mut next = run.clone();
+            next.set_solver(by_interior_point(model, tolerance)).expect("proper settings");
+            let row = *next.step().expect("a finite state");
+            prop_assert!(row.converged, "{row:?} at {tolerance:e}");
+            let gap = row.duality_gap.expect("a gap");
+            prop_assert!(gap >= -1e-13, "{gap:e}");
+            prop_assert!(gap <= last.max(1e-13), "{gap:e} after {last:e}");
+            last = gap;
+        }
+    }
+}
+
+/// A disc wedged between two fixed ones, at whose contacts the cones leave it no way out: it would have to leave
+/// each at more than the angle whose tangent is μ from its tangent.
+#[test]
+fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
+    let radius = 0.1;
+    let angle = 75f64.to_radians();
+    let disc = |side: f64| Disc {
+        position: 2.0 * radius * (1.0 - 1e-9) * DVec2::new(side * angle.sin(), -angle.cos()),
+        radius,
+    };
+    for (model, friction, solved) in [
+        (FrictionModel::Associated, 0.9, false),
+        (FrictionModel::Associated, 0.2, true),
+        (FrictionModel::Tresca, 0.9, true),
+    ] {
+        let grain = moving(DVec2::ZERO, radius, DVec2::new(0.0, -1.0));
+        let mut wedge = Scene {
+            fixed_discs: vec![disc(-1.0), disc(1.0)],
+            ..scene(UNTURNING, -G * DVec2::Y, parameters(0.0, 1e-3, 0.5, friction), vec![grain])
+        };
+        wedge.solver = by_interior_point(model, 1e-8);
+        let mut run = start(&wedge);
+        let row = *run.step().expect("a finite state");
+        assert_eq!((row.converged, row.stalled), (solved, !solved), "{model}, mu {friction}");
+        let mass = run.grains().masses[0];
+        for impulse in run.contacts().impulses() {
+            assert!(impulse.normal.abs() < 100.0 * mass, "{model}, mu {friction}: {impulse:?}");
         }
     }
 }

@@ -2,15 +2,10 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec2;
-use rand::RngExt;
-use slump::granular::{GrainMeasures, PileMeasures, measure};
-use slump::sim::{GrainState, Moment};
-use slump::world::{Boundary, Disc};
+use crate::common::*;
 
-use super::by_hand::{among, box_walls, disc, discs};
 use super::packings::triangular_discs;
-use crate::common::{assert_close, fixed, random};
+use super::packings::{among, box_walls, disc, discs};
 
 const EXACT: f64 = 1e-12;
 
@@ -40,19 +35,17 @@ fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64;
     let step = (high - low) / f64::from(steps);
     let beyond = steps / 8;
     let mut areas = vec![[0.0; 2]; grains.len()];
-    for row in -beyond..steps + beyond {
-        for column in -beyond..steps + beyond {
-            let point = low + step * (DVec2::new(f64::from(column), f64::from(row)) + 0.5);
-            if !(point.cmpgt(room[0]).all() && point.cmplt(room[1]).all()) {
-                continue;
-            }
-            let in_box = (0..steps).contains(&row) && (0..steps).contains(&column);
-            if let Some([inside, everywhere]) =
-                owner(point, &all, largest_power).and_then(|index| areas.get_mut(index))
-            {
-                *everywhere += step.x * step.y;
-                *inside += if in_box { step.x * step.y } else { 0.0 };
-            }
+    for (row, column) in pairs(-beyond..steps + beyond, -beyond..steps + beyond) {
+        let point = low + step * (DVec2::new(f64::from(column), f64::from(row)) + 0.5);
+        if !(point.cmpgt(room[0]).all() && point.cmplt(room[1]).all()) {
+            continue;
+        }
+        let in_box = (0..steps).contains(&row) && (0..steps).contains(&column);
+        if let Some([inside, everywhere]) =
+            owner(point, &all, largest_power).and_then(|index| areas.get_mut(index))
+        {
+            *everywhere += step.x * step.y;
+            *inside += if in_box { step.x * step.y } else { 0.0 };
         }
     }
     areas
@@ -104,8 +97,7 @@ fn fixed_discs_and_walls_take_their_room() {
     let grains: Vec<_> = scattered(300, 5).into_iter().filter(inside).collect();
     let base: Vec<Disc> = (0..10).map(|k| fixed(DVec2::new(f64::from(k), 0.2), 0.4)).collect();
     let room = [DVec2::ZERO, DVec2::new(9.0, 7.0)];
-    let moment = among(discs(grains), box_walls(room[0], room[1]), base);
-    assert_counted(&moment, room);
+    assert_counted(&among(discs(grains), box_walls(room[0], room[1]), base), room);
 }
 
 #[test]

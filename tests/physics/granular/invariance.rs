@@ -2,28 +2,19 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use crate::common::*;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use rand::RngExt;
 use rand::seq::SliceRandom;
-use slump::granular::{ColumnSpec, MomentMeasures, measure};
-use slump::sim::{ContactState, ContactStatus, Moment, OtherBody, Surroundings};
-use slump::world::{Boundary, Disc};
 
-use super::by_hand::{among, disc, discs, lean, touch};
-use crate::common::{fixed, random};
+use super::packings::{among, disc, discs, lean, touch};
 
 const CASES: u32 = 64;
 const FLOOR: usize = 0;
 
 fn for_random_moments(property: impl Fn(u64, Moment) -> Result<(), TestCaseError>) {
-    let config = Config { cases: CASES, failure_persistence: None, ..Config::default() };
-    let mut runner =
-        TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
-    let run = |(seed, count)| property(seed, heap(seed, count));
-    let inputs = (any::<u64>(), 1usize..60);
-    runner.run(&inputs, run).unwrap_or_else(|failure| panic!("{failure}"));
+    for_random(CASES, (any::<u64>(), 1usize..60), |(seed, count)| {
+        property(seed, heap(seed, count))
+    });
 }
 
 /// Discs at random over a floor and some fixed discs, with forces at random where they overlap, one of them lost.
@@ -37,7 +28,7 @@ fn heap(seed: u64, count: usize) -> Moment {
     });
     let mut heap = discs(grains.collect());
     let base = (0..4).map(|k| fixed(DVec2::new(2.0 * f64::from(k), -0.2), 0.5)).collect();
-    let floor = Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y };
+    let floor = level();
     let end = Boundary::Segment { from: DVec2::new(3.0, 3.0), to: DVec2::new(4.0, 4.5) };
     heap = among(heap, vec![floor, end], base);
     let mut forces = || [random.random_range(-1.0..3.0), random.random_range(-1.0..1.0)];
@@ -79,26 +70,15 @@ fn mapped(
         contact.point = place(contact.point);
     }
     let boundary = |boundary: &Boundary| match *boundary {
-        Boundary::HalfSpace { point, normal } => {
-            Boundary::HalfSpace { point: place(point), normal: vector(normal) }
-        }
+        Boundary::HalfSpace { point, normal } => plane(place(point), vector(normal)),
         Boundary::Segment { from, to } => Boundary::Segment { from: place(from), to: place(to) },
         ref other => panic!("{other:?}"),
     };
-    let Surroundings { centre_of_attraction, mean_diameter, gravity_magnitude, .. } =
-        *moment.surroundings;
-    let discs = &moment.surroundings.fixed_discs;
+    let discs = moment.surroundings.fixed_discs.iter();
     mapped.surroundings = Arc::new(Surroundings {
-        fixed_discs: discs
-            .iter()
-            .map(|disc| Disc { position: place(disc.position), ..*disc })
-            .collect(),
+        fixed_discs: discs.map(|disc| Disc { position: place(disc.position), ..*disc }).collect(),
         boundaries: moment.surroundings.boundaries.iter().map(boundary).collect(),
-        centre_of_attraction,
-        periodic: None,
-        mean_diameter,
-        gravity_magnitude,
-        moving: Vec::new(),
+        ..(*moment.surroundings).clone()
     });
     mapped
 }

@@ -1,13 +1,103 @@
-//! Square and triangular packings under known loads.
+//! Moments made by hand, and square and triangular packings under known loads.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-use glam::DVec2;
-use slump::granular::{GrainMeasures, PileMeasures, measure};
-use slump::sim::{GrainState, Moment};
+use crate::common::*;
 
-use super::by_hand::{among, box_walls, disc, discs, lean, touch};
-use crate::common::assert_close;
+pub fn disc(position: DVec2, radius: f64) -> GrainState {
+    GrainState {
+        position,
+        angle: 0.0,
+        velocity: DVec2::ZERO,
+        angular_velocity: 0.0,
+        radius,
+        mass: std::f64::consts::PI * radius * radius,
+        feels_gravity: true,
+        tone: 0,
+        lost: false,
+    }
+}
+
+pub fn discs(grains: Vec<GrainState>) -> Moment {
+    let mean_diameter = grains.first().map_or(1.0, |grain| 2.0 * grain.radius);
+    Moment {
+        observables: Observables::default(),
+        settings: Settings::default(),
+        grains,
+        contacts: Vec::new(),
+        surroundings: Arc::new(Surroundings {
+            fixed_discs: Vec::new(),
+            boundaries: Vec::new(),
+            centre_of_attraction: None,
+            periodic: None,
+            mean_diameter,
+            gravity_magnitude: 9.8,
+            moving: Vec::new(),
+        }),
+    }
+}
+
+/// The same among these fixed bodies.
+pub fn among(mut moment: Moment, boundaries: Vec<Boundary>, fixed_discs: Vec<Disc>) -> Moment {
+    let around = (*moment.surroundings).clone();
+    moment.surroundings = Arc::new(Surroundings { fixed_discs, boundaries, ..around });
+    moment
+}
+
+/// Lets grain i touch a body in a normal, of which it is `gap` apart, with N and T.
+fn press_on(
+    moment: &mut Moment,
+    i: usize,
+    (other, branch, gap): (OtherBody, DVec2, f64),
+    [normal_force, tangential_force]: [f64; 2],
+) {
+    let (grain, normal) = (moment.grains[i], branch.normalize());
+    let is_open = normal_force == 0.0;
+    moment.contacts.push(ContactState {
+        grain: i as u32,
+        other,
+        normal,
+        gap,
+        point: grain.position - (grain.radius + 0.5 * gap) * normal,
+        branch,
+        normal_force,
+        tangential_force,
+        status: if is_open { ContactStatus::Open } else { ContactStatus::Stick },
+        bond_stretch: None,
+        age_steps: 0,
+    });
+}
+
+/// Lets grains i and j touch with N and T.
+pub fn touch(moment: &mut Moment, [i, j]: [usize; 2], forces: [f64; 2]) {
+    let (grain, other) = (moment.grains[i], moment.grains[j]);
+    let branch = grain.position - other.position;
+    let gap = branch.length() - grain.radius - other.radius;
+    press_on(moment, i, (OtherBody::Grain(j as u32), branch, gap), forces);
+}
+
+/// Lets grain i touch the half-space of that number with N and T.
+pub fn lean(moment: &mut Moment, i: usize, wall: usize, forces: [f64; 2]) {
+    let Boundary::HalfSpace { point, normal } = moment.surroundings.boundaries[wall] else {
+        panic!("boundary {wall} is no half-space");
+    };
+    let grain = moment.grains[i];
+    let height = (grain.position - point).dot(normal);
+    let wall = OtherBody::Boundary(wall as u32);
+    press_on(moment, i, (wall, height * normal, height - grain.radius), forces);
+}
+
+/// The walls of a box: left, right, bottom, top.
+pub fn box_walls(low: DVec2, high: DVec2) -> Vec<Boundary> {
+    let wall = |point, normal| Boundary::HalfSpace { point, normal };
+    vec![
+        wall(low, DVec2::X),
+        wall(high, DVec2::NEG_X),
+        wall(low, DVec2::Y),
+        wall(high, DVec2::NEG_Y),
+    ]
+}
 
 pub const RADIUS: f64 = 2e-3;
 const EXACT: f64 = 1e-12;

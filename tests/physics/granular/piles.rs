@@ -2,16 +2,10 @@
 
 use std::path::Path;
 
-use glam::DVec2;
+use crate::common::*;
 use slump::config::read_scene;
-use slump::granular::{GrainMeasures, PileMeasures, measure};
-use slump::scene::{Scene, built_in};
-use slump::sim::{Moment, OtherBody, Simulation};
-use slump::solver::Method;
-use slump::world::{Boundary, Grain, Gravity, Physics};
 
-use super::by_hand::box_walls;
-use crate::common::{G, SMOOTH, assert_close, parameters, scene, start, take_steps};
+use super::packings::box_walls;
 
 const RADIUS: f64 = 0.1;
 
@@ -61,12 +55,12 @@ fn weight(moment: &Moment, index: usize, gravity: &Gravity) -> DVec2 {
 }
 
 /// Steps a scene, and holds its stress against the momentum that the grains took up in the last step.
-fn assert_balance_of_momentum(mut simulation: Simulation, steps: usize) {
-    take_steps(&mut simulation, steps);
-    let before = simulation.moment();
-    take_steps(&mut simulation, 1);
-    let moment = simulation.moment();
-    let gravity = simulation.world().gravity;
+fn assert_balance_of_momentum(mut run: Simulation, steps: usize) {
+    take_steps(&mut run, steps);
+    let before = run.moment();
+    take_steps(&mut run, 1);
+    let moment = run.moment();
+    let gravity = run.world().gravity;
     let secs = moment.observables.time_step_secs;
     let force = |index: usize| {
         let (was, is) = (before.grains[index], moment.grains[index]);
@@ -106,10 +100,9 @@ fn stress_of_a_pile_at_rest_is_what_its_weight_says() {
     scene.parameters.time_step_secs = 1e-4;
     scene.solver.method = Method::Newton;
     scene.solver.tolerance = 1e-10;
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 200);
-    let moment = simulation.moment();
-    let gravity = simulation.world().gravity;
+    let run = after(&scene, 200);
+    let moment = run.moment();
+    let gravity = run.world().gravity;
     let expected = virial_from_outside(&moment, &moment, |index| -weight(&moment, index, &gravity));
     let pile = PileMeasures::of(&moment);
     assert!(pile.kinetic_pressure < 1e-6 * pile.pressure, "{pile:?}");
@@ -132,10 +125,9 @@ fn stress_in_a_column_grows_with_depth() {
     let count = 12;
     let grains = (0..count)
         .map(|k| Grain::at_rest(DVec2::new(0.0, (2.0 * f64::from(k) + 1.0) * RADIUS), RADIUS));
-    let floor = Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y };
-    let mut simulation = start(&at_rest(SMOOTH, grains.collect(), vec![floor]));
-    take_steps(&mut simulation, 1);
-    let measured = measure(&simulation.moment());
+    let floor = level();
+    let run = after(&at_rest(SMOOTH, grains.collect(), vec![floor]), 1);
+    let measured = measure(&run.moment());
     // ρ g h, in a column as wide as a disc.
     let weight_by_area = std::f64::consts::PI / 4.0 * G;
     for (k, grain) in (0..count).zip(&measured.grains) {
@@ -174,9 +166,8 @@ fn under_a_lid(columns: usize, rows: usize) -> (Scene, Vec<usize>) {
 fn a_force_on_a_packing_between_walls_goes_through_each_of_its_rows() {
     let (columns, rows) = (6, 7);
     let (scene, row_of) = under_a_lid(columns, rows);
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, 1);
-    let moment = simulation.moment();
+    let run = after(&scene, 1);
+    let moment = run.moment();
     let force: f64 =
         moment.grains.iter().filter(|grain| grain.feels_gravity).map(|grain| grain.mass * G).sum();
     let grains = GrainMeasures::of_each(&moment);
@@ -204,13 +195,15 @@ fn a_force_on_a_packing_between_walls_goes_through_each_of_its_rows() {
 
 #[test]
 fn motion_carries_momentum_of_its_own() {
-    let mut simulation = start(&at_rest(
-        SMOOTH,
-        [-1.0, 1.0].map(|side| Grain::at_rest(DVec2::new(0.5 * side, 1.0), RADIUS)).into(),
-        Vec::new(),
-    ));
-    take_steps(&mut simulation, 3);
-    let mut moment = simulation.moment();
+    let run = after(
+        &at_rest(
+            SMOOTH,
+            [-1.0, 1.0].map(|side| Grain::at_rest(DVec2::new(0.5 * side, 1.0), RADIUS)).into(),
+            Vec::new(),
+        ),
+        3,
+    );
+    let mut moment = run.moment();
     // They fall side by side, which is no pressure.
     let pile = PileMeasures::of(&moment);
     assert!(moment.grains[0].velocity.y < 0.0 && pile.kinetic_pressure == 0.0, "{pile:?}");

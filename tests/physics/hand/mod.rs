@@ -1,11 +1,6 @@
 //! What a hand changes between two steps: grains that come and go, and walls that are drawn.
 
-use crate::common::{every_way, parameters, scene, start, take_steps};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::{Edit, Simulation, Stepper, place_of};
-use slump::solver::Method;
-use slump::world::{Boundary, Disc, Grain, Physics};
+use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const GRAVITY: DVec2 = DVec2::new(0.0, -9.8);
@@ -18,8 +13,7 @@ fn heap() -> Scene {
         let at = DVec2::new(2.05 * f64::from(column) + shift, 1.01 + 1.9 * f64::from(row));
         Grain::at_rest(RADIUS * at, RADIUS)
     });
-    let physics = Physics::FULL;
-    let mut heap = scene(physics, GRAVITY, parameters(5.0, 1e-3, 0.0, 0.4), grains.collect());
+    let mut heap = scene(Physics::FULL, GRAVITY, parameters(5.0, 1e-3, 0.0, 0.4), grains.collect());
     let plane = |point, normal| Boundary::HalfSpace { point, normal };
     heap.boundaries = vec![
         plane(DVec2::ZERO, DVec2::Y),
@@ -31,29 +25,16 @@ fn heap() -> Scene {
 
 /// The heap stepped in each way that knows it.
 fn in_every_way() -> Vec<(String, Scene)> {
-    let of = |(stepper, method): (Stepper, Method)| {
-        let mut scene = heap();
-        (scene.stepper, scene.solver.method) = (stepper, method);
-        scene.solver.max_sweeps = 200;
-        (format!("{stepper:?}, {method:?}"), scene)
-    };
-    let all = every_way().into_iter().map(of);
-    all.filter(|(_, scene)| scene.simulation().is_ok()).collect()
+    let mut heap = heap();
+    heap.solver.max_sweeps = 200;
+    in_each_way(&heap, every_way()).filter(|(_, scene)| scene.simulation().is_ok()).collect()
 }
 
 /// Where some grains are and how they go, to the last bit.
-fn bits(simulation: &Simulation, grains: std::ops::Range<usize>) -> Vec<[u64; 6]> {
-    let of = &simulation.world().grains;
-    let of_grain = |index: usize| {
-        let (at, velocity) = (of.positions[index], of.velocities[index]);
-        let numbers =
-            [at.x, at.y, velocity.x, velocity.y, of.angles[index], of.angular_velocities[index]];
-        numbers.map(f64::to_bits)
-    };
-    grains.map(of_grain).collect()
+fn bits(run: &Simulation, grains: std::ops::Range<usize>) -> Vec<[u64; 6]> {
+    crate::common::bits(run)[grains].to_vec()
 }
 
-/// A place far above the heap.
 fn far(radius: f64) -> Disc {
     Disc { position: RADIUS * DVec2::new(3.0, 60.0), radius }
 }
@@ -66,8 +47,8 @@ fn a_grain_that_is_added_at_the_start_is_one_of_the_scene() {
         listed.grains.push(Grain::at_rest(position, radius));
         let (mut added, mut listed) = (start(&scene), start(&listed));
         added.edit(&Edit::Add(far(1.5 * RADIUS))).expect("there is room");
-        for simulation in [&mut added, &mut listed] {
-            take_steps(simulation, 40);
+        for run in [&mut added, &mut listed] {
+            take_steps(run, 40);
         }
         assert_eq!(bits(&added, 0..13), bits(&listed, 0..13), "{way}");
         let [one, other] = [&added, &listed].map(|it| it.observables().slump);
@@ -78,16 +59,15 @@ fn a_grain_that_is_added_at_the_start_is_one_of_the_scene() {
 #[test]
 fn forces_and_bonds_of_the_others_outlive_a_grain_that_comes_and_goes() {
     for (way, scene) in in_every_way() {
-        let mut alone = start(&scene);
-        take_steps(&mut alone, 60);
+        let mut alone = after(&scene, 60);
         let contacts = alone.contacts().contacts().len();
         assert!(contacts > 10, "the situation: a heap that touches, {contacts}, {way}");
         let mut visited = alone.clone();
         visited.edit(&Edit::Add(far(RADIUS))).expect("there is room");
         visited.edit(&Edit::Remove(12)).expect("it is there");
         assert_eq!(visited.contacts().contacts().len(), contacts, "{way}");
-        for simulation in [&mut alone, &mut visited] {
-            take_steps(simulation, 30);
+        for run in [&mut alone, &mut visited] {
+            take_steps(run, 30);
         }
         assert_eq!(bits(&visited, 0..12), bits(&alone, 0..12), "{way}");
     }
@@ -105,13 +85,13 @@ fn the_grains_after_one_that_is_taken_out_keep_what_they_have() {
         let Disc { position, radius } = far(RADIUS);
         with.grains.insert(0, Grain::at_rest(position, radius));
         let (mut with, mut without) = (start(&with), start(&scene));
-        for simulation in [&mut with, &mut without] {
-            take_steps(simulation, 10);
+        for run in [&mut with, &mut without] {
+            take_steps(run, 10);
         }
         with.edit(&Edit::Remove(0)).expect("it is there");
         assert_eq!(bits(&with, 0..12), bits(&without, 0..12), "the situation: {way}");
-        for simulation in [&mut with, &mut without] {
-            take_steps(simulation, 50);
+        for run in [&mut with, &mut without] {
+            take_steps(run, 50);
         }
         assert_eq!(bits(&with, 0..12), bits(&without, 0..12), "{way}");
     }
@@ -119,9 +99,8 @@ fn the_grains_after_one_that_is_taken_out_keep_what_they_have() {
 
 #[test]
 fn what_finds_no_room_or_is_not_there_is_refused_and_changes_nothing() {
-    let mut simulation = start(&heap());
-    take_steps(&mut simulation, 5);
-    let before = bits(&simulation, 0..12);
+    let mut run = after(&heap(), 5);
+    let before = bits(&run, 0..12);
     let disc = |x: f64, y: f64, radius: f64| Disc { position: RADIUS * DVec2::new(x, y), radius };
     let cases = [
         (
@@ -141,27 +120,26 @@ fn what_finds_no_room_or_is_not_there_is_refused_and_changes_nothing() {
         (Edit::Draw { boundary: 3, to: DVec2::ZERO }, "wall is drawn until time passes"),
     ];
     for (edit, expected) in cases {
-        let said = simulation.edit(&edit).expect_err(expected).to_string();
+        let said = run.edit(&edit).expect_err(expected).to_string();
         assert!(said.starts_with(expected), "{said}");
     }
-    assert_eq!(bits(&simulation, 0..12), before);
+    assert_eq!(bits(&run, 0..12), before);
     for _ in 0..11 {
-        simulation.edit(&Edit::Remove(0)).expect("there are more");
+        run.edit(&Edit::Remove(0)).expect("there are more");
     }
-    let said = simulation.edit(&Edit::Remove(0)).expect_err("it is the last").to_string();
+    let said = run.edit(&Edit::Remove(0)).expect_err("it is the last").to_string();
     assert!(said.contains("more than one"), "{said}");
 }
 
 #[test]
 fn slump_counts_a_new_grain_from_where_it_is_put() {
-    let mut simulation = start(&heap());
-    take_steps(&mut simulation, 60);
-    let settled = simulation.observables().slump;
-    simulation.edit(&Edit::Add(far(RADIUS))).expect("there is room");
-    take_steps(&mut simulation, 1);
+    let mut run = after(&heap(), 60);
+    let settled = run.observables().slump;
+    run.edit(&Edit::Add(far(RADIUS))).expect("there is room");
+    take_steps(&mut run, 1);
     // It has fallen by less than a thousandth of what all heights come to.
-    let heights: f64 = simulation.world().grains.positions.iter().map(|at| at.y).sum();
-    let slump = simulation.observables().slump;
+    let heights: f64 = run.places().iter().map(|at| at.y).sum();
+    let slump = run.observables().slump;
     assert!(slump.abs() < settled.abs() + 1e-3 && heights > 0.15, "{settled} {slump} {heights}");
 }
 
@@ -184,65 +162,62 @@ fn speed_of_hand() -> f64 {
 
 #[test]
 fn a_wall_that_is_drawn_hits_grains_with_its_speed_and_stays_where_it_was_drawn() {
-    for &stepper in Stepper::ALL {
-        for restitution in [0.0, 0.8] {
-            let scene = before_a_wall(stepper, restitution);
-            let Ok(mut simulation) = scene.simulation() else { continue };
-            let place = |simulation: &Simulation| place_of(&simulation.world().boundaries[0]);
-            let goal = place(&simulation) + DVec2::new(3.5 * RADIUS, 0.0);
-            simulation.edit(&Edit::Draw { boundary: 0, to: goal }).expect("a wall");
-            let way_secs = 3.5 * RADIUS / speed_of_hand();
-            let steps = (1.2 * way_secs / 1e-4) as usize;
-            let mut fastest_wall = 0f64;
-            for _ in 0..steps {
-                let before = place(&simulation);
-                simulation.step().expect("a finite state");
-                fastest_wall = fastest_wall.max(place(&simulation).distance(before) / 1e-4);
-            }
-            assert!((fastest_wall - speed_of_hand()).abs() < 1e-9, "{stepper:?}: {fastest_wall}");
-            assert!(place(&simulation).distance(goal) < 1e-12, "{stepper:?}");
-            // The grain was at rest, so it leaves a heavy wall at (1 + ρ) times its speed.
-            let speed = simulation.world().grains.velocities[0].x;
-            let rebound = if stepper == Stepper::Avbd { 0.0 } else { restitution };
-            let expected = (1.0 + rebound) * speed_of_hand();
-            // Springs and many substeps come near to it.
-            let tolerance = if stepper == Stepper::Moreau { 1e-9 } else { 0.06 };
-            assert!(
-                (speed / expected - 1.0).abs() < tolerance,
-                "{stepper:?}, {restitution}: {speed} {expected}"
-            );
-            simulation.edit(&Edit::LetGo).expect("a hand");
-            let there = place(&simulation);
-            take_steps(&mut simulation, 50);
-            assert_eq!(place(&simulation), there, "{stepper:?}: at rest once it is let go");
-            assert!(simulation.world().motions.is_empty(), "{stepper:?}");
+    for (&stepper, restitution) in pairs(Stepper::ALL, [0.0, 0.8]) {
+        let scene = before_a_wall(stepper, restitution);
+        let Ok(mut run) = scene.simulation() else { continue };
+        let place = |run: &Simulation| place_of(&run.world().boundaries[0]);
+        let goal = place(&run) + DVec2::new(3.5 * RADIUS, 0.0);
+        run.edit(&Edit::Draw { boundary: 0, to: goal }).expect("a wall");
+        let way_secs = 3.5 * RADIUS / speed_of_hand();
+        let steps = (1.2 * way_secs / 1e-4) as usize;
+        let mut fastest_wall = 0f64;
+        for _ in 0..steps {
+            let before = place(&run);
+            run.step().expect("a finite state");
+            fastest_wall = fastest_wall.max(place(&run).distance(before) / 1e-4);
         }
+        assert!((fastest_wall - speed_of_hand()).abs() < 1e-9, "{stepper:?}: {fastest_wall}");
+        assert!(place(&run).distance(goal) < 1e-12, "{stepper:?}");
+        // The grain was at rest, so it leaves a heavy wall at (1 + ρ) times its speed.
+        let speed = run.velocity(0).x;
+        let rebound = if stepper == Stepper::Avbd { 0.0 } else { restitution };
+        let expected = (1.0 + rebound) * speed_of_hand();
+        // Springs and many substeps come near to it.
+        let tolerance = if stepper == Stepper::Moreau { 1e-9 } else { 0.06 };
+        assert!(
+            (speed / expected - 1.0).abs() < tolerance,
+            "{stepper:?}, {restitution}: {speed} {expected}"
+        );
+        run.edit(&Edit::LetGo).expect("a hand");
+        let there = place(&run);
+        take_steps(&mut run, 50);
+        assert_eq!(place(&run), there, "{stepper:?}: at rest once it is let go");
+        assert!(run.world().motions.is_empty(), "{stepper:?}");
     }
 }
 
 #[test]
 fn a_wall_that_is_let_go_on_the_way_stays_there() {
-    let mut simulation = start(&before_a_wall(Stepper::Moreau, 0.0));
-    simulation.edit(&Edit::Draw { boundary: 0, to: DVec2::new(0.0, 1.0) }).expect("a wall");
-    take_steps(&mut simulation, 10);
-    let on_the_way = place_of(&simulation.world().boundaries[0]);
-    simulation.edit(&Edit::LetGo).expect("a hand");
-    take_steps(&mut simulation, 10);
-    assert_eq!(place_of(&simulation.world().boundaries[0]), on_the_way);
+    let mut run = start(&before_a_wall(Stepper::Moreau, 0.0));
+    run.edit(&Edit::Draw { boundary: 0, to: DVec2::new(0.0, 1.0) }).expect("a wall");
+    take_steps(&mut run, 10);
+    let on_the_way = place_of(&run.world().boundaries[0]);
+    run.edit(&Edit::LetGo).expect("a hand");
+    take_steps(&mut run, 10);
+    assert_eq!(place_of(&run.world().boundaries[0]), on_the_way);
     assert!(on_the_way.y > -4.0 * RADIUS && on_the_way.y < 0.0, "{on_the_way}");
 }
 
 #[test]
 fn what_the_scene_moves_no_hand_draws() {
     for name in ["moving-walls", "drum"] {
-        let mut simulation =
-            slump::scene::built_in(name).expect("a scene").simulation().expect("sound");
-        let world = simulation.world();
+        let mut run = slump::scene::built_in(name).expect("a scene").simulation().expect("sound");
+        let world = run.world();
         let by_itself = |shape: &Boundary| matches!(shape, Boundary::Piston { .. });
         let moved = world.motions.iter().flat_map(|motion| motion.boundaries.first().copied());
         let moved = moved.chain(world.boundaries.iter().position(by_itself)).next();
         let boundary = moved.expect("the situation: something moves") as u32;
-        let said = simulation.edit(&Edit::Draw { boundary, to: DVec2::ZERO });
+        let said = run.edit(&Edit::Draw { boundary, to: DVec2::ZERO });
         let said = said.expect_err(name).to_string();
         assert!(said.ends_with("but must be one that nothing else moves"), "{name}: {said}");
     }
@@ -253,24 +228,21 @@ fn a_run_goes_on_from_a_file_with_the_hand_on_its_wall() {
     for &stepper in Stepper::ALL {
         let mut scene = heap();
         scene.stepper = stepper;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 20);
-        simulation.edit(&Edit::Add(far(0.8 * RADIUS))).expect("there is room");
-        simulation
-            .edit(&Edit::Draw { boundary: 2, to: DVec2::new(6.8 * RADIUS, 0.0) })
-            .expect("a wall");
-        take_steps(&mut simulation, 5);
-        let bytes = rmp_serde::to_vec_named(&simulation).expect("a state");
+        let mut run = after(&scene, 20);
+        run.edit(&Edit::Add(far(0.8 * RADIUS))).expect("there is room");
+        run.edit(&Edit::Draw { boundary: 2, to: DVec2::new(6.8 * RADIUS, 0.0) }).expect("a wall");
+        take_steps(&mut run, 5);
+        let bytes = rmp_serde::to_vec_named(&run).expect("a state");
         let mut read: Simulation = rmp_serde::from_slice(&bytes).expect("a state");
-        for simulation in [&mut simulation, &mut read] {
-            take_steps(simulation, 20);
-            simulation.edit(&Edit::LetGo).expect("a hand");
-            simulation.edit(&Edit::Remove(3)).expect("it is there");
-            take_steps(simulation, 20);
+        for run in [&mut run, &mut read] {
+            take_steps(run, 20);
+            run.edit(&Edit::LetGo).expect("a hand");
+            run.edit(&Edit::Remove(3)).expect("it is there");
+            take_steps(run, 20);
         }
-        assert_eq!(bits(&read, 0..12), bits(&simulation, 0..12), "{stepper:?}");
-        assert_eq!(read.world().boundaries, simulation.world().boundaries);
-        let gone = place_of(&simulation.world().boundaries[2]).x / RADIUS;
+        assert_eq!(bits(&read, 0..12), bits(&run, 0..12), "{stepper:?}");
+        assert_eq!(read.world().boundaries, run.world().boundaries);
+        let gone = place_of(&run.world().boundaries[2]).x / RADIUS;
         assert!(gone < 8.0, "the situation: the wall has gone, {gone}");
     }
 }

@@ -1,16 +1,13 @@
-//! The paper's cradle (§4): which time steps lose the bond between i and j.
+//! The paper's cradle (§4): which time steps lose the bond between i and j; and chains that hang by their cohesion.
 
-use crate::common::{start, take_steps};
-use slump::scene::{Scene, cradle, cradle_from};
-use slump::solver::StopTest;
+use crate::common::*;
 
-/// Whether i and j are apart by more than 0.1 d after 2.5 s: the latest shock of a start at 8.5 d
+/// True if i and j are apart by more than 0.1 d after 2.5 s: the latest shock of a start at 8.5 d
 /// comes at √(2·7.5 d/g) = 1.5 s.
 fn opens(mut scene: Scene, dt: f64) -> bool {
     scene.parameters.time_step_secs = dt;
-    let mut simulation = start(&scene);
-    take_steps(&mut simulation, (2.5 / dt).round() as usize);
-    let grains = &simulation.world().grains;
+    let run = after(&scene, (2.5 / dt).round() as usize);
+    let grains = run.grains();
     let [i, j, k] = [0, 1, 2].map(|index| grains.positions[index].x);
     assert!(k > i - 8.0 * scene.mean_diameter, "k has fallen in");
     (j - i) / scene.mean_diameter - 1.0 > 0.1
@@ -40,18 +37,17 @@ fn after_a_shock_solved_well_i_and_j_move_together() {
     let mut scene = cradle();
     scene.parameters.time_step_secs = 1e-3;
     scene.solver.tolerance = 1e-12;
-    let mut simulation = start(&scene);
-    let relative = |simulation: &slump::sim::Simulation| {
-        let velocities = &simulation.world().grains.velocities;
+    let mut run = start(&scene);
+    let relative = |run: &Simulation| {
+        let velocities = run.velocities();
         velocities[1].x - velocities[0].x
     };
-    while simulation.observables().contacts < 2 {
-        simulation.step().expect("a finite state");
-        assert!(simulation.time_secs() < 2.0, "k arrives");
+    while run.observables().contacts < 2 {
+        run.step().expect("a finite state");
+        assert!(run.time_secs() < 2.0, "k arrives");
     }
-    let speed = simulation.world().grains.velocities[0].x.abs();
-    assert!(speed > 0.5, "there was a shock");
-    assert!(relative(&simulation).abs() < 1e-9, "v_ij = {:e}", relative(&simulation));
+    assert!(run.velocity(0).x.abs() > 0.5, "there was a shock");
+    assert!(relative(&run).abs() < 1e-9, "v_ij = {:e}", relative(&run));
 }
 
 /// The share of bonds lost over 100 starts between 6 and 8.5 d.
@@ -90,5 +86,90 @@ fn no_bond_is_lost_where_the_residual_opens_less_than_the_gap_tolerance() {
     // tolerance, i and j still touch in the next one, at every Δt.
     for dt in [1e-3, 4e-3, 6e-3, 1e-2] {
         assert_eq!(share_lost(dt, 1e-10), 0.0, "Δt {dt}");
+    }
+}
+
+const RADIUS: f64 = 0.05;
+/// Overlap of neighbours, m: rounding of the places, and no more than that.
+const OVERLAP: f64 = 1e-12;
+const TIME_STEPS: [f64; 4] = [1e-5, 1e-4, 1e-3, 5e-3];
+
+// With m the mass of a disc, the contact with the fixed disc has C₀ = Bond·m·g and carries n·m·g; the contact under the
+// k-th disc has C₀ = Bond·(m/2)·g and carries (n − k)·m·g. So a chain holds while n < Bond and n − 1 < Bond/2: a single
+// disc falls off the ceiling at Bond = 1, and a chain of three or more breaks under its first disc, at Bond = 2(n − 1).
+// With two discs both contacts reach their limits together, at Bond = 2.
+
+/// n discs below a fixed one. The line lies along gravity: `down` is x on one axis.
+fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {
+    let down = if physics.axes == 1 { DVec2::X } else { -DVec2::Y };
+    let place = |k: usize| k as f64 * (2.0 * RADIUS - OVERLAP) * down;
+    let grains = (1..=n).map(|k| Grain::at_rest(place(k), RADIUS)).collect();
+    start(&Scene {
+        fixed_discs: vec![fixed(DVec2::ZERO, RADIUS)],
+        solver: to_residual(1e-11),
+        ..scene(physics, G * down, parameters(bond, dt, 0.2, 0.5), grains)
+    })
+}
+
+/// The lowest Bond that holds n discs.
+fn breaking_bond(n: usize) -> f64 {
+    (n as f64).max(2.0 * (n as f64 - 1.0))
+}
+
+/// Relative distance to the threshold on either side.
+const NEAR: f64 = 1e-4;
+
+#[test]
+fn a_chain_holds_while_no_contact_carries_more_than_its_cohesion() {
+    for (dt, physics, n) in triples(TIME_STEPS, [LINE, SMOOTH, Physics::FULL], [1, 2, 4, 7]) {
+        let bond = breaking_bond(n) * (1.0 + NEAR);
+        let mut run = chain(n, bond, dt, physics);
+        take_steps(&mut run, 50);
+        assert_eq!(run.observables().contacts, n as u32, "Δt {dt}, n {n}");
+        let mass = run.grains().masses[0];
+        for (contact, impulse) in run.contacts().contacts().iter().zip(run.contacts().impulses()) {
+            // Grain indices rise downward; a contact's lower disc is the one whose number
+            // is larger, or the only one.
+            let lower = if contact.other as usize >= n { 0 } else { contact.other };
+            let weight = (n - lower as usize) as f64 * mass * G;
+            let force = impulse.normal / dt;
+            assert!(
+                (force + weight).abs() < 1e-8 * n as f64 * mass * G,
+                "Δt {dt}, n {n}: the contact above grain {lower} carries {force}"
+            );
+        }
+        for velocity in run.velocities() {
+            assert!(velocity.length() < 1e-8 * G * dt, "Δt {dt}, n {n}: hangs still");
+        }
+    }
+}
+
+#[test]
+fn a_chain_breaks_above_its_threshold_where_it_is_overloaded() {
+    for dt in TIME_STEPS {
+        for physics in [LINE, SMOOTH, Physics::FULL] {
+            for n in [1, 3, 4, 7] {
+                let bond = breaking_bond(n) * (1.0 - NEAR);
+                let mut run = chain(n, bond, dt, physics);
+                run.step().expect("a finite state");
+                assert!(run.observables().converged);
+                assert_eq!(run.observables().contacts, n as u32, "all touch at first");
+                // NEAR·g opens the overlap within a step or some at each of these time steps.
+                let mut steps = 0;
+                while run.observables().contacts == n as u32 {
+                    run.step().expect("a finite state");
+                    steps += 1;
+                    assert!(steps < 100, "Δt {dt}, n {n}: it does not break");
+                }
+                let pairs = run.contacts().contacts().iter();
+                let ceiling_holds = pairs.clone().any(|contact| contact.other as usize >= n);
+                let first_pair_holds =
+                    pairs.clone().any(|contact| (contact.grain, contact.other) == (0, 1));
+                assert_eq!(ceiling_holds, n > 1, "Δt {dt}, n {n}: the ceiling's contact");
+                assert!(!first_pair_holds, "Δt {dt}, n {n}: the contact under the first disc");
+                let rest = pairs.filter(|contact| contact.grain > 0).count();
+                assert_eq!(rest, n.saturating_sub(2), "Δt {dt}, n {n}: the others fall together");
+            }
+        }
     }
 }

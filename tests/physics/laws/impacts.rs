@@ -1,16 +1,10 @@
-//! Shocks through touching grains, one after the other: what is known exactly, and what always holds.
+//! Shocks through touching grains, one after the other, and those of walls that move along their normal: what is known
+//! exactly, and what always holds.
 
-use crate::common::{
-    LINE, SMOOTH, assert_close, moving, parameters, random, scene, start, take_steps,
-};
-use glam::DVec2;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use rand::RngExt;
 use slump::scene::stability::{bounce, heap};
-use slump::scene::{Preset, Scene, paper_pile};
-use slump::sim::Simulation;
-use slump::world::{Boundary, Grain, Physics};
+
+use crate::common::*;
 
 const RADIUS: f64 = 0.05;
 /// Overlap of grains that touch, in diameters.
@@ -33,41 +27,35 @@ fn row_of(axis: DVec2, velocities: &[f64]) -> Vec<Grain> {
     velocities.iter().enumerate().map(ball).collect()
 }
 
-fn energy(simulation: &Simulation) -> f64 {
-    let grains = &simulation.world().grains;
+fn energy(run: &Simulation) -> f64 {
+    let grains = run.grains();
     let squares = grains.velocities.iter().map(|velocity| velocity.length_squared());
     0.5 * grains.masses.iter().zip(squares).map(|(mass, squared)| mass * squared).sum::<f64>()
 }
 
-fn momentum(simulation: &Simulation) -> DVec2 {
-    let grains = &simulation.world().grains;
-    grains.masses.iter().zip(&grains.velocities).map(|(&mass, &velocity)| mass * velocity).sum()
-}
-
 /// Velocities along `axis` after a step.
 fn after_a_step(scene: &Scene, axis: DVec2) -> Vec<f64> {
-    let mut simulation = start(scene);
-    take_steps(&mut simulation, 1);
-    simulation.world().grains.velocities.iter().map(|velocity| velocity.dot(axis)).collect()
+    let run = after(scene, 1);
+    run.velocities().iter().map(|velocity| velocity.dot(axis)).collect()
 }
 
 #[test]
 fn as_many_balls_leave_newtons_cradle_as_have_struck_it() {
-    for (physics, axis) in [(LINE, DVec2::X), (SMOOTH, DVec2::new(0.6, 0.8))] {
-        for count in 2..=20 {
-            for strikers in 1..=3.min(count - 1) {
-                let speed = |ball: usize| if ball < strikers { SPEED } else { 0.0 };
-                let velocities: Vec<f64> = (0..count).map(speed).collect();
-                let mut scene = struck(physics, 1.0, row_of(axis, &velocities));
-                for robust in [false, true] {
-                    if robust {
-                        Preset::Robust.apply(&mut scene);
-                    }
-                    let after = after_a_step(&scene, axis);
-                    for (ball, expected) in (0..count).rev().map(speed).enumerate() {
-                        let off = (after[ball] - expected).abs();
-                        assert!(off < 1e-10, "{strikers} of {count}, ball {ball}: {after:?}");
-                    }
+    for ((physics, axis), count) in
+        pairs([(LINE, DVec2::X), (SMOOTH, DVec2::new(0.6, 0.8))], 2..=20)
+    {
+        for strikers in 1..=3.min(count - 1) {
+            let speed = |ball: usize| if ball < strikers { SPEED } else { 0.0 };
+            let velocities: Vec<f64> = (0..count).map(speed).collect();
+            let mut scene = struck(physics, 1.0, row_of(axis, &velocities));
+            for robust in [false, true] {
+                if robust {
+                    Preset::Robust.apply(&mut scene);
+                }
+                let after = after_a_step(&scene, axis);
+                for (ball, expected) in (0..count).rev().map(speed).enumerate() {
+                    let off = (after[ball] - expected).abs();
+                    assert!(off < 1e-10, "{strikers} of {count}, ball {ball}: {after:?}");
                 }
             }
         }
@@ -126,7 +114,7 @@ fn a_break_shot_is_symmetric_and_does_not_depend_on_the_numbering() {
             let mut simulation = start(&rack(restitution, order));
             let before = energy(&simulation);
             take_steps(&mut simulation, 1);
-            (before, energy(&simulation), simulation.world().grains.clone())
+            (before, energy(&simulation), simulation.grains().clone())
         };
         let (before, after, grains) = run(&straight);
         if restitution == 1.0 {
@@ -169,9 +157,6 @@ fn crowd(restitution: f64, count: usize, seed: u64) -> Scene {
 
 #[test]
 fn shocks_keep_the_momentum_and_never_gain_energy() {
-    let config = Config { cases: 128, failure_persistence: None, ..Config::default() };
-    let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    let mut runner = TestRunner::new_with_rng(config, random);
     let restitution = prop_oneof![1 => Just(1.0), 1 => Just(0.0), 4 => 0.0..1.0];
     let all = (restitution, 2usize..=40, any::<u64>());
     let run = |(restitution, count, seed)| {
@@ -185,34 +170,31 @@ fn shocks_keep_the_momentum_and_never_gain_energy() {
                 prop_assert!(grown >= -1e-9 * energy_before, "{grown:e} of {energy_before:e}");
             }
             let off = momentum(&simulation).distance(momentum_before);
-            let scale =
-                (energy_before * simulation.world().grains.masses.iter().sum::<f64>()).sqrt();
+            let scale = (energy_before * simulation.grains().masses.iter().sum::<f64>()).sqrt();
             prop_assert!(off <= 1e-12 * scale, "momentum off by {off:e}");
         }
         Ok(())
     };
-    runner.run(&all, run).unwrap_or_else(|failure| panic!("{failure}"));
+    for_random(128, all, run);
 }
 
 #[test]
 fn with_friction_and_spins_none_of_these_shocks_gains_energy() {
-    for seed in 0..60 {
-        for restitution in [0.5, 1.0] {
-            let mut scene = crowd(restitution, 36, seed);
-            let mut random = random(seed);
-            scene.physics = Physics::FULL;
-            scene.parameters.friction = 0.5;
-            scene.solver.tolerance = 1e-10;
-            for grain in &mut scene.grains {
-                grain.angular_velocity = 40.0 * random.random_range(-1.0..=1.0);
-            }
-            let mut simulation = start(&scene);
-            for _ in 0..5 {
-                let before = simulation.observables().kinetic_energy;
-                let after = *simulation.step().expect("a finite state");
-                let grown = after.kinetic_energy / before - 1.0;
-                assert!(grown < 1e-6, "seed {seed}, ρ {restitution}: {grown:e}");
-            }
+    for (seed, restitution) in pairs(0..60, [0.5, 1.0]) {
+        let mut scene = crowd(restitution, 36, seed);
+        let mut random = random(seed);
+        scene.physics = Physics::FULL;
+        scene.parameters.friction = 0.5;
+        scene.solver.tolerance = 1e-10;
+        for grain in &mut scene.grains {
+            grain.angular_velocity = 40.0 * random.random_range(-1.0..=1.0);
+        }
+        let mut run = start(&scene);
+        for _ in 0..5 {
+            let before = run.observables().kinetic_energy;
+            let after = *run.step().expect("a finite state");
+            let grown = after.kinetic_energy / before - 1.0;
+            assert!(grown < 1e-6, "seed {seed}, ρ {restitution}: {grown:e}");
         }
     }
 }
@@ -222,8 +204,7 @@ fn a_wall_that_moves_strikes_twice_and_its_work_is_no_gain_of_the_bounces() {
     let mut scene = struck(Physics::FULL, 1.0, row_of(DVec2::X, &[0.0, 0.0]));
     scene.parameters.friction = 0.5;
     let point = -RADIUS * (1.0 - TOUCH) * DVec2::X;
-    scene.boundaries =
-        vec![Boundary::Piston { point, normal: DVec2::X, speed: SPEED, travel: 1.0 }];
+    scene.boundaries = vec![piston(point, DVec2::X, SPEED, 1.0)];
     // The first ball hands its 2V on to the second, and is struck once more.
     for velocity in after_a_step(&scene, DVec2::X) {
         assert_close(velocity, 2.0 * SPEED, 1e-9, "a ball in front of the wall");
@@ -241,7 +222,7 @@ fn difference(scene: &Scene, steps: usize) -> f64 {
     let (mut off, mut largest) = (0f64, 0f64);
     for _ in 0..steps {
         runs.iter_mut().for_each(|run| take_steps(run, 1));
-        let [usual, sequential] = [0, 1].map(|run: usize| &runs[run].world().grains.velocities);
+        let [usual, sequential] = [0, 1].map(|run: usize| runs[run].velocities());
         for (usual, sequential) in usual.iter().zip(sequential) {
             off = off.max(usual.distance(*sequential));
             largest = largest.max(usual.length());
@@ -273,16 +254,101 @@ fn a_pile_whose_shocks_are_followed_closes_its_energy_budget() {
     let mut scene = paper_pile().expect("the shipped state");
     scene.parameters = parameters(0.0, 1e-3, 0.7, 0.5);
     Preset::Robust.apply(&mut scene);
-    let mut simulation = start(&scene);
+    let mut run = start(&scene);
     let mut shocks = 0.0;
     for _ in 0..100 {
-        let before = simulation.observables().kinetic_energy;
-        let after = *simulation.step().expect("a finite state");
-        let works = [after.gravity_work, after.normal_work, after.tangential_work];
-        let off = (after.kinetic_energy - before - works.iter().sum::<f64>()).abs();
-        let scale = before + after.kinetic_energy + works.iter().map(|w| w.abs()).sum::<f64>();
+        let (after, off, scale) = balance(&mut run);
         assert!(off <= 1e-11 * scale, "step {}: off by {off:e}", after.step);
         shocks += after.normal_work.min(0.0);
     }
     assert!(shocks < 0.0, "there were shocks");
+}
+
+const DT: f64 = 1e-3;
+const WALL_SPEED: f64 = 0.2;
+
+/// A wall along the y axis that comes from the left, from `distance` before the disc at the origin.
+fn pushed(physics: Physics, restitution: f64, distance: f64, travel: f64) -> Scene {
+    let grains = vec![Grain::at_rest(DVec2::ZERO, RADIUS)];
+    let point = DVec2::new(-RADIUS - distance, 0.0);
+    Scene {
+        boundaries: vec![piston(point, DVec2::X, WALL_SPEED, travel)],
+        ..scene(physics, DVec2::ZERO, parameters(0.0, DT, restitution, 0.5), grains)
+    }
+}
+
+fn wall(run: &Simulation) -> f64 {
+    match run.world().boundaries[0] {
+        Boundary::Piston { point, .. } => point.x,
+        _ => panic!("the wall is a piston"),
+    }
+}
+
+#[test]
+fn a_wall_hits_a_disc_at_rest_as_a_moving_disc_hits_a_wall() {
+    for (physics, restitution) in pairs([LINE, Physics::FULL], [0.0, 0.5, 1.0]) {
+        // From further than any list of near pairs reaches.
+        let run = after(&pushed(physics, restitution, 20.0 * RADIUS, 10.0), 10_000);
+        let expected = (1.0 + restitution) * WALL_SPEED;
+        let speed = run.velocity(0).x;
+        assert_close(speed, expected, 1e-12, "speed after the wall came");
+    }
+}
+
+#[test]
+fn a_wall_goes_its_way_to_the_end_and_no_further_and_is_shown_where_it_is() {
+    let travel = 10.3 * DT * WALL_SPEED;
+    let mut run = start(&pushed(LINE, 0.0, 0.0, travel));
+    let begin = wall(&run);
+    take_steps(&mut run, 10);
+    assert_close(wall(&run) - begin, 10.0 * DT * WALL_SPEED, 1e-12, "way in ten steps");
+    take_steps(&mut run, 10);
+    assert_close(wall(&run) - begin, travel, 1e-12, "way in the end");
+    assert_eq!(run.snapshot().surroundings.boundaries, run.world().boundaries);
+    assert!(run.place(0).x > travel, "the disc flies on");
+}
+
+#[test]
+fn a_grain_that_follows_a_wall_on_its_way_back_is_not_lost() {
+    let mut scene = pushed(Physics::FULL, 0.0, 0.0, 10.0);
+    scene.gravity = Gravity::Uniform { acceleration: DVec2::new(-9.8, 0.0) };
+    if let Boundary::Piston { speed, .. } = &mut scene.boundaries[0] {
+        *speed = -20.0 * WALL_SPEED;
+    }
+    let run = after(&scene, 1000);
+    let place = run.place(0).x;
+    assert!(place < -30.0 * RADIUS, "it falls after the wall, {place} m");
+    let lost = |alarm: &Alarm| alarm.kind == AlarmKind::GrainLost;
+    assert!(!run.alarms().iter().any(lost));
+}
+
+#[test]
+fn a_wall_that_cannot_be_is_refused_with_its_field() {
+    for (speed, travel) in [(f64::NAN, 1.0), (f64::INFINITY, 1.0), (1.0, -1.0), (1.0, f64::NAN)] {
+        let mut scene = pushed(LINE, 0.0, 0.0, travel);
+        if let Boundary::Piston { speed: of_wall, .. } = &mut scene.boundaries[0] {
+            *of_wall = speed;
+        }
+        let said = scene.simulation().expect_err("no such wall").to_string();
+        assert!(said.starts_with("boundaries[0] is speed"), "{said}");
+    }
+}
+
+/// Each shock runs through the row and leaves its last ball not yet struck with 2V; in the end no
+/// contact closes, and every ball has it.
+#[test]
+fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
+    for balls in 1..=4 {
+        let place = |ball: usize| DVec2::new(2.0 * RADIUS * ball as f64, 0.0);
+        let mut scene = pushed(LINE, 1.0, 0.0, 10.0);
+        let row = (0..balls).map(|ball| Grain::at_rest(place(ball), RADIUS));
+        scene.grains = row.collect();
+        // Wherever rounding has put the last digit, they touch.
+        scene.gap_tolerance = 1e-9;
+        scene.remedies = Remedies { sequential_impacts: true, ..Remedies::default() };
+        let run = after(&scene, 1);
+        for velocity in run.velocities() {
+            assert_close(velocity.x, 2.0 * WALL_SPEED, 1e-9, "speed after the wall came");
+        }
+    }
 }

@@ -1,9 +1,10 @@
-//! What a moment tells of contacts, against what is known of them.
+//! What runs tell: contacts against what is known of them, steps that stall, residuals; and what small piles show of the
+//! paper's §3.
 
-use glam::DVec2;
-use slump::scene::{Scene, built_in};
-use slump::sim::{ContactState, ContactStatus, Moment, OtherBody, Simulation, Stepper};
-use slump::world::{Boundary, FrictionCone, Grain, Gravity};
+use rayon::prelude::*;
+
+use crate::common::*;
+use crate::program::*;
 
 const RADIUS: f64 = 2e-3;
 /// What discs lie deep in the floor, m, so that they touch it: at a gap of exactly 0 they do not.
@@ -15,7 +16,7 @@ fn disc_on_floor(angle: f64, bond: f64, friction: f64, cone: FrictionCone) -> Si
     scene.parameters.bond = bond;
     scene.parameters.friction = friction;
     scene.parameters.cone = cone;
-    scene.simulation().expect("a disc on a floor")
+    start(&scene)
 }
 
 fn scene_of(centres: &[DVec2], angle: f64) -> Scene {
@@ -25,7 +26,7 @@ fn scene_of(centres: &[DVec2], angle: f64) -> Scene {
     scene.mean_diameter = 2.0 * RADIUS;
     scene.grains = centres.iter().map(|&centre| Grain::at_rest(centre, RADIUS)).collect();
     scene.fixed_discs.clear();
-    scene.boundaries = vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }];
+    scene.boundaries = vec![level()];
     scene.gravity = Gravity::Uniform { acceleration: 9.81 * DVec2::new(angle.sin(), -angle.cos()) };
     scene
 }
@@ -52,9 +53,9 @@ fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
             FrictionCone::Compressive => friction * angle.cos(),
         };
         assert_eq!(needed > bound, status == ContactStatus::Slip, "the situation at Bond {bond}");
-        let mut simulation = disc_on_floor(angle, bond, friction, cone);
-        simulation.take_steps(20).expect("finite steps");
-        let moment = simulation.moment();
+        let mut run = disc_on_floor(angle, bond, friction, cone);
+        run.take_steps(20).expect("finite steps");
+        let moment = run.moment();
         let contact = only_contact(&moment);
         assert_eq!(contact.status, status, "Bond {bond}, {cone:?}: {contact:?}");
         let weight = moment.grains[0].mass * 9.81;
@@ -71,9 +72,9 @@ fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
 fn a_disc_that_is_pulled_off_opens_at_its_cohesion() {
     // Gravity upwards: half of the weight is less than it takes to hold a disc, twice is more.
     for (bond, status) in [(0.5, ContactStatus::Open), (2.0, ContactStatus::Slip)] {
-        let mut simulation = disc_on_floor(std::f64::consts::PI, bond, 0.0, FrictionCone::Shifted);
-        simulation.step().expect("a finite step");
-        let moment = simulation.moment();
+        let mut run = disc_on_floor(std::f64::consts::PI, bond, 0.0, FrictionCone::Shifted);
+        run.step().expect("a finite step");
+        let moment = run.moment();
         let contact = only_contact(&moment);
         assert_eq!(contact.status, status, "Bond {bond}: {contact:?}");
         let pull = -contact.normal_force / (moment.grains[0].mass * 9.81);
@@ -89,13 +90,13 @@ fn a_contact_is_as_old_as_it_has_lasted() {
     for stepper in Stepper::ALL.iter().copied() {
         let mut scene = scene_of(&centres, 0.0);
         scene.stepper = stepper;
-        let mut simulation = scene.simulation().expect("two discs");
+        let mut run = start(&scene);
         // What lies there at the start was found then.
         let mut touches = [Some(0), None];
-        assert_eq!(only_contact(&simulation.moment()).age_steps, 0, "{stepper}");
+        assert_eq!(only_contact(&run.moment()).age_steps, 0, "{stepper}");
         for step in 1..=60u64 {
-            simulation.step().expect("a finite step");
-            let moment = simulation.moment();
+            run.step().expect("a finite step");
+            let moment = run.moment();
             for grain in 0..2 {
                 let contact = moment.contacts.iter().find(|contact| contact.grain == grain);
                 let found = &mut touches[grain as usize];
@@ -111,12 +112,12 @@ fn a_contact_is_as_old_as_it_has_lasted() {
 
 #[test]
 fn grains_and_contacts_are_those_of_the_simulation() {
-    let mut simulation = built_in("pile").expect("the pile").simulation().expect("a simulation");
-    simulation.take_steps(30).expect("finite steps");
-    let moment = simulation.moment();
-    let snapshot = simulation.snapshot();
+    let mut run = built_in("pile").expect("the pile").simulation().expect("a run");
+    run.take_steps(30).expect("finite steps");
+    let moment = run.moment();
+    let snapshot = run.snapshot();
     let fastest = moment.grains.iter().map(|grain| grain.velocity.length()).fold(0.0, f64::max);
-    let reach = 2.0 * fastest * simulation.parameters().time_step_secs + 1e-12;
+    let reach = 2.0 * fastest * run.parameters().time_step_secs + 1e-12;
     assert_eq!(moment.grains.len(), snapshot.grains.len());
     assert_eq!(moment.contacts.len(), snapshot.contacts.len());
     for (state, view) in moment.contacts.iter().zip(&snapshot.contacts) {
@@ -129,4 +130,128 @@ fn grains_and_contacts_are_those_of_the_simulation() {
     assert!(moment.contacts.iter().any(|contact| contact.status == ContactStatus::Slip));
     assert!(moment.contacts.iter().any(|contact| contact.status == ContactStatus::Stick));
     assert!(moment.contacts.iter().any(|contact| matches!(contact.other, OtherBody::FixedDisc(_))));
+}
+
+/// Below the rounding of any step of a pile.
+const OUT_OF_REACH: f64 = 1e-18;
+
+fn pile(stepper: Stepper) -> Scene {
+    let solver = SolverSettings { max_sweeps: 100_000, ..solved_by(Method::Nncg, OUT_OF_REACH) };
+    Scene { stepper, solver, ..built_in("pile").expect("the shipped state") }
+}
+
+#[test]
+fn a_stalled_step_is_observed_as_such_under_every_stepper_with_a_method() {
+    for &stepper in Stepper::ALL.iter().filter(|stepper| stepper.uses_method()) {
+        let mut run = pile(stepper).simulation().expect("a sound scene");
+        let mut tally = Tally::default();
+        for _ in 0..5 {
+            tally.add(run.step().expect("a finite state"));
+        }
+        assert_eq!(tally.unconverged_steps, 5, "{stepper}: nothing gets to {OUT_OF_REACH:e}");
+        assert_eq!(tally.stalled_steps, 5, "{stepper}: more sweeps are of no use");
+    }
+}
+
+#[test]
+fn a_run_tells_of_stalled_steps_in_its_manifest_and_on_stderr() {
+    let folder = folder();
+    let line = "--headless --renderer cpu --size 16x16 --stepper range --solver nncg --stop residual \
+                --tolerance 1e-18 --max-sweeps 100000 --dt 1e-3 --duration 5e-3 --times 5e-3 --frames";
+    let said = succeed(slump(line).arg(folder.path()));
+    assert!(said.contains("5 of 5 steps did not reach tolerance"), "{said}");
+    assert!(said.contains("5 of them stalled"), "{said}");
+    assert_eq!(manifest(folder.path())["runs"][0]["tally"]["stalled_steps"], 5);
+    let rows = read(folder.path().join("observables.csv"));
+    let header = rows.lines().next().expect("a header");
+    let column = header.split(',').position(|name| name == "stalled").expect("a column");
+    let stalled = rows.lines().skip(1).filter(|row| row.split(',').nth(column) == Some("true"));
+    assert_eq!(stalled.count(), 5);
+}
+
+#[test]
+fn converged_never_stands_beside_a_residual_that_is_not_finite() {
+    for (stepper, method) in every_way() {
+        let mut cradle = built_in("cradle").expect("the cradle");
+        cradle.stepper = stepper;
+        cradle.solver.method = method;
+        let mut run = start(&cradle);
+        for _ in 0..20 {
+            let seen = *run.step().expect("a finite state");
+            let is_finite = seen.residual.is_finite();
+            assert!(is_finite || !seen.converged, "{stepper} {method}: {seen:?}");
+            // Nothing moves at first: what rounding leaves over is no residual.
+            assert!(is_finite || !stepper.uses_method(), "{stepper} {method}: {seen:?}");
+        }
+    }
+}
+
+// Piles are chaotic, so single slumps move by some hundredths with anything. Each claim is one of the mean of paired
+// differences over the initial states, with Student's 95 % interval.
+
+const BOX_WIDTH_IN_DIAMETERS: f64 = 8.0;
+/// Initial states, and Student's t for 95 % and one degree of freedom less.
+const STATES: u64 = 8;
+const STUDENT_T: f64 = 2.365;
+/// The collapse of a pile of this size has ended by then, s.
+const DURATION_SECS: f64 = 0.4;
+
+fn states() -> Vec<Vec<Grain>> {
+    let rain = |seed| NewPile {
+        grains: 48,
+        box_width_in_diameters: BOX_WIDTH_IN_DIAMETERS,
+        seed,
+        ..NewPile::default()
+    };
+    let settled = |seed| settle(&rain(seed), |_| true).expect("it comes to rest");
+    (1..=STATES).into_par_iter().map(settled).collect()
+}
+
+fn slumps(states: &[Vec<Grain>], bond: f64, dt: f64) -> Vec<f64> {
+    let slump = |grains: &Vec<Grain>| {
+        let mut scene = pile_of(grains.clone(), BOX_WIDTH_IN_DIAMETERS).expect("a pile");
+        scene.parameters.bond = bond;
+        scene.parameters.time_step_secs = dt;
+        scene.solver.tolerance = 1e-5;
+        scene.solver.max_sweeps = 3000;
+        let run = after(&scene, (DURATION_SECS / dt).round() as usize);
+        run.observables().slump
+    };
+    states.par_iter().map(slump).collect()
+}
+
+/// Mean of the paired differences a − b, and half the width of its 95 % interval.
+fn difference(a: &[f64], b: &[f64]) -> (f64, f64) {
+    let count = a.len() as f64;
+    let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    let mean = differences.iter().sum::<f64>() / count;
+    let squares: f64 = differences.iter().map(|difference| (difference - mean).powi(2)).sum();
+    (mean, STUDENT_T * (squares / (count - 1.0) / count).sqrt())
+}
+
+#[test]
+fn without_cohesion_the_time_step_does_not_change_the_slump() {
+    let states = states();
+    let finest = slumps(&states, 0.0, 5e-4);
+    let mean = finest.iter().sum::<f64>() / finest.len() as f64;
+    assert!(finest.iter().all(|&slump| slump > 0.3), "they collapse: {finest:.3?}");
+    for dt in [1e-3, 2e-3, 5e-3] {
+        let (change, error) = difference(&slumps(&states, 0.0, dt), &finest);
+        println!("Δt {dt}: slump {mean:.3} changes by {change:.4} ± {error:.4}");
+        assert!(error < 0.1 * mean, "Δt {dt}: ± {error} tells nothing");
+        assert!(change.abs() < error, "Δt {dt}: the slump changes by {change} ± {error}");
+    }
+}
+
+#[test]
+fn cohesion_of_bond_100_holds_what_collapses_without() {
+    let states = states();
+    let (loose, bonded) = (slumps(&states, 0.0, 1e-3), slumps(&states, 100.0, 1e-3));
+    for (loose, bonded) in loose.iter().zip(&bonded) {
+        // One of these narrow piles leans over and slumps 0.27; the others stay below 0.12.
+        assert!(bonded + 0.2 < *loose, "{bonded} with cohesion, {loose} without");
+    }
+    let (change, error) = difference(&bonded, &loose);
+    println!("Bond 100: {bonded:.3?}, by {change:.3} ± {error:.3}");
+    assert!(change + error < -0.3, "cohesion changes the slump by {change} ± {error}");
 }

@@ -1,14 +1,8 @@
-//! Gravity that turns: what falls freely, what a box that is tilted lets slide, and the budget of energy.
+//! Gravity that turns by itself or is tilted by hand: what falls, what slides, and that a tilted world is the one whose
+//! gravity is listed so.
 
-use super::{level, through_a_file};
-use crate::common::{
-    G, UNTURNING, assert_close, every_way, every_way_that_balances, parameters, pressed_pile,
-    scene, start, take_steps,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Stepper;
-use slump::world::{Grain, Gravity, GravityTurn, Physics, TurnCourse};
+use super::{saved_and_read, through_a_file};
+use crate::common::*;
 
 const DT: f64 = 1e-3;
 const RATE: f64 = 0.4;
@@ -25,23 +19,21 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
         let scene = Scene {
             stepper,
             gravity_turn: evenly(RATE),
-            ..scene(Physics::FULL, -G * DVec2::Y, parameters(0.0, DT, 0.0, 0.5), vec![grain])
+            ..under_g(parameters(0.0, DT, 0.0, 0.5), vec![grain])
         };
-        let mut simulation = start(&through_a_file(&scene));
+        let mut run = start(&through_a_file(&scene));
         let mut work = 0.0;
         for _ in 0..2000 {
-            work += simulation.step().expect("a finite state").gravity_work;
+            work += run.step().expect("a finite state").gravity_work;
         }
         let angle = RATE * 2000.0 * DT;
         let expected = G / RATE * DVec2::new(1.0 - angle.cos(), -angle.sin());
-        let grains = &simulation.world().grains;
+        let grains = run.grains();
         // The middle of a step stands for the step: (ΩΔt)²/24.
         assert!(grains.velocities[0].distance(expected) < 2e-7, "{stepper}");
         let energy = 0.5 * grains.masses[0] * grains.velocities[0].length_squared();
         assert_close(work, energy, 1e-12, stepper.name());
-        let Gravity::Uniform { acceleration } = simulation.world().gravity else {
-            panic!("uniform")
-        };
+        let Gravity::Uniform { acceleration } = run.world().gravity else { panic!("uniform") };
         assert_close(acceleration.length(), G, 1e-15, "g stays as large");
     }
 }
@@ -64,77 +56,107 @@ fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
             ..scene(UNTURNING, -G * DVec2::Y, parameters(0.0, DT, 0.0, mu), vec![grain])
         };
         scene.solver.method = method;
-        let mut simulation = start(&scene);
-        take_steps(&mut simulation, 600);
+        let mut run = after(&scene, 600);
         let what = format!("{stepper}, {method}");
-        let speed = simulation.world().grains.velocities[0].x;
+        let speed = run.velocity(0).x;
         assert!(
             speed.abs() < if stepper == Stepper::Dem { 1e-4 } else { 1e-12 },
             "{what}: {speed}"
         );
-        take_steps(&mut simulation, 1100);
+        take_steps(&mut run, 1100);
         // g (sin θ − μ cos θ) since tan θ = μ, at 0.65 s: evenly rising until 0.7 s.
         let push = G * (above.sin() - mu * above.cos());
-        let speed = simulation.world().grains.velocities[0].x;
-        assert_close(speed, push * (1.0 + 0.025), 5e-3, &what);
+        assert_close(run.velocity(0).x, push * (1.0 + 0.025), 5e-3, &what);
     }
 }
 
+/// What rests, falls and is bonded, on a floor.
+fn on_a_floor() -> Scene {
+    let mut scene = at_rest_and_falling();
+    scene.boundaries = vec![level()];
+    scene
+}
+
+fn tilted(scene: &Scene, degrees: f64) -> Scene {
+    let mut tilted = scene.clone();
+    tilted.parameters.tilt = degrees;
+    tilted
+}
+
 #[test]
-fn the_budget_of_energy_is_closed_under_gravity_that_turns() {
-    for (stepper, method) in every_way_that_balances() {
-        let mut scene = pressed_pile(40, 0.3, 5, parameters(2.0, DT, 0.3, 0.5));
-        scene.gravity_turn = evenly(3.0);
-        scene.solver.max_sweeps = 100;
+fn a_tilted_world_is_bit_for_bit_the_one_whose_gravity_is_listed_so() {
+    let Gravity::Uniform { acceleration } = on_a_floor().gravity else { panic!("not uniform") };
+    for (stepper, method) in every_way() {
+        let mut scene = on_a_floor();
         (scene.stepper, scene.solver.method) = (stepper, method);
-        let mut simulation = start(&scene);
-        let mut energy = simulation.observables().kinetic_energy;
-        let mut scale = energy;
-        for _ in 0..100 {
-            let now = *simulation.step().expect("a finite state");
-            let works = now.normal_work + now.tangential_work + now.gravity_work;
-            scale += works.abs();
-            let off = (now.kinetic_energy - energy - works).abs();
-            assert!(off < 1e-10 * scale, "{stepper}, {method}: off by {off} J");
-            energy = now.kinetic_energy;
+        let mut listed = scene.clone();
+        let turn = DVec2::from_angle(20f64.to_radians());
+        listed.gravity = Gravity::Uniform { acceleration: turn.rotate(acceleration) };
+        let [mut one, mut other, mut level] = [&tilted(&scene, 20.0), &listed, &scene].map(start);
+        assert_eq!(one.observables().potential_energy, other.observables().potential_energy);
+        for run in [&mut one, &mut other, &mut level] {
+            take_steps(run, 30);
         }
+        assert_eq!(bits(&one), bits(&other), "{stepper}, {method}");
+        assert_ne!(bits(&one), bits(&level), "{stepper}, {method}");
     }
 }
 
 #[test]
-fn gravity_that_cannot_turn_so_is_refused() {
-    let refused = |change: &dyn Fn(&mut Scene), expected: &str| {
-        let grain = Grain::at_rest(DVec2::ZERO, 0.1);
-        let mut scene = Scene {
-            gravity_turn: evenly(RATE),
-            ..scene(Physics::FULL, -G * DVec2::Y, parameters(0.0, DT, 0.0, 0.5), vec![grain])
-        };
-        change(&mut scene);
-        let said = scene.simulation().map(|_| ()).expect_err("no such gravity").to_string();
-        assert_eq!(said, expected);
-    };
-    refused(
-        &|scene| scene.gravity = Gravity::Attraction { centre: DVec2::ZERO, magnitude: 1.0 },
-        "gravity_turn is given, but must be left out where gravity is not uniform",
-    );
-    refused(
-        &|scene| scene.physics = crate::common::LINE,
-        "gravity_turn is given, but must be left out where physics.axes is 1",
-    );
-    refused(
-        &|scene| scene.gravity_turn = evenly(f64::INFINITY),
-        "gravity_turn.course.rate is inf, but must be finite",
-    );
-    let table = |times: [f64; 2], angles: [f64; 2]| {
-        let course = TurnCourse::Table { times_secs: times.into(), angles: angles.into() };
+fn gravity_points_to_the_right_where_the_tilt_is_above_0_and_comes_back() {
+    let mut run = start(&on_a_floor());
+    let mut settings = *run.settings();
+    settings.parameters.tilt = 30.0;
+    run.change(settings).expect("sound settings");
+    let gravity = |run: &Simulation| run.world().gravity.acceleration(DVec2::ZERO);
+    let g = gravity(&start(&on_a_floor())).length();
+    assert!(gravity(&run).distance(DVec2::new(0.5 * g, -(0.75f64.sqrt()) * g)) < 1e-12 * g);
+    settings.parameters.tilt = 0.0;
+    run.change(settings).expect("sound settings");
+    take_steps(&mut run, 20);
+    let mut level = start(&on_a_floor());
+    take_steps(&mut level, 20);
+    assert_eq!(bits(&run), bits(&level));
+}
+
+#[test]
+fn a_run_that_is_tilted_on_the_way_goes_on_from_its_file_bit_for_bit() {
+    for scene in ["incline", "pile"].map(|name| built_in(name).expect("a scene")) {
+        let mut simulation = start(&scene);
+        take_steps(&mut simulation, 5);
+        let mut settings = *simulation.settings();
+        settings.parameters.tilt = -12.5;
+        simulation.change(settings).expect("sound settings");
+        take_steps(&mut simulation, 5);
+        let read = saved_and_read(&scene, &simulation);
+        let mut again = read.simulation.clone();
+        for run in [&mut simulation, &mut again] {
+            take_steps(run, 10);
+        }
+        assert_eq!(bits(&simulation), bits(&again));
+        // A new start from there has the scene's own turn, and the tilt as a setting.
+        let start = read.as_start();
+        assert_eq!(start.parameters.tilt, -12.5);
+        assert_eq!(start.gravity, read.scene.gravity);
+        assert_eq!(start.gravity_turn.is_some(), read.scene.gravity_turn.is_some());
+    }
+}
+
+#[test]
+fn a_tilt_adds_to_what_turns_by_itself() {
+    let mut scene = on_a_floor();
+    let turn = |angle: f64| {
+        let course = TurnCourse::Table { times_secs: vec![0.0], angles: vec![angle] };
         Some(GravityTurn { course, elapsed_secs: 0.0 })
     };
-    refused(
-        &|scene| scene.gravity_turn = table([1.0, 0.5], [0.0, 1.0]),
-        "gravity_turn.course.times_secs[1] is 0.5, but must be finite, and above the time before it",
-    );
-    refused(
-        &|scene| scene.gravity_turn = table([0.0, 0.5], [0.0, f64::NAN]),
-        "gravity_turn.course.angles[1] is not finite, but must be finite",
-    );
+    scene.gravity_turn = turn(0.25);
+    let mut sum = start(&tilted(&scene, 0.5f64.to_degrees()));
+    scene.gravity_turn = turn(0.75);
+    let mut whole = start(&scene);
+    for run in [&mut sum, &mut whole] {
+        take_steps(run, 20);
+    }
+    let [one, other] = [&sum, &whole].map(|run| run.places());
+    let apart = one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);
+    assert!(apart < 1e-12, "{apart} m");
 }

@@ -1,16 +1,8 @@
-//! Borders that wrap: nothing depends on where they are, and nothing is lost across them.
+//! Borders that wrap at the sides, below and above, or both: nothing depends on where they are.
 
-use super::{level, saved_and_read, straight, through_a_file};
-use crate::common::{
-    assert_close, at_rest_and_falling, every_way, fixed, moving, parameters, pressed_pile, random,
-    scene, start, take_steps,
-};
-use glam::DVec2;
-use rand::RngExt;
-use slump::scene::Scene;
-use slump::sim::{Remedies, Simulation, Stepper};
-use slump::solver::Method;
-use slump::world::{Boundary, Grain, Motion, Periodic, Physics};
+use super::images::gas;
+use super::through_a_file;
+use crate::common::*;
 
 /// The scene with a cell of this width whose left border is at `left`, and all discs moved by `shift`, m.
 pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Scene {
@@ -26,7 +18,7 @@ pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Sce
 /// Longest distance, m, of a grain in a run from where the same one is in another that was moved by `shift`.
 fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     let cell = one.world().periodic.or(other.world().periodic).expect("a cell");
-    let [one, other] = [one, other].map(|run| &run.world().grains.positions);
+    let [one, other] = [one, other].map(|run| run.places());
     let ways = one.iter().zip(other).map(|(one, other)| *one + shift * DVec2::X - *other);
     ways.map(|way| cell.shortest(way).length()).fold(0.0, f64::max)
 }
@@ -75,110 +67,6 @@ fn a_packing_moved_across_the_border_goes_the_same_way() {
 }
 
 #[test]
-fn a_pair_that_meets_across_the_border_is_a_pair_that_meets_inside() {
-    let (radius, width) = (0.01, 0.25);
-    let at = |x: f64, y: f64, speed: f64| moving(DVec2::new(x, y), radius, speed * DVec2::X);
-    for (stepper, method) in every_way() {
-        let mut met = Vec::new();
-        for shift in [0.0, 0.12] {
-            let parameters = parameters(0.0, 1e-3, 0.5, 0.4);
-            let mut pair = scene(
-                Physics::FULL,
-                DVec2::ZERO,
-                parameters,
-                vec![at(-0.0102, 0.0, 0.3), at(0.0102, 0.004, -0.1)],
-            );
-            (pair.stepper, pair.solver.method) = (stepper, method);
-            let mut run = start(&through_a_file(&in_cell(&pair, [-0.12, width], shift)));
-            take_steps(&mut run, 20);
-            let grains = &run.world().grains;
-            assert!(grains.velocities[0].x < 0.29, "{stepper} {method} {shift}: they met");
-            met.push((grains.velocities.clone(), grains.angular_velocities.clone()));
-        }
-        for (one, other) in met[0].0.iter().zip(&met[1].0) {
-            assert!(one.distance(*other) < 1e-12, "{stepper} {method}: {one} {other}");
-        }
-        for (one, other) in met[0].1.iter().zip(&met[1].1) {
-            assert!((one - other).abs() < 1e-9, "{stepper} {method}: {one} {other} rad/s");
-        }
-    }
-}
-
-/// A gas between a floor and a ceiling that do not rub: discs of one or of very different sizes.
-fn gas(small: f64) -> Scene {
-    let mut random = random(5);
-    let diameter = 0.01;
-    let grains = (0..80).map(|k| {
-        let place = DVec2::new(0.5 + f64::from(k % 10), 0.6 + 1.1 * f64::from(k / 10));
-        let mut component = || random.random_range(-1.0..=1.0);
-        let velocity = DVec2::new(component() + 0.5, component());
-        let radius = 0.5 * diameter * if k % 3 == 0 { small } else { 0.95 };
-        moving(diameter * place, radius, velocity)
-    });
-    let mut scene =
-        scene(Physics::FULL, DVec2::ZERO, parameters(0.0, 1e-4, 1.0, 0.0), grains.collect());
-    let ceiling = Boundary::HalfSpace { point: 0.1 * DVec2::Y, normal: DVec2::NEG_Y };
-    scene.boundaries = vec![level(), ceiling];
-    scene.mean_diameter = diameter;
-    scene.periodic = Some(Periodic::along_x([0.0, 0.1]));
-    scene
-}
-
-#[test]
-fn the_momentum_of_a_gas_along_its_period_stays_and_no_grain_is_lost() {
-    for small in [0.9, 0.15] {
-        let mut run = start(&gas(small));
-        let momentum = |run: &Simulation| -> f64 {
-            let grains = &run.world().grains;
-            grains.masses.iter().zip(&grains.velocities).map(|(mass, v)| mass * v.x).sum()
-        };
-        let (before, mut crossings) = (momentum(&run), 0);
-        for _ in 0..3000 {
-            let places = run.world().grains.positions.clone();
-            take_steps(&mut run, 1);
-            let now = &run.world().grains.positions;
-            assert!(now.iter().all(|place| (0.0..0.1).contains(&place.x)));
-            let jumps = places.iter().zip(now).filter(|(old, new)| (old.x - new.x).abs() > 0.05);
-            crossings += jumps.count();
-        }
-        assert!(crossings > 100, "{crossings}");
-        assert_close(momentum(&run), before, 1e-12, "the momentum");
-        assert_eq!(run.observables().lost_grains, 0);
-        assert!(run.observables().max_overlap < 0.05, "{:?}", run.observables());
-    }
-}
-
-#[test]
-fn every_pair_in_touch_is_found_across_the_border_and_none_twice() {
-    for small in [0.9, 0.15] {
-        let mut run = start(&gas(small));
-        let mut found_across = 0;
-        for _ in 0..800 {
-            let grains = run.world().grains.clone();
-            take_steps(&mut run, 1);
-            let mut expected = Vec::new();
-            for i in 0..grains.len() {
-                for j in i + 1..grains.len() {
-                    let mut offset = grains.positions[i] - grains.positions[j];
-                    offset.x -= 0.1 * (offset.x / 0.1).round();
-                    if offset.length() - grains.radii[i] - grains.radii[j] < 0.0 {
-                        let far = (grains.positions[i].x - grains.positions[j].x).abs() > 0.05;
-                        found_across += u32::from(far);
-                        expected.push((i as u32, j as u32));
-                    }
-                }
-            }
-            let contacts = run.contacts().contacts().iter();
-            let pairs = contacts.map(|contact| (contact.grain, contact.other));
-            let found: Vec<_> =
-                pairs.filter(|(_, other)| (*other as usize) < grains.len()).collect();
-            assert_eq!(found, expected);
-        }
-        assert!(found_across > 20, "{found_across}");
-    }
-}
-
-#[test]
 fn numbers_of_grains_mean_nothing_across_the_border() {
     let (scene, width) = at_rest_on_discs();
     let scene = in_cell(&scene, [-0.5 * width, width], 0.5 * width);
@@ -189,8 +77,8 @@ fn numbers_of_grains_mean_nothing_across_the_border() {
     take_steps(&mut other, 100);
     let (count, run_cell) = (scene.grains.len(), scene.periodic.expect("a cell"));
     for k in 0..count {
-        let [one, other] = [(&one, k), (&other, count - 1 - k)]
-            .map(|(run, grain)| run.world().grains.positions[grain]);
+        let [one, other] =
+            [(&one, k), (&other, count - 1 - k)].map(|(run, grain)| run.place(grain));
         let off = run_cell.shortest(one - other).length();
         assert!(off < 1e-9 * scene.mean_diameter, "{one} {other}");
     }
@@ -203,33 +91,8 @@ pub(super) fn sliding(bond: f64) -> Scene {
     let (left, count) = (scene.fixed_discs[0].position.x, scene.fixed_discs.len());
     let width = count as f64 * 2.0 * scene.fixed_discs[0].radius;
     scene.periodic = Some(Periodic::along_x([left, left + width]));
-    scene.motions = vec![Motion {
-        fixed_discs: (0..count).collect(),
-        course: Some(straight(0.4 * DVec2::X)),
-        ..Motion::default()
-    }];
+    scene.motions = vec![discs_go(count, straight(0.4 * DVec2::X))];
     scene
-}
-
-#[test]
-fn a_run_goes_on_from_a_file_bit_for_bit_across_a_crossing() {
-    for stepper in Stepper::ALL {
-        let scene = Scene { stepper: *stepper, ..sliding(5.0) };
-        let mut run = start(&scene);
-        take_steps(&mut run, 40);
-        let mut read = saved_and_read(&scene, &run).simulation;
-        let before = run.world().clone();
-        take_steps(&mut run, 60);
-        take_steps(&mut read, 60);
-        assert_eq!(run.world(), read.world(), "{stepper}");
-        let jumps = |old: &[DVec2], new: &[DVec2]| {
-            old.iter().zip(new).filter(|(old, new)| (old.x - new.x).abs() > 0.03).count()
-        };
-        let discs = |run: &slump::world::World| {
-            run.fixed_discs.iter().map(|disc| disc.position).collect::<Vec<_>>()
-        };
-        assert!(jumps(&discs(&before), &discs(run.world())) > 0, "{stepper}: a disc crossed");
-    }
 }
 
 #[test]
@@ -250,4 +113,220 @@ fn remedies_work_across_the_border() {
         let off = farthest(&inside, &across, 0.45 * width) / scene.mean_diameter;
         assert!(off < 1e-6, "{remedies:?}: {off} d");
     }
+}
+
+/// From grain 1 to the nearest image of grain 0, m.
+fn offset(run: &Simulation) -> DVec2 {
+    let (places, cell) = (run.places(), run.world().periodic.expect("a cell"));
+    cell.shortest(places[0] - places[1])
+}
+
+#[test]
+fn a_bonded_pair_that_circles_does_so_wherever_it_is_in_the_cell() {
+    // A pull that the iterations have not come to loses its bond.
+    for stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Avbd) {
+        let mut pair = under_g(
+            parameters(20.0, 2e-4, 0.5, 0.5),
+            vec![
+                moving(DVec2::new(-0.00999, 0.0), 0.01, DVec2::new(0.2, 0.35)),
+                moving(DVec2::new(0.00999, 0.0), 0.01, DVec2::new(0.2, 0.05)),
+            ],
+        );
+        pair.stepper = *stepper;
+        pair.parameters.debonding_distance = DISTANCE_IN_DIAMETERS;
+        pair.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
+        pair.periodic = Some(SQUARE);
+        let run = |at: DVec2| {
+            let mut pair = pair.clone();
+            pair.grains.iter_mut().for_each(|grain| grain.position += at);
+            let mut run = start(&pair);
+            let (mut turned, mut before) = (0.0, offset(&run));
+            for _ in 0..1000 {
+                take_steps(&mut run, 1);
+                turned += before.angle_to(offset(&run));
+                before = offset(&run);
+            }
+            (turned, before)
+        };
+        let (turned, inside) = run(DVec2::new(0.05, 0.02));
+        assert!(turned.abs() > 0.5, "{stepper}: it turns: {turned} rad");
+        assert!((inside.length() / 0.02 - 1.0).abs() < 0.02, "{stepper}: it holds: {inside}");
+        for at in [DVec2::ZERO, DVec2::new(0.0, 0.05), DVec2::new(0.093, 0.099)] {
+            let (of_other, across) = run(at);
+            assert!(across.distance(inside) < 1e-10, "{stepper} {at}: {across} {inside}");
+            assert!((of_other - turned).abs() < 1e-7, "{stepper} {at}: {of_other} {turned} rad");
+        }
+    }
+}
+
+#[test]
+fn grains_that_bounce_under_the_law_range_keep_their_momentum_across_borders() {
+    let mut random = random(3);
+    let grains = (0..64).map(|k| {
+        let place = 0.0125 * DVec2::new(0.5 + f64::from(k % 8), 0.5 + f64::from(k / 8));
+        let mut component = || random.random_range(-1.0..=1.0);
+        moving(place, 0.0055, DVec2::new(component(), component()))
+    });
+    let parameters = parameters(5.0, 5e-4, 0.9, 0.3);
+    let mut gas = under_g(parameters, grains.collect());
+    gas.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
+    gas.parameters.debonding_distance = DISTANCE_IN_DIAMETERS;
+    (gas.stepper, gas.periodic) = (Stepper::Range, Some(SQUARE));
+    gas.solver = SolverSettings { tolerance: 1e-8, max_sweeps: 2000, ..SolverSettings::default() };
+    let mut run = start(&gas);
+    let (before, energy) = (momentum(&run), run.observables().kinetic_energy);
+    let mut broken = 0.0;
+    for _ in 0..400 {
+        let (now, off, _) = balance(&mut run);
+        assert!(off < 1e-12 * energy, "{now:?}");
+        broken = now.broken_bond_energy.expect("bonds");
+    }
+    assert!(momentum(&run).distance(before) < 1e-12 * energy.sqrt(), "{}", momentum(&run));
+    assert!(broken > 0.0 && run.observables().kinetic_energy < 0.9 * energy, "{broken} J");
+    assert!(run.observables().max_overlap < 0.02, "{:?}", run.observables());
+}
+
+/// A disc on a level under gravity that leans to the right, in a cell or not.
+fn on_a_slope(stepper: Stepper, tilt: f64, periodic: Option<Periodic>) -> Scene {
+    let disc = moving(DVec2::new(0.05, 0.01), 0.01, DVec2::ZERO);
+    let mut scene = under_g(parameters(0.0, 5e-4, 0.0, 0.1), vec![disc]);
+    (scene.stepper, scene.boundaries, scene.periodic) = (stepper, vec![level()], periodic);
+    scene.parameters.tilt = tilt;
+    scene.gap_tolerance = 1e-8;
+    scene
+}
+
+#[test]
+fn a_disc_slides_down_a_slope_without_end_as_down_one_that_wraps() {
+    let cell = Periodic::along_x([0.0, SIDE]);
+    let degrees = 40.0f64;
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    for &stepper in Stepper::ALL {
+        let [mut free, mut wrapped] =
+            [None, Some(cell)].map(|periodic| start(&on_a_slope(stepper, degrees, periodic)));
+        take_steps(&mut free, 800);
+        take_steps(&mut wrapped, 800);
+        let [free, wrapped] = [&free, &wrapped].map(|run| run.grains());
+        assert!(free.positions[0].x > 4.0 * SIDE, "{stepper}: {}", free.positions[0]);
+        assert!(cell.wrap(free.positions[0]).distance(wrapped.positions[0]) < 1e-10, "{stepper}");
+        assert!(free.velocities[0].distance(wrapped.velocities[0]) < 1e-10, "{stepper}");
+        // It slides, as tan 40° is above 3 μ.
+        let expected = 9.8 * (sin - 0.1 * cos) * 0.4;
+        let tolerance = if stepper == Stepper::Avbd { 2e-2 } else { 2e-3 };
+        assert_close(wrapped.velocities[0].x, expected, tolerance, stepper.name());
+        assert!(wrapped.angular_velocities[0] < 0.0, "{stepper}: it rolls as well");
+    }
+}
+
+#[test]
+fn a_wall_at_the_border_that_a_grain_goes_through_across_it_is_told_of() {
+    let wall = |x: f64| Boundary::Segment { from: DVec2::new(x, -1.0), to: DVec2::new(x, 1.0) };
+    let grain = moving(DVec2::new(0.995, 0.0), 0.002, 40.0 * DVec2::X);
+    let of = |boundaries: Vec<Boundary>| {
+        let mut scene = without_g(parameters(0.0, 1e-3, 0.0, 0.0), vec![grain.clone()]);
+        scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
+        scene.boundaries = boundaries;
+        scene
+    };
+    let lost = |scene: &Scene| {
+        let run = after(scene, 1);
+        (run.observables().lost_grains, run.place(0).x)
+    };
+    let (count, x) = lost(&of(vec![wall(0.5)]));
+    assert!(count == 0 && x < 0.05, "it crosses the border and nothing else: {x}");
+    // The wall stands beyond the border, on either side of which the way is looked at, and before it.
+    assert_eq!(lost(&of(vec![wall(0.017)])).0, 1);
+    assert_eq!(lost(&of(vec![wall(0.999)])).0, 1);
+}
+
+#[test]
+fn a_disc_hits_a_wall_beyond_the_border() {
+    for (from, speed, wall) in [(0.89, 1.0, 0.02), (0.11, -1.0, 0.98)] {
+        let grain = moving(DVec2::new(from, 0.0), 0.1, speed * DVec2::X);
+        let mut scene = without_g(parameters(0.0, 1e-3, 0.5, 0.0), vec![grain]);
+        scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
+        let ends = [-1.0, 1.0].map(|y| DVec2::new(wall, y));
+        scene.boundaries = vec![Boundary::Segment { from: ends[0], to: ends[1] }];
+        let run = after(&scene, 60);
+        assert_close(run.velocity(0).x, -0.5 * speed, 1e-12, "the bounce");
+        assert_eq!(run.observables().lost_grains, 0);
+    }
+}
+
+#[test]
+fn a_disc_rolls_over_a_floor_that_ends_at_the_borders_as_over_one_without_end() {
+    let ends = [DVec2::ZERO, DVec2::X];
+    let floor = Boundary::Segment { from: ends[0], to: ends[1] };
+    let run = |floor: Boundary| {
+        let grain = moving(DVec2::new(0.9, 0.0999), 0.1, DVec2::X);
+        let gravity = -9.8 * DVec2::Y;
+        let mut scene = scene(Physics::FULL, gravity, parameters(0.0, 1e-3, 0.0, 0.5), vec![grain]);
+        scene.periodic = Some(Periodic::along_x([0.0, 1.0]));
+        scene.boundaries = vec![floor];
+        after(&scene, 400)
+    };
+    let [one, other] = [floor, level()].map(run);
+    let [one, other] = [&one, &other].map(|run| run.place(0));
+    assert!(one.distance(other) < 1e-9, "{one} {other}");
+    assert!(one.x < 0.5, "it crossed: {one}");
+}
+
+/// Side of a square cell, m.
+pub(super) const SIDE: f64 = 0.1;
+pub(super) const SQUARE: Periodic = Periodic::along_both([0.0, SIDE], [0.0, SIDE]);
+
+/// The scene turned by +90°: its left is below, and what it has below is at its right.
+fn turned(scene: &Scene) -> Scene {
+    let mut turned = scene.clone();
+    for grain in &mut turned.grains {
+        (grain.position, grain.velocity) = (grain.position.perp(), grain.velocity.perp());
+    }
+    turned.fixed_discs.iter_mut().for_each(|disc| disc.position = disc.position.perp());
+    for boundary in &mut turned.boundaries {
+        let Boundary::HalfSpace { point, normal } = boundary else { panic!("half-spaces alone") };
+        (*point, *normal) = (point.perp(), normal.perp());
+    }
+    if let Gravity::Uniform { acceleration } = &mut turned.gravity {
+        *acceleration = acceleration.perp();
+    }
+    turned.periodic = scene.periodic.map(|cell| Periodic { y: cell.x, ..Periodic::default() });
+    turned
+}
+
+#[test]
+fn a_scene_turned_by_a_right_angle_does_what_it_did() {
+    let (mut scene, width) = at_rest_on_discs();
+    scene.parameters.bond = 2.0;
+    for (stepper, method) in every_way() {
+        (scene.stepper, scene.solver.method) = (stepper, method);
+        for shift in [0.0, 0.5, 0.81] {
+            let cell = in_cell(&scene, [-0.5 * width, width], shift * width);
+            let [mut one, mut other] =
+                [cell.clone(), through_a_file(&turned(&cell))].map(|scene| start(&scene));
+            for step in 0..60 {
+                take_steps(&mut one, 1);
+                take_steps(&mut other, 1);
+                for (one, other) in one.places().iter().zip(other.places()) {
+                    let off = one.perp().distance(*other) / scene.mean_diameter;
+                    assert!(off < 1e-6, "{stepper} {method} {shift} {step}: {off} d");
+                }
+            }
+        }
+    }
+}
+
+/// Grains that fall without end past a fixed disc and one that is drawn upward.
+pub(super) fn falling(bond: f64) -> Scene {
+    let mut scene = gas(0.9, true);
+    scene.gravity = Gravity::Uniform { acceleration: -9.8 * DVec2::Y };
+    scene.parameters = parameters(bond, 2e-4, 0.3, 0.5);
+    scene.solver.tolerance = 1e-8;
+    let disc = |x: f64, y: f64| fixed(DVec2::new(x, y), 0.003);
+    scene.grains.retain(|grain| {
+        [0.03, 0.07].iter().all(|x| (grain.position - DVec2::new(*x, 0.099)).length() > 0.01)
+    });
+    scene.fixed_discs = vec![disc(0.03, 0.099), disc(0.07, 0.099)];
+    let up = Some(straight(0.2 * DVec2::Y));
+    scene.motions = vec![Motion { fixed_discs: vec![1], course: up, ..Motion::default() }];
+    scene
 }

@@ -1,16 +1,7 @@
 //! Nothing depends on whether bodies go past an onlooker or the onlooker past them; on whether a wall is called a
 //! piston; on left and right.
 
-use super::{belt, goes, level, straight};
-use crate::common::{
-    assert_close, at_rest_and_falling, bits, every_way, fixed, parameters, pressed_pile, scene,
-    start,
-};
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::{Remedies, Stepper};
-use slump::solver::Method;
-use slump::world::{Boundary, Disc, Grain, Gravity, Motion, MotionCourse, Physics};
+use crate::common::*;
 
 const VELOCITY: DVec2 = DVec2::new(0.25, 0.15);
 
@@ -27,7 +18,8 @@ fn on_a_floor(shape: usize) -> Scene {
             vec![Boundary::Polyline { points: vec![at(-far, 0.0), at(0.0003, 0.0), at(far, 0.0)] }]
         }
         2 => vec![Boundary::ConvexPolygon { points: corners }],
-        _ => Vec::new(),
+        3 => Vec::new(),
+        _ => vec![piston(DVec2::ZERO, DVec2::Y, 0.0, f64::from(u32::MAX))],
     };
     if shape == 3 {
         // Each grain stands on a disc of its own.
@@ -39,24 +31,28 @@ fn on_a_floor(shape: usize) -> Scene {
 
 /// Longest distance of a grain from where the other view has it in any step, in d.
 fn difference_of_views(scene: &Scene) -> f64 {
-    let mut seen = scene.clone();
-    seen.motions = vec![Motion {
-        boundaries: (0..scene.boundaries.len()).collect(),
-        fixed_discs: (0..scene.fixed_discs.len()).collect(),
-        course: Some(straight(VELOCITY)),
-        ..Motion::default()
-    }];
-    seen.grains.iter_mut().for_each(|grain| grain.velocity += VELOCITY);
+    let (mut seen, mut velocity) = (scene.clone(), VELOCITY);
+    if let Some(Boundary::Piston { speed, .. }) = seen.boundaries.first_mut() {
+        (*speed, velocity) = (0.2, 0.2 * DVec2::Y);
+    } else {
+        seen.motions = vec![Motion {
+            boundaries: (0..scene.boundaries.len()).collect(),
+            ..discs_go(scene.fixed_discs.len(), straight(VELOCITY))
+        }];
+    }
+    seen.grains.iter_mut().for_each(|grain| grain.velocity += velocity);
     let [mut still, mut moved] = [scene, &seen].map(start);
-    let mut furthest = 0f64;
+    let (mut furthest, mut landed) = (0f64, false);
     for _ in 0..150 {
         still.step().expect("a finite state");
         moved.step().expect("a finite state");
-        let way = still.time_secs() * VELOCITY;
-        let [one, other] = [&still, &moved].map(|run| &run.world().grains.positions);
+        let way = still.time_secs() * velocity;
+        let [one, other] = [&still, &moved].map(|run| run.places());
         let ways = one.iter().zip(other).map(|(one, other)| (*one + way).distance(*other));
         furthest = ways.fold(furthest, f64::max);
+        landed |= still.place(3).y < 0.51 * scene.mean_diameter;
     }
+    assert!(landed, "the disc that falls gets to the floor");
     assert_eq!(moved.observables().lost_grains, 0);
     furthest / scene.mean_diameter
 }
@@ -64,12 +60,13 @@ fn difference_of_views(scene: &Scene) -> f64 {
 #[test]
 fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
     let mut differences = Vec::new();
-    for shape in 0..4 {
+    for shape in 0..5 {
         let mut scene = on_a_floor(shape);
         for (stepper, method) in every_way() {
             (scene.stepper, scene.solver.method) = (stepper, method);
             for push_out in [false, true] {
-                if push_out && (stepper != Stepper::Moreau || method != Method::Nsgs) {
+                if push_out && (stepper != Stepper::Moreau || (method != Method::Nsgs && shape < 4))
+                {
                     continue;
                 }
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
@@ -94,13 +91,11 @@ fn pressed(normal: DVec2, as_pistons: bool) -> Scene {
     for (number, (normal, distance)) in walls.into_iter().enumerate() {
         let point = distance * normal;
         if as_pistons {
-            scene.boundaries.push(Boundary::Piston { point, normal, speed, travel });
+            scene.boundaries.push(piston(point, normal, speed, travel));
         } else {
-            scene.boundaries.push(Boundary::HalfSpace { point, normal });
-            let travel = Some(travel);
-            scene
-                .motions
-                .push(goes(&[number], MotionCourse::Straight { direction: normal, speed, travel }));
+            scene.boundaries.push(plane(point, normal));
+            let course = MotionCourse::Straight { direction: normal, speed, travel: Some(travel) };
+            scene.motions.push(goes(&[number], course));
         }
     }
     scene.solver.max_sweeps = 60;
@@ -109,22 +104,20 @@ fn pressed(normal: DVec2, as_pistons: bool) -> Scene {
 
 #[test]
 fn a_piston_is_a_half_space_with_a_motion_to_the_last_bit() {
-    for normal in [DVec2::X, DVec2::new(0.8, 0.31)] {
-        for (stepper, method) in every_way() {
-            let [mut piston, mut motion] = [true, false].map(|as_pistons| {
-                let mut scene = pressed(normal, as_pistons);
-                (scene.stepper, scene.solver.method) = (stepper, method);
-                start(&scene)
-            });
-            let mut worked = 0.0;
-            for step in 0..40 {
-                worked += piston.step().expect("a finite state").wall_work.abs();
-                motion.step().expect("a finite state");
-                assert_eq!(bits(&piston), bits(&motion), "{stepper}, {method}, step {step}");
-                assert_eq!(piston.observables(), motion.observables());
-            }
-            assert!(worked > 0.0, "{stepper}, {method}: the walls pressed");
+    for (normal, (stepper, method)) in pairs([DVec2::X, DVec2::new(0.8, 0.31)], every_way()) {
+        let [mut piston, mut motion] = [true, false].map(|as_pistons| {
+            let mut scene = pressed(normal, as_pistons);
+            (scene.stepper, scene.solver.method) = (stepper, method);
+            start(&scene)
+        });
+        let mut worked = 0.0;
+        for step in 0..40 {
+            worked += piston.step().expect("a finite state").wall_work.abs();
+            motion.step().expect("a finite state");
+            assert_eq!(bits(&piston), bits(&motion), "{stepper}, {method}, step {step}");
+            assert_eq!(piston.observables(), motion.observables());
         }
+        assert!(worked > 0.0, "{stepper}, {method}: the walls pressed");
     }
 }
 
@@ -147,9 +140,9 @@ fn of_all_kinds(mirror: bool) -> Scene {
     let at = |x: f64, y: f64| side(DVec2::new(x, y));
     let pivot = at(-0.02, 0.0);
     scene.boundaries = vec![
-        Boundary::HalfSpace { point: at(0.0, -2e-3), normal: at(0.0, 1.0) },
+        plane(at(0.0, -2e-3), at(0.0, 1.0)),
         Boundary::Segment { from: pivot, to: at(-0.022, 0.04) },
-        Boundary::HalfSpace { point: at(0.02, 0.0), normal: at(-1.0, 0.0) },
+        plane(at(0.02, 0.0), at(-1.0, 0.0)),
     ];
     let sine = MotionCourse::Sine { amplitude: at(1e-3, 5e-4), frequency_hz: 30.0, phase: 0.3 };
     let shaken = Motion { fixed_discs: (0..scene.fixed_discs.len()).collect(), ..goes(&[0], sine) };
@@ -163,9 +156,9 @@ fn of_all_kinds(mirror: bool) -> Scene {
 
 #[test]
 fn a_mirrored_scene_goes_on_mirrored() {
-    for stepper in Stepper::ALL {
+    for &stepper in Stepper::ALL {
         let [mut one, mut other] =
-            [false, true].map(|mirror| start(&Scene { stepper: *stepper, ..of_all_kinds(mirror) }));
+            [false, true].map(|mirror| start(&Scene { stepper, ..of_all_kinds(mirror) }));
         let mut worked = [0.0; 2];
         for _ in 0..60 {
             worked[0] += one.step().expect("a finite state").wall_work;
@@ -174,7 +167,7 @@ fn a_mirrored_scene_goes_on_mirrored() {
         assert_eq!(one.observables().contacts, other.observables().contacts);
         assert!(worked[0] != 0.0, "{stepper}: surfaces work");
         assert_close(worked[0], worked[1], 1e-6, "their work");
-        let [one, other] = [&one, &other].map(|run| &run.world().grains);
+        let [one, other] = [&one, &other].map(|run| run.grains());
         for grain in 0..one.len() {
             let off = one.positions[grain].distance(mirrored(other.positions[grain]));
             assert!(off < 1e-10, "{stepper}, grain {grain}: off by {off} m");
@@ -188,46 +181,44 @@ fn a_mirrored_scene_goes_on_mirrored() {
 #[test]
 fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
     let (radius, arm, rate) = (0.05, 1.0, 2.0);
-    for restitution in [0.0, 0.5, 1.0] {
-        for shape in 0..3 {
-            let grain = Grain::at_rest(DVec2::new(arm, 0.0), radius);
-            let start_angle = DVec2::from_angle(-1.0);
-            let boundary = match shape {
-                0 => Boundary::Segment { from: DVec2::ZERO, to: 2.0 * start_angle },
-                1 => Boundary::HalfSpace { point: DVec2::ZERO, normal: start_angle.perp() },
-                _ => Boundary::ConvexPolygon {
-                    points: vec![
-                        DVec2::ZERO,
-                        2.0 * (start_angle - 0.1 * start_angle.perp()),
-                        2.0 * start_angle,
-                    ],
-                },
-            };
-            let physics = Physics { friction: false, rotation: false, ..Physics::FULL };
-            let rotation = MotionCourse::Rotation { pivot: DVec2::ZERO, rate, travel: None };
-            let mut scene = Scene {
-                boundaries: vec![boundary],
-                motions: vec![goes(&[0], rotation)],
-                gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
-                ..scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), vec![grain])
-            };
-            for stepper in [Stepper::Moreau, Stepper::Range] {
-                scene.stepper = stepper;
-                let mut simulation = start(&scene);
-                // Struck after (1 − angle of the disc as seen from the pivot)/rate; then it flies off.
-                let mut steps = 0;
-                while simulation.world().grains.velocities[0] == DVec2::ZERO {
-                    simulation.step().expect("a finite state");
-                    steps += 1;
-                    assert!(steps < 6000, "the paddle comes");
-                }
-                let speed = simulation.world().grains.velocities[0].length();
-                let touched = (arm * arm - radius * radius).sqrt();
-                let what = format!("shape {shape}, {stepper}, ρ = {restitution}");
-                assert_close(speed, (1.0 + restitution) * rate * touched, 1e-3, &what);
-                let angle = rate * 1e-4 * f64::from(steps);
-                assert_close(angle, 1.0 - (radius / arm).asin(), 1e-3, &what);
+    for (restitution, shape) in pairs([0.0, 0.5, 1.0], 0..3) {
+        let grain = Grain::at_rest(DVec2::new(arm, 0.0), radius);
+        let start_angle = DVec2::from_angle(-1.0);
+        let boundary = match shape {
+            0 => Boundary::Segment { from: DVec2::ZERO, to: 2.0 * start_angle },
+            1 => plane(DVec2::ZERO, start_angle.perp()),
+            _ => Boundary::ConvexPolygon {
+                points: vec![
+                    DVec2::ZERO,
+                    2.0 * (start_angle - 0.1 * start_angle.perp()),
+                    2.0 * start_angle,
+                ],
+            },
+        };
+        let physics = Physics { friction: false, rotation: false, ..Physics::FULL };
+        let rotation = round(DVec2::ZERO, rate);
+        let mut scene = Scene {
+            boundaries: vec![boundary],
+            motions: vec![goes(&[0], rotation)],
+            gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
+            ..scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), vec![grain])
+        };
+        for stepper in [Stepper::Moreau, Stepper::Range] {
+            scene.stepper = stepper;
+            let mut run = start(&scene);
+            // Struck after (1 − angle of the disc as seen from the pivot)/rate; then it flies off.
+            let mut steps = 0;
+            while run.velocity(0) == DVec2::ZERO {
+                run.step().expect("a finite state");
+                steps += 1;
+                assert!(steps < 6000, "the paddle comes");
             }
+            let speed = run.velocity(0).length();
+            let touched = (arm * arm - radius * radius).sqrt();
+            let what = format!("shape {shape}, {stepper}, ρ = {restitution}");
+            assert_close(speed, (1.0 + restitution) * rate * touched, 1e-3, &what);
+            let angle = rate * 1e-4 * f64::from(steps);
+            assert_close(angle, 1.0 - (radius / arm).asin(), 1e-3, &what);
         }
     }
 }

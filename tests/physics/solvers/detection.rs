@@ -1,12 +1,8 @@
-//! The candidate search against trying every pair.
+//! The candidate search against trying every pair, and sweeps colour by colour on many threads against one.
 
-use crate::common::{G, fixed, moving, parameters, random, scene, start};
-use glam::DVec2;
-use rand::RngExt;
 use rand_pcg::Pcg64;
-use slump::contact::{Candidates, ContactList, Impulse, Reach};
-use slump::scene::Scene;
-use slump::world::{Boundary, Disc, Grain, Grains, Gravity, Physics, World};
+
+use crate::common::*;
 
 /// All touching pairs, found by trying each. Boundaries must be half-spaces.
 fn every_pair(world: &World, gap_tolerance: f64) -> Vec<(u32, u32)> {
@@ -90,38 +86,38 @@ fn random_world(kind: usize, origin: DVec2, random: &mut Pcg64) -> World {
 #[test]
 fn no_contact_is_missed_or_invented_while_discs_move() {
     let mut random = random(3);
-    for origin in [DVec2::ZERO, DVec2::new(-4.0, -4.0), DVec2::new(3e5, -7e6)] {
-        for kind in 0..3 {
-            for (skin, gap_tolerance) in [(0.2, 0.0), (0.05, 1e-3)] {
-                let mut world = random_world(kind, origin, &mut random);
-                let mut candidates =
-                    Candidates::new(&world, Reach { skin, gap_tolerance }).expect("proper shapes");
-                let mut contacts = ContactList::default();
-                let (mut builds, mut changes) = (0, 0);
-                for step in 0..60 {
-                    // From crawling to leaps over several diameters.
-                    let largest = skin * 10f64.powf(random.random_range(-2.0..1.5));
-                    let only = (step % 3 == 0).then(|| random.random_range(0..160));
-                    for (k, position) in world.grains.positions.iter_mut().enumerate() {
-                        let mut along = || largest * random.random_range(-1.0..1.0);
-                        let way = DVec2::new(along(), along());
-                        if only.is_none_or(|only| only == k) {
-                            *position += way;
-                        }
-                    }
-                    let before = found(&contacts);
-                    let built = candidates.update::<2>(&world);
-                    contacts.detect::<2>(&world, &candidates);
-                    let expected = every_pair(&world, gap_tolerance);
-                    assert_eq!(found(&contacts), expected, "kind {kind}, {origin}, step {step}");
-                    check_impulses(&mut contacts, &before);
-                    builds += u32::from(built);
-                    changes += u32::from(!built && before != expected);
+    for (origin, kind, (skin, gap_tolerance)) in triples(
+        [DVec2::ZERO, DVec2::new(-4.0, -4.0), DVec2::new(3e5, -7e6)],
+        0..3,
+        [(0.2, 0.0), (0.05, 1e-3)],
+    ) {
+        let mut world = random_world(kind, origin, &mut random);
+        let mut candidates =
+            Candidates::new(&world, Reach { skin, gap_tolerance }).expect("proper shapes");
+        let mut contacts = ContactList::default();
+        let (mut builds, mut changes) = (0, 0);
+        for step in 0..60 {
+            // From crawling to leaps over several diameters.
+            let largest = skin * 10f64.powf(random.random_range(-2.0..1.5));
+            let only = (step % 3 == 0).then(|| random.random_range(0..160));
+            for (k, position) in world.grains.positions.iter_mut().enumerate() {
+                let mut along = || largest * random.random_range(-1.0..1.0);
+                let way = DVec2::new(along(), along());
+                if only.is_none_or(|only| only == k) {
+                    *position += way;
                 }
-                assert!((5..60).contains(&builds), "built {builds} times");
-                assert!(changes > 3, "contacts came and went on the same list {changes} times");
             }
+            let before = found(&contacts);
+            let built = candidates.update::<2>(&world);
+            contacts.detect::<2>(&world, &candidates);
+            let expected = every_pair(&world, gap_tolerance);
+            assert_eq!(found(&contacts), expected, "kind {kind}, {origin}, step {step}");
+            check_impulses(&mut contacts, &before);
+            builds += u32::from(built);
+            changes += u32::from(!built && before != expected);
         }
+        assert!((5..60).contains(&builds), "built {builds} times");
+        assert!(changes > 3, "contacts came and went on the same list {changes} times");
     }
 }
 
@@ -162,18 +158,75 @@ fn a_running_simulation_sees_every_contact_of_fast_grains() {
             wall(DVec2::new(-1.0, 0.0), DVec2::X),
             wall(DVec2::new(16.0, 0.0), -DVec2::X),
         ],
-        ..scene(Physics::FULL, -G * DVec2::Y, parameters(2.0, 3e-3, 0.8, 0.3), grains)
+        ..under_g(parameters(2.0, 3e-3, 0.8, 0.3), grains)
     };
     scene.mean_diameter = 0.9;
     scene.solver.max_sweeps = 20;
-    let mut simulation = start(&scene);
+    let mut run = start(&scene);
     let mut contacts = 0;
     for step in 0..400 {
-        let before = simulation.world().clone();
-        simulation.step().expect("a finite state");
+        let before = run.world().clone();
+        run.step().expect("a finite state");
         let expected = every_pair(&before, 0.0);
-        assert_eq!(found(simulation.contacts()), expected, "step {step}");
+        assert_eq!(found(run.contacts()), expected, "step {step}");
         contacts += expected.len();
     }
     assert!(contacts > 1000, "{contacts} contacts");
+}
+
+/// Sweeps, impulses and grains after three steps on so many threads.
+fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads").install(|| {
+        let mut run = start(scene);
+        let sweeps = [(); 3].map(|()| run.step().expect("a finite state").sweeps);
+        (sweeps, run.contacts().impulses().to_vec(), run.grains().clone())
+    })
+}
+
+/// One after the other, in the order of the colours, it is a sweep like any other.
+fn assert_a_sweep_like_any_other(mut scene: Scene) {
+    (scene.solver.method, scene.solver.stop) = (Method::NsgsParallel, StopTest::Residual);
+    let parallel = three_steps(&scene, 2);
+    scene.solver.method = Method::Nsgs;
+    assert!(three_steps(&scene, 1) != parallel, "another order");
+    scene.solver.ordering = Ordering::Coloured;
+    assert!(three_steps(&scene, 1) == parallel, "{:?}", scene.physics);
+}
+
+#[test]
+fn colours_on_any_number_of_threads_give_bitwise_the_sweeps_of_one() {
+    let mut scene = pressed_pile(40_000, 0.1, 5, parameters(20.0, 1e-3, 0.3, 0.5));
+    scene.solver = SolverSettings {
+        method: Method::NsgsParallel,
+        stop: StopTest::RelativeChange,
+        tolerance: 1e-3,
+        max_sweeps: 60,
+        ..SolverSettings::default()
+    };
+    let alone = three_steps(&scene, 1);
+    assert!(alone.0[0] > 10 && alone.1.len() > 40_000, "{:?} sweeps", alone.0);
+    for threads in [2, 4] {
+        assert!(three_steps(&scene, threads) == alone, "{threads} threads");
+    }
+    scene.solver.tolerance = 1e-2;
+    assert_a_sweep_like_any_other(scene);
+}
+
+#[test]
+fn colours_give_bitwise_the_sweeps_of_one_in_every_model() {
+    for physics in [SMOOTH, UNTURNING, Physics::FULL] {
+        for (cone, stepper) in [
+            (FrictionCone::Shifted, Stepper::Moreau),
+            (FrictionCone::Compressive, Stepper::Moreau),
+            (FrictionCone::Shifted, Stepper::Range),
+        ] {
+            let mut parameters = parameters(20.0, 1e-3, 0.3, 0.5);
+            parameters.cone = cone;
+            let mut scene = pressed_pile(300, 0.1, 7, parameters);
+            (scene.physics, scene.stepper) = (physics, stepper);
+            (scene.solver.tolerance, scene.solver.max_sweeps) = (1e-6, 200);
+            assert_a_sweep_like_any_other(scene);
+        }
+    }
 }

@@ -1,13 +1,8 @@
 //! Heaps that do not touch: solved island by island, each is what it would be without the others.
 
-use glam::DVec2;
-use slump::scene::Scene;
-use slump::sim::Simulation;
-use slump::solver::{Fallback, FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
-use slump::world::{Grain, Physics};
+use crate::common::*;
 
 use super::methods::SolveTwice;
-use crate::common::{G, bits, parameters, pressed_pile, scene, start, take_steps};
 
 const DIAMETER: f64 = 5e-3;
 
@@ -44,7 +39,7 @@ fn lattice() -> Scene {
         ..Grain::at_rest(0.99 * DIAMETER * place(k), 0.5 * DIAMETER)
     });
     let grains = grains.collect();
-    scene(Physics::FULL, DVec2::new(0.0, -G), parameters(10.0, 1e-3, 0.1, 0.5), grains)
+    under_g(parameters(10.0, 1e-3, 0.1, 0.5), grains)
 }
 
 const SIZES: [(usize, usize); 3] = [(0, 30), (1, 8), (2, 20)];
@@ -63,9 +58,7 @@ fn island_by_island(method: Method, stop: StopTest) -> SolverSettings {
 }
 
 fn after_steps(scene: &Scene, solver: SolverSettings, steps: usize) -> Simulation {
-    let mut simulation = start(&Scene { solver, ..scene.clone() });
-    take_steps(&mut simulation, steps);
-    simulation
+    after(&Scene { solver, ..scene.clone() }, steps)
 }
 
 fn methods() -> impl Iterator<Item = Method> {
@@ -76,15 +69,13 @@ fn methods() -> impl Iterator<Item = Method> {
 fn each_heap_moves_bitwise_as_it_would_alone() {
     let together = heaps(&SIZES);
     let mut felt = 0;
-    for method in methods() {
-        for stop in [StopTest::RelativeChange, StopTest::Residual] {
-            let settings = island_by_island(method, stop);
-            let all = bits(&after_steps(&together, settings, 40));
-            let alone = SIZES.map(|heap| bits(&after_steps(&heaps(&[heap]), settings, 40)));
-            assert!(all == alone.concat(), "{method} {stop:?}");
-            let whole = SolverSettings { islands: false, ..settings };
-            felt += u32::from(bits(&after_steps(&together, whole, 40)) != all);
-        }
+    for (method, stop) in pairs(methods(), [StopTest::RelativeChange, StopTest::Residual]) {
+        let settings = island_by_island(method, stop);
+        let all = bits(&after_steps(&together, settings, 40));
+        let alone = SIZES.map(|heap| bits(&after_steps(&heaps(&[heap]), settings, 40)));
+        assert!(all == alone.concat(), "{method} {stop:?}");
+        let whole = SolverSettings { islands: false, ..settings };
+        felt += u32::from(bits(&after_steps(&together, whole, 40)) != all);
     }
     assert!(felt >= 12, "heaps felt each other's tests in {felt} of 16 ways that know no islands");
 }
@@ -120,16 +111,16 @@ fn one_island_is_the_whole_to_the_last_bit() {
 fn where_each_island_passes_a_test_the_whole_does() {
     for stop in StopTest::ALL {
         let settings = SolverSettings { tolerance: 1e-4, ..island_by_island(Method::Nsgs, *stop) };
-        let mut simulation = start(&Scene { solver: settings, ..heaps(&SIZES) });
+        let mut run = start(&Scene { solver: settings, ..heaps(&SIZES) });
         let mut solved = 0;
         for _ in 0..20 {
             let one_sweep = SolverSettings { islands: false, max_sweeps: 1, ..settings };
-            let [by_islands, sweep] = simulation.next_problem(SolveTwice(settings, one_sweep));
+            let [by_islands, sweep] = run.next_problem(SolveTwice(settings, one_sweep));
             if by_islands.converged && by_islands.sweeps > 3 {
                 solved += 1;
                 assert!(sweep.converged, "{stop:?} {sweep:?} after {by_islands:?}");
             }
-            take_steps(&mut simulation, 1);
+            take_steps(&mut run, 1);
         }
         assert!(solved >= 5, "{stop:?}: {solved} of 20 steps to be asked about");
     }
@@ -137,23 +128,24 @@ fn where_each_island_passes_a_test_the_whole_does() {
 
 #[test]
 fn models_of_friction_are_solved_island_by_island() {
-    for model in [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce] {
-        for method in [Method::InteriorPoint, Method::Nsgs] {
-            let settings = SolverSettings {
-                friction_model: model,
-                model_solves: if model == FrictionModel::Associated { 1 } else { 3 },
-                tolerance: if method == Method::Nsgs { 1e-4 } else { 1e-6 },
-                max_sweeps: 20_000,
-                ..island_by_island(method, StopTest::Residual)
-            };
-            let all = after_steps(&heaps(&SIZES), settings, 20);
-            let alone = SIZES.map(|heap| bits(&after_steps(&heaps(&[heap]), settings, 20)));
-            assert!(bits(&all) == alone.concat(), "{model} {method}");
-            let step = all.observables();
-            let left = step.model_residual.expect("a residual of the model");
-            assert!(step.converged && left <= settings.tolerance, "{model} {method}: {step:?}");
-            assert!(step.duality_gap.is_some_and(|gap| gap < 1e-2), "{model} {method}: {step:?}");
-        }
+    for (model, method) in pairs(
+        [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce],
+        [Method::InteriorPoint, Method::Nsgs],
+    ) {
+        let settings = SolverSettings {
+            friction_model: model,
+            model_solves: if model == FrictionModel::Associated { 1 } else { 3 },
+            tolerance: if method == Method::Nsgs { 1e-4 } else { 1e-6 },
+            max_sweeps: 20_000,
+            ..island_by_island(method, StopTest::Residual)
+        };
+        let all = after_steps(&heaps(&SIZES), settings, 20);
+        let alone = SIZES.map(|heap| bits(&after_steps(&heaps(&[heap]), settings, 20)));
+        assert!(bits(&all) == alone.concat(), "{model} {method}");
+        let step = all.observables();
+        let left = step.model_residual.expect("a residual of the model");
+        assert!(step.converged && left <= settings.tolerance, "{model} {method}: {step:?}");
+        assert!(step.duality_gap.is_some_and(|gap| gap < 1e-2), "{model} {method}: {step:?}");
     }
 }
 
@@ -168,8 +160,8 @@ fn an_island_that_is_not_solved_falls_back_alone() {
     let together = heaps(&sizes);
     // Before anything is there to start from, two grains take less than the others.
     let step = |scene: &Scene| {
-        let simulation = after_steps(scene, settings, 1);
-        (*simulation.observables(), bits(&simulation))
+        let run = after_steps(scene, settings, 1);
+        (*run.observables(), bits(&run))
     };
     let (all, moved) = step(&together);
     let alone = sizes.map(|heap| step(&heaps(&[heap])));

@@ -1,13 +1,6 @@
 //! The methods against each other: one problem, one answer.
 
-use slump::contact::ContactList;
-use slump::scene::{NewPile, Scene, cradle, pile_of, settle};
-use slump::sim::{ProblemVisitor, Simulation};
-use slump::solver::{
-    Fallback, METHODS, Memory, Method, Model, Ordering, SolveReport, SolverSettings, StepProblem,
-    StopTest, residual, solve,
-};
-use slump::world::{FrictionCone, Physics};
+use crate::common::*;
 
 /// A small pile that has begun to fall.
 fn falling_pile(seed: u64) -> Scene {
@@ -54,8 +47,8 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
                 other.set_solver(solver).expect("proper settings");
                 let step = *other.step().expect("a finite state");
                 assert!(step.converged, "{method:?} {ordering:?}: {}", step.residual);
-                let expected = &by_sweeps.world().grains.velocities;
-                for (a, b) in expected.iter().zip(&other.world().grains.velocities) {
+                let expected = by_sweeps.velocities();
+                for (a, b) in expected.iter().zip(other.velocities()) {
                     fastest = fastest.max(a.length());
                     let allowed = 1e-6 * (tolerance / 1e-10) * fastest.max(1e-3);
                     assert!((*a - *b).length() < allowed, "{method:?} {ordering:?}: {b} for {a}");
@@ -69,25 +62,15 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
 
 /// The scene a few steps later.
 fn advanced(scene: &Scene) -> Scene {
-    let mut simulation = with(scene, Method::Nsgs, 1e-8);
-    for _ in 0..5 {
-        simulation.step().expect("a finite state");
-    }
-    let grains = &simulation.world().grains;
+    let mut run = with(scene, Method::Nsgs, 1e-8);
+    take_steps(&mut run, 5);
+    let grains = run.grains();
     Scene { grains: (0..grains.len()).map(|index| grains.grain(index)).collect(), ..scene.clone() }
 }
 
 #[test]
 fn newton_solves_nearly_all_steps_of_a_moving_pile_in_less_than_half_the_sweeps() {
-    for (seed, cone, rotation) in [
-        (3, FrictionCone::Shifted, true),
-        (4, FrictionCone::Compressive, true),
-        (5, FrictionCone::Shifted, false),
-    ] {
-        let mut scene = falling_pile(seed);
-        scene.parameters.cone = cone;
-        scene.physics.rotation = rotation;
-        scene.parameters.bond = 10.0;
+    for (cone, rotation, scene) in moving_piles().into_iter().take(3) {
         let run = |method| {
             let mut simulation = with(&scene, method, 1e-8);
             let (mut unsolved, mut sweeps) = (0, 0);
@@ -113,13 +96,9 @@ struct Solve(SolverSettings);
 impl ProblemVisitor for Solve {
     type Output = (SolveReport, f64);
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Self::Output {
-        let report = solve::<M>(problem, &mut Memory::default(), &self.0);
-        (report, residual::<M>(problem))
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Self::Output {
+        let report = solve(problem, &mut Memory::default(), &self.0);
+        (report, residual(problem))
     }
 }
 
@@ -129,35 +108,36 @@ pub struct SolveTwice(pub SolverSettings, pub SolverSettings);
 impl ProblemVisitor for SolveTwice {
     type Output = [SolveReport; 2];
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Self::Output {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Self::Output {
         let mut memory = Memory::default();
-        [self.0, self.1].map(|settings| solve::<M>(problem, &mut memory, &settings))
+        [self.0, self.1].map(|settings| solve(problem, &mut memory, &settings))
     }
 }
 
-/// Moments of moving piles of every kind of physics.
+/// Piles of every kind of physics that have begun to fall; the last is without cohesion.
+fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
+    let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
+    let kinds = [
+        (3, shifted, true, 10.0),
+        (4, compressive, true, 10.0),
+        (5, shifted, false, 10.0),
+        (6, shifted, true, 0.0),
+    ];
+    kinds.map(|(seed, cone, rotation, bond)| {
+        let mut scene = falling_pile(seed);
+        scene.physics.rotation = rotation;
+        scene.parameters = Parameters { cone, bond, ..scene.parameters };
+        (cone, rotation, scene)
+    })
+}
+
 fn moments() -> Vec<Simulation> {
     let mut moments = Vec::new();
-    for (seed, cone, rotation, bond) in [
-        (3, FrictionCone::Shifted, true, 10.0),
-        (4, FrictionCone::Compressive, true, 10.0),
-        (5, FrictionCone::Shifted, false, 10.0),
-        (6, FrictionCone::Shifted, true, 0.0),
-    ] {
-        let mut scene = falling_pile(seed);
-        scene.parameters.cone = cone;
-        scene.physics.rotation = rotation;
-        scene.parameters.bond = bond;
-        let mut simulation = with(&scene, Method::Newton, 1e-8);
-        for step in 1..=120 {
-            simulation.step().expect("a finite state");
-            if step % 20 == 0 {
-                moments.push(simulation.clone());
-            }
+    for (_, _, scene) in moving_piles() {
+        let mut run = with(&scene, Method::Newton, 1e-8);
+        for _ in 0..6 {
+            take_steps(&mut run, 20);
+            moments.push(run.clone());
         }
     }
     moments
@@ -165,9 +145,9 @@ fn moments() -> Vec<Simulation> {
 
 /// The next problem of a moment, as a method with these settings gets it.
 fn next_with(moment: &Simulation, solver: SolverSettings) -> (SolveReport, f64) {
-    let mut simulation = moment.clone();
-    simulation.set_solver(solver).expect("proper settings");
-    simulation.next_problem(Solve(solver))
+    let mut run = moment.clone();
+    run.set_solver(solver).expect("proper settings");
+    run.next_problem(Solve(solver))
 }
 
 /// The residual that a method is asked for here: Jacobi's method creeps.
@@ -196,39 +176,36 @@ fn every_method_solves_nearly_all_steps_of_moving_piles() {
 #[test]
 fn every_method_honours_every_stopping_test_and_the_limit() {
     let moments = moments();
-    for moment in moments.iter().step_by(5) {
-        for info in METHODS.iter() {
-            for (stop, tolerance) in [
-                (StopTest::RelativeChange, 1e-5),
-                (StopTest::ImpulsePerMass, 1e-4),
-                (StopTest::Residual, 1e-4),
-            ] {
-                let settings = SolverSettings {
-                    method: info.method,
-                    stop,
-                    tolerance,
-                    max_sweeps: 100_000,
-                    warm_start: false,
-                    ..SolverSettings::default()
-                };
-                let mut simulation = moment.clone();
-                simulation.set_solver(settings).expect("proper settings");
-                let [first, again] = simulation.next_problem(SolveTwice(settings, settings));
-                let name = format!("{} {stop:?}", info.name);
-                assert!(first.converged && again.converged, "{name}: {first:?}");
-                assert!(first.sweeps > 1, "{name}: {first:?}");
-                if stop == StopTest::Residual {
-                    let most = first.sweeps.div_ceil(4);
-                    assert!(again.sweeps <= most, "a warm start, {name}: {again:?}, {first:?}");
-                }
-                // What a step falls back on has a limit of its own.
-                let fallback = Fallback::None;
-                let hasty =
-                    SolverSettings { tolerance: 1e-14, max_sweeps: 5, fallback, ..settings };
-                let (report, residual) = next_with(moment, hasty);
-                assert!(!report.converged && report.sweeps <= 5, "{name}: {report:?}");
-                assert!(residual <= 1.0, "{name}: {residual}");
+    for (moment, info) in pairs(moments.iter().step_by(5), METHODS.iter()) {
+        for (stop, tolerance) in [
+            (StopTest::RelativeChange, 1e-5),
+            (StopTest::ImpulsePerMass, 1e-4),
+            (StopTest::Residual, 1e-4),
+        ] {
+            let settings = SolverSettings {
+                method: info.method,
+                stop,
+                tolerance,
+                max_sweeps: 100_000,
+                warm_start: false,
+                ..SolverSettings::default()
+            };
+            let mut run = moment.clone();
+            run.set_solver(settings).expect("proper settings");
+            let [first, again] = run.next_problem(SolveTwice(settings, settings));
+            let name = format!("{} {stop:?}", info.name);
+            assert!(first.converged && again.converged, "{name}: {first:?}");
+            assert!(first.sweeps > 1, "{name}: {first:?}");
+            if stop == StopTest::Residual {
+                let most = first.sweeps.div_ceil(4);
+                assert!(again.sweeps <= most, "a warm start, {name}: {again:?}, {first:?}");
             }
+            // What a step falls back on has a limit of its own.
+            let fallback = Fallback::None;
+            let hasty = SolverSettings { tolerance: 1e-14, max_sweeps: 5, fallback, ..settings };
+            let (report, residual) = next_with(moment, hasty);
+            assert!(!report.converged && report.sweeps <= 5, "{name}: {report:?}");
+            assert!(residual <= 1.0, "{name}: {residual}");
         }
     }
 }
@@ -239,8 +216,8 @@ fn a_step_without_contacts_is_solved_by_every_method() {
     scene.grains.truncate(1);
     for info in METHODS.iter() {
         scene.solver.method = info.method;
-        let mut simulation = scene.simulation().expect("a proper scene");
-        let step = *simulation.step().expect("a finite state");
+        let mut run = start(&scene);
+        let step = *run.step().expect("a finite state");
         assert!(step.converged && step.sweeps == 0 && step.contacts == 0, "{}", info.name);
     }
 }
@@ -259,12 +236,12 @@ fn every_method_keeps_the_cradle_closed_where_the_exact_answer_is_closed() {
         scene.solver.method = info.method;
         scene.solver.tolerance = 1e-12;
         scene.parameters.time_step_secs = 5e-4;
-        let mut simulation = scene.simulation().expect("a proper scene");
+        let mut run = start(&scene);
         let mut met = false;
-        while simulation.time_secs() < scene.duration_secs {
-            met |= simulation.step().expect("a finite state").contacts == 2;
+        while run.time_secs() < scene.duration_secs {
+            met |= run.step().expect("a finite state").contacts == 2;
         }
-        let positions = &simulation.world().grains.positions;
+        let positions = run.places();
         let gap = positions[1].x - positions[0].x - scene.mean_diameter;
         assert!(met, "k reached the pair");
         assert!(gap < 1e-6, "{}: the bond is open by {gap} m", info.name);

@@ -1,7 +1,5 @@
 //! Who touches, and methods that solve for the impulses.
 
-mod colours;
-mod contact_system;
 mod detection;
 mod islands;
 mod methods;

@@ -3,31 +3,19 @@
 
 use std::cell::Cell;
 
-use crate::common::natural_map::{judge, natural_map};
-use crate::common::{parameters, pressed_pile, start};
-use glam::DVec2;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use slump::contact::Contact;
-use slump::scene::Scene;
-use slump::sim::Simulation;
-use slump::solver::{
-    Approach, Memory, Plane, ProblemNumbers, SolverSettings, SpinningPlane, StepModel, StepProblem,
-    StopTest, solve,
-};
-use slump::world::{FrictionCone, Grains, Parameters, Physics};
+
+use crate::common::natural_map::{judge, natural_map};
+use crate::common::*;
 
 /// Runs a property over `cases` scenes, the same ones every time.
 fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseError>) {
-    let config = Config { cases, failure_persistence: None, ..Config::default() };
-    let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    let mut runner = TestRunner::new_with_rng(config, random);
     let bond = prop_oneof![1 => Just(0.0), 4 => 0.0..100.0];
     let friction = prop_oneof![1 => Just(0.0), 4 => 0.0..=1.0];
     let numbers = (bond, friction, 0.0..=1.0, 1e-4..5e-3, 0.0..0.3);
     let kinds = (20usize..=60, any::<u64>(), any::<bool>(), any::<bool>(), any::<bool>());
     let run = |(numbers, kinds)| property(pile(numbers, kinds));
-    runner.run(&(numbers, kinds), run).unwrap_or_else(|failure| panic!("{failure}"));
+    for_random(cases, (numbers, kinds), run);
 }
 
 /// A pile from (Bond, μ, ρ, Δt, speed) and (grains, seed, shifted cone, warm start, turning).
@@ -53,9 +41,9 @@ fn pile(
 }
 
 /// Takes a step; gives the grains before it.
-fn step(simulation: &mut Simulation) -> Grains {
-    let before = simulation.world().grains.clone();
-    simulation.step().expect("a finite state");
+fn step(run: &mut Simulation) -> Grains {
+    let before = run.grains().clone();
+    run.step().expect("a finite state");
     before
 }
 
@@ -63,21 +51,21 @@ fn step(simulation: &mut Simulation) -> Grains {
 fn the_residual_reported_is_that_of_the_natural_map() {
     let (converged, not_converged, contacts) = (Cell::new(0), Cell::new(0), Cell::new(0));
     for_random_piles(64, |scene| {
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         for _ in 0..4 {
-            let before = step(&mut simulation);
-            let (error, scale, outside) = natural_map(&simulation, &before);
-            let reported = simulation.observables().residual;
-            contacts.set(contacts.get() + simulation.observables().contacts);
+            let before = step(&mut run);
+            let (error, scale, outside) = natural_map(&run, &before);
+            let reported = run.observables().residual;
+            contacts.set(contacts.get() + run.observables().contacts);
             let off = (error / scale - reported).abs();
             prop_assert!(off < 1e-6 * reported + 1e-12, "{} for {reported}", error / scale);
             prop_assert!(outside < 1e-14 * scale, "{outside:e} outside the cone");
-            if simulation.observables().converged {
+            if run.observables().converged {
                 prop_assert!(error / scale <= 1e-7 * (1.0 + 1e-6) + 1e-12);
                 converged.set(converged.get() + 1);
             } else {
                 prop_assert!(reported > 1e-7);
-                let last = simulation.observables();
+                let last = run.observables();
                 prop_assert!(last.sweeps == 3000 || last.stalled, "{}", last.sweeps);
                 not_converged.set(not_converged.get() + 1);
             }
@@ -93,17 +81,17 @@ fn the_residual_reported_is_that_of_the_natural_map() {
 #[test]
 fn the_impulses_reported_are_those_that_moved_the_grains() {
     for_random_piles(32, |scene| {
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         for _ in 0..3 {
-            let before = step(&mut simulation);
-            let world = simulation.world();
+            let before = step(&mut run);
+            let world = run.world();
             let (count, dt) = (before.len(), scene.parameters.time_step_secs);
             let mut velocities = before.velocities.clone();
             let mut spins = before.angular_velocities.clone();
             for (k, velocity) in velocities.iter_mut().enumerate() {
                 *velocity += dt * world.gravity.acceleration(before.positions[k]);
             }
-            let list = simulation.contacts();
+            let list = run.contacts();
             for (contact, impulse) in list.contacts().iter().zip(list.impulses()) {
                 let tangent = contact.normal.perp();
                 let push = impulse.normal * contact.normal + impulse.tangential * tangent;
@@ -146,16 +134,14 @@ fn a_step_that_needs_more_sweeps_than_allowed_says_so() {
 
 #[test]
 fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
-    type Full = StepModel<SpinningPlane, true>;
-    type Lean = StepModel<Plane, false>;
     for_random_piles(16, |mut scene| {
         scene.parameters.friction = 0.0;
-        let mut simulation = start(&scene);
-        step(&mut simulation);
-        simulation.step().expect("a finite state");
-        let (world, contacts) = (simulation.world(), simulation.contacts());
+        let mut run = start(&scene);
+        step(&mut run);
+        run.step().expect("a finite state");
+        let (world, contacts) = (run.world(), run.contacts());
         let mut full = StepProblem::<SpinningPlane>::default();
-        let mut lean = StepProblem::<Plane>::default();
+        let mut lean = StepProblem::<SmoothPlane>::default();
         let parameters = &scene.parameters;
         let numbers = ProblemNumbers {
             time_step_secs: parameters.time_step_secs,
@@ -165,10 +151,10 @@ fn the_frictionless_model_computes_what_the_full_one_does_without_friction() {
         };
         let rebound = |approach: Approach| parameters.restitution * approach.velocity;
         let settings = SolverSettings { tolerance: 1e-6, max_sweeps: 50, ..scene.solver };
-        full.prepare::<Full>(world, contacts, numbers, &settings, rebound);
-        lean.prepare::<Lean>(world, contacts, numbers, &settings, rebound);
-        solve::<Full>(&mut full, &mut Memory::default(), &settings);
-        solve::<Lean>(&mut lean, &mut Memory::default(), &settings);
+        full.prepare(world, contacts, numbers, &settings, rebound, None);
+        lean.prepare(world, contacts, numbers, &settings, rebound, None);
+        solve(&mut full, &mut Memory::default(), &settings);
+        solve(&mut lean, &mut Memory::default(), &settings);
         for (a, b) in full.bodies.now.iter().zip(&lean.bodies.now) {
             prop_assert_eq!(a.velocity, b.velocity);
         }
@@ -190,11 +176,11 @@ fn physics_without_cohesion_is_bond_zero_bitwise() {
         let with = Scene { parameters: without.parameters, ..zero.clone() };
         let [mut without, mut zero, mut with] = [&without, &zero, &with].map(start);
         for _ in 0..5 {
-            for simulation in [&mut without, &mut zero, &mut with] {
-                step(simulation);
+            for run in [&mut without, &mut zero, &mut with] {
+                step(run);
             }
         }
-        prop_assert_eq!(&without.world().grains, &zero.world().grains);
+        prop_assert_eq!(without.grains(), zero.grains());
         prop_assert_eq!(without.contacts().impulses(), zero.contacts().impulses());
         prop_assert!(with.world().grains != zero.world().grains, "cohesion would have acted");
         Ok(())
@@ -208,16 +194,16 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
     // ends its step with v_n ≥ −ρ v_n^{n−1} but for the residual: |e_n| = m_n |v_n + ρ v_n^{n−1}|.
     let (old, new) = (Cell::new(0), Cell::new(0));
     for_random_piles(32, |scene| {
-        let mut simulation = start(&scene);
+        let mut run = start(&scene);
         let (dt, restitution) = (scene.parameters.time_step_secs, scene.parameters.restitution);
-        let mut earlier = step(&mut simulation);
-        let mut known: Vec<Contact> = simulation.contacts().contacts().to_vec();
+        let mut earlier = step(&mut run);
+        let mut known: Vec<Contact> = run.contacts().contacts().to_vec();
         for _ in 0..6 {
-            let before = step(&mut simulation);
-            let (_, scale, _) = natural_map(&simulation, &before);
-            let error = simulation.observables().residual * scale;
-            let contacts = simulation.contacts().contacts();
-            for (judged, contact) in judge(&simulation, &before).iter().zip(contacts) {
+            let before = step(&mut run);
+            let (_, scale, _) = natural_map(&run, &before);
+            let error = run.observables().residual * scale;
+            let contacts = run.contacts().contacts();
+            for (judged, contact) in judge(&run, &before).iter().zip(contacts) {
                 let lowest = -restitution * judged.before[0].max(0.0) - error / judged.normal_mass;
                 prop_assert!(judged.after[0] >= lowest - 1e-12, "{contact:?}");
                 let same = |c: &Contact| (c.grain, c.other) == (contact.grain, contact.other);
@@ -241,4 +227,150 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
         Ok(())
     });
     assert!(old.get() > 1000 && new.get() > 100, "{} old, {} new contacts", old.get(), new.get());
+}
+
+/// A problem of every model, and how many contacts it has at least.
+fn scenes() -> Vec<(Scene, usize)> {
+    let mut scenes = Vec::new();
+    for (physics, cone) in pairs(
+        [SMOOTH, UNTURNING, Physics::FULL],
+        [FrictionCone::Shifted, FrictionCone::Compressive],
+    ) {
+        let mut scene = pressed_pile(40, 0.1, 3, parameters(10.0, 1e-3, 0.3, 0.4));
+        (scene.physics, scene.parameters.cone) = (physics, cone);
+        scenes.push((scene, 60));
+    }
+    let mut line = cradle();
+    line.grains[2].position.x = line.grains[0].position.x - 0.999 * line.mean_diameter;
+    line.physics = LINE;
+    scenes.push((line, 2));
+    scenes
+}
+
+/// Rows a contact has.
+fn entries<M: Model>() -> usize {
+    if M::FRICTION { 2 } else { 1 }
+}
+
+/// The operator of a system, column by column, from its answers to unit impulses.
+fn matrix<M: Model>(system: &mut BodySystem<'_, M>, origin: &[[f64; 2]]) -> Vec<Vec<f64>> {
+    let entries = entries::<M>();
+    let size = entries * origin.len();
+    let mut answer = Vec::new();
+    let mut matrix = vec![vec![0.0; size]; size];
+    for column in 0..size {
+        let mut unit = vec![[0.0; 2]; origin.len()];
+        unit[column / entries][column % entries] = 1.0;
+        system.write(&unit);
+        system.velocities(&mut answer);
+        for (row, numbers) in matrix.iter_mut().enumerate() {
+            let (contact, entry) = (row / entries, row % entries);
+            numbers[column] = answer[contact][entry] - origin[contact][entry];
+        }
+    }
+    matrix
+}
+
+/// The largest eigenvalue of a matrix whose rows and columns are scaled, by power iteration.
+fn largest_eigenvalue(matrix: &[Vec<f64>], scale: impl Fn(usize) -> f64) -> f64 {
+    let size = matrix.len();
+    let mut vector: Vec<f64> = (0..size).map(|index| 1.0 + (index % 7) as f64).collect();
+    let mut largest = 0.0;
+    for _ in 0..300 {
+        let next: Vec<f64> = (0..size)
+            .map(|row| {
+                let sum = |column: usize| matrix[row][column] * scale(column) * vector[column];
+                scale(row) * (0..size).map(sum).sum::<f64>()
+            })
+            .collect();
+        largest = next.iter().map(|x| x * x).sum::<f64>().sqrt();
+        vector = next.iter().map(|x| x / largest).collect();
+    }
+    largest
+}
+
+struct Check(usize);
+
+impl ProblemVisitor for Check {
+    type Output = ();
+
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) {
+        let mut system = BodySystem::<M>::new(problem);
+        let count = system.len();
+        assert!(count >= self.0, "{count} contacts");
+        let (mut origin, mut answer, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+        let zero = vec![[0.0; 2]; count];
+        system.write(&zero);
+        system.velocities(&mut origin);
+        system.splitting(&mut weights);
+        assert_eq!(weights.len(), count);
+
+        let matrix = matrix(&mut system, &origin);
+        let entries = entries::<M>();
+        let diagonal = |index: usize| match index % entries {
+            0 => 1.0,
+            _ => system.tangential_diagonal(index / entries),
+        };
+        for (row, numbers) in matrix.iter().enumerate() {
+            assert!((numbers[row] - diagonal(row)).abs() < 1e-11, "{}", numbers[row]);
+            for (number, mirrored) in numbers.iter().zip(matrix.iter().map(|other| other[row])) {
+                assert!((number - mirrored).abs() < 1e-11, "{number} and {mirrored}");
+            }
+        }
+        // A ⪯ D⁻¹: the largest eigenvalue of D^½ A D^½ is at most 1.
+        let scale = |index: usize| (weights[index / entries] / diagonal(index)).sqrt();
+        let largest = largest_eigenvalue(&matrix, scale);
+        assert!(largest < 1.0 + 1e-9, "{largest}");
+        assert!(largest > 0.5, "the bound is not idle: {largest}");
+        // A sweep's impulses come back as they were written, and the residual is the natural map's.
+        for _ in 0..3 {
+            system.sweep();
+        }
+        let mut impulses = Vec::new();
+        system.read(&mut impulses);
+        system.velocities(&mut answer);
+        let mut error = 0.0;
+        for (contact, (&[normal, tangential], [w_n, w_t])) in
+            impulses.iter().zip(&answer).enumerate()
+        {
+            let root = system.root_mass(contact);
+            let bound = system.friction_bound(contact, normal);
+            let e_n = normal - (normal - w_n).max(0.0);
+            let moved = tangential - w_t / system.tangential_diagonal(contact);
+            let e_t = if M::FRICTION { tangential - moved.clamp(-bound, bound) } else { 0.0 };
+            error += root * root * (e_n * e_n + e_t * e_t);
+        }
+        let before = system.residual();
+        system.write(&impulses);
+        assert!((system.residual() - before).abs() < 1e-9 * before);
+        let scale = scale_of_residual::<M>(problem);
+        let found = residual(problem);
+        assert!(found > 0.0 && (error.sqrt() / scale - found).abs() < 1e-9 * found);
+    }
+}
+
+/// ‖(m_n v_n^free, m_t v_t^free)‖, N·s.
+fn scale_of_residual<M: Model>(problem: &StepProblem<M>) -> f64 {
+    let rows = problem.rows.fixed.iter().map(|row| (&row.row, true));
+    let rows = rows.chain(problem.rows.pairs.iter().map(|row| (&row.row, false)));
+    let mut sum = 0.0;
+    for (row, fixed) in rows {
+        let i = &problem.bodies.free[row.i as usize];
+        let [normal, tangential] = if fixed {
+            M::velocity(row.normal, i)
+        } else {
+            M::relative_velocity(row.normal, i, &problem.bodies.free[row.j as usize])
+        };
+        let normal = normal + row.restitution_velocity;
+        let tangential = if M::FRICTION { tangential / M::TANGENTIAL_COMPLIANCE } else { 0.0 };
+        sum += row.effective_mass.powi(2) * (normal * normal + tangential * tangential);
+    }
+    sum.sqrt()
+}
+
+#[test]
+fn scaled_variables_have_a_symmetric_operator_with_a_known_diagonal() {
+    for (scene, contacts) in scenes() {
+        start(&scene).next_problem(Check(contacts));
+    }
 }

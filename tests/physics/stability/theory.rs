@@ -1,13 +1,13 @@
-//! Borders that theory gives, against those that are measured.
+//! Borders that theory gives, and what models of friction do to what slides, against what is measured.
 
-use slump::scene::Scene;
 use slump::scene::stability::{
-    FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, breaking_bond_of_cantilever, cantilever,
-    column_on_line, mass_ratio, thin_wall,
+    FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, blow, breaking_bond_of_cantilever, cantilever,
+    column_on_line, dilatancy, mass_ratio, thin_wall,
 };
-use slump::sim::{Simulation, Stepper};
-use slump::solver::SolverSettings;
+
 use slump::study::stability::contraction_of_column;
+
+use crate::common::*;
 
 /// Steps until a column sinks steadily: each leaves a tenth or less of the one before.
 const STEADY: usize = 40;
@@ -24,11 +24,8 @@ fn cold(sweeps: u32) -> SolverSettings {
 /// Steady speed of the last grain, in g Δt, where each step gets so many sweeps from nothing.
 fn sinking_speed(mut scene: Scene, sweeps: u32) -> f64 {
     scene.solver = cold(sweeps);
-    let mut simulation = scene.simulation().expect("a sound scene");
-    for _ in 0..STEADY {
-        simulation.step().expect("a finite state");
-    }
-    let speed = simulation.world().grains.velocities.last().expect("a grain").length();
+    let run = after(&scene, STEADY);
+    let speed = run.grains().velocities.last().expect("a grain").length();
     speed / (scene.gravity.magnitude() * scene.parameters.time_step_secs)
 }
 
@@ -75,11 +72,8 @@ fn a_disc_goes_through_a_wall_in_the_share_of_phases_that_geometry_gives() {
     for travel in [0.3, 0.45, 0.7, 1.0, 2.0, 5.0] {
         let through = (0..PHASES).filter(|phase| {
             let scene = thin_wall(travel, (f64::from(*phase) + 0.5) / f64::from(PHASES));
-            let mut simulation = scene.simulation().expect("a sound scene");
-            for _ in 0..((WALL_DISTANCE + 5.0) / travel) as u32 {
-                simulation.step().expect("a finite state");
-            }
-            simulation.world().grains.positions[0].x > WALL_DISTANCE * scene.mean_diameter
+            let run = after(&scene, ((WALL_DISTANCE + 5.0) / travel) as usize);
+            run.place(0).x > WALL_DISTANCE * scene.mean_diameter
         });
         let found = through.count() as f64 / f64::from(PHASES);
         let expected = (1.0f64 - 0.5 / travel).max(0.0);
@@ -96,12 +90,8 @@ fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     for count in [2, 3, 5, 20] {
         let scene = balls(count);
         let speed = scene.grains[0].velocity.x;
-        let mut simulation = scene.simulation().expect("a sound scene");
-        for _ in 0..100 {
-            simulation.step().expect("a finite state");
-        }
-        let velocities: Vec<f64> =
-            simulation.world().grains.velocities.iter().map(|v| v.x / speed).collect();
+        let run = after(&scene, 100);
+        let velocities: Vec<f64> = run.velocities().iter().map(|v| v.x / speed).collect();
         let shared = 2.0 / count as f64;
         assert!((velocities[0] - (shared - 1.0)).abs() < 1e-4, "{count}: {velocities:?}");
         for velocity in &velocities[1..] {
@@ -119,30 +109,25 @@ fn springs(part: f64) -> Simulation {
     scene.parameters.restitution = 0.5;
     scene.stepper = Stepper::Dem;
     scene.parameters.substeps = 1;
-    let critical = scene.simulation().expect("a sound scene").critical_time_step_secs();
+    let critical = start(&scene).critical_time_step_secs();
     scene.parameters.time_step_secs = part * critical.expect("springs have a critical step");
-    scene.simulation().expect("a sound scene")
+    start(&scene)
 }
 
 #[test]
 fn springs_blow_up_at_their_critical_time_step() {
     let stays_at_rest = |part: f64| {
-        let mut simulation = springs(part);
+        let mut run = springs(part);
         for _ in 0..20_000 {
-            if simulation.step().is_err() {
+            if run.step().is_err() {
                 return false;
             }
         }
-        let world = simulation.world();
+        let world = run.world();
         let fastest = world.grains.velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
         fastest < 1e-6 * (world.gravity.magnitude() * world.mean_diameter).sqrt()
     };
-    let (mut low, mut high) = (0.8, 1.25);
-    assert!(stays_at_rest(low) && !stays_at_rest(high), "the border is searched around theory");
-    for _ in 0..7 {
-        let middle = 0.5 * (low + high);
-        *(if stays_at_rest(middle) { &mut low } else { &mut high }) = middle;
-    }
+    let low = border(0.8, 1.25, 7, stays_at_rest);
     assert!((0.995..1.03).contains(&low), "stable up to {low} of the critical time step");
 }
 
@@ -150,22 +135,19 @@ fn springs_blow_up_at_their_critical_time_step() {
 fn a_cantilever_without_friction_tears_at_the_bond_number_of_statics_at_every_time_step() {
     for length in [2, 4, 6] {
         let right = breaking_bond_of_cantilever(length);
-        for (part, torn) in [(0.99, true), (1.01, false)] {
-            for time_step_secs in [2e-4, 1e-3, 1e-2] {
-                let mut scene = cantilever(length);
-                scene.parameters.friction = 0.0;
-                scene.parameters.bond = part * right;
-                scene.parameters.time_step_secs = time_step_secs;
-                scene.solver.tolerance = 1e-9;
-                scene.solver.max_sweeps = 20_000;
-                let mut simulation = scene.simulation().expect("a sound scene");
-                for _ in 0..(0.1 / time_step_secs) as u32 {
-                    simulation.step().expect("a finite state");
-                }
-                let bonds = 4 * length as u32;
-                let found = simulation.observables().contacts < bonds;
-                assert_eq!(found, torn, "{length} discs, {part} of {right}, {time_step_secs} s");
-            }
+        for ((part, torn), time_step_secs) in
+            pairs([(0.99, true), (1.01, false)], [2e-4, 1e-3, 1e-2])
+        {
+            let mut scene = cantilever(length);
+            scene.parameters.friction = 0.0;
+            scene.parameters.bond = part * right;
+            scene.parameters.time_step_secs = time_step_secs;
+            scene.solver.tolerance = 1e-9;
+            scene.solver.max_sweeps = 20_000;
+            let run = after(&scene, (0.1 / time_step_secs) as usize);
+            let bonds = 4 * length as u32;
+            let found = run.observables().contacts < bonds;
+            assert_eq!(found, torn, "{length} discs, {part} of {right}, {time_step_secs} s");
         }
     }
 }
@@ -174,11 +156,8 @@ fn a_cantilever_without_friction_tears_at_the_bond_number_of_statics_at_every_ti
 fn the_contacts_of_an_arch_carry_what_statics_says() {
     let mut scene = arch();
     scene.solver.tolerance = 1e-12;
-    let mut simulation = scene.simulation().expect("a sound scene");
-    for _ in 0..3 {
-        simulation.step().expect("a finite state");
-    }
-    let list = simulation.contacts();
+    let run = after(&scene, 3);
+    let list = run.contacts();
     assert_eq!(list.contacts().len(), 4);
     let spring = (2f64.sqrt() - 1.0) / (2f64.sqrt() + 3.0);
     for (contact, impulse) in list.contacts().iter().zip(list.impulses()) {
@@ -186,5 +165,155 @@ fn the_contacts_of_an_arch_carry_what_statics_says() {
         let expected = if crown { FRICTION_OF_ARCH } else { spring };
         let found = impulse.tangential.abs() / impulse.normal;
         assert!((found - expected).abs() < 1e-5, "crown {crown}: {found} for {expected}");
+    }
+}
+
+fn settings(method: Method, friction_model: FrictionModel, model_solves: u32) -> SolverSettings {
+    SolverSettings { friction_model, model_solves, ..solved_by(method, 1e-13) }
+}
+
+fn sliding(time_step_secs: f64, solver: SolverSettings) -> Simulation {
+    let mut scene = dilatancy();
+    scene.parameters.time_step_secs = time_step_secs;
+    scene.solver = solver;
+    start(&scene)
+}
+
+/// v₀, μ, g and d of the scene.
+fn numbers() -> [f64; 4] {
+    let scene = dilatancy();
+    let speed = scene.grains[0].velocity.x;
+    [speed, scene.parameters.friction, scene.gravity.magnitude(), scene.mean_diameter]
+}
+
+/// The way from the start to where the disc has been still for long.
+fn way(run: &mut Simulation) -> glam::DVec2 {
+    let [speed, friction, gravity, _] = numbers();
+    let start = run.place(0);
+    while run.time_secs() < 1.5 * speed / (friction * gravity) {
+        run.step().expect("a finite state");
+    }
+    assert!(run.velocity(0).length() < 1e-9, "it has stopped");
+    run.place(0) - start
+}
+
+/// Long steps and short ones; at some of them the disc stops within a step, not at its end.
+const TIME_STEPS_SECS: [f64; 4] = [2e-4, 1e-3, 5e-3, 1.7e-2];
+
+#[test]
+fn what_slides_keeps_its_level_and_stops_where_the_sum_of_its_steps_says() {
+    let [speed, friction, gravity, diameter] = numbers();
+    let ways = [
+        (Method::Nsgs, FrictionModel::Coulomb),
+        (Method::Newton, FrictionModel::Coulomb),
+        (Method::InteriorPoint, FrictionModel::Coulomb),
+        (Method::Nsgs, FrictionModel::Tresca),
+        (Method::InteriorPoint, FrictionModel::Tresca),
+    ];
+    for ((method, model), time_step_secs) in pairs(ways, TIME_STEPS_SECS) {
+        let what = format!("{method}, {model}, {time_step_secs} s");
+        let found = way(&mut sliding(time_step_secs, settings(method, model, 1)));
+        let slowing = friction * gravity * time_step_secs;
+        let steps = (speed / slowing).floor();
+        let sum = time_step_secs * (steps * speed - 0.5 * slowing * steps * (steps + 1.0));
+        assert!((found.x / sum - 1.0).abs() < 1e-9, "{what}: {} for {sum}", found.x);
+        assert!(found.y.abs() < 1e-11 * diameter, "{what}: lifted by {:e}", found.y);
+        let short = speed * speed / (2.0 * friction * gravity) - sum;
+        assert!((0.0..=0.5 * speed * time_step_secs).contains(&short), "{what}: {short}");
+    }
+}
+
+#[test]
+fn associated_throws_what_slides_to_the_same_height_at_every_time_step() {
+    let [speed, friction, gravity, diameter] = numbers();
+    for time_step_secs in TIME_STEPS_SECS {
+        let solver = settings(Method::InteriorPoint, FrictionModel::Associated, 1);
+        let mut run = sliding(time_step_secs, solver);
+        let level = run.place(0).y;
+        run.step().expect("a finite state");
+        let after = run.velocity(0);
+        let along = (speed - friction * gravity * time_step_secs) / (1.0 + friction * friction);
+        let right = glam::DVec2::new(along, friction * along);
+        assert!((after - right).length() < 1e-9 * speed, "{after} for {right}");
+        let lift = run.place(0).y - level;
+        assert!((lift / (time_step_secs * friction * along) - 1.0).abs() < 1e-6, "{lift:e}");
+
+        let (mut highest, mut expected, mut rising) = (lift, lift, after.y);
+        while rising > 0.0 {
+            rising -= gravity * time_step_secs;
+            expected += (time_step_secs * rising).max(0.0);
+            run.step().expect("a finite state");
+            highest = highest.max(run.place(0).y - level);
+        }
+        assert!((highest / expected - 1.0).abs() < 1e-9, "{highest} for {expected}");
+        assert!(highest > 0.6 * diameter, "{time_step_secs} s: {highest:e}");
+    }
+}
+
+#[test]
+fn desaxce_sinks_what_slides_by_the_way_of_a_step_times_friction() {
+    let [speed, friction, ..] = numbers();
+    for time_step_secs in TIME_STEPS_SECS {
+        let sunk = |solves| {
+            let solver = settings(Method::InteriorPoint, FrictionModel::Desaxce, solves);
+            -way(&mut sliding(time_step_secs, solver)).y
+        };
+        let right = friction * speed * time_step_secs;
+        let once = sunk(1);
+        assert!((once / right - 1.0).abs() < 1e-6, "{time_step_secs} s: {once} for {right}");
+        // A solve leaves μ²/(1 + μ²), a fifth, of what the one before it left.
+        let fourth = sunk(4);
+        assert!((0.0..0.02 * right).contains(&fourth), "{time_step_secs} s: {fourth} of {right}");
+    }
+}
+
+/// Speed of both discs along the floor, their total way along it, and whether the blow has come.
+fn along_the_floor(run: &Simulation) -> (f64, f64, bool) {
+    let grains = run.grains();
+    let mass: f64 = grains.masses.iter().sum();
+    let mean = |of: &[glam::DVec2]| {
+        of.iter().zip(&grains.masses).map(|(of, mass)| *mass * *of).sum::<glam::DVec2>() / mass
+    };
+    let velocity = mean(&grains.velocities);
+    (velocity.x, mean(&grains.positions).x, velocity.y.abs() < 1e-9)
+}
+
+#[test]
+fn a_blow_on_what_slides_takes_speed_by_impulse_balance_and_tresca_is_a_step_late() {
+    let scene = blow();
+    let [light, heavy] = [0, 1].map(|k| scene.grains[k].radius.powi(2));
+    let fall = -scene.grains[1].velocity.y;
+    let taken = scene.parameters.friction * heavy * fall / (light + heavy);
+    let before = scene.grains[0].velocity.x;
+    assert!(taken > 0.1 * before && taken < 0.9 * before, "it is seen, and they go on sliding");
+    let ways = [
+        (Method::Newton, FrictionModel::Coulomb, 1, 0.0),
+        (Method::InteriorPoint, FrictionModel::Tresca, 1, 1.0),
+        (Method::Nsgs, FrictionModel::Tresca, 1, 1.0),
+        (Method::InteriorPoint, FrictionModel::Tresca, 2, 0.0),
+    ];
+    for (time_step_secs, (method, model, solves, steps_late)) in pairs([1e-4, 1e-3, 5e-3], ways) {
+        let what = format!("{method}, {model}, {solves} solves, {time_step_secs} s");
+        let mut scene = scene.clone();
+        scene.parameters.time_step_secs = time_step_secs;
+        scene.solver = settings(method, model, solves);
+        let mut run = start(&scene);
+        let mut steps = 0.0;
+        let start = along_the_floor(&run).1;
+        while !along_the_floor(&run).2 {
+            run.step().expect("a finite state");
+            steps += 1.0;
+            assert!(steps < 100.0, "{what}: the blow has come");
+        }
+        assert!(steps > 1.0, "{what}: the floor's contact was there before the blow");
+        let at_the_blow = along_the_floor(&run).0;
+        let expected = before - (1.0 - steps_late) * taken;
+        assert!((at_the_blow - expected).abs() < 1e-8, "{what}: {at_the_blow} for {expected}");
+        take_steps(&mut run, 10);
+        let (after, place, _) = along_the_floor(&run);
+        assert!((after - (before - taken)).abs() < 1e-8, "{what}: {after}");
+        let late = time_step_secs * taken * steps_late;
+        let way = time_step_secs * ((steps + 10.0) * before - 11.0 * taken) + late;
+        assert!((place - start - way).abs() < 1e-9, "{what}: {} for {way}", place - start);
     }
 }

@@ -1,6 +1,10 @@
 //! How far two pictures differ, and a picture of where.
 
-use image::{Rgba, RgbaImage};
+use std::path::{Path, PathBuf};
+
+pub use image::codecs::png::FilterType;
+use image::codecs::png::{CompressionType, PngEncoder};
+use image::{DynamicImage, Rgba, RgbaImage};
 
 /// How far a picture may be from its golden.
 #[derive(Clone, Copy)]
@@ -11,15 +15,14 @@ pub struct Tolerance {
     pub pixels: f64,
 }
 
-/// How far a picture is from its golden.
-pub struct Difference {
+struct Difference {
     channel: u8,
     pixels: f64,
     sizes: [(u32, u32); 2],
 }
 
 impl Difference {
-    pub fn between(actual: &RgbaImage, golden: &RgbaImage) -> Self {
+    fn between(actual: &RgbaImage, golden: &RgbaImage) -> Self {
         let mut channel = 0;
         let mut differing = 0;
         for (a, b) in actual.pixels().zip(golden.pixels()) {
@@ -32,7 +35,7 @@ impl Difference {
         Self { channel, pixels: differing as f64 / all.max(1) as f64, sizes }
     }
 
-    pub fn within(&self, tolerance: Tolerance) -> bool {
+    fn within(&self, tolerance: Tolerance) -> bool {
         let Self { channel, pixels, sizes: [actual, golden] } = *self;
         actual == golden && channel <= tolerance.channel && pixels <= tolerance.pixels
     }
@@ -49,7 +52,7 @@ impl std::fmt::Display for Difference {
 }
 
 /// Differences, made twenty times larger, on black.
-pub fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
+fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
     let width = actual.width().max(golden.width());
     let height = actual.height().max(golden.height());
     RgbaImage::from_fn(width, height, |x, y| {
@@ -61,4 +64,41 @@ pub fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
             _ => Rgba([255, 0, 255, 255]),
         }
     })
+}
+
+/// Where a picture is kept.
+pub fn golden_path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("screenshots").join(format!("{name}.png"))
+}
+
+/// Writes a PNG file as small as the format allows: it stays in the history for ever.
+pub fn save_small(picture: &RgbaImage, name: &str, filter: FilterType) {
+    let file = std::fs::File::create(golden_path(name)).unwrap();
+    let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, filter);
+    let opaque = DynamicImage::ImageRgba8(picture.clone()).to_rgb8();
+    opaque.write_with_encoder(encoder).unwrap();
+}
+
+/// The complaint about a picture that `kind` has drawn, if there is one; then what was drawn and the difference are left.
+pub fn complaint(
+    actual: &RgbaImage,
+    name: &str,
+    kind: &str,
+    tolerance: Tolerance,
+) -> Option<String> {
+    let golden = match image::open(golden_path(name)) {
+        Ok(golden) => golden.to_rgba8(),
+        Err(error) => return Some(format!("{name}: {error}; SLUMP_BLESS=1 makes the file")),
+    };
+    let difference = Difference::between(actual, &golden);
+    println!("{name} on {kind}: {difference}");
+    if difference.within(tolerance) {
+        return None;
+    }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/golden");
+    std::fs::create_dir_all(&folder).unwrap();
+    actual.save(folder.join(format!("{name}.{kind}.actual.png"))).unwrap();
+    let where_it_differs = difference_image(actual, &golden);
+    where_it_differs.save(folder.join(format!("{name}.{kind}.difference.png"))).unwrap();
+    Some(format!("{name} on {kind}: {difference}; see {}", folder.display()))
 }

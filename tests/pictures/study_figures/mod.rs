@@ -3,41 +3,33 @@
 //! After a wanted change of how charts look, look at the new one and bless it:
 //! `SLUMP_BLESS=1 cargo test --release --test pictures`.
 
-mod validation;
-
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
 use slump::study::chart::{Axis, Chart, Layer, Look, MapCell, PALETTE, Point, Sheet, png, svg};
 
+use crate::program::*;
+
 /// Figures that take no more than a few seconds.
-const FAST: [&str; 6] = ["fig2", "two-body", "fig8", "fig8-strip", "cradle-choices", "cradle-map"];
+const FAST: [&str; 5] = ["fig2", "two-body", "fig8", "cradle-choices", "cradle-map"];
 /// Share of pixels that may differ between two processors' roundings.
 const MOST_DIFFERENT: f64 = 0.002;
 
 fn reproduce(folder: &Path) {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slump"));
-    command.arg("reproduce").args(FAST).arg("--quick").arg("--out").arg(folder);
-    let output = command.output().expect("the program starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    succeed(slump("reproduce --quick --out").arg(folder).args(FAST));
 }
 
 #[test]
 fn figures_are_the_same_bit_for_bit_from_every_run() {
-    let folders = [tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder")];
+    let folders = [folder(), folder()];
     for folder in &folders {
         reproduce(folder.path());
     }
     for figure in FAST {
         for ending in ["csv", "png", "svg"] {
-            let read = |folder: &tempfile::TempDir| {
-                std::fs::read(folder.path().join(format!("{figure}.{ending}"))).expect("a file")
-            };
+            let read = |folder: &TempDir| bytes(folder.path().join(format!("{figure}.{ending}")));
             let (one, other) = (read(&folders[0]), read(&folders[1]));
             assert!(!one.is_empty() && one == other, "{figure}.{ending} differs");
         }
     }
-    let report = std::fs::read_to_string(folders[0].path().join("report.md")).expect("a report");
+    let report = read(folders[0].path().join("report.md"));
     assert!(report.contains("Quick pass"), "{report}");
     for figure in FAST {
         assert!(report.contains(&format!("## {figure}\n")), "{figure} in {report}");
@@ -110,12 +102,11 @@ fn a_chart_of_stored_points_looks_as_it_did() {
     let sheet = sheet();
     // What a sheet writes is what it was read from.
     let written = String::from_utf8(sheet.to_csv().expect("CSV")).expect("UTF-8");
-    let read = std::fs::read_to_string(stored("chart.csv")).expect("the stored points");
-    assert_eq!(written, read);
+    assert_eq!(written, read(stored("chart.csv")));
     let bytes = png(&sheet, "slump reproduce").expect("a picture");
     let golden = stored("chart.png");
     if std::env::var_os("SLUMP_BLESS").is_some() {
-        std::fs::write(&golden, &bytes).expect("the golden picture");
+        write(&golden, &bytes);
     }
     let now = image::load_from_memory(&bytes).expect("a PNG").to_rgb8();
     let then = image::open(&golden).expect("the golden picture").to_rgb8();
@@ -128,4 +119,88 @@ fn a_chart_of_stored_points_looks_as_it_did() {
     assert!(share <= MOST_DIFFERENT, "{:.2} % of the pixels differ", 100.0 * share);
     let svg = svg(&sheet).expect("a picture");
     assert!(svg.starts_with("<svg") && svg.contains("Every look") && svg.contains("polyline"));
+}
+
+fn elasticity(folder: &Path) -> String {
+    succeed(slump("validate elasticity --quick --out").arg(folder))
+}
+
+/// Every row of the table, but for what was measured by the clock.
+fn rows(folder: &Path) -> Vec<Vec<String>> {
+    let mut reader = csv::Reader::from_path(folder.join("quantities.csv")).expect("a table");
+    let names = reader.headers().expect("names").clone();
+    let is_of_clock = |name: &str| ["simulated_secs_per_sec", "wall_secs"].contains(&name);
+    let row = |record: csv::StringRecord| {
+        let cells = names.iter().zip(record.iter()).filter(|(name, _)| !is_of_clock(name));
+        cells.map(|(_, cell)| cell.to_owned()).collect()
+    };
+    reader.records().map(|record| row(record.expect("a row"))).collect()
+}
+
+fn journal(folder: &Path) -> PathBuf {
+    let measured = folder.join("measured");
+    let of_program = std::fs::read_dir(measured).expect("a folder").next().expect("a program");
+    of_program.expect("a folder").path().join("quick").join("validation.jsonl")
+}
+
+#[test]
+fn a_validation_goes_on_where_it_was_stopped_and_comes_out_the_same() {
+    let whole = folder();
+    elasticity(whole.path());
+    for name in ["quantities.csv", "errors.csv", "errors.png", "errors.svg"] {
+        assert!(whole.path().join(name).metadata().expect(name).len() > 40, "{name}");
+    }
+    check_report(whole.path());
+    let rows_of_whole = rows(whole.path());
+    // Half of the runs are taken away, and of the last one half a line is left, as a kill leaves it.
+    let path = journal(whole.path());
+    let text = read(&path);
+    let lines: Vec<&str> = text.lines().collect();
+    let half = lines.len() / 2;
+    let cut = format!("{}\n{}", lines[..half].join("\n"), &lines[half][..40]);
+    write(&path, cut);
+    let said = elasticity(whole.path());
+    assert!(said.contains(&format!("validation: {half} measurements were there")), "{said}");
+    assert_eq!(rows(whole.path()), rows_of_whole);
+    assert_eq!(read(&path).lines().count(), lines.len());
+    // What is whole is not run again: not even the clock's numbers change.
+    let read = |name: &str| std::fs::read(whole.path().join(name)).expect(name);
+    let before = read("quantities.csv");
+    elasticity(whole.path());
+    assert_eq!(read("quantities.csv"), before);
+}
+
+/// That a row of discs has the published elasticity, and that the report says on what each number rests.
+fn check_report(folder: &Path) {
+    let rows = rows(folder);
+    let of = |name: &str| {
+        let found = rows.iter().find(|row| row[2].starts_with(name)).expect(name);
+        [6, 9].map(|column| found[column].parse::<f64>().expect("a number"))
+    };
+    for name in ["q of jacobi", "q of nsgs interleaved", "q of nsgs bottom-up"] {
+        let [published, measured] = of(name);
+        assert!((measured / published - 1.0).abs() < 5e-3, "{name}: {measured} for {published}");
+    }
+    let report = read(folder.join("report.md"));
+    assert!(report.contains("Quick pass") && report.contains("read: Unger et al. 2002"));
+    assert!(report.contains("derived: D. M. Young") && report.contains("**agrees**"), "{report}");
+    assert!(!report.contains("NaN"), "{report}");
+}
+
+#[test]
+fn what_is_no_experiment_method_or_number_is_refused_by_name() {
+    let folder = folder();
+    let cases: [(&[&str], &str); 6] = [
+        (&["hourglass"], "elasticity"),
+        (&["--methods", "gauss"], "nsgs"),
+        (&["--time-steps", "1e-3,-1"], "time-steps is -1"),
+        (&["--sweeps", "0"], "sweeps is 0"),
+        (&["--sweeps", "5,5"], "sweeps is 5 twice"),
+        (&["--tolerances", "nan"], "tolerances is NaN"),
+    ];
+    for (options, part) in cases {
+        let said = sentence(slump("validate").args(options).arg("--out").arg(folder.path()));
+        assert!(said.contains(part), "{options:?}: {said}");
+        assert!(!folder.path().join("measured").exists(), "{options:?} began to work");
+    }
 }

@@ -1,15 +1,10 @@
 //! States in memory: every scene, stepper, method and remedy.
 
-use glam::DVec2;
 use rayon::prelude::*;
-use slump::scene::{SCENES, Scene, built_in};
 use slump::setting::{Group, Kind, Value};
-use slump::sim::{AlarmKind, Pull, REMEDIES, Remedies, Remedy, Settings, Simulation, Stepper};
-use slump::solver::{FrictionModel, Method, SolverSettings};
-use slump::world::{Boundary, GravityTurn, Motion, MotionCourse, TurnCourse};
 
-use super::{bytes_of, read};
-use crate::common::{every_way, parameters, pressed_pile, start};
+use super::{bytes_of, read_back};
+use crate::common::*;
 
 /// Steps before a state is saved, and after it.
 const STEPS: usize = 4;
@@ -38,7 +33,7 @@ fn goes_on_with(
     change: impl Fn(&mut Simulation),
 ) -> Simulation {
     let saved = bytes_of(scene, simulation);
-    let mut state = read(&saved);
+    let mut state = read_back(&saved);
     assert!(state.to_bytes().expect("bytes") == saved, "{what}: saved again it is another file");
     assert_eq!(
         format!("{:?}", state.simulation.snapshot()),
@@ -109,8 +104,7 @@ fn every_scene_goes_on_in_every_way_from_its_start_and_from_any_step() {
         let what = format!("{}: {way:?}", scene.name);
         // A step may ask for what the scene does not have; it is refused before anything begins.
         let Ok(simulation) = scene.simulation() else { return };
-        let later = goes_on(&scene, &simulation, STEPS, &what);
-        goes_on(&scene, &later, STEPS, &what);
+        goes_on(&scene, &goes_on(&scene, &simulation, STEPS, &what), STEPS, &what);
     });
 }
 
@@ -120,22 +114,14 @@ fn what_a_way_to_step_remembers_is_lost_or_kept_as_without_the_file() {
     for (from, _) in every_way() {
         let mut simulation = start(&Scene { stepper: from, ..scene.clone() });
         simulation.take_steps(6).expect("finite states");
-        for &to in Stepper::ALL {
-            for method in [Method::Newton, Method::NsgsParallel] {
-                goes_on_with(
-                    &scene,
-                    &simulation,
-                    STEPS,
-                    &format!("{from} to {to}"),
-                    |simulation| {
-                        let mut settings = Settings { stepper: to, ..*simulation.settings() };
-                        settings.parameters.bond = 50.0;
-                        settings.parameters.time_step_secs = 7e-4;
-                        settings.solver.method = method;
-                        simulation.change(settings).expect("sound settings");
-                    },
-                );
-            }
+        for (&to, method) in pairs(Stepper::ALL, [Method::Newton, Method::NsgsParallel]) {
+            goes_on_with(&scene, &simulation, STEPS, &format!("{from} to {to}"), |simulation| {
+                let mut settings = Settings { stepper: to, ..*simulation.settings() };
+                settings.parameters.bond = 50.0;
+                settings.parameters.time_step_secs = 7e-4;
+                settings.solver.method = method;
+                simulation.change(settings).expect("sound settings");
+            });
         }
     }
 }
@@ -169,8 +155,7 @@ fn a_spring_that_pulls_and_walls_that_move_go_on() {
     assert_ne!(*simulation.snapshot().surroundings, *surroundings, "the walls have moved");
     let pulled = simulation.observables().gravity_work;
     assert!(pulled != 0.0, "the spring works");
-    let end = goes_on(&scene, &simulation, 20, "pulled");
-    assert_eq!(end.pull(), simulation.pull());
+    assert_eq!(goes_on(&scene, &simulation, 20, "pulled").pull(), simulation.pull());
 }
 
 /// A pile on a shaken base, beside a plate that turns back and forth, a wall on its way along a table, a
@@ -225,7 +210,7 @@ fn bodies_on_their_way_go_on() {
         let worlds = [simulation.world(), end.world()];
         assert_ne!(worlds[0].fixed_discs, worlds[1].fixed_discs, "{what}: and go on moving");
         // What is left of the way is in the file, and all that a new start from there takes.
-        let mut anew = start(&read(&bytes_of(&scene, &simulation)).as_start());
+        let mut anew = start(&read_back(&bytes_of(&scene, &simulation)).as_start());
         let begin = anew.world().boundaries.clone();
         anew.take_steps(20).expect("finite states");
         assert_eq!(begin, simulation.world().boundaries, "{what}");
@@ -285,6 +270,6 @@ fn pictures_come_at_the_steps_that_they_would_have_come_at() {
     simulation.change(settings).expect("sound settings");
     assert_eq!([0.0, 0.010, 0.018, 0.022].map(|secs| simulation.step_at(secs)), [10, 10, 12, 13]);
     simulation.take_steps(1).expect("a finite state");
-    let read = read(&bytes_of(&scene, &simulation)).simulation;
+    let read = read_back(&bytes_of(&scene, &simulation)).simulation;
     assert_eq!(read.step_at(0.0225), simulation.step_at(0.0225));
 }

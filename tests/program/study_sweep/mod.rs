@@ -1,11 +1,6 @@
 //! Sweeps as a user starts them: results, resuming, parts, and what is said of a bad study file.
 
-mod damage;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
-
-use tempfile::TempDir;
+use crate::program::*;
 
 /// Twenty-four runs of the cradle, long enough to be killed in the middle.
 const CRADLES: &str = "
@@ -18,38 +13,25 @@ start = [7.0, 7.5, 8.0]
 dt = { from = 2e-5, to = 1e-3, count = 8, scale = 'log' }
 ";
 
-fn slump() -> Command {
-    Command::new(crate::tested::program())
-}
-
-fn folder() -> TempDir {
-    tempfile::tempdir().expect("a temporary folder")
-}
-
 fn study(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("study.toml");
-    std::fs::write(&path, text).expect("a study file");
+    write(&path, text);
     path
 }
 
-fn sweep(study: &Path, out: &Path, more: &[&str]) -> std::process::Output {
-    let mut command = slump();
-    command.arg("sweep").arg(study).arg("--out").arg(out).args(more);
-    command.output().expect("the program starts")
+fn sweep(study: &Path, out: &Path, more: &[&str]) -> Command {
+    let mut command = slump("sweep");
+    command.arg(study).arg("--out").arg(out).args(more);
+    command
 }
 
 fn runs(out: &Path) -> String {
-    std::fs::read_to_string(out.join("runs.csv")).expect("runs.csv")
+    read(out.join("runs.csv"))
 }
 
-fn said(output: &std::process::Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("UTF-8")
-}
-
-/// The whole study in one go.
 fn in_one_go(folder: &Path, study: &Path) -> String {
     let out = folder.join("whole");
-    assert!(sweep(study, &out, &[]).status.success());
+    succeed(&mut sweep(study, &out, &[]));
     runs(&out)
 }
 
@@ -58,33 +40,21 @@ fn a_killed_sweep_goes_on_where_it_stopped_and_comes_to_the_same() {
     let folder = folder();
     let study = study(folder.path(), CRADLES);
     let out = folder.path().join("killed");
-    let mut child = slump()
-        .arg("sweep")
-        .arg(&study)
-        .arg("--out")
-        .arg(&out)
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the program starts");
+    let mut command = slump("sweep");
+    command.arg(&study).arg("--out").arg(&out).stderr(Stdio::null());
+    let mut child = command.spawn().expect("the program starts");
     let journal = out.join("runs.jsonl");
     let lines = || std::fs::read_to_string(&journal).unwrap_or_default().lines().count();
-    let started = Instant::now();
-    while lines() < 3 && started.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    child.kill().expect("kill -9");
-    child.wait().expect("it ended");
+    wait_for("three runs", || lines() >= 3);
+    kill(&mut child);
     let kept = lines();
     assert!((3..24).contains(&kept), "{kept} of 24 runs had ended: not killed half way");
     assert!(!out.join("runs.csv").exists(), "a table of a half study");
     // As a kill in the middle of a line leaves it.
-    let mut bytes = std::fs::read(&journal).expect("the journal");
-    bytes.extend(b"{\"key\":\"0123");
-    std::fs::write(&journal, bytes).expect("the journal");
+    write(&journal, [&bytes(&journal)[..], b"{\"key\":\"0123"].concat());
 
-    let again = sweep(&study, &out, &[]);
-    assert!(again.status.success(), "{}", said(&again));
-    assert!(said(&again).contains(&format!("{kept} of 24 runs were there")), "{}", said(&again));
+    let again = succeed(&mut sweep(&study, &out, &[]));
+    assert!(again.contains(&format!("{kept} of 24 runs were there")), "{again}");
     assert_eq!(lines(), 24, "no run twice, no half line");
     assert_eq!(runs(&out), in_one_go(folder.path(), &study));
 }
@@ -95,19 +65,18 @@ fn parts_in_any_order_join_to_the_whole_bit_for_bit() {
     let study = study(folder.path(), &CRADLES.replace("2e-5", "2e-4"));
     let (one, other) = (folder.path().join("one"), folder.path().join("other"));
     let merge = |parts: &[&Path]| {
-        let mut command = slump();
-        command.args(["sweep", "merge"]).arg(&study).args(parts).output().expect("it starts")
+        let mut command = slump("sweep merge");
+        command.arg(&study).args(parts);
+        command
     };
-    assert!(sweep(&study, &one, &["--shard", "3/3"]).status.success());
-    assert!(sweep(&study, &other, &["--shard", "1/3"]).status.success());
-    let early = merge(&[&one, &other]);
-    assert_eq!(early.status.code(), Some(2));
-    assert!(said(&early).contains("16 of 24 runs"), "{}", said(&early));
-    assert!(sweep(&study, &one, &["--shard", "2/3"]).status.success());
+    succeed(&mut sweep(&study, &one, &["--shard", "3/3"]));
+    succeed(&mut sweep(&study, &other, &["--shard", "1/3"]));
+    let early = failure(&mut merge(&[&one, &other]));
+    assert!(early.contains("16 of 24 runs"), "{early}");
+    succeed(&mut sweep(&study, &one, &["--shard", "2/3"]));
     // A repeated part harms nothing.
-    assert!(sweep(&study, &one, &["--shard", "3/3"]).status.success());
-    let merged = merge(&[&one, &other]);
-    assert!(merged.status.success(), "{}", said(&merged));
+    succeed(&mut sweep(&study, &one, &["--shard", "3/3"]));
+    succeed(&mut merge(&[&one, &other]));
     assert_eq!(runs(&one), in_one_go(folder.path(), &study));
     let header = runs(&one).lines().next().expect("a header").to_owned();
     for column in ["run", "key", "start", "bond", "dt", "tolerance", "slump", "first_gap"] {
@@ -121,14 +90,13 @@ fn another_study_is_refused_and_redone_only_when_asked() {
     let small = CRADLES.replace("2e-5", "5e-4");
     let first = study(folder.path(), &small);
     let out = folder.path().join("out");
-    assert!(sweep(&first, &out, &[]).status.success());
+    succeed(&mut sweep(&first, &out, &[]));
     let before = runs(&out);
     let changed = study(folder.path(), &small.replace("7.5", "7.6"));
-    let refused = sweep(&changed, &out, &[]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(said(&refused).contains("holds 24 runs of study cradles"), "{}", said(&refused));
+    let refused = failure(&mut sweep(&changed, &out, &[]));
+    assert!(refused.contains("holds 24 runs of study cradles"), "{refused}");
     assert_eq!(runs(&out), before, "a refusal changes nothing");
-    assert!(sweep(&changed, &out, &["--redo"]).status.success());
+    succeed(&mut sweep(&changed, &out, &["--redo"]));
     assert_ne!(runs(&out), before);
     assert_eq!(runs(&out), in_one_go(folder.path(), &changed));
 }
@@ -155,13 +123,12 @@ grains = [0]
     let count = |name: &str| std::fs::read_dir(out.join(name)).expect("a folder").count();
     assert_eq!((count("states"), count("series")), (2, 4));
     let course = std::fs::read_dir(out.join("series")).expect("a folder").next().expect("a file");
-    let course = std::fs::read_to_string(course.expect("a file").path()).expect("a course");
+    let course = read(course.expect("a file").path());
     assert!(course.starts_with("step,time_secs,") && course.contains(",x0,y0\n"), "{course}");
     assert_eq!(course.lines().count(), 1 + 6, "a row at 0, 0.01, … 0.05 s");
-
     // The states lie there now: the second pass reads what the first one settled.
     std::fs::remove_file(out.join("runs.jsonl")).expect("the journal");
-    assert!(sweep(&study, &out, &[]).status.success());
+    succeed(&mut sweep(&study, &out, &[]));
     assert_eq!(runs(&out), whole);
 }
 
@@ -190,17 +157,238 @@ fn a_bad_study_file_is_refused_in_a_sentence_that_names_the_field() {
         ("name = ".to_owned(), "line 1"),
     ];
     for (text, expected) in cases {
-        let output = sweep(&study(folder.path(), &text), &out, &[]);
-        let said = said(&output);
-        assert_eq!(output.status.code(), Some(2), "{text}: {said}");
-        assert_eq!(said.trim_end().lines().count(), 1, "{text}: {said}");
+        let said = sentence(&mut sweep(&study(folder.path(), &text), &out, &[]));
         assert!(said.contains(expected), "{text}: {said}");
         assert!(!out.exists(), "{text} was refused, but a folder is there");
     }
     let sound = study(folder.path(), CRADLES);
     for shard in ["0/3", "4/3", "1", "a/b"] {
-        let said = said(&sweep(&sound, &out, &["--shard", shard]));
+        let said = failure(&mut sweep(&sound, &out, &["--shard", shard]));
         assert!(said.contains(&format!("shard is {shard}, but must be k/n")), "{said}");
     }
-    assert!(said(&sweep(Path::new("none.toml"), &out, &[])).contains("No such file"));
+    assert!(failure(&mut sweep(Path::new("none.toml"), &out, &[])).contains("No such file"));
+}
+
+/// Three short runs with a course each.
+const SHORT: &str = "
+name = 'short'
+[base]
+scene = 'cradle'
+duration = 0.02
+[vary]
+start = [7.0, 7.5, 8.0]
+[series]
+interval = 0.01
+grains = [0]
+";
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    names_in(folder).iter().map(|name| folder.join(name)).collect()
+}
+
+/// A folder, a study of it, its table, and where it lies.
+fn computed(text: &str) -> (TempDir, PathBuf, String, PathBuf) {
+    let folder = folder();
+    let study = study(folder.path(), text);
+    let whole = in_one_go(folder.path(), &study);
+    let out = folder.path().join("whole");
+    (folder, study, whole, out)
+}
+
+#[test]
+fn a_damaged_record_is_named_and_computed_anew() {
+    let (_folder, study, whole, out) = computed(SHORT);
+    let journal = out.join("runs.jsonl");
+    let sound = bytes(&journal);
+    let text = String::from_utf8(sound.clone()).expect("UTF-8");
+    assert_eq!(text.lines().count(), 3);
+    // A digit of a result, bits all over the file, an end of line that is gone, and one too many.
+    let digit = text.find("\"largest_residual\":").expect("a result") + 19;
+    let mut damages: Vec<(usize, u8)> =
+        (0..10).map(|k| (k * text.len() / 10 + 3, 1 << (k % 8))).collect();
+    damages.push((digit, 1));
+    damages.push((text.find('\n').expect("a line"), 0x20));
+    damages.push((text.find(',').expect("a comma"), b',' ^ b'\n'));
+    for (place, bits) in damages {
+        let mut bytes = sound.clone();
+        bytes[place] ^= bits;
+        write(&journal, &bytes);
+        std::fs::remove_file(out.join("runs.csv")).expect("the table");
+        let output = succeed(&mut sweep(&study, &out, &[]));
+        let named = output.matches("runs.jsonl: line ").count();
+        assert!((1..=2).contains(&named), "byte {place}: {}", output);
+        assert_eq!(runs(&out), whole, "byte {place}");
+        let again = said(&run(&mut sweep(&study, &out, &[])));
+        assert!(!again.contains("damaged"), "told of once: {}", again);
+    }
+}
+
+#[test]
+fn a_damaged_state_is_named_and_settled_anew() {
+    let text =
+        "name = 'pile'\n[base]\ngrains = 20\nbox-width = 6\nduration = 0.01\n[vary]\nseed = [1]\n";
+    let (_folder, study, whole, out) = computed(text);
+    let state = files(&out.join("states")).remove(0);
+    let sound = read(&state);
+    let digit = sound.rfind("e-").expect("a number") - 1;
+    let mut bytes = sound.clone().into_bytes();
+    assert!(bytes[digit].is_ascii_digit());
+    bytes[digit] ^= 1;
+    write(&state, bytes);
+    std::fs::remove_file(out.join("runs.jsonl")).expect("the journal");
+    let output = succeed(&mut sweep(&study, &out, &[]));
+    assert!(output.contains("is damaged"), "{output}");
+    assert!(output.contains("states"), "{output}");
+    assert_eq!((runs(&out), read(&state)), (whole, sound));
+}
+
+#[test]
+fn deleted_courses_are_made_again() {
+    let (_folder, study, whole, out) = computed(SHORT);
+    let course = files(&out.join("series")).remove(1);
+    let before = bytes(&course);
+    std::fs::remove_file(&course).expect("it was there");
+    let output = said(&run(&mut sweep(&study, &out, &[])));
+    assert!(output.contains("2 of 3 runs were there"), "{output}");
+    assert_eq!((runs(&out), std::fs::read(&course).ok()), (whole, Some(before)));
+}
+
+#[test]
+fn a_course_that_was_edited_is_named_and_computed_anew() {
+    let (_folder, study, whole, out) = computed(SHORT);
+    let courses = files(&out.join("series"));
+    let before: Vec<_> = courses.iter().map(bytes).collect();
+    // One digit of the last row, and a last row that is gone.
+    let digit = before[0].iter().rposition(u8::is_ascii_digit).expect("a number");
+    let mut edited = before[0].clone();
+    edited[digit] ^= 1;
+    write(&courses[0], edited);
+    let text = String::from_utf8(before[2].clone()).expect("UTF-8");
+    let (shorter, _) = text.trim_end().rsplit_once('\n').expect("rows");
+    write(&courses[2], format!("{shorter}\n"));
+    let output = said(&run(&mut sweep(&study, &out, &[])));
+    assert!(output.contains("1 of 3 runs were there"), "{output}");
+    for (number, course) in courses.iter().enumerate() {
+        let named = output.contains(&format!("{}: is damaged", course.display()));
+        assert_eq!(named, number != 1, "{output}");
+        assert_eq!(std::fs::read(course).ok().as_ref(), before.get(number), "course {number}");
+    }
+    assert_eq!(runs(&out), whole);
+    let again = said(&run(&mut sweep(&study, &out, &[])));
+    assert!(again.contains("3 of 3 runs were there"), "{again}");
+}
+
+#[test]
+fn redo_works_on_what_cannot_be_read() {
+    let (_folder, study, whole, out) = computed(SHORT);
+    for name in ["study.json", "runs.jsonl"] {
+        write(out.join(name), b"\xff\x00{\"checksum\"\n\n");
+    }
+    failure(&mut sweep(&study, &out, &[]));
+    succeed(&mut sweep(&study, &out, &["--redo"]));
+    assert_eq!(runs(&out), whole);
+    // Two sound records that say different things of one run.
+    let journal = out.join("runs.jsonl");
+    let text = read(&journal);
+    let line = text.lines().next().expect("a record");
+    let (_, record) = line.split_once("\"record\":").expect("a record");
+    let record = record[..record.len() - 1].replacen("\"sweeps\":", "\"sweeps\":1", 1);
+    let checksum = &blake3::hash(record.as_bytes()).to_hex()[..16];
+    let other = format!("{{\"checksum\":\"{checksum}\",\"record\":{record}}}\n");
+    write(&journal, text.clone() + &other);
+    let refused = failure(&mut sweep(&study, &out, &[]));
+    assert!(refused.contains("came out otherwise before"), "{refused}");
+    succeed(&mut sweep(&study, &out, &["--redo"]));
+    assert_eq!(runs(&out), whole);
+}
+
+#[test]
+fn a_redo_that_is_killed_leaves_one_study_and_never_a_mixture() {
+    let folder = folder();
+    let places = ["old", "new"].map(|name| folder.path().join(name));
+    let texts = [SHORT.to_owned(), SHORT.replace("short", "other").replace("0.02", "2.0")];
+    let [old, new] = [0, 1].map(|k| {
+        std::fs::create_dir(&places[k]).expect("a folder");
+        let file = study(&places[k], &texts[k]);
+        let table = in_one_go(&places[k], &file);
+        (file, table)
+    });
+    let out = folder.path().join("out");
+    let mut found = [0, 0];
+    for round in 0..12u64 {
+        succeed(&mut sweep(&old.0, &out, &["--redo"]));
+        let mut redo = slump("sweep --redo --out");
+        redo.arg(&out).arg(&new.0).stderr(Stdio::null()).stdout(Stdio::null());
+        let mut child = redo.spawn().expect("it starts");
+        std::thread::sleep(Duration::from_millis(round * round));
+        // It may have ended by itself.
+        let _ = child.kill();
+        child.wait().expect("it ended");
+        let label = read(out.join("study.json"));
+        let is_new = label.contains("\"other\"");
+        found[usize::from(is_new)] += 1;
+        let (file, table) = if is_new { &new } else { &old };
+        if let Ok(left) = std::fs::read_to_string(out.join("runs.csv")) {
+            assert_eq!(&left, table, "round {round}: the other study's table");
+        }
+        succeed(&mut sweep(file, &out, &[]));
+        assert_eq!(&runs(&out), table, "round {round}");
+    }
+    assert!(found[0] > 0 && found[1] > 0, "killed before and after the change: {found:?}");
+}
+
+#[test]
+fn a_redo_takes_the_folder_over_only_once_the_old_table_is_gone() {
+    let folder = folder();
+    let old = study(folder.path(), SHORT);
+    in_one_go(folder.path(), &old);
+    let out = folder.path().join("whole");
+    let label = || read(out.join("study.json"));
+    let before = label();
+    // What cannot be removed stops it where a kill would have to come at the right moment.
+    std::fs::remove_file(out.join("runs.csv")).expect("a table");
+    std::fs::create_dir(out.join("runs.csv")).expect("a folder in its place");
+    let new = study(folder.path(), &SHORT.replace("short", "other"));
+    failure(&mut sweep(&new, &out, &["--redo"]));
+    assert_eq!(label(), before, "the new study's label beside the old one's table");
+    std::fs::remove_dir(out.join("runs.csv")).expect("a folder");
+    succeed(&mut sweep(&new, &out, &["--redo"]));
+    assert!(label().contains("\"other\""));
+}
+
+#[test]
+fn runs_that_went_wrong_say_so_in_the_table_and_are_read_back_as_they_were() {
+    let folder = folder();
+    // Springs far beyond what one substep can follow: the first run's residual overflows, the second's
+    // state does.
+    let text = "
+name = 'wrong'
+[base]
+scene = 'cradle'
+stepper = 'dem'
+substeps = 1
+[vary]
+'dt duration' = [[1e100, 2e102], [1e200, 2e202]]
+";
+    let study = study(folder.path(), text);
+    let out = folder.path().join("out");
+    let first = succeed(&mut sweep(&study, &out, &[]));
+    assert!(first.contains("2 of 2 runs raised alarms ("), "{first}");
+    let table = runs(&out);
+    let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().expect("a header");
+    let column = |name: &str| header.iter().position(|column| *column == name).expect("a column");
+    let rows: Vec<_> = lines.collect();
+    let [status, alarms] = ["status", "alarms"].map(column);
+    let told = [0, 1].map(|run| (rows[run][status], rows[run][alarms].contains("not-finite")));
+    assert_eq!(told, [("done", false), ("not-finite", true)], "{table}");
+    let residual: f64 = rows[0][column("largest_residual")].parse().expect("a number");
+    assert!(!residual.is_finite(), "{table}");
+    for row in &rows {
+        assert_ne!(row[column("unconverged_steps")], "0", "{table}");
+        assert_eq!(row[column("lost_grains")], "0", "{table}");
+    }
+    let again = succeed(&mut sweep(&study, &out, &[]));
+    assert!(again.contains("2 of 2 runs were there"), "{again}");
+    assert_eq!(runs(&out), table);
 }

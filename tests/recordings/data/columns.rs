@@ -1,12 +1,13 @@
 //! What columns hold: every number of the moments, bit for bit.
 
-use slump::data::FormatName;
-use slump::scene::{SCENES, Scene};
-use slump::sim::{Moment, OtherBody, Stepper};
+use slump::granular::{GrainMeasures, measure};
+use slump::scene::SCENES;
+use slump::sim::{ContactState, GrainState, Moment, Observables, OtherBody, Stepper};
+use slump::world::Disc;
 
-use super::expected::{contacts, grain_measures, grains, histograms, measures, observables, word};
-use super::tables::{Columns, csv, metadata, number, parquet, parts, steps};
-use super::{folder, record, scene, start};
+use super::tables::{Cell, Columns, csv, metadata, number, parquet, parts, steps};
+use super::*;
+use crate::program::*;
 
 #[track_caller]
 fn assert_same(found: &Columns, expected: &Columns, what: &str) {
@@ -53,7 +54,7 @@ fn check(scene: &Scene, frames: usize, every: u64) -> Vec<Moment> {
         assert_same(&text, &found, &format!("{name}.csv beside Parquet"));
         assert_same(&found, &text, &format!("{name} beside CSV"));
     }
-    let index = std::fs::read_to_string(folder.path().join("frames.csv")).expect("an index");
+    let index = read(folder.path().join("frames.csv"));
     assert_eq!(index.lines().filter(|line| !line.starts_with('#')).count(), 1 + moments.len());
     moments
 }
@@ -76,10 +77,7 @@ fn walls_are_named_as_scene_files_name_them() {
     let is_wall = |other| matches!(other, OtherBody::Boundary(_));
     assert!(moments.iter().flat_map(|moment| &moment.contacts).any(|it| is_wall(it.other)));
     let folder = folder();
-    let walls = scene("moving-walls");
-    let mut recording = start(folder.path(), &[FormatName::Parquet], &walls);
-    record(&mut recording, &mut walls.simulation().expect("a scene"), 20, 5);
-    recording.finish().expect("a recording");
+    recorded(folder.path(), &[FormatName::Parquet], &scene("moving-walls"), 20, 5);
     let contacts = parquet(folder.path(), "contacts");
     assert!(contacts["name_j"].contains(&word("piston 1")), "{:?}", contacts["name_j"]);
 }
@@ -99,9 +97,7 @@ fn units_and_parameters_are_in_the_metadata() {
     let folder = folder();
     let mut pile = scene("pile");
     pile.parameters.bond = 37.5;
-    let mut recording = start(folder.path(), FormatName::ALL, &pile);
-    record(&mut recording, &mut pile.simulation().expect("a scene"), 2, 1);
-    recording.finish().expect("a recording");
+    recorded(folder.path(), FormatName::ALL, &pile, 2, 1);
     for (table, column, unit) in
         [("grains", "vx", "m/s"), ("contacts", "normal_force", "N"), ("steps", "slump", "1")]
     {
@@ -110,11 +106,10 @@ fn units_and_parameters_are_in_the_metadata() {
         let columns: serde_json::Value = serde_json::from_str(&said["columns"]).expect("JSON");
         assert_eq!(columns[column]["unit"], unit, "{table}");
     }
-    let text = std::fs::read_to_string(folder.path().join("csv/grains.csv")).expect("a table");
+    let text = read(folder.path().join("csv/grains.csv"));
     assert!(text.contains("\n# parameters.bond: 37.5\n"), "{text:.400}");
     assert!(text.contains("\n# column vx [m/s]: velocity of the centre\n"), "{text:.900}");
-    let manifest = std::fs::read(folder.path().join("data.json")).expect("a manifest");
-    let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
+    let manifest = json(folder.path().join("data.json"));
     assert_eq!(manifest["about"]["parameters.bond"], "37.5");
     assert_eq!(manifest["formats"][0], "parquet");
     assert_eq!(manifest["tables"]["contacts"][8]["name"], "nx");
@@ -142,7 +137,7 @@ fn parts_end_with_a_frame_and_do_not_hang_on_how_fast_the_disk_was() {
         let (one, other) = (parts(one.path(), table), parts(other.path(), table));
         assert_eq!(one.len(), other.len());
         for (one, other) in one.iter().zip(&other) {
-            assert_eq!(std::fs::read(one).expect("a part"), std::fs::read(other).expect("a part"));
+            assert_eq!(bytes(one), bytes(other));
         }
     }
     let grains = parquet(one.path(), "grains");
@@ -161,10 +156,210 @@ fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
         recording.add(scene.simulation().expect("a scene").moment()).expect("a frame");
         recording.finish().expect("a recording");
         for name in ["grains", "contacts"] {
-            let text = std::fs::read_to_string(folder.path().join(format!("ovito/{name}.dump")));
-            let text = text.expect("a dump");
+            let text = read(folder.path().join(format!("ovito/{name}.dump")));
             let head = text.lines().position(|line| line == "ITEM: TIME").expect("a frame");
             assert!(head <= 16, "{}: {head} lines in {name}", entry.name);
         }
     }
+}
+
+type Row = Vec<(&'static str, Cell)>;
+
+/// Columns of rows, in any order of the columns.
+fn columns(rows: impl IntoIterator<Item = Row>) -> Columns {
+    let mut columns = Columns::new();
+    for (name, cell) in rows.into_iter().flatten() {
+        columns.entry(name.to_owned()).or_default().push(cell);
+    }
+    columns
+}
+
+fn word(word: &str) -> Cell {
+    Cell::Word(word.to_owned())
+}
+
+fn optional(number: Option<f64>) -> Cell {
+    number.map_or(Cell::Nothing, Cell::from)
+}
+
+fn grain_cells(moment: &Moment, id: usize, grain: &GrainState) -> Row {
+    vec![
+        ("step", Cell::Whole(moment.observables.step)),
+        ("time", moment.observables.time_secs.into()),
+        ("id", Cell::Whole(id as u64)),
+        ("x", grain.position.x.into()),
+        ("y", grain.position.y.into()),
+        ("angle", grain.angle.into()),
+        ("vx", grain.velocity.x.into()),
+        ("vy", grain.velocity.y.into()),
+        ("omega", grain.angular_velocity.into()),
+        ("radius", grain.radius.into()),
+        ("mass", grain.mass.into()),
+        ("kind", word(if grain.lost { "lost" } else { "grain" })),
+    ]
+}
+
+fn grains(moments: &[Moment]) -> Columns {
+    columns(moments.iter().flat_map(|moment| {
+        let of_grain = |(id, grain)| grain_cells(moment, id, grain);
+        let of_disc = |(id, disc): (usize, &Disc)| {
+            let still = GrainState {
+                position: disc.position,
+                radius: disc.radius,
+                angle: 0.0,
+                velocity: glam::DVec2::ZERO,
+                angular_velocity: 0.0,
+                lost: false,
+                ..moment.grains[0]
+            };
+            let mut cells = grain_cells(moment, moment.grains.len() + id, &still);
+            cells.retain(|(name, _)| !["mass", "kind"].contains(name));
+            cells.extend([("mass", Cell::Nothing), ("kind", word("fixed"))]);
+            cells
+        };
+        let fixed = moment.surroundings.fixed_discs.iter().enumerate().map(of_disc);
+        moment.grains.iter().enumerate().map(of_grain).chain(fixed).collect::<Vec<_>>()
+    }))
+}
+
+fn contact_cells(moment: &Moment, contact: &ContactState) -> Row {
+    let discs = moment.grains.len() + moment.surroundings.fixed_discs.len();
+    let (id, kind, name) = match contact.other {
+        OtherBody::Grain(index) => (index as usize, "grain", String::new()),
+        OtherBody::FixedDisc(index) => {
+            (moment.grains.len() + index as usize, "fixed", String::new())
+        }
+        OtherBody::Boundary(index) => {
+            let boundary = &moment.surroundings.boundaries[index as usize];
+            let said = serde_json::to_value(boundary).expect("JSON");
+            let shape = said["shape"].as_str().expect("a word").to_owned();
+            (discs + index as usize, "boundary", format!("{shape} {index}"))
+        }
+    };
+    let bond = match moment.settings.stepper {
+        Stepper::Range => Cell::Flag(contact.bond_stretch.is_some()),
+        _ => Cell::Nothing,
+    };
+    vec![
+        ("step", Cell::Whole(moment.observables.step)),
+        ("time", moment.observables.time_secs.into()),
+        ("id_i", Cell::Whole(contact.grain.into())),
+        ("id_j", Cell::Whole(id as u64)),
+        ("kind_j", word(kind)),
+        ("name_j", Cell::Word(name)),
+        ("x", contact.point.x.into()),
+        ("y", contact.point.y.into()),
+        ("nx", contact.normal.x.into()),
+        ("ny", contact.normal.y.into()),
+        ("gap", contact.gap.into()),
+        ("normal_force", contact.normal_force.into()),
+        ("tangential_force", contact.tangential_force.into()),
+        ("status", word(contact.status.name())),
+        ("bond", bond),
+        ("stretch", optional(contact.bond_stretch)),
+        ("age", Cell::Whole(contact.age_steps)),
+    ]
+}
+
+fn contacts(moments: &[Moment]) -> Columns {
+    let of = |moment| move |contact| contact_cells(moment, contact);
+    columns(moments.iter().flat_map(|moment| moment.contacts.iter().map(of(moment))))
+}
+
+fn observables(all: &[Observables]) -> Columns {
+    columns(all.iter().map(|row| {
+        vec![
+            ("step", Cell::Whole(row.step)),
+            ("time", row.time_secs.into()),
+            ("time_step", row.time_step_secs.into()),
+            ("sweeps", Cell::Whole(row.sweeps.into())),
+            ("factorisations", Cell::Whole(row.factorisations.into())),
+            ("converged", Cell::Flag(row.converged)),
+            ("stalled", Cell::Flag(row.stalled)),
+            ("residual", row.residual.into()),
+            ("model_residual", optional(row.model_residual)),
+            ("duality_gap", optional(row.duality_gap)),
+            ("fell_back", optional(row.fell_back.map(|fell_back| u8::from(fell_back).into()))),
+            ("contacts", Cell::Whole(row.contacts.into())),
+            ("compressive_contacts", Cell::Whole(row.compressive_contacts.into())),
+            ("tensile_contacts", Cell::Whole(row.tensile_contacts.into())),
+            ("mean_overlap", row.mean_overlap.into()),
+            ("max_overlap", row.max_overlap.into()),
+            ("kinetic_energy", row.kinetic_energy.into()),
+            ("potential_energy", row.potential_energy.into()),
+            ("normal_work", row.normal_work.into()),
+            ("tangential_work", row.tangential_work.into()),
+            ("drive_energy", optional(row.drive_energy)),
+            ("drive_work", optional(row.drive_work)),
+            ("border_work", optional(row.border_work)),
+            ("gravity_work", row.gravity_work.into()),
+            ("slump", row.slump.into()),
+            ("bond_work", optional(row.bond_work)),
+            ("bond_energy", optional(row.bond_energy)),
+            ("broken_bond_energy", optional(row.broken_bond_energy)),
+            ("lost_grains", Cell::Whole(row.lost_grains.into())),
+        ]
+    }))
+}
+
+fn measured(number: f64) -> Cell {
+    optional((!number.is_nan()).then_some(number))
+}
+
+fn grain_measures(moments: &[Moment]) -> Columns {
+    columns(moments.iter().flat_map(|moment| {
+        let of_grain = |of_grain: GrainMeasures| {
+            vec![
+                ("coordination", f64::from(of_grain.coordination).into()),
+                ("rattler", Cell::Flag(of_grain.rattler)),
+                ("pressure", measured(of_grain.pressure)),
+                ("deviator", measured(of_grain.deviator)),
+                ("stress_xy", measured(of_grain.stress_xy)),
+                ("cell_area", measured(of_grain.cell_area)),
+                ("solid_fraction", measured(of_grain.solid_fraction)),
+            ]
+        };
+        let mut rows: Vec<Row> = measure(moment).grains.into_iter().map(of_grain).collect();
+        let nothing: Row = rows[0].iter().map(|(name, _)| (*name, Cell::Nothing)).collect();
+        rows.extend(vec![nothing; moment.surroundings.fixed_discs.len()]);
+        rows
+    }))
+}
+
+fn measures(moments: &[Moment]) -> Columns {
+    columns(moments.iter().map(|moment| {
+        let pile = measure(moment).pile;
+        vec![
+            ("step", Cell::Whole(moment.observables.step)),
+            ("time", moment.observables.time_secs.into()),
+            ("grains", Cell::Whole(pile.grains.into())),
+            ("stress_xx", measured(pile.stress_xx)),
+            ("pressure", measured(pile.pressure)),
+            ("fabric_anisotropy", measured(pile.fabric_anisotropy)),
+            ("coordination", measured(pile.coordination)),
+            ("rattlers", Cell::Whole(pile.rattlers.into())),
+            ("solid_fraction_cells", measured(pile.solid_fraction_cells)),
+            ("strong_share", measured(pile.strong_share)),
+        ]
+    }))
+}
+
+fn histograms(moments: &[Moment]) -> Columns {
+    let mut rows = Vec::new();
+    for moment in moments {
+        for histogram in measure(moment).histograms {
+            for (bin, &count) in histogram.counts.iter().enumerate() {
+                rows.push(vec![
+                    ("step", Cell::Whole(moment.observables.step)),
+                    ("time", moment.observables.time_secs.into()),
+                    ("quantity", word(histogram.quantity)),
+                    ("unit", word(histogram.unit)),
+                    ("from", histogram.edges[bin].into()),
+                    ("to", histogram.edges[bin + 1].into()),
+                    ("count", Cell::Whole(count)),
+                ]);
+            }
+        }
+    }
+    columns(rows)
 }

@@ -1,39 +1,38 @@
 //! Initial states out of recordings.
 
-use std::path::{Path, PathBuf};
-
 use slump::config::{Config, SceneSource};
-use slump::data::{FormatName, RecordedGrains, read_grains};
-use slump::scene::Scene;
-use slump::sim::{Moment, Simulation};
+use slump::data::{RecordedGrains, read_grains};
+use slump::sim::GrainState;
+use slump::world::{Disc, Grain};
 
 use super::tables::{csv, parquet};
-use super::{folder, record, refusal, run, said, scene, start, text};
+use super::*;
 
 /// Bits of all that an initial state has of its grains.
 fn bits(grains: &RecordedGrains) -> Vec<u64> {
-    let of = |grain: &slump::world::Grain| {
+    let of = |grain: &Grain| {
         let (place, velocity) = (grain.position, grain.velocity);
         [place.x, place.y, grain.radius, velocity.x, velocity.y, grain.angular_velocity]
     };
-    let moving = grains.grains.iter().flat_map(of);
-    let fixed = grains.fixed_discs.iter().flat_map(|it| [it.position.x, it.position.y, it.radius]);
-    moving.chain(fixed).map(f64::to_bits).collect()
+    with_fixed(grains.grains.iter().flat_map(of), &grains.fixed_discs)
 }
 
 fn bits_of_moment(moment: &Moment) -> Vec<u64> {
-    let of = |grain: &slump::sim::GrainState| {
+    let of = |grain: &GrainState| {
         let (place, velocity) = (grain.position, grain.velocity);
         [place.x, place.y, grain.radius, velocity.x, velocity.y, grain.angular_velocity]
     };
     let moving = moment.grains.iter().filter(|grain| !grain.lost).flat_map(of);
-    let fixed = moment.surroundings.fixed_discs.iter();
-    let fixed = fixed.flat_map(|it| [it.position.x, it.position.y, it.radius]);
+    with_fixed(moving, &moment.surroundings.fixed_discs)
+}
+
+fn with_fixed(moving: impl Iterator<Item = f64>, fixed: &[Disc]) -> Vec<u64> {
+    let fixed = fixed.iter().flat_map(|it| [it.position.x, it.position.y, it.radius]);
     moving.chain(fixed).map(f64::to_bits).collect()
 }
 
 /// A recording of the pile, and its moments at steps 10, 20, …, 60.
-fn recorded(folder: &Path) -> Vec<Moment> {
+fn recorded_pile(folder: &Path) -> Vec<Moment> {
     let pile = scene("pile");
     let mut recording = start(folder, FormatName::ALL, &pile);
     let mut simulation = pile.simulation().expect("a scene");
@@ -67,7 +66,7 @@ fn simulation(scene: &Scene) -> Simulation {
 #[test]
 fn every_format_gives_back_what_was_recorded_bit_for_bit() {
     let folder = folder();
-    let moments = recorded(folder.path());
+    let moments = recorded_pile(folder.path());
     for source in sources(folder.path()) {
         let last = read_grains(&source, None).expect("grains");
         let expected = moments.last().expect("a moment");
@@ -88,8 +87,8 @@ fn every_format_gives_back_what_was_recorded_bit_for_bit() {
 #[test]
 fn runs_go_on_from_every_format_alike() {
     let folder = folder();
-    recorded(folder.path());
-    let run = |source: &Path| {
+    recorded_pile(folder.path());
+    let end = |source: &Path| {
         let scene = config(source, Some(20)).scene(|_| true).expect("a scene");
         assert!(scene.grains.iter().any(|grain| grain.angular_velocity != 0.0), "it moves");
         let mut simulation = simulation(&scene);
@@ -97,16 +96,16 @@ fn runs_go_on_from_every_format_alike() {
         bits_of_moment(&simulation.moment())
     };
     let sources = sources(folder.path());
-    let first = run(&sources[0]);
+    let first = end(&sources[0]);
     for source in &sources[1..] {
-        assert_eq!(run(source), first, "{}", source.display());
+        assert_eq!(end(source), first, "{}", source.display());
     }
 }
 
 #[test]
 fn the_base_of_a_recorded_pile_stays_as_wide_as_it_was() {
     let folder = folder();
-    recorded(folder.path());
+    recorded_pile(folder.path());
     let scene = config(folder.path(), None).scene(|_| true).expect("a scene");
     assert_eq!(scene.fixed_discs, super::scene("pile").fixed_discs);
     // Simple tables have none, and get the base that goes with the box.
@@ -119,16 +118,12 @@ fn the_base_of_a_recorded_pile_stays_as_wide_as_it_was() {
 #[test]
 fn the_command_line_takes_a_step_or_the_last() {
     let folder = folder();
-    recorded(folder.path());
+    recorded_pile(folder.path());
     let again = folder.path().join("again");
     for (more, step) in [(&["--initial-step", "30"][..], 30), (&[], 60)] {
-        let arguments =
-            ["--initial", text(folder.path()), "--duration", "0.001", "--data", text(&again)];
-        let mut arguments = arguments.to_vec();
-        arguments.extend(["--data-format", "parquet", "--overwrite"]);
-        arguments.extend(more);
-        let output = run(&arguments);
-        assert!(output.status.success(), "{}", said(&output));
+        let mut command = slump("--headless --duration 0.001 --data-format parquet --overwrite");
+        command.arg("--initial").arg(folder.path()).arg("--data").arg(&again).args(more);
+        succeed(&mut command);
         let (from, to) = (parquet(folder.path(), "grains"), parquet(&again, "grains"));
         let at = |step: u64| from["step"].iter().position(|it| super::tables::whole(it) == step);
         let row = at(step).expect("the step is there");
@@ -141,13 +136,12 @@ fn the_command_line_takes_a_step_or_the_last() {
 #[test]
 fn scene_files_take_grains_out_of_recordings() {
     let folder = folder();
-    let moments = recorded(&folder.path().join("data"));
+    let moments = recorded_pile(&folder.path().join("data"));
     let mut scene = scene("pile");
     scene.source = Some(slump::scene::GrainSource::Data { path: "data".into(), step: Some(40) });
     scene.grains.clear();
     let path = folder.path().join("scene.toml");
-    let toml = slump::config::scene_to_toml(&scene).expect("TOML");
-    std::fs::write(&path, toml).expect("a file");
+    write(&path, slump::config::scene_to_toml(&scene).expect("TOML"));
     let read = slump::config::read_scene(&path).expect("a scene");
     assert_eq!(bits_of_moment(&simulation(&read).moment()), bits_of_moment(&moments[3]));
 }
@@ -155,15 +149,15 @@ fn scene_files_take_grains_out_of_recordings() {
 #[test]
 fn rows_in_any_order_are_put_in_that_of_their_ids() {
     let folder = folder();
-    recorded(folder.path());
+    recorded_pile(folder.path());
     let table = folder.path().join("csv/grains.csv");
     let like = parquet(folder.path(), "grains");
-    let words = std::fs::read_to_string(&table).expect("a table");
+    let words = read(&table);
     let (head, rows) = words.split_at(words.find("\n10,").expect("rows") + 1);
     let mut rows: Vec<&str> = rows.lines().collect();
     rows.reverse();
     let turned = folder.path().join("turned.csv");
-    std::fs::write(&turned, format!("{head}{}\n", rows.join("\n"))).expect("a file");
+    write(&turned, format!("{head}{}\n", rows.join("\n")));
     assert_ne!(csv(&turned, &like)["id"], csv(&table, &like)["id"], "the situation");
     for step in [None, Some(30)] {
         let expected = read_grains(&table, step).expect("grains");
@@ -174,15 +168,15 @@ fn rows_in_any_order_are_put_in_that_of_their_ids() {
 #[test]
 fn a_frame_that_is_not_in_every_format_is_none() {
     let folder = folder();
-    let moments = recorded(folder.path());
+    let moments = recorded_pile(folder.path());
     // As a kill in the middle of the last frame leaves it.
     let index = folder.path().join("frames.csv");
-    let rows = std::fs::read_to_string(&index).expect("an index");
-    std::fs::write(&index, rows.trim_end().rsplit_once('\n').expect("rows").0).expect("a file");
+    let rows = read(&index);
+    write(&index, rows.trim_end().rsplit_once('\n').expect("rows").0);
     let table = folder.path().join("csv/grains.csv");
-    let rows = std::fs::read_to_string(&table).expect("a table");
+    let rows = read(&table);
     let cut = rows.rfind("\n60,").expect("a row") + 2;
-    std::fs::write(&table, &rows[..cut]).expect("a file");
+    write(&table, &rows[..cut]);
     for source in [folder.path(), &table] {
         let found = read_grains(source, None).expect("grains");
         assert_eq!(bits(&found), bits_of_moment(&moments[4]), "{}", source.display());
@@ -192,7 +186,7 @@ fn a_frame_that_is_not_in_every_format_is_none() {
 #[test]
 fn a_step_that_is_not_there_is_told_of_with_those_that_are() {
     let folder = folder();
-    recorded(folder.path());
+    recorded_pile(folder.path());
     for source in sources(folder.path()).iter().filter(|it| !it.ends_with("part-00000.parquet")) {
         let arguments = ["--initial", text(source), "--initial-step", "7", "--data", "no"];
         let said = refusal(&arguments);

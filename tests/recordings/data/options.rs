@@ -1,17 +1,10 @@
-//! What a user asks of recordings.
+//! What a user asks of recordings, and recordings of a study's runs.
 
-use std::path::Path;
-
-use super::tables::{number, parquet, steps};
-use super::{folder, refusal, run, said, text};
+use super::tables::{metadata, number, parquet, parts, steps};
+use super::*;
 
 /// The cradle for a tenth of a second, 100 steps.
 const BRIEF: [&str; 6] = ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.1"];
-
-fn brief(more: &[&str]) {
-    let output = run(&[&BRIEF, more].concat());
-    assert!(output.status.success(), "{more:?}: {}", said(&output));
-}
 
 fn frames(folder: &Path) -> Vec<u64> {
     steps(&parquet(folder, "grains"))
@@ -34,7 +27,7 @@ fn frames_are_at_the_times_of_the_pictures_or_at_their_own() {
         if more.contains(&"--times") || more.contains(&"--duration") {
             arguments.truncate(4);
         }
-        let output = run(&[arguments, more.clone()].concat());
+        let output = run(slump("--headless").args(arguments).args(&more));
         assert!(output.status.success(), "{}", said(&output));
         assert_eq!(frames(folder.path()), expected, "{more:?}");
         let told = String::from_utf8(output.stdout).expect("UTF-8");
@@ -47,24 +40,26 @@ fn frames_are_at_the_times_of_the_pictures_or_at_their_own() {
 }
 
 #[test]
-fn data_alone_needs_no_pictures_and_pictures_may_be_in_the_same_folder() {
+fn data_alone_needs_no_renderer_and_pictures_may_be_in_the_same_folder() {
     let folder = folder();
     let out = text(folder.path());
-    brief(&["--data", out]);
+    // A renderer that this machine may not have is not even looked for.
+    let mut alone = slump("--headless --renderer gl --data");
+    let alone = run(alone.arg(out).args(BRIEF).env("LIBGL_DRIVERS_PATH", "/nowhere"));
+    assert!(alone.status.success(), "{}", said(&alone));
+    assert!(!said(&alone).contains("drawing with"), "{}", said(&alone));
     let alone = frames(folder.path());
 
-    let pictures = ["--frames", out, "--size", "64x18", "--renderer", "cpu"];
-    brief(&[&["--data", out, "--overwrite"], &pictures[..]].concat());
+    let pictures = "--headless --size 64x18 --renderer cpu --overwrite --data";
+    succeed(slump(pictures).arg(out).args(["--frames", out]).args(BRIEF));
     assert_eq!(frames(folder.path()), alone);
     for file in ["frame_00002.png", "observables.csv", "manifest.json", "data.json", "frames.csv"] {
         assert!(folder.path().join(file).exists(), "{file}");
     }
     // Those of the pictures are at the times of the frames.
-    let manifest = std::fs::read(folder.path().join("manifest.json")).expect("a manifest");
-    let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
+    let manifest = manifest(folder.path());
     let pictures = manifest["pictures"].as_array().expect("pictures");
-    let step =
-        |it: &serde_json::Value| it["shows"][0]["observables"]["step"].as_u64().expect("step");
+    let step = |it: &Value| it["shows"][0]["observables"]["step"].as_u64().expect("step");
     assert_eq!(pictures.iter().map(step).collect::<Vec<_>>(), alone);
 }
 
@@ -72,16 +67,14 @@ fn data_alone_needs_no_pictures_and_pictures_may_be_in_the_same_folder() {
 fn a_run_is_the_same_with_a_recording_and_without() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
-    let common = ["--duration", "0.06", "--fps", "50", "--size", "64x36", "--renderer", "cpu"];
+    let line =
+        "--headless --duration 0.06 --fps 50 --size 64x36 --renderer cpu --overwrite --scene";
     for scene in ["pile", "moving-walls"] {
         let (plain, recorded, data) = (at("plain"), at("recorded"), at("data"));
-        let arguments = [&["--scene", scene, "--overwrite"], &common[..]].concat();
-        let output = run(&[&arguments[..], &["--frames", text(&plain)]].concat());
-        assert!(output.status.success(), "{}", said(&output));
-        let more = ["--frames", text(&recorded), "--data", text(&data), "--data-every", "0.002"];
-        let output = run(&[&arguments[..], &more].concat());
-        assert!(output.status.success(), "{}", said(&output));
-        let table = |folder: &Path| std::fs::read(folder.join("observables.csv")).expect("a table");
+        succeed(slump(line).arg(scene).arg("--frames").arg(&plain));
+        let more = ["--data-every", "0.002", "--frames", text(&recorded)];
+        succeed(slump(line).arg(scene).args(more).arg("--data").arg(&data));
+        let table = |folder: &Path| bytes(folder.join("observables.csv"));
         assert_eq!(table(&plain), table(&recorded), "{scene}");
         // The recording's own table has the same numbers.
         let mut rows = csv::Reader::from_path(plain.join("observables.csv")).expect("a table");
@@ -107,17 +100,15 @@ fn scene_files_ask_for_recordings() {
     });
     let toml = slump::config::scene_to_toml(&cradle).expect("TOML");
     assert!(toml.contains("[data]\nfolder = \"out\"\nevery_secs = 0.02\n"), "{toml}");
-    std::fs::write(&scene, toml).expect("a file");
-    let output = run(&["--scene", text(&scene), "--dt", "1e-3"]);
-    assert!(output.status.success(), "{}", said(&output));
+    write(&scene, toml);
+    succeed(slump("--headless --dt 1e-3 --scene").arg(&scene));
     let out = folder.path().join("out");
     assert_eq!(frames(&out), [0, 20, 40, 60, 80, 100]);
     assert!(out.join("csv/grains.csv").exists());
     // The command line goes first.
     let other = folder.path().join("other");
-    let more = ["--data", text(&other), "--data-every", "0.05", "--data-format", "parquet"];
-    let output = run(&[&["--scene", text(&scene), "--dt", "1e-3"], &more[..]].concat());
-    assert!(output.status.success(), "{}", said(&output));
+    let line = "--headless --dt 1e-3 --data-every 0.05 --data-format parquet --scene";
+    succeed(slump(line).arg(&scene).arg("--data").arg(&other));
     assert_eq!(frames(&other), [0, 50, 100]);
     assert!(!other.join("csv").exists());
 }
@@ -145,8 +136,103 @@ fn what_is_asked_wrongly_is_refused_before_anything_is_written() {
     assert!(!out.exists());
 
     let file = folder.path().join("file");
-    std::fs::write(&file, "mine").expect("a file");
+    write(&file, "mine");
     let said = refused(&["--data", text(&file)]);
     assert!(said.starts_with("data is ") && said.contains("must be a folder"), "{said}");
-    assert_eq!(std::fs::read_to_string(&file).expect("a file"), "mine");
+    assert_eq!(read(&file), "mine");
+}
+
+const STUDY: &str = "
+name = 'recorded'
+[base]
+scene = 'cradle'
+dt = 1e-3
+duration = 0.1
+[vary]
+start = [7.0, 7.5]
+bond = [0.0, 5.0, 10.0]
+[data]
+every_secs = 0.02
+";
+
+fn sweep(study: &Path, out: &Path, more: &[&str]) -> Command {
+    let mut command = slump("sweep");
+    command.arg(study).arg("--out").arg(out).args(more);
+    command
+}
+
+fn written(folder: &Path, study: &str) -> PathBuf {
+    let path = folder.join("study.toml");
+    write(&path, study);
+    path
+}
+
+/// Key and Bond number of each run.
+fn runs(out: &Path) -> Vec<(String, String)> {
+    let mut table = csv::Reader::from_path(out.join("runs.csv")).expect("a table");
+    let names = table.headers().expect("names").clone();
+    let [key, bond] =
+        ["key", "bond"].map(|it| names.iter().position(|name| name == it).expect("a column"));
+    let rows = table.records().map(|row| row.expect("a row"));
+    rows.map(|row| (row[key].to_owned(), row[bond].to_owned())).collect()
+}
+
+#[test]
+fn every_run_has_its_recording_by_its_key_whichever_part_it_ran_in() {
+    let folder = folder();
+    let study = written(folder.path(), STUDY);
+    let out = folder.path().join("out");
+    for shard in ["2/2", "1/2"] {
+        succeed(&mut sweep(&study, &out, &["--shard", shard]));
+    }
+    let output = said(&run(&mut sweep(&study, &out, &[])));
+    assert!(output.contains("6 of 6 runs were there"), "{output}");
+    let runs = runs(&out);
+    assert_eq!(runs.len(), 6);
+    for (key, bond) in &runs {
+        let data = out.join("data").join(key);
+        assert_eq!(steps(&parquet(&data, "grains")), [0, 20, 40, 60, 80, 100]);
+        assert_eq!(steps(&parquet(&data, "steps")).len(), 100);
+        let about = metadata(&parts(&data, "grains")[0]);
+        let said: f64 = about["parameters.bond"].parse().expect("a number");
+        assert_eq!(said, bond.parse::<f64>().expect("a number"));
+    }
+    // A recording that is gone is made again, and so is one that a kill left half.
+    std::fs::remove_dir_all(out.join("data").join(&runs[1].0)).expect("gone");
+    let output = said(&run(&mut sweep(&study, &out, &[])));
+    assert!(output.contains("5 of 6 runs were there"), "{output}");
+    assert_eq!(steps(&parquet(&out.join("data").join(&runs[1].0), "grains")).len(), 6);
+}
+
+#[test]
+fn results_are_the_same_with_recordings_and_without() {
+    let folder = folder();
+    let with = written(folder.path(), STUDY);
+    succeed(&mut sweep(&with, &folder.path().join("with"), &[]));
+    let without = written(folder.path(), STUDY.split("[data]").next().expect("a study"));
+    succeed(&mut sweep(&without, &folder.path().join("without"), &[]));
+    assert!(!folder.path().join("without/data").exists());
+    let rows = |out: &str| {
+        let table = folder.path().join(out).join("runs.csv");
+        let table = read(table);
+        // The second cell is the run's key, which tells what is kept of it.
+        let row = |line: &str| line.splitn(3, ',').nth(2).map(str::to_owned);
+        table.lines().map(row).collect::<Vec<_>>()
+    };
+    assert_eq!(rows("with"), rows("without"));
+}
+
+#[test]
+fn a_study_says_no_folder_and_no_senseless_time() {
+    let folder = folder();
+    for (said_there, expected) in [
+        ("folder = 'here'", "data.folder is here, but must be left out in a study"),
+        ("every_secs = 0.0", "data.every_secs is 0, but must be a finite number of seconds > 0"),
+        ("every = 0.1", "unknown field"),
+        ("formats = ['xml']", "xml"),
+    ] {
+        let study = written(folder.path(), &STUDY.replace("every_secs = 0.02", said_there));
+        let output = failure(&mut sweep(&study, &folder.path().join("out"), &[]));
+        assert!(output.contains(expected), "{output}");
+    }
 }

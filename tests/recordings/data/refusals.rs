@@ -1,6 +1,5 @@
 //! Files that are no initial states: one sentence with file, place, value and what is allowed.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use parquet::data_type::{ByteArrayType, DoubleType, Int64Type};
@@ -10,19 +9,18 @@ use parquet::schema::parser::parse_message_type;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng;
-use slump::data::{FormatName, read_grains};
+use slump::data::read_grains;
 
 use super::tables::parts;
-use super::{folder, record, refusal, scene, start, text};
+use super::*;
 
-/// A column of a file.
 enum Column<'a> {
     Numbers(&'a str, &'a [f64]),
     Whole(&'a str, &'a [i64]),
     Words(&'a str, &'a [&'a str]),
 }
 
-fn write(path: &Path, columns: &[Column<'_>]) {
+fn write_columns(path: &Path, columns: &[Column<'_>]) {
     let field = |column: &Column<'_>| match column {
         Column::Numbers(name, _) => format!("REQUIRED DOUBLE {name};"),
         Column::Whole(name, _) => format!("REQUIRED INT64 {name};"),
@@ -61,7 +59,7 @@ const RADII: Column<'static> = Column::Numbers("radius", &[0.002, 0.002, 0.0025]
 fn parquet_of_others_is_read() {
     let folder = folder();
     let path = folder.path().join("discs.parquet");
-    write(&path, &[RADII, Column::Words("colour", &["a", "b", "c"]), YS, XS]);
+    write_columns(&path, &[RADII, Column::Words("colour", &["a", "b", "c"]), YS, XS]);
     let found = read_grains(&path, None).expect("discs");
     assert_eq!(found.grains.len(), 3);
     assert_eq!(found.grains[2].radius, 0.0025);
@@ -69,7 +67,7 @@ fn parquet_of_others_is_read() {
     assert_eq!(found.grains[2].velocity, glam::DVec2::ZERO);
     // Whole numbers are numbers, and ids put discs in order.
     let ids = Column::Whole("id", &[7, 3, 5]);
-    write(&path, &[Column::Whole("x", &[1, 2, 3]), YS, RADII, ids]);
+    write_columns(&path, &[Column::Whole("x", &[1, 2, 3]), YS, RADII, ids]);
     let found = read_grains(&path, None).expect("discs");
     let places: Vec<f64> = found.grains.iter().map(|grain| grain.position.x).collect();
     assert_eq!(places, [2.0, 3.0, 1.0]);
@@ -80,7 +78,7 @@ fn parquet_that_is_no_state_is_told_of_by_row_and_column() {
     let folder = folder();
     let path = folder.path().join("discs.parquet");
     let check = |columns: &[Column<'_>], expected: &str| {
-        write(&path, columns);
+        write_columns(&path, columns);
         let said = refusal(&["--initial", text(&path), "--data", "no"]);
         assert_eq!(said, format!("{}: {expected}", path.display()));
     };
@@ -129,7 +127,7 @@ fn text_that_is_no_state_is_told_of_by_line() {
     let folder = folder();
     let path = folder.path().join("discs.csv");
     let check = |table: &str, expected: &str| {
-        std::fs::write(&path, table).expect("a file");
+        write(&path, table);
         let said = refusal(&["--initial", text(&path), "--data", "no"]);
         assert_eq!(said, format!("{}: {expected}", path.display()));
     };
@@ -160,7 +158,7 @@ fn what_is_nothing_of_all_that_is_told_of() {
     let said = refusal(&["--initial", "no/such.parquet", "--data", "no"]);
     assert!(said.starts_with("no/such.parquet: No such file"), "{said}");
     let path = folder.path().join("cut.parquet");
-    std::fs::write(&path, "PAR1 and no more").expect("a file");
+    write(&path, "PAR1 and no more");
     let said = refusal(&["--initial", text(&path), "--data", "no"]);
     assert!(said.contains("but must be a Parquet file"), "{said}");
 }
@@ -168,11 +166,8 @@ fn what_is_nothing_of_all_that_is_told_of() {
 #[test]
 fn damaged_parquet_is_refused_or_read_and_nothing_else() {
     let folder = folder();
-    let pile = scene("pile");
-    let mut recording = start(folder.path(), &[FormatName::Parquet], &pile);
-    record(&mut recording, &mut pile.simulation().expect("a scene"), 2, 1);
-    recording.finish().expect("a recording");
-    let whole = std::fs::read(&parts(folder.path(), "grains")[0]).expect("a part");
+    recorded(folder.path(), &[FormatName::Parquet], &scene("pile"), 2, 1);
+    let whole = bytes(&parts(folder.path(), "grains")[0]);
     let path = folder.path().join("damaged.parquet");
     let mut random = Pcg64::seed_from_u64(3);
     let mut refused = 0;
@@ -187,7 +182,7 @@ fn damaged_parquet_is_refused_or_read_and_nothing_else() {
         if round % 10 == 0 {
             bytes.truncate(random.random_range(4..bytes.len()));
         }
-        std::fs::write(&path, &bytes).expect("a file");
+        write(&path, &bytes);
         if let Err(error) = read_grains(&path, None) {
             let said = error.to_string();
             assert!(said.contains(" must ") && !said.contains('\n'), "{said}");

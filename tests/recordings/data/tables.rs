@@ -24,7 +24,6 @@ impl From<f64> for Cell {
     }
 }
 
-/// Columns by their names.
 pub type Columns = BTreeMap<String, Vec<Cell>>;
 
 /// The parts of a table. What is hidden is what a kill left, which readers of folders pass by.

@@ -1,43 +1,19 @@
 //! Runs that are killed, stopped, or fill the disk: their recordings are there up to the last frame.
 
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
-
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng;
 
 use super::tables::{csv, parquet, parts, steps};
-use super::{folder, run, said, slump, text};
+use super::*;
 
 /// A run of minutes with a frame each other step.
-const LONG: [&str; 9] = [
-    "--headless",
-    "--duration",
-    "1000",
-    "--data-every",
-    "0.002",
-    "--data-format",
-    "parquet,csv",
-    "--max-sweeps",
-    "20",
-];
-/// Longer than any of this takes on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(60);
+const LONG: &str = "--headless --duration 1000 --data-every 0.002 --data-format parquet,csv --max-sweeps 20 --data";
 
 fn start(out: &Path) -> Child {
-    let mut command = slump();
-    command.args(LONG).arg("--data").arg(out).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut command = slump(LONG);
+    command.arg(out).stdout(Stdio::null()).stderr(Stdio::null());
     command.spawn().expect("the program starts")
-}
-
-fn wait_for(what: &str, mut is_there: impl FnMut() -> bool) {
-    let begun = Instant::now();
-    while !is_there() {
-        assert!(begun.elapsed() < PATIENCE, "{what} did not come");
-        std::thread::sleep(Duration::from_millis(2));
-    }
 }
 
 /// The steps of the frames that the index tells of, from whole rows alone.
@@ -63,10 +39,10 @@ fn check(folder: &Path) -> usize {
         assert!(there.starts_with(&expected), "{table} in Parquet up to {last}: {there:?}");
         // A kill may cut the last row of a text.
         let path = folder.join(format!("csv/{table}.csv"));
-        let text = std::fs::read_to_string(&path).expect("a table");
+        let text = read(&path);
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
         let copy = folder.join("whole.csv");
-        std::fs::write(&copy, whole).expect("a file");
+        write(&copy, whole);
         let in_text = csv(&copy, &found);
         assert!(steps(&in_text).starts_with(&expected), "{table} in text up to {last}");
         let rows = found["step"].iter().filter(|step| super::tables::whole(step) <= last).count();
@@ -80,11 +56,9 @@ fn check(folder: &Path) -> usize {
 /// What is hidden in a folder and those in it, but for the lock.
 fn hidden(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        if path.is_dir() {
-            found.extend(hidden(&path));
+    for name in names_in(folder) {
+        if folder.join(&name).is_dir() {
+            found.extend(hidden(&folder.join(name)));
         } else if name.starts_with('.') && !name.ends_with("lock") {
             found.push(name);
         }
@@ -96,9 +70,12 @@ fn hidden(folder: &Path) -> Vec<String> {
 fn what_a_kill_leaves_of_a_file_that_was_whole_is_no_rows_and_goes_with_the_next_run() {
     let folder = folder();
     let out = text(folder.path());
-    let first = ["--data", out, "--data-every", "0.01", "--duration", "0.03"];
-    let recorded = run(&first);
-    assert!(recorded.status.success(), "{}", said(&recorded));
+    let first = || {
+        let mut command = slump("--headless --data-every 0.01 --duration 0.03 --data");
+        command.arg(out);
+        command
+    };
+    succeed(&mut first());
     let rows = |what: &str| {
         let grains = steps(&parquet(folder.path(), "grains"));
         assert!(!grains.is_empty(), "{what}");
@@ -114,13 +91,19 @@ fn what_a_kill_leaves_of_a_file_that_was_whole_is_no_rows_and_goes_with_the_next
     };
     plant();
     // The program itself reads the whole folder.
-    let beside = super::folder();
-    let read = run(&["--initial", out, "--duration", "0.002", "--data", text(beside.path())]);
-    assert!(read.status.success(), "{}", said(&read));
-    let again = run(&[&first[..], &["--overwrite"]].concat());
-    assert!(again.status.success(), "{}", said(&again));
+    let beside = crate::program::folder();
+    let read = "--headless --duration 0.002 --initial";
+    succeed(slump(read).arg(out).arg("--data").arg(beside.path()));
+    succeed(first().arg("--overwrite"));
     assert_eq!(hidden(folder.path()), Vec::<String>::new());
     assert_eq!(rows("after"), expected);
+
+    plant();
+    let scene = scene("pile");
+    let about = slump::config::scene_facts(&scene).expect("facts");
+    let formats = [FormatName::Parquet];
+    drop(Recording::go_on(folder.path(), &formats, &about, 0).expect("goes on"));
+    assert_eq!(hidden(folder.path()), Vec::<String>::new());
 }
 
 #[test]
@@ -132,21 +115,16 @@ fn a_run_that_is_killed_at_any_moment_leaves_every_frame_that_it_told_of() {
         let mut child = start(folder.path());
         wait_for("the first frames", || indexed(folder.path()).len() > 1);
         std::thread::sleep(Duration::from_micros(random.random_range(0..400_000)));
-        child.kill().expect("kill -9");
-        child.wait().expect("it ended");
+        kill(&mut child);
         most = most.max(check(folder.path()));
-        assert!(
-            parts(folder.path(), "grains")
-                .iter()
-                .all(|part| { part.extension().is_some_and(|ending| ending == "parquet") })
-        );
+        let is_whole = |part: &PathBuf| part.extension().is_some_and(|it| it == "parquet");
+        assert!(parts(folder.path(), "grains").iter().all(is_whole));
         // In the moment in which a file takes another's place it has a second name.
         let left = hidden(folder.path());
         assert!(left.len() <= 1, "{left:?}");
         // Nothing keeps the next one out.
-        let out = text(folder.path());
-        let again = run(&["--data", out, "--overwrite", "--duration", "0.01"]);
-        assert!(again.status.success(), "{}", said(&again));
+        let again = "--headless --overwrite --duration 0.01 --data";
+        succeed(slump(again).arg(folder.path()));
         assert_eq!(hidden(folder.path()), Vec::<String>::new());
     }
     assert!(most > 10, "some went on for a while: {most}");
@@ -164,8 +142,7 @@ fn a_reader_may_look_at_a_recording_that_grows() {
         seen = frames;
         parts(folder.path(), "grains").len() > 3
     });
-    child.kill().expect("kill -9");
-    child.wait().expect("it ended");
+    kill(&mut child);
     check(folder.path());
 }
 
@@ -175,9 +152,8 @@ fn a_signal_ends_a_recording_whole() {
         let folder = folder();
         let mut child = start(folder.path());
         wait_for("frames", || indexed(folder.path()).len() > 5);
-        let id = child.id().to_string();
-        assert!(Command::new("kill").args(["-s", signal, &id]).status().expect("kill").success());
-        assert_eq!(child.wait().expect("an end").code(), Some(code));
+        send(signal, child.id().into());
+        assert_eq!(ended(&mut child), Some(code));
         let frames = check(folder.path()) as u64;
         let grains = steps(&parquet(folder.path(), "grains"));
         assert_eq!(grains.len() as u64, frames, "no frame that the index does not tell of");
@@ -193,10 +169,8 @@ fn a_full_disk_ends_the_run_with_a_sentence_and_leaves_whole_frames() {
     // No file can become longer than this, as on a disk that is full: text reaches it first.
     let script = "trap '' XFSZ; ulimit -f 1024; exec \"$@\"";
     let mut small = Command::new("sh");
-    small.args(["-c", script, "sh"]).arg(slump().get_program()).args(LONG);
-    let output = small.arg("--data").arg(folder.path()).output().expect("sh");
-    let said = said(&output);
-    assert_eq!(output.status.code(), Some(2), "{said}");
+    small.args(["-c", script, "sh"]).arg(slump("").get_program()).args(LONG.split(' '));
+    let said = failure(small.arg(folder.path()));
     assert!(said.contains("csv: File too large"), "{said}");
     let frames = check(folder.path());
     assert!(frames > 3, "{frames}");
@@ -205,7 +179,7 @@ fn a_full_disk_ends_the_run_with_a_sentence_and_leaves_whole_frames() {
 /// Kilobytes that a program has in memory.
 #[cfg(target_os = "linux")]
 fn memory(child: &Child) -> u64 {
-    let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).expect("status");
+    let status = read(format!("/proc/{}/status", child.id()));
     let line = status.lines().find(|line| line.starts_with("VmRSS:")).expect("a line");
     line.split_whitespace().nth(1).expect("a number").parse().expect("a number")
 }
@@ -226,7 +200,6 @@ fn memory_does_not_grow_with_the_run() {
     let (first, written) = (memory(&child), bytes());
     wait_for("many parts", || bytes() > written + (8 << 20));
     let later = memory(&child);
-    child.kill().expect("kill -9");
-    child.wait().expect("it ended");
+    kill(&mut child);
     assert!(later < first + (4 << 10), "{first} kB, and {later} kB after 8 MB more");
 }

@@ -1,8 +1,7 @@
 //! `.vtp` files: what the XML says, and that every number is in them bit by bit.
 
-use std::path::{Path, PathBuf};
-
-use crate::formats::moments::{THIRD, after, start, write};
+use super::{THIRD, after, start, write_frames};
+use crate::program::*;
 
 const GRAINS: &str = r#"<?xml version="1.0"?>
 <VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
@@ -51,7 +50,7 @@ struct File {
 
 impl File {
     fn read(path: &Path) -> Self {
-        let bytes = std::fs::read(path).expect("a file");
+        let bytes = bytes(path);
         let start = bytes.windows(2).position(|two| two == b"_\x60" || two == b"_\x90");
         let start = start.expect("the points' length behind the underscore") + 1;
         let xml = String::from_utf8(bytes[..start].to_vec()).expect("text");
@@ -85,8 +84,8 @@ impl File {
 }
 
 fn second_frame(kind: &str) -> (tempfile::TempDir, PathBuf) {
-    let folder = tempfile::tempdir().expect("a folder");
-    write(&mut start(folder.path()), 0..2);
+    let folder = folder();
+    write_frames(&mut start(folder.path()), 0..2);
     let path = folder.path().join(format!("vtk/{kind}_000001.vtp"));
     (folder, path)
 }
@@ -144,4 +143,88 @@ fn contacts_are_lines_from_centre_to_centre_or_to_the_touched_point() {
     assert_eq!(file.words("status_words"), ["open", "stick", "slip"]);
     assert_eq!(file.words("name_j_words"), ["", "half-space 0"]);
     assert_eq!(file.bytes("name_j"), [0, 0, 1].map(i32::to_le_bytes).concat());
+}
+
+const DUMPED_GRAINS: &str = "\
+ITEM: UNITS
+si
+ITEM: PARAMETERS
+program: slump; bond: 20 <&> 30
+id: number of the disc; fixed discs follow the grains; type: grain, fixed disc, or a grain that went through a \
+wall or left the world (1 grain, 2 fixed, 3 lost); x [m]: centre; y [m]: centre; radius [m]: radius; vx [m/s]: \
+velocity of the centre; vy [m/s]: velocity of the centre; omegaz [rad/s]: angular velocity, anticlockwise; \
+coordination_number [1]: …
+ITEM: TIME
+0.0
+ITEM: TIMESTEP
+0
+ITEM: NUMBER OF ATOMS
+4
+ITEM: BOX BOUNDS ss ss ss
+-0.75 1.3333333333333333
+-1.75 0.75
+-0.75 0.75
+ITEM: ATOMS id type element x y radius vx vy omegaz coordination_number angle mass …
+0 1 grain 0.0 0.25 0.5 0.3333333333333333 -2e-9 1e22 2.0 -0.0 0.125 …
+1 1 grain 1.0 0.25 0.3333333333333333 0.3333333333333333 -2e-9 1e22 2.0 -0.0 0.125 …
+2 3 lost -1000000.0 0.0 0.5 0.3333333333333333 -2e-9 1e22 0.0 -0.0 0.125 …
+3 2 fixed 0.0 -1.0 0.75 0.0 0.0 0.0 NaN 0.0 NaN …
+";
+const SECOND_HEAD: &str = "ITEM: TIME\n1.0\nITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n4\n";
+
+const DUMPED_CONTACTS: &str = "\
+ITEM: TIME
+0.0
+ITEM: TIMESTEP
+0
+ITEM: NUMBER OF BONDS
+2
+ITEM: BOX BOUNDS ss ss ss
+-0.75 1.3333333333333333
+-1.75 0.75
+-0.75 0.75
+ITEM: BONDS batom1 batom2 kind_j x y nx ny gap normal_force tangential_force status bond stretch age
+0 1 0 0.5 0.25 -1.0 -0.0 -5e-324 0.3333333333333333 -1.5 2 -1 NaN 0
+0 3 1 0.5 0.25 0.0 1.0 -5e-324 0.3333333333333333 -1.5 2 -1 NaN 0
+";
+
+#[test]
+fn dumps_say_this() {
+    let folder = folder();
+    write_frames(&mut start(folder.path()), 0..2);
+    let read = |name: &str| read(folder.path().join("ovito").join(name));
+    let grains = read("grains.dump");
+    let rest = after(&grains, DUMPED_GRAINS);
+    assert!(rest.starts_with(SECOND_HEAD), "{rest}");
+    assert_eq!(rest.lines().count(), 15);
+    let contacts = read("contacts.dump");
+    let words =
+        "status: what the laws of contact and friction make of it (0 open, 1 stick, 2 slip)";
+    assert!(contacts.contains(&format!("; {words}; ")), "{contacts}");
+    after(
+        &contacts,
+        &format!("ITEM: UNITS\nsi\nITEM: PARAMETERS\nprogram: slump; …\n…\n{DUMPED_CONTACTS}"),
+    );
+}
+
+const FORM: &str = "a file of discs (CSV or Parquet), or a folder that --data wrote as either";
+
+#[track_caller]
+fn assert_refused(path: &Path, reason: &str) {
+    let said = sentence(slump("--headless --data no --initial").arg(path));
+    assert_eq!(said, format!("slump: {}: {reason}, but must be {FORM}", path.display()));
+}
+
+#[test]
+fn what_is_written_for_other_programs_is_refused_as_an_initial_state() {
+    let folder = folder();
+    write_frames(&mut start(folder.path()), 0..2);
+    for name in ["vtk/grains.pvd", "vtk/grains_000001.vtp"] {
+        assert_refused(&folder.path().join(name), "is a file of VTK");
+    }
+    let bare = folder.path().join("bare.vtp");
+    write(&bare, "<VTKFile type=\"PolyData\"></VTKFile>");
+    assert_refused(&bare, "is a file of VTK");
+    assert_refused(&folder.path().join("ovito/grains.dump"), "is a LAMMPS dump");
+    assert_refused(folder.path(), "has grains for other programs alone");
 }

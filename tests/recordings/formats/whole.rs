@@ -1,14 +1,13 @@
 //! Whole files at every moment: while they grow, and after a kill.
 
-use std::path::Path;
-use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use slump::data::Recording;
 
-use crate::formats::moments::{moment, start, write};
+use super::{FORMATS, about, go_on, moment, start, write_frames};
+use crate::program::*;
 
 /// Tells the process that is to be killed where to write.
 const FOLDER: &str = "SLUMP_TEST_FORMATS_FOLDER";
@@ -17,10 +16,9 @@ const MOST_FRAMES: u64 = 100_000;
 
 /// What a file says at one moment: reading takes several calls, between which it may change.
 fn snapshot_of(path: &Path) -> String {
-    let read = || std::fs::read_to_string(path).expect("text");
-    let (mut text, mut again) = (read(), read());
+    let (mut text, mut again) = (read(path), read(path));
     while text != again {
-        text = std::mem::replace(&mut again, read());
+        text = std::mem::replace(&mut again, read(path));
     }
     text
 }
@@ -37,14 +35,14 @@ pub fn frames_of_series(path: &Path) -> Vec<f64> {
         let ["<DataSet timestep=", time, " file=", file, "/>"] = parts[..] else {
             panic!("{}: {entry}", path.display())
         };
-        let bytes = std::fs::read(path.with_file_name(file)).expect("a file of the series");
+        let bytes = bytes(path.with_file_name(file));
         assert!(bytes.ends_with(b"\n  </AppendedData>\n</VTKFile>\n"), "{file}");
         time.parse().expect("a time")
     });
     times.collect()
 }
 
-/// The steps of a dump, which must have whole frames, but for the last one where a kill came in the moment of writing.
+/// The steps of a dump, which must have whole frames and at most a draft.
 pub fn frames_of_dump(path: &Path) -> Vec<u64> {
     let text = snapshot_of(path);
     let mut lines = text.lines().peekable();
@@ -55,12 +53,13 @@ pub fn frames_of_dump(path: &Path) -> Vec<u64> {
             "ITEM: PARAMETERS" => {
                 while lines.next_if(|line| !line.starts_with("ITEM:")).is_some() {}
             }
+            draft if draft.starts_with("ITEM: D") => break,
             "ITEM: TIME" => {
-                let Some(step) = read_frame(&mut lines) else {
-                    assert_eq!(lines.next(), None, "{}: a cut frame", path.display());
-                    break;
-                };
-                steps.push(step);
+                let step = read_frame(&mut lines);
+                let left: Vec<&str> = lines.clone().take(8).collect();
+                steps.push(step.unwrap_or_else(|| {
+                    panic!("{}: a cut frame ahead of {left:?}", path.display())
+                }));
             }
             _ => panic!("{}: {line}", path.display()),
         }
@@ -77,11 +76,11 @@ fn read_frame<'a>(lines: &mut impl Iterator<Item = &'a str>) -> Option<u64> {
     let count: usize = lines.next()?.parse().ok()?;
     lines.next().filter(|line| line.starts_with("ITEM: BOX BOUNDS"))?;
     for _ in 0..3 {
-        lines.next().filter(|line| line.split(' ').count() == 2)?;
+        assert_eq!(lines.next()?.split(' ').count(), 2);
     }
     let columns = lines.next()?.split(' ').count() - 2;
     for _ in 0..count {
-        lines.next().filter(|line| line.split(' ').count() == columns)?;
+        assert_eq!(lines.next()?.split(' ').count(), columns);
     }
     Some(step)
 }
@@ -97,13 +96,13 @@ fn check(folder: &Path) -> usize {
 
 #[test]
 fn files_are_whole_while_they_grow() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let mut recording = start(folder.path());
-    write(&mut recording, 0..1);
+    write_frames(&mut recording, 0..1);
     let done = AtomicBool::new(false);
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            write(&mut recording, 1..300);
+            write_frames(&mut recording, 1..300);
             done.store(true, Ordering::Relaxed);
         });
         let mut seen = std::collections::BTreeSet::new();
@@ -120,20 +119,23 @@ fn files_are_whole_after_a_kill() {
     let mut random = Pcg64::seed_from_u64(14);
     let mut most = 0;
     for _ in 0..KILLS {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = folder();
         let mut child = Command::new(std::env::current_exe().expect("this program"))
             .args(["--exact", "formats::whole::writes_until_it_is_killed", "--ignored"])
             .env(FOLDER, folder.path())
             .stdout(Stdio::null())
             .spawn()
             .expect("a process");
-        while !folder.path().join("ovito/contacts.dump").exists() {
-            std::thread::sleep(Duration::from_millis(1));
-        }
+        wait_for("a dump", || folder.path().join("ovito/contacts.dump").exists());
         std::thread::sleep(Duration::from_micros(random.random_range(0..60_000)));
-        child.kill().expect("a kill");
-        child.wait().expect("its end");
-        most = most.max(check(folder.path()));
+        kill(&mut child);
+        let frames = check(folder.path());
+        most = most.max(frames);
+        // It can be gone on with. The last frames may be in one format alone.
+        let mut later = go_on(folder.path(), 10 * frames as u64);
+        let kept = later.frames();
+        write_frames(&mut later, kept..kept + 2);
+        assert_eq!(check(folder.path()) as u64, kept + 2);
     }
     assert!(most > 3, "the situation: at most {most} frames");
 }
@@ -145,4 +147,85 @@ fn writes_until_it_is_killed() {
         let mut recording = start(Path::new(&folder));
         (0..MOST_FRAMES).for_each(|number| recording.add(moment(10 * number)).expect("a frame"));
     }
+}
+
+#[test]
+fn a_series_is_whole_after_every_frame_of_many() {
+    let folder = folder();
+    let mut recording = start(folder.path());
+    for number in 0..70 {
+        write_frames(&mut recording, number..number + 1);
+        for kind in ["grains", "contacts"] {
+            let series = frames_of_series(&folder.path().join(format!("vtk/{kind}.pvd")));
+            let times: Vec<f64> = (0..=number).map(|number| (10 * number) as f64 * 0.1).collect();
+            assert_eq!(series, times, "{kind}");
+            let dump = frames_of_dump(&folder.path().join(format!("ovito/{kind}.dump")));
+            assert_eq!(dump.len() as u64, number + 1, "{kind}");
+        }
+    }
+}
+
+#[test]
+fn rolled_back_frames_are_as_if_they_had_never_been() {
+    for (written, kept) in [(5, 3), (5, 5), (40, 1), (40, 39)] {
+        let [rolled, straight] = [(); 2].map(|()| folder());
+        write_frames(&mut start(rolled.path()), 0..written);
+        // A step that no frame has: it lies after the last one that stays.
+        let mut later = go_on(rolled.path(), 10 * kept - 1);
+        assert_eq!(names(rolled.path()).len() as u64, 4 + 2 * kept, "{written}, {kept}");
+        write_frames(&mut later, kept..written + 2);
+        write_frames(&mut start(straight.path()), 0..written + 2);
+        assert_eq!(names(rolled.path()), names(straight.path()), "{written}, {kept}");
+        for name in names(straight.path()) {
+            let [found, expected] = [&rolled, &straight].map(|folder| said(folder.path(), &name));
+            assert!(found == expected, "{name} of {written}, {kept}");
+        }
+    }
+}
+
+#[test]
+fn a_frame_that_only_some_formats_have_is_written_again() {
+    for kept in [0, 2] {
+        let [cut, straight] = [(); 2].map(|()| folder());
+        write_frames(&mut start(cut.path()), 0..3);
+        // As a kill would leave it between the last frames' files and the list of frames.
+        let list = cut.path().join("frames.csv");
+        let text = read(&list);
+        let lines: Vec<&str> = text.lines().collect();
+        let until_kept = lines.len() - 3 + kept;
+        write(&list, lines[..until_kept].join("\n") + "\n");
+        write_frames(&mut go_on(cut.path(), 25), kept as u64..4);
+        write_frames(&mut start(straight.path()), 0..4);
+        for name in names(straight.path()) {
+            let [found, expected] = [&cut, &straight].map(|folder| said(folder.path(), &name));
+            assert!(found == expected, "{name} after {kept} frames");
+        }
+    }
+}
+
+#[test]
+fn an_earlier_recording_is_removed_with_all_its_files() {
+    let folder = folder();
+    write_frames(&mut start(folder.path()), 0..3);
+    assert_eq!(names(folder.path()).len(), 10);
+    write(folder.path().join("vtk/grains_1.vtp"), "not of a recording");
+    drop(Recording::start(folder.path(), FORMATS, &about(), true).expect("a recording"));
+    assert_eq!(names(folder.path()), ["vtk/grains_1.vtp"]);
+}
+
+/// What a file says; of a series without its blanks, of which there may be more.
+fn said(folder: &Path, name: &str) -> Vec<u8> {
+    let mut bytes = bytes(folder.join(name));
+    if name.ends_with(".pvd") {
+        bytes.retain(|byte| !byte.is_ascii_whitespace());
+    }
+    bytes
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let of = |below: &str| {
+        let names = names_in(&folder.join(below)).into_iter();
+        names.map(|name| format!("{below}/{name}")).collect::<Vec<_>>()
+    };
+    [of("ovito"), of("vtk")].concat()
 }

@@ -21,11 +21,13 @@ const ROUNDING_IN_RADII: f64 = 1e-13;
 /// Normal and gap between a disc (centre, radius; m) and another body, or nothing where another feature tells of the
 /// touched point.
 #[inline(always)]
-pub(super) fn approach<const AXES: usize>(
+pub(super) fn approach(
     world: &World,
     candidates: &Candidates,
-    (position, radius): (DVec2, f64),
+    position: DVec2,
+    radius: f64,
     other: Other,
+    axes: usize,
 ) -> Option<(DVec2, f64)> {
     let (centre, other_radius) = match other {
         Other::Grain(j) => (world.grains.positions[j], world.grains.radii[j]),
@@ -39,14 +41,14 @@ pub(super) fn approach<const AXES: usize>(
         }
     };
     let offset = world.shortest(position - centre);
-    Some(disc_gap::<AXES>(offset, radius + other_radius))
+    Some(disc_gap(offset, radius + other_radius, axes))
 }
 
 /// Normal (from j to i) and gap of two discs, i being off j by `offset`. Centres that coincide are told apart along x, so that
 /// the step stays finite.
 #[inline(always)]
-fn disc_gap<const AXES: usize>(offset: DVec2, radii: f64) -> (DVec2, f64) {
-    if AXES == 1 {
+fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
+    if axes == 1 {
         return (DVec2::new(1f64.copysign(offset.x), 0.0), offset.x.abs() - radii);
     }
     let distance = offset.length();
@@ -63,7 +65,7 @@ pub(crate) struct LookAhead {
     pub distance: f64,
     /// Farther pairs are none, m.
     pub reach: f64,
-    /// Whether pairs that have touched are bonded from then on, and contacts until the bond breaks.
+    /// True where pairs that have touched are bonded from then on, and contacts until the bond breaks.
     pub bonds: bool,
 }
 
@@ -111,30 +113,33 @@ impl RelativeMotion {
     }
 
     /// Normal and gap at s, or nothing where another feature tells of the touched point.
-    pub(crate) fn approach<const AXES: usize>(
+    pub(crate) fn approach(
         &self,
         world: &World,
         candidates: &Candidates,
         contact: &Contact,
         secs: f64,
+        axes: usize,
     ) -> Option<(DVec2, f64)> {
         let grain = contact.grain as usize;
-        let disc = (world.grains.positions[grain] + self.way(secs), world.grains.radii[grain]);
-        approach::<AXES>(world, candidates, disc, Numbering::of(world).other(contact.other))
+        let (place, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
+        let other = Numbering::of(world).other(contact.other);
+        approach(world, candidates, place + self.way(secs), radius, other, axes)
     }
 
     /// The time of impact: the first moment from one to another (s) at which the two touch, and their normal then.
-    pub(crate) fn time_of_impact<const AXES: usize>(
+    pub(crate) fn time_of_impact(
         &self,
         world: &World,
         candidates: &Candidates,
         contact: &Contact,
         [from, to]: [f64; 2],
+        axes: usize,
     ) -> Option<(f64, DVec2)> {
         let rounding = ROUNDING_IN_RADII * world.grains.radii[contact.grain as usize];
         let mut secs = from;
         for _ in 0..MOST_STEPS {
-            let (normal, gap) = self.approach::<AXES>(world, candidates, contact, secs)?;
+            let (normal, gap) = self.approach(world, candidates, contact, secs, axes)?;
             let speed = normal.dot(self.velocity_at(secs));
             let acceleration = normal.dot(self.acceleration);
             if gap <= rounding && speed < 0.0 {

@@ -160,7 +160,7 @@ impl Candidates {
         for (feature, &boundary) in self.features.iter_mut().zip(&self.boundary_of) {
             let Some(carry) = carry_of(boundary) else { continue };
             // What a half-space does to its distance from a grain grows with how far that is from the pivot.
-            let far = |from: f64, place: DVec2| from.max(place.distance(carry.pivot()));
+            let far = |from: f64, place: DVec2| from.max(place.distance(carry.pivot));
             let reach = match (carry.angle == 0.0, feature.is_half_space()) {
                 (true, _) => 0.0,
                 (false, true) => self.centres.iter().copied().fold(0.0, far),
@@ -335,16 +335,8 @@ mod tests {
             let place = DVec2::new((k % columns) as f64, (k / columns) as f64);
             Grain::at_rest(3.0 * largest * place, radii[k % radii.len()])
         };
-        World {
-            grains: Grains::new(&(0..count).map(grain).collect::<Vec<_>>(), 1.0),
-            fixed_discs: Vec::new(),
-            boundaries: Vec::new(),
-            motions: Vec::new(),
-            gravity_turn: None,
-            periodic: None,
-            gravity: Gravity::Uniform { acceleration: DVec2::ZERO },
-            mean_diameter,
-        }
+        let grains = Grains::new(&(0..count).map(grain).collect::<Vec<_>>(), 1.0);
+        World::of(grains, Gravity::Uniform { acceleration: DVec2::ZERO }, mean_diameter)
     }
 
     fn of(world: &World) -> Candidates {

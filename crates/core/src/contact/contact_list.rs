@@ -73,7 +73,7 @@ pub struct ContactList {
     /// Memory alone: what threads find, each of some grains.
     #[serde(skip)]
     parts: Vec<ContactColumns>,
-    /// Whether pairs with a gap are among the contacts.
+    /// True where pairs with a gap are among the contacts.
     looks_ahead: bool,
     /// The step that contacts are found in from now on.
     step: u64,
@@ -134,12 +134,12 @@ impl ContactList {
         &mut self.now.bonds
     }
 
-    /// Whether pairs with a gap are among the contacts.
+    /// True where pairs with a gap are among the contacts.
     pub(crate) fn looks_ahead(&self) -> bool {
         self.looks_ahead
     }
 
-    /// Whether the pair of a contact touches or is bonded, and does not just come near.
+    /// True where the pair of a contact touches or is bonded, and does not just come near.
     pub fn is_in_touch(&self, index: usize) -> bool {
         !self.looks_ahead || self.now.bonds[index].alive
     }
@@ -183,7 +183,7 @@ impl ContactList {
         }
     }
 
-    /// Whether its lists are of one length and tell of bodies that exist, of which there are so many, the
+    /// True where its lists are of one length and tell of bodies that exist, of which there are so many, the
     /// first of them grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
         let ContactColumns { contacts, impulses, memories, bonds, found_in } = &self.now;
@@ -264,20 +264,20 @@ impl ContactList {
     /// Moves grains that overlap by more than `allowed` (m) apart, pair by pair, each grain by the
     /// other's share of the mass. Velocities, and so kinetic energy, stay as they are. Whether there
     /// were any: one pass opens a pair and may close the next.
-    pub(crate) fn separate<const AXES: usize>(
+    pub(crate) fn separate(
         &self,
         world: &mut World,
         candidates: &Candidates,
         allowed: f64,
+        axes: usize,
     ) -> bool {
         let mut found = false;
         let numbering = Numbering::of(world);
         for contact in self.contacts() {
             let (i, other) = (contact.grain as usize, numbering.other(contact.other));
-            let disc = (world.grains.positions[i], world.grains.radii[i]);
-            let Some((normal, gap)) = approach::<AXES>(world, candidates, disc, other) else {
-                continue;
-            };
+            let (place, radius) = (world.grains.positions[i], world.grains.radii[i]);
+            let found_gap = approach(world, candidates, place, radius, other, axes);
+            let Some((normal, gap)) = found_gap else { continue };
             if gap >= -allowed {
                 continue;
             }
@@ -346,7 +346,7 @@ struct ContactSearch<'a> {
     candidates: &'a Candidates,
     /// The contacts of the step before.
     before: &'a ContactColumns,
-    /// Whether pairs with a gap are among the contacts.
+    /// True where pairs with a gap are among the contacts.
     looks_ahead: bool,
     step: u64,
 }
@@ -369,11 +369,8 @@ impl ContactSearch<'_> {
             let (position, radius) = (world.grains.positions[index], world.grains.radii[index]);
             for &other in candidates.of(index) {
                 let body = numbering.other(other);
-                let Some((normal, gap)) =
-                    approach::<AXES>(world, candidates, (position, radius), body)
-                else {
-                    continue;
-                };
+                let found = approach(world, candidates, position, radius, body, AXES);
+                let Some((normal, gap)) = found else { continue };
                 let contact = Contact { grain: index as u32, other, normal, gap };
                 // Both lists are sorted alike, so one walk over the old one serves all.
                 while before < old.contacts.len() && old.contacts[before].pair() < contact.pair() {

@@ -25,7 +25,7 @@ pub(crate) enum Feature {
         shape: Segment,
         /// The one before it.
         before: Option<Segment>,
-        /// Whether another one follows.
+        /// True where another one follows.
         has_next: bool,
     },
     /// A solid convex polygon, anticlockwise.
@@ -142,7 +142,7 @@ impl Feature {
         segment.into_iter().flatten().chain(sides.iter().map(|side| side.a))
     }
 
-    /// Whether it is a half-space.
+    /// True where it is a half-space.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self, Feature::HalfSpace { .. })
     }

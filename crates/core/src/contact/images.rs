@@ -68,7 +68,7 @@ pub(super) fn pairs<const AXES: usize>(
     });
 }
 
-/// Whether a disc whose image is so many periods on, along an axis, is near enough to the border for that to show.
+/// True where a disc whose image is so many periods on, along an axis, is near enough to the border for that to show.
 fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> bool {
     match borders {
         _ if periods == 0.0 => true,

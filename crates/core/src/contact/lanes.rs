@@ -83,7 +83,7 @@ impl<S: Simd> Lanes for f64x4<S> {
     }
 }
 
-/// Whether the processor's own larger and smaller of two are the second where either is NaN, and of
+/// True where the processor's own larger and smaller of two are the second where either is NaN, and of
 /// two zeros.
 const SECOND_WHERE_UNDECIDED: bool = cfg!(any(target_arch = "x86_64", target_arch = "x86"));
 

@@ -45,7 +45,7 @@ pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bond {
-    /// Whether the pair has touched since it last parted.
+    /// True where the pair has touched since it last parted.
     pub alive: bool,
     /// s: how far it has been opened against its pull, m; 0 where the pair touches.
     pub stretch: f64,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::scene::NewPile;
 use crate::scene::paper::tone_in_layers;
 use crate::setting::words;
@@ -14,7 +14,7 @@ use crate::sim::{Remedies, Settings, Simulation, Stepper};
 use crate::solver::SolverSettings;
 use crate::world::{
     Boundary, Disc, Grain, Grains, Gravity, GravityTurn, Motion, Parameters, Periodic, Physics,
-    TurningGravity, World, check_motions,
+    TurningGravity, World,
 };
 
 /// A scene, built-in or from a TOML file, which says the same things by the same names.
@@ -193,9 +193,7 @@ impl Scene {
         positive(format_args!("duration"), self.duration_secs, " s")?;
         positive(format_args!("mean_diameter"), self.mean_diameter, " m")?;
         self.parameters.check_steps("duration", self.duration_secs)?;
-        if self.grains.is_empty() {
-            return Err(Error::value("grains", 0, "at least one disc"));
-        }
+        error::check(!self.grains.is_empty(), "grains", 0, "at least one disc")?;
         for (index, grain) in self.grains.iter().enumerate() {
             positive(format_args!("grains[{index}].radius"), grain.radius, " m")?;
             let finite = grain.position.is_finite()
@@ -243,25 +241,27 @@ impl Scene {
         if self.physics.axes == 1 {
             self.validate_line()?;
         }
-        self.validate_motions()
+        let world = self.world();
+        world.validate(self.physics)?;
+        self.settings().check_in(&world, self.physics)
     }
 
-    /// Bodies that move and borders that wrap.
-    fn validate_motions(&self) -> Result<()> {
-        let Self { boundaries, motions, gravity, physics, .. } = self;
-        let fixed_discs = self.fixed_discs.len();
-        check_motions(motions, boundaries, fixed_discs, physics.axes, self.periodic)?;
-        self.settings().check_drives(motions)?;
-        self.settings().check_tilt(gravity, *physics)?;
-        self.settings().check_shear(self.periodic)?;
-        let Some(periodic) = self.periodic else { return Ok(()) };
-        let radii = self.grains.iter().map(|grain| grain.radius);
-        let radii = radii.chain(self.fixed_discs.iter().map(|disc| disc.radius));
-        let lengths = [radii.fold(0.0, f64::max), self.mean_diameter];
-        periodic.check(boundaries, fixed_discs, motions, gravity, *physics, lengths)
+    /// All that moves and all that it meets, as it begins.
+    fn world(&self) -> World {
+        World {
+            fixed_discs: self.fixed_discs.clone(),
+            boundaries: self.boundaries.clone(),
+            motions: self.motions.clone(),
+            gravity_turn: TurningGravity::of(self.gravity, self.gravity_turn.as_ref()),
+            periodic: self.periodic,
+            ..World::of(
+                Grains::new(&self.grains, self.areal_density),
+                self.gravity,
+                self.mean_diameter,
+            )
+        }
     }
 
-    /// A scene on a line must lie on the line.
     fn validate_line(&self) -> Result<()> {
         let allowed = "on the x axis where physics.axes is 1";
         let off_line = |grain: &Grain| grain.position.y != 0.0 || grain.velocity.y != 0.0;
@@ -326,30 +326,16 @@ impl Scene {
     /// Names the first field outside its range.
     pub fn simulation(&self) -> Result<Simulation> {
         self.validate()?;
-        let world = World {
-            grains: Grains::new(&self.grains, self.areal_density),
-            fixed_discs: self.fixed_discs.clone(),
-            boundaries: self.boundaries.clone(),
-            motions: self.motions.clone(),
-            gravity: self.gravity,
-            gravity_turn: TurningGravity::of(self.gravity, self.gravity_turn.as_ref()),
-            periodic: self.periodic,
-            mean_diameter: self.mean_diameter,
-        };
-        Simulation::new(world, self.physics, self.settings(), self.gap_tolerance)
+        Simulation::new(self.world(), self.physics, self.settings(), self.gap_tolerance)
     }
 }
 
 words! {
     /// Files that a recording is written as.
     pub enum FormatName {
-        /// Apache Parquet.
         Parquet = "parquet", "Parquet, for pandas, polars and their like";
-        /// Comma-separated values.
         Csv = "csv", "Text with commas";
-        /// The Visualization Toolkit's.
         Vtk = "vtk", "Files of VTK, for ParaView";
-        /// LAMMPS'.
         Ovito = "ovito", "Dumps as LAMMPS writes them, for OVITO";
     }
 }

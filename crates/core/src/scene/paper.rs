@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::scene::{NewPile, Scene, View};
 use crate::solver::{Method, Ordering, SolverSettings, StopTest};
 use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
@@ -13,7 +13,6 @@ use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 pub(super) const DIAMETER: f64 = 5e-3;
 /// g, m/s².
 pub(super) const GRAVITY: f64 = 9.8;
-/// Its name.
 const NAME: &str = "pile";
 /// How wide a base may be asked for.
 const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
@@ -25,10 +24,8 @@ const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
 const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
 /// Height of the layers that are told apart by their grey, in diameters.
 const LAYER_IN_DIAMETERS: f64 = 2.0;
-/// The greys of the layers.
 const LAYER_TONES: [u8; 2] = [222, 168];
 
-/// The initial state that all runs of a series share.
 const INITIAL_STATE: &str = include_str!("../../../../assets/pile_138.csv");
 
 /// The paper's 138 grains, from the initial state that is shipped with the program.
@@ -85,9 +82,7 @@ pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
 /// # Errors
 /// Where the width is outside its range, or the scene is no pile.
 pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
-    if scene.name != NAME {
-        return Err(Error::value("scene", &scene.name, "pile where base-width is given"));
-    }
+    error::check(scene.name == NAME, "scene", &scene.name, "pile where base-width is given")?;
     if !BASE_WIDTHS_IN_DIAMETERS.contains(&width_in_diameters) {
         let (least, most) = BASE_WIDTHS_IN_DIAMETERS.into_inner();
         let allowed = format!("{least} to {most} diameters");
@@ -107,7 +102,6 @@ pub(crate) fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
 
 /// d of the collision and of the cradle, m.
 const LINE_DIAMETER: f64 = 0.3;
-/// The physics of both.
 const ON_LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
 
 /// What pictures of both show, in diameters.
@@ -115,8 +109,6 @@ fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: LINE_DIAMETER * min, max: LINE_DIAMETER * max })
 }
 
-/// A disc dropped from one diameter above a fixed one.
-///
 /// Two bodies, one contact (paper §2.2): a disc dropped on another, fixed one.
 ///
 /// With A = the normal force that would give v̄ = 0, the three cases of the contact graph are: A > 0
@@ -140,8 +132,6 @@ pub fn collision() -> Scene {
 /// comes out. The paper does not state its own; this one was searched for.
 const START_IN_DIAMETERS: f64 = 7.865;
 
-/// The paper's cradle, with the stopping test that gives its pattern.
-///
 /// Three discs on a line, drawn towards one of them (paper §4).
 ///
 /// i sits at the centre of attraction, j touches it on the right, k starts at rest on the left and

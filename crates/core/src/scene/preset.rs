@@ -16,7 +16,6 @@ const MAX_SWEEPS: u32 = 5_000;
 words! {
     /// Settings that go together.
     pub enum Preset {
-        /// Every known remedy.
         Robust = "robust", "Every known remedy: hard scenes hold, and the paper's effects of the time step are gone";
     }
 }

@@ -2,29 +2,14 @@
 
 use super::{Scene, collision, cradle, experiments, paper_pile, stability};
 use crate::error::{Error, Result};
+use crate::setting::words;
 
-/// What a scene is there for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SceneGroup {
-    /// The paper's scenes.
-    Paper,
-    /// Experiments of granular physics.
-    Experiments,
-    /// Scenes made to break methods.
-    Stability,
-}
-
-impl SceneGroup {
-    /// All groups, in the order that lists show them.
-    pub const ALL: [Self; 3] = [Self::Paper, Self::Experiments, Self::Stability];
-
-    /// Heading of the group in lists.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Paper => "Scenes",
-            Self::Experiments => "Experiments",
-            Self::Stability => "Scenes made to break methods",
-        }
+words! {
+    /// What a scene is there for, with its heading in lists.
+    pub enum SceneGroup {
+        Paper = "paper", "Scenes";
+        Experiments = "experiments", "Experiments";
+        Stability = "stability", "Scenes made to break methods";
     }
 }
 
@@ -41,203 +26,74 @@ pub struct SceneInfo {
     pub make: fn() -> Result<Scene>,
 }
 
-/// All built-in scenes.
-pub const SCENES: [SceneInfo; 31] = [
-    SceneInfo {
-        name: "pile",
-        group: SceneGroup::Paper,
-        summary: "cohesive grains on a rough base, 138 unless asked otherwise; at t = 0 the walls go (paper section 3)",
-        make: paper_pile,
-    },
-    SceneInfo {
-        name: "cradle",
-        group: SceneGroup::Paper,
-        summary: "three grains on a line, one falls on a bonded pair (paper section 4)",
-        make: || Ok(cradle()),
-    },
-    SceneInfo {
-        name: "collision",
-        group: SceneGroup::Paper,
-        summary: "one grain dropped on a fixed one (paper section 2.2)",
-        make: || Ok(collision()),
-    },
-    SceneInfo {
-        name: "drum",
-        group: SceneGroup::Experiments,
-        summary: "150 grains in a rough drum that turns: they rise with it and roll down a slope",
-        make: || Ok(experiments::drum()),
-    },
-    SceneInfo {
-        name: "shear",
-        group: SceneGroup::Experiments,
-        summary: "228 grains between rough plates in a periodic cell: one is drawn along under a pressure",
-        make: || Ok(experiments::shear()),
-    },
-    SceneInfo {
-        name: "shear-periodic",
-        group: SceneGroup::Experiments,
-        summary: "224 grains without walls: the cell above slides over this one, and that over the one below",
-        make: || Ok(experiments::shear_periodic()),
-    },
-    SceneInfo {
-        name: "biaxial",
-        group: SceneGroup::Experiments,
-        summary: "300 grains in a box: the sides press with a constant force each, the lid comes down",
-        make: || Ok(experiments::biaxial()),
-    },
-    SceneInfo {
-        name: "vibrated",
-        group: SceneGroup::Experiments,
-        summary: "120 grains and a large one in a box that is shaken with 3 g",
-        make: || Ok(experiments::vibrated()),
-    },
-    SceneInfo {
-        name: "collapse",
-        group: SceneGroup::Experiments,
-        summary: "400 grains between two gates over a rough floor: the gates go and the column spreads",
-        make: || Ok(experiments::collapse()),
-    },
-    SceneInfo {
-        name: "silo",
-        group: SceneGroup::Experiments,
-        summary: "450 grains flow out of a silo with a flat bottom and an orifice of seven diameters",
-        make: || Ok(experiments::silo()),
-    },
-    SceneInfo {
-        name: "incline",
-        group: SceneGroup::Experiments,
-        summary: "300 grains in a box that is tilted until they flow",
-        make: || Ok(experiments::incline()),
-    },
-    SceneInfo {
-        name: "column",
-        group: SceneGroup::Stability,
-        summary: "a column of 20 discs: does the floor carry them all?",
-        make: || Ok(stability::column(20)),
-    },
-    SceneInfo {
-        name: "mass-ratio",
-        group: SceneGroup::Stability,
-        summary: "a disc 1,000 times as heavy on a light one",
-        make: || Ok(stability::mass_ratio(1e3)),
-    },
-    SceneInfo {
-        name: "chain",
-        group: SceneGroup::Stability,
-        summary: "a hanging chain at 1.2 times the Bond number that breaks it",
-        make: || Ok(stability::hanging_chain(8, 1.2 * stability::breaking_bond(8))),
-    },
-    SceneInfo {
-        name: "cantilever",
-        group: SceneGroup::Stability,
-        summary: "two rows of cohesive grains reach out from a wall, held at Bond 100",
-        make: || Ok(stability::cantilever(4)),
-    },
-    SceneInfo {
-        name: "bridge",
-        group: SceneGroup::Stability,
-        summary: "two rows of cohesive grains between two walls, held at Bond 100",
-        make: || Ok(stability::bridge(10)),
-    },
-    SceneInfo {
-        name: "overlap",
-        group: SceneGroup::Stability,
-        summary: "two discs that overlap by a tenth at the start",
-        make: || Ok(stability::overlapped(0.1)),
-    },
-    SceneInfo {
-        name: "squeeze",
-        group: SceneGroup::Stability,
-        summary: "25 discs in a box that is a hundredth too small",
-        make: || Ok(stability::squeeze(1e-2)),
-    },
-    SceneInfo {
-        name: "moving-walls",
-        group: SceneGroup::Stability,
-        summary: "18 discs between two walls that move in: each has one place to be",
-        make: || Ok(stability::press()),
-    },
-    SceneInfo {
-        name: "logs",
-        group: SceneGroup::Stability,
-        summary: "a disc 20 times as large on two small ones",
-        make: || Ok(stability::logs(20.0)),
-    },
-    SceneInfo {
-        name: "arch",
-        group: SceneGroup::Stability,
-        summary: "an arch of three discs at 1.05 times the least friction that holds it",
-        make: || {
-            let mut scene = stability::arch();
-            scene.parameters.friction = 1.05 * stability::FRICTION_OF_ARCH;
-            Ok(scene)
-        },
-    },
-    SceneInfo {
-        name: "repose",
-        group: SceneGroup::Stability,
-        summary: "a heap of 21 discs at 60 degrees, which stands still",
-        make: || Ok(stability::heap(6)),
-    },
-    SceneInfo {
-        name: "repose-angle",
-        group: SceneGroup::Stability,
-        summary: "the same heap on a slope of 29 degrees: from 30 on it must slide",
-        make: || Ok(stability::heap_on_slope(6, 29.0)),
-    },
-    SceneInfo {
-        name: "far",
-        group: SceneGroup::Stability,
-        summary: "the heap of 21 discs, a thousand million diameters away",
-        make: || Ok(stability::heap_far_away(6, 1e9)),
-    },
-    SceneInfo {
-        name: "bounce",
-        group: SceneGroup::Stability,
-        summary: "a disc that bounces infinitely often in finite time",
-        make: || Ok(stability::bounce(0.9)),
-    },
-    SceneInfo {
-        name: "newtons-cradle",
-        group: SceneGroup::Stability,
-        summary: "five balls in a row: the last should fly off alone",
-        make: || Ok(stability::balls(5)),
-    },
-    SceneInfo {
-        name: "thin-wall",
-        group: SceneGroup::Stability,
-        summary: "a disc so fast that a step can carry it through the wall",
-        make: || Ok(stability::thin_wall(1.0, 0.0)),
-    },
-    SceneInfo {
-        name: "lift-off",
-        group: SceneGroup::Stability,
-        summary: "a column under a disc 100 times as heavy",
-        make: || Ok(stability::lift_off(100.0)),
-    },
-    SceneInfo {
-        name: "dilatancy",
-        group: SceneGroup::Stability,
-        summary: "a disc that slides on the floor: friction must not lift it",
-        make: || Ok(stability::dilatancy()),
-    },
-    SceneInfo {
-        name: "blow",
-        group: SceneGroup::Stability,
-        summary: "a heavy disc falls on one that slides: friction has to know at once",
-        make: || Ok(stability::blow()),
-    },
-    SceneInfo {
-        name: "hyperstatic",
-        group: SceneGroup::Stability,
-        summary: "150 discs in a lattice with twice the contacts that it needs, normals a little off",
-        make: || Ok(stability::lattice(13, 12, 1e-4)),
-    },
-];
+/// Declares the built-in scenes, group by group: name, one line, and what makes it.
+macro_rules! scenes {
+    ($($Group:ident { $($name:literal, $summary:literal => $make:expr;)* })*) => {
+        /// All built-in scenes.
+        pub const SCENES: &[SceneInfo] = &[$($(
+            SceneInfo { name: $name, group: SceneGroup::$Group, summary: $summary, make: || $make },
+        )*)*];
+    };
+}
 
-/// The names of all built-in scenes, for messages.
+scenes! {
+    Paper {
+        "pile", "cohesive grains on a rough base, 138 unless asked otherwise; at t = 0 the walls go (paper section 3)"
+            => paper_pile();
+        "cradle", "three grains on a line, one falls on a bonded pair (paper section 4)" => Ok(cradle());
+        "collision", "one grain dropped on a fixed one (paper section 2.2)" => Ok(collision());
+    }
+    Experiments {
+        "drum", "150 grains in a rough drum that turns: they rise with it and roll down a slope"
+            => Ok(experiments::drum());
+        "shear", "228 grains between rough plates in a periodic cell: one is drawn along under a pressure"
+            => Ok(experiments::shear());
+        "shear-periodic", "224 grains without walls: the cell above slides over this one, and that over the one below"
+            => Ok(experiments::shear_periodic());
+        "biaxial", "300 grains in a box: the sides press with a constant force each, the lid comes down"
+            => Ok(experiments::biaxial());
+        "vibrated", "120 grains and a large one in a box that is shaken with 3 g" => Ok(experiments::vibrated());
+        "collapse", "400 grains between two gates over a rough floor: the gates go and the column spreads"
+            => Ok(experiments::collapse());
+        "silo", "450 grains flow out of a silo with a flat bottom and an orifice of seven diameters"
+            => Ok(experiments::silo());
+        "incline", "300 grains in a box that is tilted until they flow" => Ok(experiments::incline());
+    }
+    Stability {
+        "column", "a column of 20 discs: does the floor carry them all?" => Ok(stability::column(20));
+        "mass-ratio", "a disc 1,000 times as heavy on a light one" => Ok(stability::mass_ratio(1e3));
+        "chain", "a hanging chain at 1.2 times the Bond number that breaks it"
+            => Ok(stability::hanging_chain(8, 1.2 * stability::breaking_bond(8)));
+        "cantilever", "two rows of cohesive grains reach out from a wall, held at Bond 100"
+            => Ok(stability::cantilever(4));
+        "bridge", "two rows of cohesive grains between two walls, held at Bond 100" => Ok(stability::bridge(10));
+        "overlap", "two discs that overlap by a tenth at the start" => Ok(stability::overlapped(0.1));
+        "squeeze", "25 discs in a box that is a hundredth too small" => Ok(stability::squeeze(1e-2));
+        "moving-walls", "18 discs between two walls that move in: each has one place to be" => Ok(stability::press());
+        "logs", "a disc 20 times as large on two small ones" => Ok(stability::logs(20.0));
+        "arch", "an arch of three discs at 1.05 times the least friction that holds it"
+            => {
+                let mut scene = stability::arch();
+                scene.parameters.friction = 1.05 * stability::FRICTION_OF_ARCH;
+                Ok(scene)
+            };
+        "repose", "a heap of 21 discs at 60 degrees, which stands still" => Ok(stability::heap(6));
+        "repose-angle", "the same heap on a slope of 29 degrees: from 30 on it must slide"
+            => Ok(stability::heap_on_slope(6, 29.0));
+        "far", "the heap of 21 discs, a thousand million diameters away" => Ok(stability::heap_far_away(6, 1e9));
+        "bounce", "a disc that bounces infinitely often in finite time" => Ok(stability::bounce(0.9));
+        "newtons-cradle", "five balls in a row: the last should fly off alone" => Ok(stability::balls(5));
+        "thin-wall", "a disc so fast that a step can carry it through the wall" => Ok(stability::thin_wall(1.0, 0.0));
+        "lift-off", "a column under a disc 100 times as heavy" => Ok(stability::lift_off(100.0));
+        "dilatancy", "a disc that slides on the floor: friction must not lift it" => Ok(stability::dilatancy());
+        "blow", "a heavy disc falls on one that slides: friction has to know at once" => Ok(stability::blow());
+        "hyperstatic", "150 discs in a lattice with twice the contacts that it needs, normals a little off"
+            => Ok(stability::lattice(13, 12, 1e-4));
+    }
+}
+
 pub(crate) fn scene_names() -> String {
-    SCENES.map(|scene| scene.name).join(", ")
+    SCENES.iter().map(|scene| scene.name).collect::<Vec<_>>().join(", ")
 }
 
 /// A built-in scene by name.

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::Feature;
 use crate::error::legible;
+use crate::setting::words;
 use crate::sim::losses::Losses;
 use crate::sim::{Observables, Settings};
 use crate::solver::Method;
@@ -16,36 +17,14 @@ const STEPS_AT_LIMIT: u32 = 100;
 /// Overlap of a contact that raises an alarm, in d: the paper's own curves end at 0.06.
 const LARGEST_OVERLAP: f64 = 0.05;
 
-/// A way to go wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum AlarmKind {
-    /// A position or velocity is no longer a number.
-    NotFinite,
-    /// A grain went through a wall or the ground, or far away.
-    GrainLost,
-    /// A hundred steps in a row ended at the sweep limit, or stalled before it.
-    SweepLimit,
-    /// A contact overlaps by more than 5 % of d.
-    Overlap,
-    /// Bonds were about to break in a step that is too long to see it, under the law `range`.
-    BreakUnseen,
-}
-
-impl AlarmKind {
-    /// All kinds.
-    pub const ALL: [Self; 5] =
-        [Self::NotFinite, Self::GrainLost, Self::SweepLimit, Self::Overlap, Self::BreakUnseen];
-
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::NotFinite => "not-finite",
-            Self::GrainLost => "grain-lost",
-            Self::SweepLimit => "sweep-limit",
-            Self::Overlap => "overlap",
-            Self::BreakUnseen => "break-unseen",
-        }
+words! {
+    /// A way to go wrong.
+    pub enum AlarmKind {
+        NotFinite = "not-finite", "the state is no longer finite";
+        GrainLost = "grain-lost", "a grain has gone through a wall or left the world";
+        SweepLimit = "sweep-limit", "100 steps in a row were not solved to their tolerance";
+        Overlap = "overlap", "a contact overlaps by more than 5 % of a diameter";
+        BreakUnseen = "break-unseen", "bonds break faster than the substeps of a step can follow";
     }
 }
 
@@ -66,16 +45,9 @@ pub struct Alarm {
 impl Alarm {
     /// What happened, since when, and what is most likely to help, in one sentence.
     pub fn message(&self, settings: &Settings) -> String {
-        let what = match self.kind {
-            AlarmKind::NotFinite => "the state is no longer finite",
-            AlarmKind::GrainLost => "a grain has gone through a wall or left the world",
-            AlarmKind::SweepLimit => "100 steps in a row were not solved to their tolerance",
-            AlarmKind::Overlap => "a contact overlaps by more than 5 % of a diameter",
-            AlarmKind::BreakUnseen => "bonds break faster than the substeps of a step can follow",
-        };
-        let Self { step, time_secs, .. } = self;
+        let Self { kind, step, time_secs, .. } = self;
         let advice = self.advice(settings);
-        legible(&format!("{what} (step {step}, t = {time_secs:.4} s): {advice}"))
+        legible(&format!("{} (step {step}, t = {time_secs:.4} s): {advice}", kind.hint()))
     }
 
     /// What is wrong with a state that no step has led to yet.
@@ -90,7 +62,6 @@ impl Alarm {
         })
     }
 
-    /// The change that is most likely to help.
     fn advice(&self, settings: &Settings) -> String {
         let Settings { stepper, parameters, solver, .. } = settings;
         let smaller = self.longest_time_step_secs.map_or_else(
@@ -139,7 +110,8 @@ fn rounded_down(number: f64) -> f64 {
 #[serde(deny_unknown_fields)]
 pub(super) struct Watch {
     unfinished_in_a_row: u32,
-    alarms: Vec<Alarm>,
+    /// One of a kind.
+    pub alarms: Vec<Alarm>,
     pub losses: Losses,
 }
 
@@ -147,11 +119,6 @@ impl Watch {
     /// Watches over a world, whose boundaries are `features`, from now on.
     pub(super) fn new(world: &World, features: &[Feature], physics: Physics) -> Self {
         Self { losses: Losses::new(world, features, physics), ..Self::default() }
-    }
-
-    /// The alarms so far, one of a kind.
-    pub(super) fn alarms(&self) -> &[Alarm] {
-        &self.alarms
     }
 
     /// Looks at the state after a step, and leaves grains that are lost out of its slump; `features`
@@ -169,7 +136,7 @@ impl Watch {
         if finite {
             self.losses.look(world, features, walls_move);
         }
-        observables.lost_grains = self.losses.count();
+        observables.lost_grains = self.losses.count;
         if observables.lost_grains > 0 {
             observables.slump = self.losses.slump(world);
             self.raise(AlarmKind::GrainLost, observables, None);
@@ -187,14 +154,9 @@ impl Watch {
         }
     }
 
-    /// Tells of a step that was too long for its bonds, where one was: `longest_secs` is the longest that is not.
-    pub(super) fn look_at_length(&mut self, longest_secs: Option<f64>, observables: &Observables) {
-        if longest_secs.is_some() {
-            self.raise(AlarmKind::BreakUnseen, observables, longest_secs);
-        }
-    }
-
-    fn raise(
+    /// Raises an alarm, unless there is one of its kind: of a step that was too long for its bonds with the longest that
+    /// is not, s.
+    pub(super) fn raise(
         &mut self,
         kind: AlarmKind,
         &Observables { step, time_secs, .. }: &Observables,

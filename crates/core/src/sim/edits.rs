@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::sim::pull::gravity_that_scales;
 use crate::sim::simulation::Simulation;
 use crate::sim::snapshot::Surroundings;
@@ -143,9 +143,7 @@ impl Simulation {
                 format!("below {count}, the number of grains"),
             ));
         }
-        if count == 1 {
-            return Err(Error::value("grains", 1, "more than one where one is taken away"));
-        }
+        error::check(count != 1, "grains", 1, "more than one where one is taken away")?;
         self.initial_heights -= self.state.world.grains.positions[grain].y;
         self.watch.losses.remove(grain);
         self.state.remove_grain(grain)

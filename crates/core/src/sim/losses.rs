@@ -29,14 +29,14 @@ const WAY_IN_RADII: f64 = 0.25;
 pub(super) struct Losses {
     /// Where each grain's way begins that has not been looked at, m.
     from: Vec<DVec2>,
-    lost: Vec<bool>,
-    count: u32,
+    pub lost: Vec<bool>,
+    pub count: u32,
     /// y_i(0), m.
     initial_heights: Vec<f64>,
     world: Edges,
     /// On a line nothing can slump.
     on_line: bool,
-    /// Whether all grains have been looked at once: some may be in a wall from the start.
+    /// True where all grains have been looked at once: some may be in a wall from the start.
     begun: bool,
     /// Two points of each wall when it was looked at last, m; none where no motion carries any.
     frames: Vec<[DVec2; 2]>,
@@ -70,16 +70,6 @@ impl Losses {
                 false => features.iter().map(frame).collect(),
             },
         }
-    }
-
-    /// Number of grains lost so far.
-    pub(super) fn count(&self) -> u32 {
-        self.count
-    }
-
-    /// Whether that grain is lost.
-    pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.lost[grain]
     }
 
     /// Looks where the grains have gone. Walls may have moved: `features` are where they are now.
@@ -136,20 +126,18 @@ impl Losses {
         if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
     }
 
-    /// Whether it watches over so many grains.
+    /// True where it watches over so many grains.
     pub(super) fn is_of(&self, grains: usize) -> bool {
         [self.from.len(), self.lost.len(), self.initial_heights.len()] == [grains; 3]
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
-    /// Forgets a grain, which is taken out of the world.
     pub(super) fn remove(&mut self, grain: usize) {
         self.from.remove(grain);
         self.initial_heights.remove(grain);
         self.count -= u32::from(self.lost.remove(grain));
     }
 
-    /// Watches over one grain more, the last.
     pub(super) fn add(&mut self, position: DVec2) {
         self.from.push(position);
         self.initial_heights.push(position.y);
@@ -265,7 +253,7 @@ fn outward(side: &Segment) -> DVec2 {
     -(side.b - side.a).perp().normalize_or_zero()
 }
 
-/// Whether the way `from` … `to` crosses a segment. A point that is shared by two segments in a row
+/// True where the way `from` … `to` crosses a segment. A point that is shared by two segments in a row
 /// belongs to one side of the way, so that nothing slips through between them.
 fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
     let is_left = |a: DVec2, b: DVec2, place: DVec2| (b - a).perp_dot(place - a) >= 0.0;
@@ -277,7 +265,7 @@ fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
         && is_left(from, to, wall.a) != is_left(from, to, wall.b)
 }
 
-/// Whether the way `from` … `to`, both outside of a convex polygon, goes through it.
+/// True where the way `from` … `to`, both outside of a convex polygon, goes through it.
 fn cuts(from: DVec2, to: DVec2, sides: &[Segment]) -> bool {
     let (mut enters, mut leaves) = (0f64, 1f64);
     for side in sides {

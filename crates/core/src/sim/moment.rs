@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::contact::law::cohesion_force;
-use crate::contact::{Contact, Impulse, Numbering, Other};
+use crate::contact::{Contact, Numbering, Other};
+use crate::setting::words;
 use crate::sim::observables::Observables;
 use crate::sim::settings::Settings;
 use crate::sim::simulation::Simulation;
@@ -50,11 +51,11 @@ pub struct GrainState {
     pub radius: f64,
     /// kg.
     pub mass: f64,
-    /// Whether the gravity field acts on it.
+    /// True where the gravity field acts on it.
     pub feels_gravity: bool,
     /// Grey that the scene gives it: 0 black … 255 white.
     pub tone: u8,
-    /// Whether it went through a wall or left the world.
+    /// True where it went through a wall or left the world.
     pub lost: bool,
 }
 
@@ -97,25 +98,12 @@ pub enum OtherBody {
     Boundary(u32),
 }
 
-/// What a contact does under Signorini's and Coulomb's laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ContactStatus {
-    /// It pulls as hard as its cohesion lets it, without cohesion not at all, and opens.
-    Open,
-    /// Friction is below its bound.
-    Stick,
-    /// Friction is at its bound, which is 0 where there is none.
-    Slip,
-}
-
-impl ContactStatus {
-    /// The word that files have for it.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Open => "open",
-            Self::Stick => "stick",
-            Self::Slip => "slip",
-        }
+words! {
+    /// What a contact does under Signorini's and Coulomb's laws.
+    pub enum ContactStatus {
+        Open = "open", "pulls as hard as it can, and opens";
+        Stick = "stick", "friction is below its bound";
+        Slip = "slip", "friction is at its bound";
     }
 }
 
@@ -131,6 +119,7 @@ impl Simulation {
     pub fn moment(&self) -> Moment {
         let State { world, candidates, contacts, .. } = &self.state;
         let laws = Laws::of(self);
+        let per_time_step = 1.0 / self.state.time_step_of_impulses_secs;
         let numbering = Numbering::of(world);
         let ages = contacts.ages();
         let rows = contacts.contacts().iter().zip(contacts.impulses()).zip(contacts.bonds());
@@ -138,24 +127,29 @@ impl Simulation {
         let states = rows.zip(ages).enumerate().filter(in_touch);
         let states = states.map(|(_, (((contact, impulse), bond), age_steps))| {
             let other = numbering.other(contact.other);
-            let (normal_force, tangential_force) = laws.forces(impulse);
+            let normal_force = impulse.normal * per_time_step;
+            let tangential_force = impulse.tangential * per_time_step;
             let alive = laws.has_bonds && bond.alive;
             let status = laws.status(contact, other, alive, [normal_force, tangential_force]);
             let grain = contact.grain as usize;
             let (centre, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
+            // A boundary is touched in a point.
+            let (other, radius_of_other) = match other {
+                Other::Grain(index) => (OtherBody::Grain(index as u32), world.grains.radii[index]),
+                Other::FixedDisc(index) => {
+                    (OtherBody::FixedDisc(index as u32), world.fixed_discs[index].radius)
+                }
+                Other::Feature(feature) => {
+                    (OtherBody::Boundary(candidates.boundary_of(feature) as u32), 0.0)
+                }
+            };
             ContactState {
                 grain: contact.grain,
-                other: match other {
-                    Other::Grain(index) => OtherBody::Grain(index as u32),
-                    Other::FixedDisc(index) => OtherBody::FixedDisc(index as u32),
-                    Other::Feature(feature) => {
-                        OtherBody::Boundary(candidates.boundary_of(feature) as u32)
-                    }
-                },
+                other,
                 normal: contact.normal,
                 gap: contact.gap,
                 point: centre - (radius + 0.5 * contact.gap) * contact.normal,
-                branch: (radius + contact.gap + radius_of(world, other)) * contact.normal,
+                branch: (radius + contact.gap + radius_of_other) * contact.normal,
                 normal_force,
                 tangential_force,
                 status,
@@ -163,18 +157,8 @@ impl Simulation {
                 age_steps,
             }
         });
-        Moment {
-            observables: *self.observables(),
-            settings: *self.settings(),
-            contacts: states.collect(),
-            grains: (0..world.grains.len()).map(|index| self.grain_state(index)).collect(),
-            surroundings: self.surroundings(),
-        }
-    }
-
-    fn grain_state(&self, index: usize) -> GrainState {
-        let grains = &self.state.world.grains;
-        GrainState {
+        let grains = &world.grains;
+        let grain_state = |index: usize| GrainState {
             position: grains.positions[index],
             angle: grains.angles[index],
             velocity: grains.velocities[index],
@@ -184,16 +168,14 @@ impl Simulation {
             feels_gravity: grains.feels_gravity[index],
             tone: grains.tones[index],
             lost: self.is_lost(index),
+        };
+        Moment {
+            observables: *self.observables(),
+            settings: *self.settings(),
+            contacts: states.collect(),
+            grains: (0..world.grains.len()).map(grain_state).collect(),
+            surroundings: self.surroundings(),
         }
-    }
-}
-
-/// Radius of the other disc, m; 0 for a boundary, which is touched in a point.
-fn radius_of(world: &World, other: Other) -> f64 {
-    match other {
-        Other::Grain(index) => world.grains.radii[index],
-        Other::FixedDisc(index) => world.fixed_discs[index].radius,
-        Other::Feature(_) => 0.0,
     }
 }
 
@@ -204,12 +186,11 @@ struct Laws<'a> {
     has_cohesion: bool,
     has_bonds: bool,
     friction: f64,
-    per_time_step: f64,
 }
 
 impl<'a> Laws<'a> {
     fn of(simulation: &'a Simulation) -> Self {
-        let State { world, physics, time_step_of_impulses_secs, .. } = &simulation.state;
+        let State { world, physics, .. } = &simulation.state;
         let settings = simulation.settings();
         let parameters = &settings.parameters;
         Self {
@@ -218,12 +199,7 @@ impl<'a> Laws<'a> {
             has_cohesion: physics.cohesion,
             has_bonds: settings.stepper == Stepper::Range,
             friction: if physics.friction { parameters.friction } else { 0.0 },
-            per_time_step: 1.0 / time_step_of_impulses_secs,
         }
-    }
-
-    fn forces(&self, impulse: &Impulse) -> (f64, f64) {
-        (impulse.normal * self.per_time_step, impulse.tangential * self.per_time_step)
     }
 
     /// Of a contact with the forces N and T.

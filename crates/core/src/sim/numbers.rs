@@ -33,7 +33,6 @@ impl Simulation {
         }
     }
 
-    /// Whether a force drives a wall.
     fn is_driven(&self) -> bool {
         self.state.world.motions.iter().any(|motion| motion.drive.is_some())
     }
@@ -143,29 +142,16 @@ mod tests {
 
     use super::*;
     use crate::sim::Settings;
-    use crate::world::{Boundary, Grain, Grains, Parameters, Physics, World};
+    use crate::world::{Boundary, Grain, Grains, Physics, World};
 
     /// A row of ten discs of 1 cm and a tenth of a gram on a floor.
     fn row(change: impl Fn(&mut Settings)) -> Simulation {
         let disc = |k: u32| Grain::at_rest(DVec2::new(0.0, 0.01 * (0.5 + f64::from(k))), 5e-3);
         let discs: Vec<Grain> = (0..10).map(disc).collect();
-        let world = World {
-            grains: Grains::new(&discs, 1e-4 / (std::f64::consts::PI * 25e-6)),
-            fixed_discs: Vec::new(),
-            boundaries: vec![Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y }],
-            motions: Vec::new(),
-            gravity: Gravity::Uniform { acceleration: -9.8 * DVec2::Y },
-            gravity_turn: None,
-            periodic: None,
-            mean_diameter: 0.01,
-        };
-        let parameters = Parameters { time_step_secs: 1e-3, ..Parameters::default() };
-        let mut settings = Settings {
-            stepper: Stepper::Moreau,
-            parameters,
-            solver: crate::solver::SolverSettings::default(),
-            remedies: crate::sim::Remedies::default(),
-        };
+        let grains = Grains::new(&discs, 1e-4 / (std::f64::consts::PI * 25e-6));
+        let mut world = World::of(grains, Gravity::Uniform { acceleration: -9.8 * DVec2::Y }, 0.01);
+        world.boundaries.push(Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y });
+        let mut settings = Settings::default();
         change(&mut settings);
         Simulation::new(world, Physics::FULL, settings, 0.0).expect("a sound world")
     }

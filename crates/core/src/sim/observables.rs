@@ -6,8 +6,8 @@ use crate::contact::{Numbering, Other};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Kinematics, Measures, Model, SolveReport};
-use crate::world::{Drive, Motion, Periodic};
+use crate::solver::{Measures, Model, SolveReport};
+use crate::world::{Drive, Periodic};
 
 /// Measured after each step. One row of the observables' CSV.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,10 +22,10 @@ pub struct Observables {
     pub sweeps: u32,
     /// Matrices that the solver factorised.
     pub factorisations: u32,
-    /// Whether the stopping test was met within the sweep limit; true for a scheme, which does a
+    /// True where the stopping test was met within the sweep limit; true for a scheme, which does a
     /// fixed amount of work and tests nothing. What its step is worth, `residual` tells.
     pub converged: bool,
-    /// Whether a step that did not converge had stalled: its residual had stopped falling, so that
+    /// True where a step that did not converge had stalled: its residual had stopped falling, so that
     /// more sweeps are of no use. As a rule it has no solution (see RESULTS.md).
     #[serde(default)]
     pub stalled: bool,
@@ -40,7 +40,7 @@ pub struct Observables {
     /// the velocities.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duality_gap: Option<f64>,
-    /// Whether a step that was not solved under Coulomb's law was solved under bounds of friction instead; none
+    /// True where a step that was not solved under Coulomb's law was solved under bounds of friction instead; none
     /// where that cannot be.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fell_back: Option<bool>,
@@ -98,14 +98,14 @@ pub struct Observables {
 }
 
 impl Observables {
-    /// Whether it tells of what only some runs have: bonds, a model of friction, walls that a force drives, or
+    /// True where it tells of what only some runs have: bonds, a model of friction, walls that a force drives, or
     /// borders that shear.
     pub fn has_further_columns(&self) -> bool {
         let Self { bond_work, model_residual, drive_energy, border_work, .. } = self;
         [bond_work, model_residual, drive_energy, border_work].iter().any(|some| some.is_some())
     }
 
-    /// Whether a step was solved under another model of friction than Coulomb's law.
+    /// True where a step was solved under another model of friction than Coulomb's law.
     pub fn is_of_a_model(&self) -> bool {
         self.step > 0 && self.duality_gap.is_some_and(f64::is_finite)
     }
@@ -138,8 +138,7 @@ pub(super) fn after_step<M: Model>(
     initial_heights: f64,
 ) -> Observables {
     let moving = stage.problem.bodies.now.iter().zip(&stage.state.world.grains.masses);
-    let kinetic_energy =
-        moving.map(|(body, &mass)| M::Kinematics::kinetic_energy(body, mass)).sum();
+    let kinetic_energy = moving.map(|(body, &mass)| M::kinetic_energy(body, mass)).sum();
     Observables {
         step: before.step + 1,
         time_secs: before.time_secs + time_step_secs,
@@ -158,8 +157,8 @@ pub(super) fn at_start<M: Model>(
     initial_heights: f64,
 ) -> Observables {
     let energy = |index: usize| {
-        let body = M::Kinematics::body(&state.world, index);
-        M::Kinematics::kinetic_energy(&body, state.world.grains.masses[index])
+        let body = M::body(&state.world, index);
+        M::kinetic_energy(&body, state.world.grains.masses[index])
     };
     let bonds = settings.stepper.has_bonds().then(BondEnergies::default);
     let none_yet = settings.may_solve_models().then_some(0.0);
@@ -169,12 +168,6 @@ pub(super) fn at_start<M: Model>(
     let time_step_secs = settings.parameters.time_step_secs;
     let kinetic_energy = (0..state.world.grains.len()).map(energy).sum();
     of_state::<M>(state, result, kinetic_energy, time_step_secs, initial_heights)
-}
-
-/// Σ ½MV² of the walls that a force drives, if there are any, J.
-fn energy_of_drives(motions: &[Motion]) -> Option<f64> {
-    let drives = motions.iter().filter_map(|motion| motion.drive.as_ref());
-    drives.map(Drive::kinetic_energy).reduce(|one, other| one + other)
 }
 
 /// What a state and what led to it tell, as at the beginning of a run. Each observable is named, so that none
@@ -192,7 +185,8 @@ fn of_state<M: Model>(
     let Measures { compressive_contacts, tensile_contacts, .. } = measures;
     let Measures { normal_work, tangential_work, wall_work, border_work, .. } = measures;
     let is_sheared = state.world.periodic.is_some_and(Periodic::is_sheared);
-    let drive_energy = energy_of_drives(&state.world.motions);
+    let drives = state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
+    let drive_energy = drives.map(Drive::kinetic_energy).reduce(|one, other| one + other);
     let [mean_overlap, max_overlap] = overlaps(state, bonds.is_some());
     let [heights, potential_energy] = heights(state);
     let dropped = initial_heights - heights;
@@ -225,11 +219,7 @@ fn of_state<M: Model>(
         border_work: is_sheared.then_some(border_work),
         gravity_work,
         // On a line nothing can slump, and about a mean height of 0 a relative drop says nothing.
-        slump: if M::Kinematics::AXES == 1 || initial_heights == 0.0 {
-            0.0
-        } else {
-            dropped / initial_heights
-        },
+        slump: if M::AXES == 1 || initial_heights == 0.0 { 0.0 } else { dropped / initial_heights },
         bond_work: bonds.map(|bonds| bonds.work),
         bond_energy: bonds.map(|bonds| bonds.stored),
         broken_bond_energy: bonds.map(|bonds| bonds.broken),
@@ -285,7 +275,7 @@ pub struct Quantity<Row: 'static> {
     pub title: &'static str,
     /// Its unit, if that takes prefixes such as k.
     pub unit: &'static str,
-    /// Whether equal distances are equal factors.
+    /// True where equal distances are equal factors.
     pub logarithmic: bool,
     /// Its value.
     pub value: fn(&Row) -> f64,

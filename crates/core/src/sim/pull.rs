@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::solver::Kinematics;
+use crate::solver::Model;
 use crate::world::World;
 
 /// Stiffness per mass of the grain, in units of g/d: one diameter of stretch pulls with this many
@@ -68,10 +68,9 @@ pub(crate) struct SpringPush {
 }
 
 impl SpringPush {
-    /// Pushes its grain among bodies.
-    pub(super) fn apply<K: Kinematics>(&self, bodies: &mut [K::Body<f64>]) {
+    pub(super) fn apply<M: Model>(&self, bodies: &mut [M::Body<f64>]) {
         // A normal impulse against a fixed body changes the velocity by just itself.
-        let normal = K::normal(self.direction.to_array());
-        K::push_single(&mut bodies[self.grain], normal, [self.speed, 0.0]);
+        let normal = M::normal(self.direction.to_array());
+        M::push_single(&mut bodies[self.grain], normal, [self.speed, 0.0]);
     }
 }

@@ -46,7 +46,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Whether steps may be solved under another model of friction than Coulomb's law.
+    /// True where steps may be solved under another model of friction than Coulomb's law.
     pub(crate) fn may_solve_models(&self) -> bool {
         self.stepper.uses_method() && self.solver.may_solve_models()
     }
@@ -143,7 +143,7 @@ impl Settings {
     /// # Errors
     /// Names the first setting that is outside its range or that the stepper does not take.
     pub fn validate(&self) -> Result<()> {
-        self.parameters.validate()?;
+        self.parameters.validate_each()?;
         (self.stepper.info().check)(&self.parameters)?;
         self.solver.validate()?;
         self.check_friction_model()?;
@@ -159,7 +159,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Whether the model of friction goes with the stepper and its cone.
+    /// Checks that the model of friction goes with the stepper and its cone.
     fn check_friction_model(&self) -> Result<()> {
         let (model, cone) = (self.solver.friction_model, self.parameters.cone);
         if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
@@ -179,14 +179,14 @@ impl Settings {
         Ok(())
     }
 
-    /// Whether all that a world has goes with the settings.
+    /// Checks that all that a world has goes with the settings.
     pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
         self.check_drives(&world.motions)?;
         self.check_tilt(&world.gravity, physics)?;
         self.check_shear(world.periodic)
     }
 
-    /// Whether there is a gravity that can be tilted, if it is.
+    /// Checks that there is a gravity that can be tilted, if it is.
     pub(crate) fn check_tilt(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let refuse = |of: &str| {
             let allowed = format!("left out or 0 where {of}");
@@ -200,7 +200,7 @@ impl Settings {
         }
     }
 
-    /// Whether there is a way to move walls that a force drives, if any of the motions is one.
+    /// Checks that there is a way to move walls that a force drives, if any of the motions is one.
     pub(crate) fn check_drives(&self, motions: &[Motion]) -> Result<()> {
         if motions.iter().all(|motion| motion.drive.is_none()) {
             return Ok(());
@@ -230,7 +230,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Whether the method knows of images that slide, if there are any.
+    /// Checks that the method knows of images that slide, if there are any.
     pub(crate) fn check_shear(&self, periodic: Option<Periodic>) -> Result<()> {
         let method = self.solver.method;
         let is_taken = !self.stepper.uses_method() || method.info().takes_shear;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::contact::{Candidates, ContactList};
 use crate::error::{Error, Result};
-use crate::sim::alarm::Watch;
+use crate::sim::alarm::{AlarmKind, Watch};
 use crate::sim::observables::{self, Observables};
 use crate::sim::settings::{Settings, reach_in};
 use crate::sim::snapshot::Surroundings;
@@ -16,9 +16,9 @@ use crate::sim::steppers::{Stepper, StepperMemory};
 use crate::sim::stepping::{Advance, Stage, StepResult};
 use crate::sim::walls::Walls;
 use crate::sim::{Alarm, Pull, remedies};
-use crate::solver::{Model, Slot, SlotVisitor, Slots, SolverSettings, StepProblem};
-use crate::threads;
+use crate::solver::{Model, Slots, SolverSettings, StepProblem};
 use crate::world::{Parameters, Physics, World};
+use crate::{threads, with_model};
 
 /// A world in motion.
 ///
@@ -101,7 +101,9 @@ impl Simulation {
         let mut memory = std::mem::take(&mut self.memory);
         let pieces = remedies::pieces(&self.state, &self.settings);
         self.take_step(pieces, &mut memory);
-        self.watch.look_at_length(memory.take_longest_step_secs(), &self.observables);
+        if let longest @ Some(_) = memory.range.longest_step_secs.take() {
+            self.watch.raise(AlarmKind::BreakUnseen, &self.observables, longest);
+        }
         self.memory = memory;
         self.look()
     }
@@ -145,17 +147,35 @@ impl Simulation {
     }
 
     fn take_step(&mut self, pieces: u32, advance: &mut (impl Advance + Send)) {
-        let Self { state, settings, slots, observables, initial_heights, .. } = self;
-        let parts = state.leanest_model(&settings.parameters);
-        let initial_heights = *initial_heights;
-        state.contacts.begin_step(observables.step + 1);
-        let step = TakeStep { state, settings, pieces, advance, observables, initial_heights };
-        threads::together(step.state.world.grains.len(), || slots.visit(parts, step));
-        let work_of_crossing = state.world.wrap();
-        if let Some(border_work) = &mut observables.border_work {
+        self.state.contacts.begin_step(self.observables.step + 1);
+        let parts = self.state.leanest_model(&self.settings.parameters);
+        threads::together(self.state.world.grains.len(), || {
+            with_model!(parts, M => self.take_step_of::<M>(pieces, advance));
+        });
+        let work_of_crossing = self.state.world.wrap();
+        if let Some(border_work) = &mut self.observables.border_work {
             *border_work += work_of_crossing;
-            observables.kinetic_energy += work_of_crossing;
+            self.observables.kinetic_energy += work_of_crossing;
         }
+    }
+
+    /// Takes a step in so many pieces of equal length.
+    fn take_step_of<M: Model>(&mut self, pieces: u32, advance: &mut impl Advance) {
+        let Self { state, settings, slots, observables, initial_heights, .. } = self;
+        let stage = &mut Stage::<M>::new(state, M::slot(slots));
+        let mut result = if pieces == 1 {
+            advance.advance(stage, settings)
+        } else {
+            stage.in_pieces(pieces, settings, StepResult::nothing_yet(), |stage, piece, result| {
+                result.add(advance.advance(stage, piece));
+            })
+        };
+        if settings.may_solve_models() {
+            result.measures.measure_as_a_model();
+        }
+        let time_step_secs = settings.parameters.time_step_secs;
+        *observables =
+            observables::after_step(stage, result, time_step_secs, observables, *initial_heights);
     }
 
     fn look(&mut self) -> Result<&Observables> {
@@ -172,14 +192,12 @@ impl Simulation {
         Err(Error::NonFinite { step, time_secs, bond, time_step_secs, restitution, friction })
     }
 
-    /// Measures the initial state.
     fn observe_start(&mut self) {
         let Self { state, settings, slots, memory, observables, initial_heights, .. } = self;
-        let parts = state.leanest_model(&settings.parameters);
-        *observables = slots.visit(
-            parts,
-            MeasureStart { state, settings, memory, initial_heights: *initial_heights },
-        );
+        with_model!(state.leanest_model(&settings.parameters), M => {
+            memory.prepare(&mut Stage::<M>::new(state, M::slot(slots)), settings);
+            *observables = observables::at_start::<M>(state, settings, *initial_heights);
+        });
     }
 
     /// Shows the first problem of the next step, as its method would get it, to `visitor`: that of the
@@ -191,8 +209,11 @@ impl Simulation {
         state.contacts.begin_step(self.observables.step + 1);
         let pieces = remedies::pieces(&state, &settings);
         let settings = &settings.over(settings.parameters.time_step_secs / f64::from(pieces));
-        slots
-            .visit(parts, ShowProblem { state: &mut state, memory: &mut memory, settings, visitor })
+        with_model!(parts, M => {
+            let stage = &mut Stage::<M>::new(&mut state, M::slot(&mut slots));
+            memory.set_up(stage, settings);
+            visitor.visit::<M>(stage.problem, &stage.state.contacts)
+        })
     }
 
     /// The world as it is now.
@@ -275,7 +296,7 @@ impl Simulation {
 
     /// What went wrong so far, one alarm of a kind.
     pub fn alarms(&self) -> &[Alarm] {
-        self.watch.alarms()
+        &self.watch.alarms
     }
 
     /// The step whose end is nearest to a simulated time (s), as long as Δt stays as it is.
@@ -283,9 +304,9 @@ impl Simulation {
         self.steady.step_at(secs, &self.settings.parameters)
     }
 
-    /// Whether a grain went through a wall or left the world.
+    /// True where a grain went through a wall or left the world.
     pub(super) fn is_lost(&self, grain: usize) -> bool {
-        self.watch.losses.is_lost(grain)
+        self.watch.losses.lost[grain]
     }
 
     /// Simulated time, s.
@@ -303,7 +324,6 @@ struct Steady {
 }
 
 impl Steady {
-    /// Since the moment of these observables.
     fn since(observables: &Observables) -> Self {
         let Observables { step, time_secs, .. } = *observables;
         Self { step, time_secs }
@@ -320,82 +340,7 @@ pub trait ProblemVisitor {
     /// What it gives.
     type Output;
     /// Does it; row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        contacts: &ContactList,
-    ) -> Self::Output;
-}
-
-/// A step, and what is observed after it.
-struct TakeStep<'a, A> {
-    state: &'a mut State,
-    settings: &'a Settings,
-    /// Of equal length, one after the other.
-    pieces: u32,
-    advance: &'a mut A,
-    /// Those before, and then those after the step.
-    observables: &'a mut Observables,
-    initial_heights: f64,
-}
-
-impl<A: Advance> SlotVisitor for TakeStep<'_, A> {
-    type Output = ();
-
-    fn visit<M: Model>(self, slot: &mut Slot<M::Kinematics>) {
-        let Self { state, settings, pieces, advance, observables, initial_heights } = self;
-        let stage = &mut Stage::<M>::new(state, slot);
-        let mut result = if pieces == 1 {
-            advance.advance(stage, settings)
-        } else {
-            stage.in_pieces(pieces, settings, StepResult::nothing_yet(), |stage, piece, result| {
-                result.add(advance.advance(stage, piece));
-            })
-        };
-        if settings.may_solve_models() {
-            result.measures.measure_as_a_model();
-        }
-        let time_step_secs = settings.parameters.time_step_secs;
-        *observables =
-            observables::after_step(stage, result, time_step_secs, observables, initial_heights);
-    }
-}
-
-/// What is observed of an initial state.
-struct MeasureStart<'a> {
-    state: &'a mut State,
-    settings: &'a Settings,
-    memory: &'a StepperMemory,
-    initial_heights: f64,
-}
-
-impl SlotVisitor for MeasureStart<'_> {
-    type Output = Observables;
-
-    fn visit<M: Model>(self, slot: &mut Slot<M::Kinematics>) -> Observables {
-        let Self { state, settings, memory, initial_heights } = self;
-        memory.prepare(&mut Stage::<M>::new(state, slot), settings);
-        observables::at_start::<M>(state, settings, initial_heights)
-    }
-}
-
-/// The first problem of a step, shown to a visitor.
-struct ShowProblem<'a, V> {
-    state: &'a mut State,
-    memory: &'a mut StepperMemory,
-    settings: &'a Settings,
-    visitor: V,
-}
-
-impl<V: ProblemVisitor> SlotVisitor for ShowProblem<'_, V> {
-    type Output = V::Output;
-
-    fn visit<M: Model>(self, slot: &mut Slot<M::Kinematics>) -> V::Output {
-        let Self { state, memory, settings, visitor } = self;
-        let stage = &mut Stage::<M>::new(state, slot);
-        memory.set_up(stage, settings);
-        visitor.visit::<M>(stage.problem, &stage.state.contacts)
-    }
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, contacts: &ContactList) -> Self::Output;
 }
 
 impl Serialize for Simulation {

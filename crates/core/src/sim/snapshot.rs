@@ -63,7 +63,7 @@ pub struct MotionView {
     pub pivot: DVec2,
     /// Of a surface that goes round it, m/s, along the outward normal turned by +90°.
     pub surface_speed: f64,
-    /// Whether a force drives it, be it none for the moment.
+    /// True where a force drives it, be it none for the moment.
     #[serde(default)]
     pub is_driven: bool,
     /// That force, N.

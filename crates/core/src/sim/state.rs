@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::{Candidates, ContactList, LookAhead, Reach};
 use crate::error::Result;
-use crate::sim::pull::{Pull, SpringPush};
+use crate::sim::pull::Pull;
 use crate::sim::walls::Walls;
-use crate::solver::{Kinematics, Model, ModelParts};
+use crate::solver::{Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
 
 /// Skin of the candidate search, in units of d. Smaller: the list is built more often; larger: more
@@ -27,7 +27,7 @@ pub(crate) struct State {
     pub walls: Walls,
     /// A spring on one grain, from the next step on.
     pub pull: Option<Pull>,
-    /// Whether a hand holds a wall: then the last motion is its own.
+    /// True where a hand holds a wall: then the last motion is its own.
     pub is_held: bool,
     /// Δt of the impulses in `contacts`, s.
     pub time_step_of_impulses_secs: f64,
@@ -56,7 +56,7 @@ impl State {
     /// Finds the contacts: those at the present positions, or, looking ahead, those that the step may
     /// come to as well.
     pub(crate) fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
-        match M::Kinematics::AXES {
+        match M::AXES {
             1 => self.detect_on::<1>(ahead),
             _ => self.detect_on::<2>(ahead),
         }
@@ -74,11 +74,6 @@ impl State {
             |grain: usize| ahead.way_of_grain(world.grains.velocities[grain]) + slides;
         candidates.update_ahead::<AXES>(world, way_of_grain, ahead.way_of_others());
         contacts.detect_ahead::<AXES>(world, candidates, ahead);
-    }
-
-    /// The push of the spring on a grain in the next `time_step_secs`.
-    pub(crate) fn push_of_pull(&self, axes: usize, time_step_secs: f64) -> Option<SpringPush> {
-        self.pull?.push(&self.world, axes, time_step_secs)
     }
 
     /// Speed of the fastest grain or wall of a step that has begun, m/s.
@@ -106,7 +101,7 @@ impl State {
     pub(crate) fn integrate<M: Model>(&mut self, time_step_secs: f64) {
         let grains = &mut self.world.grains;
         for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
-            if M::Kinematics::AXES == 1 {
+            if M::AXES == 1 {
                 position.x += time_step_secs * velocity.x;
             } else {
                 *position += time_step_secs * *velocity;
@@ -130,7 +125,7 @@ impl State {
         }
     }
 
-    /// Whether all positions and velocities are numbers.
+    /// True where all positions and velocities are numbers.
     pub(crate) fn is_finite(&self) -> bool {
         let grains = &self.world.grains;
         // A sum is finite only where every term is (or where an overflow is close enough to count).

@@ -4,8 +4,8 @@ use crate::contact::{ContactList, LookAhead};
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::solver::{
-    Approach, BodySystem, Kinematics, Measures, Memory, Model, MovingSurfaces, ProblemNumbers,
-    Slot, SolveReport, StepProblem, cone_of, measure, solve,
+    Approach, BodySystem, Measures, Memory, Model, MovingSurfaces, ProblemNumbers, Slot,
+    SolveReport, StepProblem, cone_of, measure, solve,
 };
 use crate::world::World;
 
@@ -73,13 +73,13 @@ pub trait Advance {
 #[derive(Debug)]
 pub struct Stage<'a, M: Model> {
     pub(crate) state: &'a mut State,
-    pub(crate) problem: &'a mut StepProblem<M::Kinematics>,
-    pub(crate) part: &'a mut StepProblem<M::Kinematics>,
-    pub(crate) memory: &'a mut Memory<M::Kinematics>,
+    pub(crate) problem: &'a mut StepProblem<M>,
+    pub(crate) part: &'a mut StepProblem<M>,
+    pub(crate) memory: &'a mut Memory<M>,
 }
 
 impl<'a, M: Model> Stage<'a, M> {
-    pub(crate) fn new(state: &'a mut State, slot: &'a mut Slot<M::Kinematics>) -> Self {
+    pub(crate) fn new(state: &'a mut State, slot: &'a mut Slot<M>) -> Self {
         let Slot { problem, part, memory } = slot;
         Self { state, problem, part, memory }
     }
@@ -90,13 +90,13 @@ impl<'a, M: Model> Stage<'a, M> {
     }
 
     /// The step's contact problem, once it is prepared.
-    pub fn problem(&self) -> &StepProblem<M::Kinematics> {
+    pub fn problem(&self) -> &StepProblem<M> {
         self.problem
     }
 
     /// The same for a method of your own, whose impulses move the bodies ([`BodySystem::new`]).
-    pub fn system<'b>(&'b mut self, root_masses: &'b mut Vec<f64>) -> BodySystem<'b, M> {
-        BodySystem::new(self.problem, root_masses)
+    pub fn system(&mut self) -> BodySystem<'_, M> {
+        BodySystem::new(self.problem)
     }
 
     /// The contacts of the step; row k of the problem is contact `problem.rows.contacts[k]` of them.
@@ -128,7 +128,8 @@ impl<'a, M: Model> Stage<'a, M> {
         state.begin(time_step_secs);
         let ahead = look_ahead(state);
         state.detect::<M>(ahead);
-        let push = state.push_of_pull(M::Kinematics::AXES, time_step_secs);
+        let pull = state.pull;
+        let push = pull.and_then(|pull| pull.push(&state.world, M::AXES, time_step_secs));
         let State { world, physics, contacts, walls, .. } = &mut **state;
         let capture_speed = if physics.cohesion {
             parameters.capture_speed(world.gravity.magnitude())
@@ -146,30 +147,30 @@ impl<'a, M: Model> Stage<'a, M> {
             driven: walls.driven(world, time_step_secs).collect(),
             of: &surface_of,
         });
-        problem.prepare_among::<M>(world, contacts, numbers, &settings.solver, rebound, surfaces);
+        problem.prepare(world, contacts, numbers, &settings.solver, rebound, surfaces);
         if let Some(push) = push {
-            push.apply::<M::Kinematics>(&mut problem.bodies.free);
-            push.apply::<M::Kinematics>(&mut problem.bodies.now);
+            push.apply::<M>(&mut problem.bodies.free);
+            push.apply::<M>(&mut problem.bodies.now);
         }
     }
 
     /// Solves the prepared problem by the method of the settings.
     pub fn solve(&mut self, settings: &Settings) -> SolveReport {
-        solve::<M>(self.problem, self.memory, &settings.solver)
+        solve(self.problem, self.memory, &settings.solver)
     }
 
     /// Moves the grains by the solution of the problem, for Δt.
     pub fn move_by(&mut self, report: SolveReport, settings: &Settings) -> StepResult {
         let Self { state, problem, .. } = self;
-        let measures = measure::<M>(problem);
+        let measures = measure(problem);
         problem.store_impulses(&mut state.contacts);
         let drive_work = state.walls.take_driven(&mut state.world, &problem.walls.driven);
         let mut gravity_work = 0.0;
         for (index, body) in problem.bodies.now.iter().enumerate() {
-            M::Kinematics::store(body, &mut state.world, index);
+            M::store(body, &mut state.world, index);
             let (before, free) = (&problem.bodies.before[index], &problem.bodies.free[index]);
             let mass = state.world.grains.masses[index];
-            gravity_work += M::Kinematics::work_of_gravity(before, body, free, mass);
+            gravity_work += M::work_of_gravity(before, body, free, mass);
         }
         state.integrate::<M>(settings.parameters.time_step_secs);
         StepResult { report, measures, gravity_work, drive_work, bonds: None }

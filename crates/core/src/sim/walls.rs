@@ -84,7 +84,6 @@ impl Walls {
         }
     }
 
-    /// Notes which bodies move.
     fn find_bodies(&mut self, world: &World, candidates: &Candidates) {
         let Self { moving, of_boundary, of_disc, of_feature, shapes } = self;
         of_boundary.clear();
@@ -113,7 +112,6 @@ impl Walls {
         }
     }
 
-    /// Whether any wall moves.
     pub(crate) fn any_move(&self) -> bool {
         !self.moving.is_empty()
     }
@@ -252,7 +250,7 @@ impl Walls {
 }
 
 impl Wall {
-    /// Whether it moves a boundary along its normal and no other way.
+    /// True where it moves a boundary along its normal and no other way.
     fn pushes(&self, world: &World, boundary: &Boundary) -> bool {
         self.surface_speed == 0.0
             && match self.mover {

@@ -24,20 +24,26 @@ use std::fmt::Debug;
 
 use glam::DVec2;
 
+use super::model::{Slot, Slots};
 use crate::contact::{Contact, Lanes};
 use crate::world::World;
 
-/// The ways in which the bodies of a scene can move.
-pub trait Kinematics: Copy + Debug + Default + Send + Sync + 'static {
+/// What a step computes: how bodies move, and whether contacts rub. Everything here is known when the step is
+/// compiled, so a leaner model has no branch for what it leaves out.
+///
+/// Cohesion and the cone of friction are not among it: in shifted impulses they are numbers (`contact::law`).
+pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// A body as the sweep sees it; with several lanes, a body a lane.
     type Body<T: Lanes>: Copy + Send + Sync + Debug + 'static;
     /// A contact's normal as the sweep sees it.
     type Normal<T: Lanes>: Copy + Send + Sync + Debug + 'static;
     /// Number of axes.
     const AXES: usize;
-    /// Whether grains turn.
+    /// True where contacts carry tangential impulses.
+    const FRICTION: bool;
+    /// True where grains turn.
     const ROTATION: bool;
-    /// Whether images of grains slide beside the grains themselves.
+    /// True where images of grains slide beside the grains themselves.
     const SLIDES: bool = false;
     /// m_n / m_t, the same for every contact of solid discs.
     const TANGENTIAL_COMPLIANCE: f64;
@@ -47,6 +53,8 @@ pub trait Kinematics: Copy + Debug + Default + Send + Sync + 'static {
     /// Inertia of each degree of freedom over the body's mass: with s = rω, ½Iω² = ½(m/2)s².
     const INERTIA_OVER_MASS: [f64; 3];
 
+    /// The slot of its problems.
+    fn slot(slots: &mut Slots) -> &mut Slot<Self>;
     /// Packs grain `index` of a world.
     fn body(world: &World, index: usize) -> Self::Body<f64>;
     /// Writes a body's velocity back to grain `index`.
@@ -88,7 +96,12 @@ pub trait Kinematics: Copy + Debug + Default + Send + Sync + 'static {
         [x * slide, -y * slide]
     }
     /// A packed normal along x and y; along axes that there are not, 0.
-    fn components(normal: Self::Normal<f64>) -> [f64; 2];
+    fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2];
+    /// (v_n, v_t) relative to the image that a packed normal is of, of those relative to the body itself.
+    #[inline(always)]
+    fn relative_to_image<T: Lanes>(_normal: Self::Normal<T>, velocity: [T; 2]) -> [T; 2] {
+        velocity
+    }
     /// (v_n, v_t) of body i relative to body j, m/s.
     fn relative_velocity<T: Lanes>(
         normal: Self::Normal<T>,
@@ -139,18 +152,23 @@ pub struct LineBody<T = f64> {
     pub velocity: T,
 }
 
-/// One axis: no tangent, no rotation.
+/// One axis: neither friction nor rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Line;
 
-impl Kinematics for Line {
+impl Model for Line {
     type Body<T: Lanes> = LineBody<T>;
     type Normal<T: Lanes> = T;
     const AXES: usize = 1;
+    const FRICTION: bool = false;
     const ROTATION: bool = false;
     const TANGENTIAL_COMPLIANCE: f64 = 1.0;
     const DEGREES: usize = 1;
     const INERTIA_OVER_MASS: [f64; 3] = [1.0, 0.0, 0.0];
+
+    fn slot(slots: &mut Slots) -> &mut Slot<Self> {
+        &mut slots.line
+    }
 
     #[inline(always)]
     fn coordinates<T: Lanes>(body: &LineBody<T>) -> [T; 3] {
@@ -191,8 +209,9 @@ impl Kinematics for Line {
         normal
     }
 
-    fn components(normal: f64) -> [f64; 2] {
-        [normal, 0.0]
+    #[inline(always)]
+    fn components<T: Lanes>(normal: T) -> [T; 2] {
+        [normal, normal.same(0.0)]
     }
 
     #[inline(always)]
@@ -243,15 +262,19 @@ pub struct PlaneBody<T = f64> {
     pub spin: T,
 }
 
-/// Two axes, no rotation.
+/// Two axes, neither friction nor rotation.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SmoothPlane;
+
+/// Two axes and friction, no rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plane;
 
-/// Two axes and rotation.
+/// Two axes, friction and rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SpinningPlane;
 
-/// Two axes and rotation, and images that slide.
+/// The same, and images that slide. Its friction may be 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShearedPlane;
 
@@ -264,63 +287,23 @@ pub struct SlidingNormal<T> {
     pub slide: T,
 }
 
-/// A normal in the plane.
-trait NormalInPlane<T: Lanes>: Copy {
-    /// A normal along x and y, of an image that stays.
-    fn of(normal: [T; 2]) -> Self;
-    /// Along x and y.
-    fn along_axes(self) -> [T; 2];
-    /// (v_n, v_t) relative to the image, of those relative to the body itself.
-    fn relative_to_image(self, velocity: [T; 2]) -> [T; 2];
-}
-
-impl<T: Lanes> NormalInPlane<T> for [T; 2] {
-    #[inline(always)]
-    fn of(normal: [T; 2]) -> Self {
-        normal
-    }
-
-    #[inline(always)]
-    fn along_axes(self) -> [T; 2] {
-        self
-    }
-
-    #[inline(always)]
-    fn relative_to_image(self, velocity: [T; 2]) -> [T; 2] {
-        velocity
-    }
-}
-
-impl<T: Lanes> NormalInPlane<T> for SlidingNormal<T> {
-    #[inline(always)]
-    fn of(normal: [T; 2]) -> Self {
-        Self { normal, slide: normal[0].same(0.0) }
-    }
-
-    #[inline(always)]
-    fn along_axes(self) -> [T; 2] {
-        self.normal
-    }
-
-    #[inline(always)]
-    fn relative_to_image(self, [along_normal, along_tangent]: [T; 2]) -> [T; 2] {
-        let Self { normal, slide } = self;
-        [along_normal - normal[0] * slide, along_tangent + normal[1] * slide]
-    }
-}
-
 /// What all kinds of motion in the plane share. `own` is what one of them has of its own.
-macro_rules! plane_kinematics {
-    ($name:ident, $normal:ty, rotation: $rotation:literal, own: { $($own:item)* }) => {
-        impl Kinematics for $name {
+macro_rules! plane_model {
+    ($name:ident, $slot:ident, $normal:ty, |$of:ident| $packed:expr, $along_axes:expr, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
+        impl Model for $name {
             type Body<T: Lanes> = PlaneBody<T>;
             type Normal<T: Lanes> = $normal;
             $($own)*
             const AXES: usize = 2;
+            const FRICTION: bool = $friction;
             const ROTATION: bool = $rotation;
             const TANGENTIAL_COMPLIANCE: f64 = if $rotation { 3.0 } else { 1.0 };
             const DEGREES: usize = if $rotation { 3 } else { 2 };
             const INERTIA_OVER_MASS: [f64; 3] = [1.0, 1.0, 0.5];
+
+            fn slot(slots: &mut Slots) -> &mut Slot<Self> {
+                &mut slots.$slot
+            }
 
             #[inline(always)]
             fn coordinates<T: Lanes>(body: &PlaneBody<T>) -> [T; 3] {
@@ -342,7 +325,7 @@ macro_rules! plane_kinematics {
 
             #[inline(always)]
             fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2] {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 let normal = [nx, ny, 0.0];
                 let tangent = [-ny, nx, -1.0];
                 [[normal, tangent], [[-nx, -ny, 0.0], [ny, -nx, -1.0]]]
@@ -378,11 +361,14 @@ macro_rules! plane_kinematics {
 
             #[inline(always)]
             fn normal<T: Lanes>(normal: [T; 2]) -> Self::Normal<T> {
-                NormalInPlane::of(normal)
+                let $of = normal;
+                $packed
             }
 
-            fn components(normal: Self::Normal<f64>) -> [f64; 2] {
-                normal.along_axes()
+            #[inline(always)]
+            fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2] {
+                let $of = normal;
+                $along_axes
             }
 
             #[inline(always)]
@@ -391,16 +377,16 @@ macro_rules! plane_kinematics {
                 i: &PlaneBody<T>,
                 j: &PlaneBody<T>,
             ) -> [T; 2] {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 let x = i.velocity[0] - j.velocity[0];
                 let y = i.velocity[1] - j.velocity[1];
                 let spin = if Self::ROTATION { i.spin + j.spin } else { nx.same(0.0) };
-                normal.relative_to_image([nx * x + ny * y, nx * y - ny * x - spin])
+                Self::relative_to_image(normal, [nx * x + ny * y, nx * y - ny * x - spin])
             }
 
             #[inline(always)]
             fn velocity<T: Lanes>(normal: Self::Normal<T>, i: &PlaneBody<T>) -> [T; 2] {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 let [x, y] = i.velocity;
                 let spin = if Self::ROTATION { i.spin } else { nx.same(0.0) };
                 [nx * x + ny * y, nx * y - ny * x - spin]
@@ -414,7 +400,7 @@ macro_rules! plane_kinematics {
                 [along_normal, along_tangent]: [T; 2],
                 share: T,
             ) {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 let x = nx * along_normal - ny * along_tangent;
                 let y = ny * along_normal + nx * along_tangent;
                 let other_share = share.same(1.0) - share;
@@ -435,7 +421,7 @@ macro_rules! plane_kinematics {
                 normal: Self::Normal<T>,
                 [along_normal, along_tangent]: [T; 2],
             ) {
-                let [nx, ny] = normal.along_axes();
+                let [nx, ny] = Self::components(normal);
                 i.velocity[0] += nx * along_normal - ny * along_tangent;
                 i.velocity[1] += ny * along_normal + nx * along_tangent;
                 if Self::ROTATION {
@@ -465,10 +451,19 @@ macro_rules! plane_kinematics {
     };
 }
 
-plane_kinematics!(Plane, [T; 2], rotation: false, own: {});
-plane_kinematics!(SpinningPlane, [T; 2], rotation: true, own: {});
-plane_kinematics!(ShearedPlane, SlidingNormal<T>, rotation: true, own: {
+plane_model!(SmoothPlane, smooth_plane, [T; 2], |normal| normal, normal, friction: false, rotation: false, own: {});
+plane_model!(Plane, plane, [T; 2], |normal| normal, normal, friction: true, rotation: false, own: {});
+plane_model!(SpinningPlane, spinning_plane, [T; 2], |normal| normal, normal, friction: true, rotation: true, own: {});
+plane_model!(ShearedPlane, sheared_plane, SlidingNormal<T>, |normal| SlidingNormal { normal, slide: normal[0].same(0.0) }, normal.normal, friction: true, rotation: true, own: {
     const SLIDES: bool = true;
+
+    #[inline(always)]
+    fn relative_to_image<T: Lanes>(
+        SlidingNormal { normal, slide }: SlidingNormal<T>,
+        [along_normal, along_tangent]: [T; 2],
+    ) -> [T; 2] {
+        [along_normal - normal[0] * slide, along_tangent + normal[1] * slide]
+    }
 
     #[inline(always)]
     fn sliding(normal: SlidingNormal<f64>, slide: f64) -> SlidingNormal<f64> {

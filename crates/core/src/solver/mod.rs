@@ -19,7 +19,8 @@ mod solve;
 
 pub use delassus::{Assembled, DelassusProblem, Triplets, solve_delassus};
 pub use kinematics::{
-    Kinematics, Line, LineBody, Plane, PlaneBody, ShearedPlane, SlidingNormal, SpinningPlane,
+    Line, LineBody, Model, Plane, PlaneBody, ShearedPlane, SlidingNormal, SmoothPlane,
+    SpinningPlane,
 };
 pub use method::{METHODS, Method, MethodInfo, MethodOrder, Ordering};
 pub(crate) use methods::picked;
@@ -27,14 +28,11 @@ pub(crate) use methods::picked;
 pub use methods::sweep;
 pub use methods::{BodySystem, ContactSystem, ScaledVector, SolveReport};
 pub(crate) use model::cone_of;
-pub use model::{
-    Model, ModelParts, ModelVisitor, Slot, SlotVisitor, Slots, StepModel, visit_model,
-};
-pub(crate) use problem::MovingSurfaces;
+pub use model::{ModelParts, Slot, Slots};
 pub use problem::{
-    Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures, PairRow,
-    ProblemNumbers, Row, RowVelocities, StepProblem, Surface, for_each_row, measure,
-    relative_velocities, residual, worst,
+    Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures,
+    MovingSurfaces, PairRow, ProblemNumbers, Row, RowVelocities, StepProblem, Surface,
+    for_each_row, measure, relative_velocities, residual, worst,
 };
 pub use settings::{Fallback, FrictionModel, SolverChanges, SolverSettings, StopTest};
 pub use solve::{Memory, solve};

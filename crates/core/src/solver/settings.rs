@@ -5,16 +5,13 @@ use crate::error::{Error, Result};
 use crate::setting::{Group, settings, words};
 
 words! {
-    /// What the tolerance of a solver refers to.
+    /// What the tolerance of a solver refers to: normal and tangential impulses P of a sweep, or of an iteration where there
+    /// are no sweeps. `impulse-per-mass` is tested after every sweep.
     #[derive(Default)]
     pub enum StopTest {
-        /// ‖ΔP‖₂ of a sweep (of an iteration, for methods without sweeps) ≤ tolerance · ‖P‖₂, over normal
-        /// and tangential impulses; dimensionless.
         #[default]
         RelativeChange = "relative-change", "‖ΔP‖ of a sweep over ‖P‖";
-        /// Σ|ΔP| of a sweep ≤ tolerance · mean grain mass; m/s. Tested after every sweep.
         ImpulsePerMass = "impulse-per-mass", "sum of |ΔP| of a sweep over the mean mass, m/s";
-        /// The common residual ≤ tolerance; dimensionless.
         Residual = "residual", "the residual that judges all methods";
     }
 }
@@ -24,17 +21,13 @@ words! {
     /// while a step is solved (`problem::friction`), so that the velocities of a solve are unique.
     #[derive(Default)]
     pub enum FrictionModel {
-        /// |λ_t| ≤ μσ with the σ of the same step.
         #[default]
         Coulomb = "coulomb",
             "Coulomb's law itself (M. Jean, 1999); not convex, so a large step may not be solved in any time";
-        /// |λ_t| ≤ g, which lags.
         Tresca = "tresca",
             "bounds μN of each contact's last solve (P. D. Panagiotopoulos, 1975); friction lags a step behind";
-        /// (σ, λ_t) in the cone, (w, v_t) in its dual.
         Associated = "associated",
             "cone complementarity (M. Anitescu, 2006); what slides opens by Δt·μ·v_t a step, and bonds break";
-        /// The same with w + s, s = μ|v_t| of the solve before.
         Desaxce = "desaxce",
             "associated less the last μ|v_t| (G. de Saxcé, Z.-Q. Feng, 1998); what slides faster still opens";
     }
@@ -44,12 +37,9 @@ words! {
     /// What becomes of a step whose problem is not solved under Coulomb's law.
     #[derive(Default)]
     pub enum Fallback {
-        /// `tresca` where the method is `auto`, and where the window opens a scene, else `none`.
         #[default]
         OfMethod = "of-method", "tresca where the solver is auto or the scene opens in the window, else none";
-        /// What the method came to.
         None = "none", "the impulses that the method came to, unsolved as they are";
-        /// The solution under bounds of friction at those impulses, with a certificate.
         Tresca = "tresca",
             "friction bounded by what the method came to, and that problem solved with a certificate";
     }
@@ -75,46 +65,20 @@ settings! {
     /// step that needs more than the limit has, as a rule, no solution to converge to: restitution asks
     /// wedged contacts for what their neighbours forbid.
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
-        /// The method.
-        method: Method = Method::Nsgs, {
-            name: "solver",
-            value_name: "NAME",
-            help: "Method that solves each step",
-            control: Some(Control {
-                label: "Method",
-                hint: "How the impulses of a step are found.",
-                ..Control::PLAIN
-            }),
+        method: Method = Method::Nsgs, "solver" ("NAME"), "Method that solves each step", {
+            control: shown("Method", "How the impulses of a step are found."),
         }
-        /// The order of a sweep.
         #[serde(default, skip_serializing_if = "is_default")]
-        ordering: Ordering = Ordering::Interleaved, {
-            name: "ordering",
-            value_name: "ORDER",
-            help: "In which order a sweep visits the contacts",
-            control: Some(Control {
-                label: "Order",
-                hint: "In which order a sweep visits contacts.",
-                ..Control::PLAIN
-            }),
+        ordering: Ordering = Ordering::Interleaved, "ordering" ("ORDER"),
+            "In which order a sweep visits the contacts", {
+            control: shown("Order", "In which order a sweep visits contacts."),
         }
-        /// What `tolerance` refers to.
         #[serde(default)]
-        stop: StopTest = StopTest::RelativeChange, {
-            name: "stop",
-            value_name: "TEST",
-            help: "What the tolerance refers to",
-            control: Some(Control {
-                label: "Stops on",
-                hint: "What the tolerance refers to.",
-                ..Control::PLAIN
-            }),
+        stop: StopTest = StopTest::RelativeChange, "stop" ("TEST"), "What the tolerance refers to", {
+            control: shown("Stops on", "What the tolerance refers to."),
         }
         /// In the unit of `stop`.
-        tolerance: f64 = 1e-6, {
-            name: "tolerance",
-            value_name: "X",
-            help: "How well each step is solved, in the unit of the stopping test",
+        tolerance: f64 = 1e-6, "tolerance" ("X"), "How well each step is solved, in the unit of the stopping test", {
             allowed: "a finite number > 0",
             holds: |value| value > 0.0 && value.is_finite(),
             control: Some(Control {
@@ -127,10 +91,7 @@ settings! {
         }
         /// A step that needs more sweeps, or iterations of a method without sweeps, is reported as not
         /// converged.
-        max_sweeps: u32 = 5_000, {
-            name: "max-sweeps",
-            value_name: "N",
-            help: "A step that needs more sweeps is reported as not converged",
+        max_sweeps: u32 = 5_000, "max-sweeps", "A step that needs more sweeps is reported as not converged", {
             allowed: "at least 1",
             holds: |value| value > 0,
             control: Some(Control {
@@ -141,38 +102,23 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// Start from the impulses of the step before.
-        warm_start: bool = true, {
-            name: "warm-start",
-            value_name: "BOOL",
-            help: "Whether each step starts from the impulses of the one before",
-            control: Some(Control {
-                label: "Warm start",
-                hint: "Each step starts from the impulses of the one before.",
-                ..Control::PLAIN
-            }),
+        warm_start: bool = true, "warm-start", "Whether each step starts from the impulses of the one before", {
+            control: shown("Warm start", "Each step starts from the impulses of the one before."),
         }
-        /// What is asked of friction.
         #[serde(default, skip_serializing_if = "is_default")]
-        friction_model: FrictionModel = FrictionModel::Coulomb, {
-            name: "friction-model",
-            value_name: "MODEL",
-            help: "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
-                   `slump list` says what each gets wrong",
+        friction_model: FrictionModel = FrictionModel::Coulomb, "friction-model" ("MODEL"),
+            "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
+             `slump list` says what each gets wrong", {
             needs: Needs::Friction,
-            control: Some(Control {
-                label: "Friction",
-                hint: "What a step asks of friction: Coulomb's law, or a convex problem in its place.",
-                ..Control::PLAIN
-            }),
+            control: shown(
+                "Friction",
+                "What a step asks of friction: Coulomb's law, or a convex problem in its place.",
+            ),
         }
-        /// How often a step is solved under a model of friction, what the model holds taken anew each time.
         #[serde(default = "one", skip_serializing_if = "is_one")]
-        model_solves: u32 = 1, {
-            name: "model-solves",
-            value_name: "N",
-            help: "How often each step is solved under tresca or desaxce, what they hold taken anew each \
-                   time: 1 is the cheapest, more come nearer to Coulomb's law",
+        model_solves: u32 = 1, "model-solves",
+            "How often each step is solved under tresca or desaxce, what they hold taken anew each \
+             time: 1 is the cheapest, more come nearer to Coulomb's law", {
             allowed: "between 1 and 1000",
             holds: |value| (1..=1000).contains(&value),
             needs: Needs::Friction,
@@ -184,27 +130,16 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// What becomes of a step that is not solved under Coulomb's law.
         #[serde(default, skip_serializing_if = "is_default")]
-        fallback: Fallback = Fallback::OfMethod, {
-            name: "fallback",
-            value_name: "MODEL",
-            help: "What becomes of a step that is not solved under Coulomb's law",
+        fallback: Fallback = Fallback::OfMethod, "fallback" ("MODEL"),
+            "What becomes of a step that is not solved under Coulomb's law", {
             needs: Needs::Friction,
-            control: Some(Control {
-                label: "Falls back on",
-                hint: "What becomes of a step that is not solved under Coulomb's law.",
-                ..Control::PLAIN
-            }),
+            control: shown("Falls back on", "What becomes of a step that is not solved under Coulomb's law."),
         }
-        /// Solve grains that no contact joins to each other by themselves.
         #[serde(default, skip_serializing_if = "is_default")]
-        islands: bool = false, {
-            name: "islands",
-            value_name: "BOOL",
-            help: "Whether grains that no contact joins to the others are solved by themselves, and fall back \
-                   by themselves: pays where a scene has several heaps",
-        }
+        islands: bool = false, "islands",
+            "Whether grains that no contact joins to the others are solved by themselves, and fall back \
+             by themselves: pays where a scene has several heaps", {}
     }
 }
 
@@ -269,7 +204,7 @@ impl SolverSettings {
         Ok(())
     }
 
-    /// Whether a step that is not solved under Coulomb's law is solved under bounds of friction.
+    /// True where a step that is not solved under Coulomb's law is solved under bounds of friction.
     pub fn falls_back(&self) -> bool {
         self.friction_model == FrictionModel::Coulomb
             && match self.fallback {
@@ -279,7 +214,7 @@ impl SolverSettings {
             }
     }
 
-    /// Whether steps may be solved under another model of friction than Coulomb's law.
+    /// True where steps may be solved under another model of friction than Coulomb's law.
     pub(crate) fn may_solve_models(&self) -> bool {
         self.friction_model != FrictionModel::Coulomb || self.falls_back()
     }

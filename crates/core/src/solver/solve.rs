@@ -11,9 +11,8 @@
 
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
-use super::kinematics::Kinematics;
+use super::kinematics::Model;
 use super::methods::{MethodMemory, SolveReport, fall_back, solve_by_method};
-use super::model::Model;
 use super::problem::{Bodies, Row, StepProblem, natural_map};
 use super::settings::{FrictionModel, SolverSettings, StopTest};
 use crate::contact::JoinedGrains;
@@ -21,9 +20,9 @@ use crate::threads;
 
 /// What is kept from one solve to the next. Results do not depend on it.
 #[derive(Clone, Debug, Default)]
-pub struct Memory<K: Kinematics> {
+pub struct Memory<M: Model> {
     methods: MethodMemory,
-    islands: Islands<K>,
+    islands: Islands<M>,
 }
 
 /// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
@@ -40,10 +39,10 @@ pub struct Memory<K: Kinematics> {
 /// impl ProblemVisitor for Left {
 ///     type Output = f64;
 ///
-///     fn visit<M: Model>(self, problem: &mut StepProblem<M::Kinematics>, _: &ContactList) -> f64 {
+///     fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> f64 {
 ///         let settings = SolverSettings { method: self.0, ..SolverSettings::default() };
-///         solve::<M>(problem, &mut Memory::default(), &settings);
-///         residual::<M>(problem)
+///         solve(problem, &mut Memory::default(), &settings);
+///         residual(problem)
 ///     }
 /// }
 ///
@@ -54,8 +53,8 @@ pub struct Memory<K: Kinematics> {
 // Compiled once, with the library, for all models there are: who calls it with one of them compiles none of it anew.
 #[inline(never)]
 pub fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
-    memory: &mut Memory<M::Kinematics>,
+    problem: &mut StepProblem<M>,
+    memory: &mut Memory<M>,
     settings: &SolverSettings,
 ) -> SolveReport {
     if problem.rows.is_empty() {
@@ -69,9 +68,9 @@ pub fn solve<M: Model>(
     // Walls that a force drives join what they touch.
     let is_divided = settings.islands && !problem.is_driven() && islands.divide(problem);
     let report = if is_divided {
-        islands.solve::<M>(problem, settings)
+        islands.solve(problem, settings)
     } else {
-        solve_by_method::<M>(problem, methods, settings)
+        solve_by_method(problem, methods, settings)
     };
     // What solves bounds of friction knows of no walls that a force drives.
     let falls_back = M::FRICTION && settings.falls_back() && !problem.is_driven();
@@ -79,20 +78,20 @@ pub fn solve<M: Model>(
         return report;
     }
     if is_divided {
-        return islands.fall_back::<M>(problem);
+        return islands.fall_back(problem);
     }
-    fall_back::<M>(problem, &mut methods.interior_point, report)
+    fall_back(problem, &mut methods.interior_point, report)
 }
 
 /// What has no number yet.
 const NONE: u32 = u32::MAX;
 
 /// One island of a problem, with the memory of its method.
-#[derive(Clone, Debug)]
-struct Island<K: Kinematics> {
+#[derive(Clone, Debug, Default)]
+struct Island<M: Model> {
     /// Its contacts in the order of the whole, with grains numbered anew; in the place of the contact behind each row
     /// stands the row of the whole.
-    problem: StepProblem<K>,
+    problem: StepProblem<M>,
     /// The grains' numbers in the whole.
     grains: Vec<u32>,
     memory: MethodMemory,
@@ -100,9 +99,9 @@ struct Island<K: Kinematics> {
 }
 
 /// The islands of a problem. Memory is kept between steps.
-#[derive(Clone, Debug)]
-struct Islands<K: Kinematics> {
-    islands: Vec<Island<K>>,
+#[derive(Clone, Debug, Default)]
+struct Islands<M: Model> {
+    islands: Vec<Island<M>>,
     /// How many of these are of the present problem.
     count: usize,
     /// Which island each grain is of, and its number there.
@@ -110,21 +109,15 @@ struct Islands<K: Kinematics> {
     numbers: Vec<u32>,
 }
 
-impl<K: Kinematics> Default for Islands<K> {
-    fn default() -> Self {
-        Self { islands: Vec::new(), count: 0, island_of: Vec::new(), numbers: Vec::new() }
-    }
-}
-
-impl<K: Kinematics> Islands<K> {
+impl<M: Model> Islands<M> {
     /// Divides a problem into its islands. Whether there are several.
-    fn divide(&mut self, problem: &StepProblem<K>) -> bool {
+    fn divide(&mut self, problem: &StepProblem<M>) -> bool {
         self.find(problem);
         if self.count < 2 {
             return false;
         }
         if self.islands.len() < self.count {
-            self.islands.resize_with(self.count, Island::new);
+            self.islands.resize_with(self.count, Island::default);
         }
         self.islands[..self.count].iter_mut().for_each(|island| island.begin(problem));
         self.numbers.fill(NONE);
@@ -136,7 +129,7 @@ impl<K: Kinematics> Islands<K> {
     }
 
     /// Tells which islands the contacts of a problem make.
-    fn find(&mut self, problem: &StepProblem<K>) {
+    fn find(&mut self, problem: &StepProblem<M>) {
         let grains = problem.bodies.now.len();
         let mut sets = JoinedGrains::apart(grains);
         for row in &problem.rows.pairs {
@@ -159,21 +152,16 @@ impl<K: Kinematics> Islands<K> {
     }
 
     /// Solves the islands of a problem that was divided.
-    fn solve<M: Model<Kinematics = K>>(
-        &mut self,
-        problem: &mut StepProblem<K>,
-        settings: &SolverSettings,
-    ) -> SolveReport {
+    fn solve(&mut self, problem: &mut StepProblem<M>, settings: &SolverSettings) -> SolveReport {
         let contacts = problem.rows.len() as f64;
-        let solve = |island: &mut Island<K>| {
+        let solve = |island: &mut Island<M>| {
             let share = match settings.stop {
                 StopTest::ImpulsePerMass => island.problem.rows.len() as f64 / contacts,
                 StopTest::RelativeChange | StopTest::Residual => 1.0,
             };
             let tolerance = share * settings.tolerance;
             let settings = SolverSettings { tolerance, ..*settings };
-            island.report =
-                solve_by_method::<M>(&mut island.problem, &mut island.memory, &settings);
+            island.report = solve_by_method(&mut island.problem, &mut island.memory, &settings);
         };
         let islands = &mut self.islands[..self.count];
         if threads::are_there() {
@@ -184,17 +172,17 @@ impl<K: Kinematics> Islands<K> {
         let mut report = self.join(problem);
         // What is left in a small island may be little beside what moves in the others.
         let of_all = !report.converged && settings.stop == StopTest::Residual;
-        report.converged |= of_all && natural_map::<M>(problem) <= settings.tolerance;
+        report.converged |= of_all && natural_map(problem) <= settings.tolerance;
         report.stalled &= !report.converged;
         report
     }
 
     /// Puts in the place of what was not solved the solution under bounds of friction, island by island.
-    fn fall_back<M: Model<Kinematics = K>>(&mut self, problem: &mut StepProblem<K>) -> SolveReport {
+    fn fall_back(&mut self, problem: &mut StepProblem<M>) -> SolveReport {
         let islands = &mut self.islands[..self.count];
         for island in islands.iter_mut().filter(|island| !island.report.converged) {
             let Island { problem, memory, report, .. } = island;
-            *report = fall_back::<M>(problem, &mut memory.interior_point, *report);
+            *report = fall_back(problem, &mut memory.interior_point, *report);
         }
         let report = self.join(problem);
         if report.fell_back {
@@ -206,7 +194,7 @@ impl<K: Kinematics> Islands<K> {
     }
 
     /// Gives a problem what became of its islands, and tells how the solve of the whole ended.
-    fn join(&self, problem: &mut StepProblem<K>) -> SolveReport {
+    fn join(&self, problem: &mut StepProblem<M>) -> SolveReport {
         let mut all = SolveReport::nothing_yet();
         for island in &self.islands[..self.count] {
             island.join(problem);
@@ -216,18 +204,9 @@ impl<K: Kinematics> Islands<K> {
     }
 }
 
-impl<K: Kinematics> Island<K> {
-    fn new() -> Self {
-        Self {
-            problem: StepProblem::default(),
-            grains: Vec::new(),
-            memory: MethodMemory::default(),
-            report: SolveReport::nothing_yet(),
-        }
-    }
-
+impl<M: Model> Island<M> {
     /// Nothing of a problem yet but what all of its contacts share.
-    fn begin(&mut self, whole: &StepProblem<K>) {
+    fn begin(&mut self, whole: &StepProblem<M>) {
         let Self { problem, grains, .. } = self;
         grains.clear();
         let Bodies { now, before, free, masses, mean_mass } = &mut problem.bodies;
@@ -245,7 +224,7 @@ impl<K: Kinematics> Island<K> {
     }
 
     /// Adds a row of the whole, with what there is beside it.
-    fn add(&mut self, number: usize, row: &Row<K>, numbers: &mut [u32], whole: &StepProblem<K>) {
+    fn add(&mut self, number: usize, row: &Row<M>, numbers: &mut [u32], whole: &StepProblem<M>) {
         let i = self.number_of(row.i, numbers, whole);
         let j = match whole.rows.is_pair(number) {
             true => self.number_of(row.j, numbers, whole),
@@ -260,7 +239,7 @@ impl<K: Kinematics> Island<K> {
     }
 
     /// The number that a grain has here, and a new one where it has none.
-    fn number_of(&mut self, grain: u32, numbers: &mut [u32], whole: &StepProblem<K>) -> u32 {
+    fn number_of(&mut self, grain: u32, numbers: &mut [u32], whole: &StepProblem<M>) -> u32 {
         let number = &mut numbers[grain as usize];
         if *number == NONE {
             *number = self.grains.len() as u32;
@@ -275,7 +254,7 @@ impl<K: Kinematics> Island<K> {
     }
 
     /// Gives the whole what became of this part of it. Where friction lags in the whole, it lags as in this part.
-    fn join(&self, whole: &mut StepProblem<K>) {
+    fn join(&self, whole: &mut StepProblem<M>) {
         let Self { problem, grains, .. } = self;
         for (&grain, body) in grains.iter().zip(&problem.bodies.now) {
             whole.bodies.now[grain as usize] = *body;

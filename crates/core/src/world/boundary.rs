@@ -104,7 +104,7 @@ impl Boundary {
         }
     }
 
-    /// Whether it stands across the x axis, as in scenes with that axis alone.
+    /// True where it stands across the x axis, as in scenes with that axis alone.
     pub fn is_across_line(&self) -> bool {
         match self {
             Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => normal.y == 0.0,
@@ -112,7 +112,7 @@ impl Boundary {
         }
     }
 
-    /// Whether it moves without a [`Motion`](super::Motion) of its own.
+    /// True where it moves without a [`Motion`](super::Motion) of its own.
     pub(crate) fn moves_by_itself(&self) -> bool {
         matches!(self, Self::Piston { .. })
     }
@@ -131,7 +131,6 @@ impl Boundary {
         }
     }
 
-    /// Moves it.
     pub(crate) fn carry(&mut self, carry: &Carry) {
         let move_all = |points: &mut [DVec2]| {
             points.iter_mut().for_each(|point| *point = carry.place(*point));
@@ -152,7 +151,7 @@ impl Boundary {
         }
     }
 
-    /// Whether what goes in that direction goes along its normal, so that its surface does not rub.
+    /// True where what goes in that direction goes along its normal, so that its surface does not rub.
     pub(crate) fn is_pushed_along(&self, direction: DVec2) -> bool {
         match self {
             Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => {
@@ -162,7 +161,7 @@ impl Boundary {
         }
     }
 
-    /// Whether its surface is a line without ends.
+    /// True where its surface is a line without ends.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self, Self::HalfSpace { .. } | Self::Piston { .. })
     }

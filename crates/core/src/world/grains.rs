@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 
 /// One disc as a scene describes it. Plain data, checked with the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub struct Grain {
     /// Angular velocity, rad/s, positive anticlockwise.
     #[serde(default)]
     pub angular_velocity: f64,
-    /// Whether the gravity field acts on this disc.
+    /// True where the gravity field acts on this disc.
     #[serde(default = "yes")]
     pub feels_gravity: bool,
     /// Grey of the disc in the pictures that follow the paper: 0 black … 255 white.
@@ -74,7 +74,7 @@ pub struct Grains {
     pub radii: Vec<f64>,
     /// Masses, kg: areal density × πr².
     pub masses: Vec<f64>,
-    /// Whether gravity acts.
+    /// True where gravity acts.
     pub feels_gravity: Vec<bool>,
     /// Greys for the paper's pictures.
     pub tones: Vec<u8>,
@@ -100,12 +100,9 @@ impl Grains {
         self.tones.push(grain.tone);
     }
 
-    /// Checks that there are discs, and that each list says something of each.
     pub(crate) fn validate(&self) -> Result<()> {
         let count = self.len();
-        if count == 0 {
-            return Err(Error::value("grains", 0, "at least one disc"));
-        }
+        error::check(count != 0, "grains", 0, "at least one disc")?;
         let lengths = [
             ("velocities", self.velocities.len()),
             ("angles", self.angles.len()),
@@ -141,7 +138,7 @@ impl Grains {
         self.positions.len()
     }
 
-    /// Whether there is no disc.
+    /// True where there is no disc.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::number::is_zero;
 use crate::world::motion::at_time;
 use crate::world::motion_check::check_table;
@@ -126,11 +126,10 @@ impl TurningGravity {
 }
 
 impl GravityTurn {
-    /// By no angle at any time.
     pub(super) const NONE: Self =
         Self { course: TurnCourse::Rate { rate: 0.0 }, elapsed_secs: 0.0 };
 
-    /// Whether it turns nothing.
+    /// True where it turns nothing.
     pub fn is_none(&self) -> bool {
         self.course == Self::NONE.course
     }
@@ -142,15 +141,12 @@ impl GravityTurn {
         }
     }
 
-    /// Checks it against the gravity and the physics that it is for.
     pub(crate) fn check(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let field = "gravity_turn";
         if !matches!(gravity, Gravity::Uniform { .. }) {
             return Err(Error::value(field, "given", "left out where gravity is not uniform"));
         }
-        if physics.axes == 1 {
-            return Err(Error::value(field, "given", "left out where physics.axes is 1"));
-        }
+        error::check(physics.axes != 1, field, "given", "left out where physics.axes is 1")?;
         if !(self.elapsed_secs >= 0.0 && self.elapsed_secs.is_finite()) {
             let field = format!("{field}.elapsed_secs");
             return Err(Error::value(field, self.elapsed_secs, "a finite number ≥ 0"));

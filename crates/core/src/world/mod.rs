@@ -14,7 +14,6 @@ pub use grains::{Grain, Grains};
 pub use gravity::{Gravity, GravityTurn, TurnCourse, TurningGravity};
 pub(crate) use motion::{Carry, RigidVelocity};
 pub use motion::{Drive, Motion, MotionCourse};
-pub(crate) use motion_check::check_motions;
 pub(crate) use parameters::MAX_SUBSTEPS;
 pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};
 pub use periodic::Periodic;
@@ -22,6 +21,7 @@ pub use periodic::Periodic;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use self::motion_check::check_motions;
 use crate::error::{Error, Result};
 
 /// Everything that a step reads and moves. Plain data, checked where a simulation takes it on; a running
@@ -49,6 +49,20 @@ pub struct World {
 }
 
 impl World {
+    /// Grains by themselves in a field; `mean_diameter` is d, m.
+    pub fn of(grains: Grains, gravity: Gravity, mean_diameter: f64) -> Self {
+        Self {
+            grains,
+            fixed_discs: Vec::new(),
+            boundaries: Vec::new(),
+            motions: Vec::new(),
+            gravity,
+            gravity_turn: None,
+            periodic: None,
+            mean_diameter,
+        }
+    }
+
     /// Checks its grains and motions, how its gravity turns, and its borders.
     pub(crate) fn validate(&self, physics: Physics) -> Result<()> {
         self.grains.validate()?;
@@ -65,7 +79,7 @@ impl World {
         periodic.check(boundaries, fixed_discs, motions, gravity, physics, lengths)
     }
 
-    /// Whether anything can move that no grain moves.
+    /// True where anything can move that no grain moves.
     pub fn has_motion(&self) -> bool {
         !self.motions.is_empty() || self.boundaries.iter().any(Boundary::moves_by_itself)
     }
@@ -87,12 +101,12 @@ impl World {
 pub struct Physics {
     /// 1 (all on the x axis) or 2.
     pub axes: u8,
-    /// Whether contacts carry tangential impulses.
+    /// True where contacts carry tangential impulses.
     pub friction: bool,
-    /// Whether grains turn. Without friction nothing changes a disc's spin, so this asks for
+    /// True where grains turn. Without friction nothing changes a disc's spin, so this asks for
     /// friction.
     pub rotation: bool,
-    /// Whether contacts can pull.
+    /// True where contacts can pull.
     pub cohesion: bool,
 }
 
@@ -100,7 +114,6 @@ impl Physics {
     /// Two axes, friction, rotation and cohesion.
     pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
 
-    /// Checks that the parts fit each other.
     pub(crate) fn validate(&self) -> Result<()> {
         match (self.axes, self.friction, self.rotation) {
             (1 | 2, false, true) => {

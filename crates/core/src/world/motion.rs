@@ -118,30 +118,22 @@ impl Motion {
         }
     }
 
-    /// Whether they turn round a pivot.
+    /// True where they turn round a pivot.
     pub(super) fn turns(&self) -> bool {
-        use MotionCourse::{AngleTable, Rotation, Swing};
-        matches!(&self.course, Some(Rotation { .. } | Swing { .. } | AngleTable { .. }))
+        self.course.as_ref().is_some_and(|course| course.pivot().is_some())
     }
 
-    /// Whether a course along a line, or a force, leads them along an axis: x is 0, y is 1.
+    /// True where a course along a line, or a force, leads them along an axis: x is 0, y is 1.
     pub(super) fn goes_along(&self, axis: usize) -> bool {
-        if self.drive.as_ref().is_some_and(|drive| drive.direction[axis] != 0.0) {
-            return true;
-        }
-        match &self.course {
-            Some(MotionCourse::Straight { direction, .. }) => direction[axis] != 0.0,
-            Some(MotionCourse::Sine { amplitude, .. }) => amplitude[axis] != 0.0,
-            Some(MotionCourse::Table { offsets, .. }) => {
-                offsets.iter().any(|offset| offset[axis] != offsets[0][axis])
+        self.drive.as_ref().is_some_and(|drive| drive.direction[axis] != 0.0)
+            || match &self.course {
+                Some(MotionCourse::Straight { direction: along, .. })
+                | Some(MotionCourse::Sine { amplitude: along, .. }) => along[axis] != 0.0,
+                Some(MotionCourse::Table { offsets, .. }) => {
+                    offsets.iter().any(|offset| offset[axis] != offsets[0][axis])
+                }
+                _ => false,
             }
-            Some(
-                MotionCourse::Rotation { .. }
-                | MotionCourse::Swing { .. }
-                | MotionCourse::AngleTable { .. },
-            )
-            | None => false,
-        }
     }
 
     /// Takes note that they have gone on for `secs`, by `carry`.
@@ -161,6 +153,16 @@ impl Motion {
 }
 
 impl MotionCourse {
+    /// What it goes round, m.
+    pub(super) fn pivot(&self) -> Option<DVec2> {
+        match self {
+            Self::Rotation { pivot, .. }
+            | Self::Swing { pivot, .. }
+            | Self::AngleTable { pivot, .. } => Some(*pivot),
+            Self::Straight { .. } | Self::Sine { .. } | Self::Table { .. } => None,
+        }
+    }
+
     /// The mean velocity from `elapsed` on, for `secs`.
     fn velocity_in(&self, elapsed: f64, secs: f64) -> RigidVelocity {
         let times = [elapsed, elapsed + secs];
@@ -220,7 +222,7 @@ where
 /// What drives the bodies of a motion along an axis, and what they have against it. Weight is no part of it.
 ///
 /// Its state is in itself: `speed` is that of the end of the last step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
     /// Along which vector; its length means nothing.
@@ -293,13 +295,13 @@ pub(crate) struct Carry {
     pub by: DVec2,
     /// rad.
     pub angle: f64,
-    pivot: DVec2,
+    /// m.
+    pub pivot: DVec2,
     /// (cos, sin) of the angle.
     turn: DVec2,
 }
 
 impl RigidVelocity {
-    /// That of a body which stays.
     pub(crate) const NONE: Self = Self { velocity: DVec2::ZERO, spin: 0.0, pivot: DVec2::ZERO };
 
     pub(super) fn straight(velocity: DVec2) -> Self {
@@ -316,12 +318,10 @@ impl RigidVelocity {
         if self.spin == 0.0 { self.velocity } else { self.spin * (place - self.pivot).perp() }
     }
 
-    /// Whether the body does not stay.
     pub(crate) fn moves(&self) -> bool {
         self.velocity != DVec2::ZERO || self.spin != 0.0
     }
 
-    /// The way in `secs`.
     pub(crate) fn carry(&self, secs: f64) -> Carry {
         let angle = secs * self.spin;
         let (sin, cos) = angle.sin_cos();
@@ -349,14 +349,9 @@ impl Carry {
         self.by.length() + self.angle.abs() * reach
     }
 
-    /// Whether it brings anything anywhere.
+    /// True where it brings anything anywhere.
     pub(crate) fn goes(&self) -> bool {
         self.by != DVec2::ZERO || self.angle != 0.0
-    }
-
-    /// The pivot, m.
-    pub(crate) fn pivot(&self) -> DVec2 {
-        self.pivot
     }
 }
 
@@ -367,17 +362,9 @@ mod tests {
     #[test]
     fn a_table_is_even_between_its_rows_and_stays_beyond_them() {
         let (times, values) = ([1.0, 2.0, 4.0], [10.0, 20.0, 0.0]);
-        for (time, value) in [
-            (0.0, 10.0),
-            (1.0, 10.0),
-            (1.5, 15.0),
-            (2.0, 20.0),
-            (3.0, 10.0),
-            (4.0, 0.0),
-            (9.0, 0.0),
-        ] {
-            assert_eq!(at_time(&times, &values, time), value, "at {time} s");
-        }
+        let looked_at = [0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 9.0];
+        let found = looked_at.map(|time| at_time(&times, &values, time));
+        assert_eq!(found, [10.0, 10.0, 15.0, 20.0, 10.0, 0.0, 0.0]);
         assert_eq!(at_time(&[1.0], &[7.0], 0.0), 7.0);
         assert_eq!(at_time(&[1.0], &[7.0], 2.0), 7.0);
     }

@@ -1,13 +1,15 @@
 //! Whether motions of a scene, and what drives them, are such as bodies can have.
 
+use std::fmt::Display;
+
 use glam::DVec2;
 
 use super::{Boundary, Drive, Motion, MotionCourse, Periodic};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 
 /// Checks motions against the boundaries, the number of fixed discs, the number of axes and the borders that they are
 /// for.
-pub(crate) fn check_motions(
+pub(super) fn check_motions(
     motions: &[Motion],
     boundaries: &[Boundary],
     fixed_discs: usize,
@@ -41,7 +43,7 @@ pub(crate) fn check_motions(
         }
         check_numbers(motion, &field)?;
         check_drive(motion, &field, periodic)?;
-        if axes == 1 && !stays_on_line(motion) {
+        if axes == 1 && (motion.turns() || motion.goes_along(1) || motion.surface_speed != 0.0) {
             let allowed = "along the x axis where physics.axes is 1";
             return Err(Error::value(field, "off the x axis", allowed));
         }
@@ -49,7 +51,7 @@ pub(crate) fn check_motions(
     Ok(())
 }
 
-/// Whether what drives a motion goes with its course.
+/// Checks that what drives a motion goes with its course.
 fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Result<()> {
     /// Cosine of two directions that are perpendicular but for rounding.
     const PERPENDICULAR: f64 = 1e-9;
@@ -72,55 +74,51 @@ fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Resu
 }
 
 fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
-    let finite = |name: &str, value: f64| match value.is_finite() {
+    let check = |is_sound: bool, name: &str, value: &dyn Display, allowed: &str| match is_sound {
         true => Ok(()),
-        false => Err(Error::value(format!("{field}.{name}"), value, "finite")),
+        false => Err(Error::value(format!("{field}.{name}"), value, allowed)),
     };
-    let finite_point = |name: &str, value: DVec2| match value.is_finite() {
-        true => Ok(()),
-        false => Err(Error::value(format!("{field}.{name}"), value, "finite")),
-    };
-    let least = |name: &str, value: f64| match value >= 0.0 && value.is_finite() {
-        true => Ok(()),
-        false => Err(Error::value(format!("{field}.{name}"), value, "a finite number ≥ 0")),
+    let finite = |name: &str, value: f64| check(value.is_finite(), name, &value, "finite");
+    let finite_point = |name: &str, value: DVec2| check(value.is_finite(), name, &value, "finite");
+    let least = |name: &str, value: f64| {
+        check(value >= 0.0 && value.is_finite(), name, &value, "a finite number ≥ 0")
     };
     finite("surface_speed", motion.surface_speed)?;
     least("elapsed_secs", motion.elapsed_secs)?;
-    match &motion.course {
-        None => Ok(()),
-        Some(MotionCourse::Straight { direction, speed, travel }) => {
+    let Some(course) = &motion.course else { return Ok(()) };
+    if let Some(pivot) = course.pivot() {
+        finite_point("course.pivot", pivot)?;
+    }
+    let table = format!("{field}.course");
+    match course {
+        MotionCourse::Straight { direction, speed, travel } => {
             let length = direction.length();
-            if !(length > 0.0 && length.is_finite()) {
-                let field = format!("{field}.course.direction");
-                return Err(Error::value(field, direction, "finite and not 0"));
-            }
+            let is_sound = length > 0.0 && length.is_finite();
+            check(is_sound, "course.direction", direction, "finite and not 0")?;
             finite("course.speed", *speed)?;
             least("course.travel", travel.unwrap_or(0.0))
         }
-        Some(MotionCourse::Rotation { pivot, rate, travel }) => {
-            finite_point("course.pivot", *pivot)?;
+        MotionCourse::Rotation { rate, travel, .. } => {
             finite("course.rate", *rate)?;
             least("course.travel", travel.unwrap_or(0.0))
         }
-        Some(MotionCourse::Sine { amplitude, frequency_hz, phase }) => {
+        MotionCourse::Sine { amplitude, frequency_hz, phase } => {
             finite_point("course.amplitude", *amplitude)?;
             least("course.frequency_hz", *frequency_hz)?;
             finite("course.phase", *phase)
         }
-        Some(MotionCourse::Swing { pivot, amplitude, frequency_hz, phase }) => {
-            finite_point("course.pivot", *pivot)?;
+        MotionCourse::Swing { amplitude, frequency_hz, phase, .. } => {
             finite("course.amplitude", *amplitude)?;
             least("course.frequency_hz", *frequency_hz)?;
             finite("course.phase", *phase)
         }
-        Some(MotionCourse::Table { times_secs, offsets }) => {
+        MotionCourse::Table { times_secs, offsets } => {
             let finite = offsets.iter().map(|offset| offset.is_finite());
-            check_table(&format!("{field}.course"), times_secs, "offsets", finite)
+            check_table(&table, times_secs, "offsets", finite)
         }
-        Some(MotionCourse::AngleTable { pivot, times_secs, angles }) => {
-            finite_point("course.pivot", *pivot)?;
+        MotionCourse::AngleTable { times_secs, angles, .. } => {
             let finite = angles.iter().map(|angle| angle.is_finite());
-            check_table(&format!("{field}.course"), times_secs, "angles", finite)
+            check_table(&table, times_secs, "angles", finite)
         }
     }
 }
@@ -144,29 +142,9 @@ pub(super) fn check_table(
         }
     }
     for (index, finite) in values.enumerate() {
-        if !finite {
-            return Err(Error::value(format!("{field}.{name}[{index}]"), "not finite", "finite"));
-        }
+        error::check(finite, format!("{field}.{name}[{index}]"), "not finite", "finite")?;
     }
     Ok(())
-}
-
-fn stays_on_line(motion: &Motion) -> bool {
-    let stays = match &motion.course {
-        None => true,
-        Some(MotionCourse::Straight { direction, .. }) => direction.y == 0.0,
-        Some(MotionCourse::Sine { amplitude, .. }) => amplitude.y == 0.0,
-        Some(MotionCourse::Table { offsets, .. }) => {
-            offsets.iter().all(|offset| offset.y == offsets[0].y)
-        }
-        Some(
-            MotionCourse::Rotation { .. }
-            | MotionCourse::Swing { .. }
-            | MotionCourse::AngleTable { .. },
-        ) => false,
-    };
-    let is_driven_off = motion.drive.as_ref().is_some_and(|drive| drive.direction.y != 0.0);
-    stays && motion.surface_speed == 0.0 && !is_driven_off
 }
 
 impl Drive {

@@ -2,16 +2,14 @@
 
 use crate::error::{Error, Result};
 use crate::number::is_zero;
-use crate::setting::{Group, settings, words};
+use crate::setting::{settings, words};
 
 words! {
     /// Which part of the normal force bounds friction (the paper leaves both readings open).
     #[derive(Default)]
     pub enum FrictionCone {
-        /// |T| ≤ μ (N + C₀): the cone's apex is at −C₀.
         #[default]
         Shifted = "shifted", "|T| ≤ μ (N + C₀): the cone's apex is at −C₀";
-        /// |T| ≤ μ max(N, 0).
         Compressive = "compressive", "|T| ≤ μ max(N, 0)";
     }
 }
@@ -33,10 +31,7 @@ settings! {
     /// The default is the paper's scheme at Δt = 1e-3 s, with contacts that neither pull, bounce nor rub.
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
         /// Bond number: C₀ = Bond · m_ij · g (paper eq. 10).
-        bond: f64 = 0.0, {
-            name: "bond",
-            value_name: "BOND",
-            help: "Bond number: cohesion force over effective weight, at least 0",
+        bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force over effective weight, at least 0", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
@@ -49,10 +44,7 @@ settings! {
             }),
         }
         /// Δt, s.
-        time_step_secs: f64 = 1e-3, {
-            name: "dt",
-            value_name: "SECONDS",
-            help: "Time step, seconds",
+        time_step_secs: f64 = 1e-3, "dt" ("SECONDS"), "Time step, seconds", {
             allowed: "a finite number of seconds > 0",
             holds: |value| value > 0.0 && value.is_finite(),
             control: Some(Control {
@@ -66,10 +58,7 @@ settings! {
             }),
         }
         /// ρ, 0 … 1.
-        restitution: f64 = 0.0, {
-            name: "rho",
-            value_name: "RHO",
-            help: "Restitution, 0 to 1",
+        restitution: f64 = 0.0, "rho" ("RHO"), "Restitution, 0 to 1", {
             allowed: "between 0 and 1",
             holds: |value| (0.0..=1.0).contains(&value),
             control: Some(Control {
@@ -80,10 +69,7 @@ settings! {
             }),
         }
         /// μ.
-        friction: f64 = 0.0, {
-            name: "mu",
-            value_name: "MU",
-            help: "Friction, at least 0",
+        friction: f64 = 0.0, "mu" ("MU"), "Friction, at least 0", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
             needs: Needs::Friction,
@@ -95,12 +81,9 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// Which part of the normal force bounds friction.
         #[serde(default)]
-        cone: FrictionCone = FrictionCone::Shifted, {
-            name: "cone",
-            value_name: "CONE",
-            help: "Which part of the normal force bounds friction",
+        cone: FrictionCone = FrictionCone::Shifted, "cone" ("CONE"),
+            "Which part of the normal force bounds friction", {
             needs: Needs::Friction,
         }
         /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
@@ -108,21 +91,17 @@ settings! {
         /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step
         /// then has no solution. Below about 2 g·Δt it stands for no bounce that anyone could see.
         #[serde(default)]
-        restitution_threshold: f64 = 0.0, {
-            name: "restitution-threshold",
-            value_name: "X",
-            help: "Contacts slower than this many g·dt do not bounce; 0 in the paper's scheme, 2 lets \
-                   nearly every step be solved",
+        restitution_threshold: f64 = 0.0, "restitution-threshold" ("X"),
+            "Contacts slower than this many g·dt do not bounce; 0 in the paper's scheme, 2 lets \
+             nearly every step be solved", {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
         /// δ_c of the law `range`, in mean diameters. Within the largest no third grain fits between
         /// two bonded ones.
         #[serde(default = "default_debonding_distance")]
-        debonding_distance: f64 = DEBONDING_DISTANCE, {
-            name: "debonding-distance",
-            value_name: "D",
-            help: "Debonding distance of the stepper range, in mean diameters",
+        debonding_distance: f64 = DEBONDING_DISTANCE, "debonding-distance" ("D"),
+            "Debonding distance of the stepper range, in mean diameters", {
             allowed: "above 0 and at most 0.1 diameters",
             holds: |value| value > 0.0 && value <= 0.1,
             needs: Needs::Cohesion,
@@ -135,13 +114,10 @@ settings! {
                 logarithmic: true,
             }),
         }
-        /// By which angle uniform gravity is turned against how the scene has it, degrees, positive anticlockwise.
         #[serde(default, skip_serializing_if = "is_zero")]
-        tilt: f64 = 0.0, {
-            name: "tilt",
-            value_name: "DEGREES",
-            help: "Angle by which gravity is turned against how the scene has it, degrees: above 0 towards the right \
-                   where it points down",
+        tilt: f64 = 0.0, "tilt" ("DEGREES"),
+            "Angle by which gravity is turned against how the scene has it, degrees: above 0 towards the right \
+             where it points down", {
             allowed: "between -180 and 180 degrees",
             holds: |value| (-180.0..=180.0).contains(&value),
             needs: Needs::Direction,
@@ -154,12 +130,9 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// k of the stepper `dem`, N/m; 0 leaves it to the stepper, which takes it from the weight of the pile.
         #[serde(default, skip_serializing_if = "is_zero")]
-        stiffness: f64 = 0.0, {
-            name: "stiffness",
-            value_name: "K",
-            help: "Stiffness of the springs of the stepper dem, N/m; 0 takes it from the pile's weight",
+        stiffness: f64 = 0.0, "stiffness" ("K"),
+            "Stiffness of the springs of the stepper dem, N/m; 0 takes it from the pile's weight", {
             allowed: "a finite number of N/m ≥ 0; 0 takes it from the pile's weight",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
@@ -175,10 +148,8 @@ settings! {
         /// ζ of the stepper `dem`: of a contact by itself, in critical damping; 0 takes that which ρ asks for.
         /// Nothing is lost by that: no damping is ρ = 1.
         #[serde(default, skip_serializing_if = "is_zero")]
-        damping_ratio: f64 = 0.0, {
-            name: "damping-ratio",
-            value_name: "ZETA",
-            help: "Damping ratio of the contacts of the stepper dem, in place of rho; 0 takes it from rho",
+        damping_ratio: f64 = 0.0, "damping-ratio" ("ZETA"),
+            "Damping ratio of the contacts of the stepper dem, in place of rho; 0 takes it from rho", {
             allowed: "a finite number ≥ 0; 0 takes it from rho",
             holds: |value| value >= 0.0 && value.is_finite(),
             control: Some(Control {
@@ -190,12 +161,9 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// Substeps of a stepper that cuts every step; 0 leaves their number to it.
         #[serde(default, skip_serializing_if = "is_zero")]
-        substeps: u32 = 0, {
-            name: "substeps",
-            value_name: "N",
-            help: "Substeps of a step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable",
+        substeps: u32 = 0, "substeps",
+            "Substeps of a step; 0 takes 4 for tgs-soft, 1 for avbd, and as many as keep dem stable", {
             allowed: "at most 100000; 0 leaves it to the stepper",
             holds: |value| value <= MAX_SUBSTEPS,
             control: Some(Control {
@@ -214,11 +182,6 @@ fn default_debonding_distance() -> f64 {
 }
 
 impl Parameters {
-    /// Checks every number against its range.
-    pub(crate) fn validate(&self) -> Result<()> {
-        self.validate_each()
-    }
-
     /// The same numbers with another Δt, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { time_step_secs, ..self }

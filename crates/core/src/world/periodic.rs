@@ -168,7 +168,7 @@ fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3]
 }
 
 impl Periodic {
-    /// Whether the cells above and below are not straight above and below, or do not stay there.
+    /// True where the cells above and below are not straight above and below, or do not stay there.
     #[inline(always)]
     pub fn is_sheared(self) -> bool {
         self.shear_rate != 0.0 || self.shift != 0.0

@@ -53,7 +53,7 @@ impl Periodic {
         Ok(())
     }
 
-    /// Whether there is nothing that borders which shear would tear, and all that they need.
+    /// Checks that there is nothing that borders which shear would tear, and all that they need.
     fn check_shear(self, fixed_bodies: usize, physics: Physics) -> Result<()> {
         let Self { shear_rate, shift, .. } = self;
         let numbers = [("periodic.shear_rate", shear_rate), ("periodic.shift", shift)];

@@ -44,6 +44,9 @@ pub struct SavedState {
     pub simulation: Simulation,
     /// Sums over its steps so far.
     pub tally: Tally,
+    /// What a run that goes on in the folder of its own keeps besides; it means something to that alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub of_run: Vec<u8>,
 }
 
 impl SavedState {
@@ -51,7 +54,7 @@ impl SavedState {
     /// where nobody wants them.
     pub fn new(mut scene: Scene, simulation: Simulation, tally: Tally) -> Self {
         scene.set_settings(*simulation.settings());
-        Self { scene, simulation, tally }
+        Self { scene, simulation, tally, of_run: Vec::new() }
     }
 
     /// Writes it to a file, which is there as a whole or not at all.
@@ -86,7 +89,7 @@ impl SavedState {
         SEAL.read(bytes, path.as_ref())
     }
 
-    /// True if a file is one of these, of whatever version.
+    /// Whether a file is one of these, of whatever version.
     pub fn is_in(path: &Path) -> bool {
         SEAL.is_on(path)
     }

@@ -142,7 +142,7 @@ const CONTACTS: &str = "contacts";
 const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 
 const STATUSES: &[&str] =
-    &[ContactStatus::Open.word(), ContactStatus::Stick.word(), ContactStatus::Slip.word()];
+    &[ContactStatus::Open.name(), ContactStatus::Stick.name(), ContactStatus::Slip.name()];
 
 struct ContactTableRow {
     step: u64,

@@ -1,24 +1,28 @@
 //! Recordings as text: a growing table of each kind of row, `csv/grains.csv` and so on.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind::NotFound, Write};
 use std::path::{Path, PathBuf};
 
 use super::columns::empty_tables_of_frames;
 use super::format::{Format, Frame, RunFacts};
-use super::recording_folder::make_folder;
+use super::recording_folder::{make_folder, remove};
 use super::table::{Table, Values};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::GrowingFile;
 use crate::sim::Observables;
 
+/// Where the tables are.
 pub(super) const FOLDER: &str = "csv";
 
+/// Writes text.
 pub(super) struct Csv {
     of_frames: [TextTable; 4],
     steps: TextTable,
 }
 
 impl Csv {
+    /// Starts, or goes on with what is there.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
@@ -46,6 +50,13 @@ impl Format for Csv {
         let mut tables = self.of_frames.iter_mut().chain([&mut self.steps]);
         tables.try_for_each(TextTable::finish)
     }
+
+    fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()> {
+        for table in &mut self.of_frames {
+            table.roll_back(last_frame)?;
+        }
+        self.steps.roll_back(Some(step)).map(drop)
+    }
 }
 
 /// What begins a line that is a comment.
@@ -56,12 +67,22 @@ pub(super) struct TextTable {
     path: PathBuf,
     /// Comments, and the line of names.
     head: String,
+    names: String,
     file: Option<GrowingFile>,
     rows: Vec<u8>,
 }
 
+/// What of a table stays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct KeptRows {
+    pub rows: u64,
+    /// Of the last row.
+    pub step: Option<u64>,
+}
+
 impl TextTable {
-    /// A table with the columns of `table`. The file begins with the first rows, even if these are none.
+    /// A table with the columns of `table`. The file begins with the first rows, even if these are none, or is gone on with
+    /// ([`TextTable::roll_back`]).
     pub(super) fn new(path: PathBuf, run: &RunFacts, table: &Table) -> Self {
         let names: Vec<_> = table.columns.iter().map(|column| column.name).collect();
         let names = names.join(",");
@@ -70,14 +91,15 @@ impl TextTable {
         let columns = columns.map(|column| format!("# column {}\n", column.described(column.name)));
         let comments: String = facts.chain(columns).collect();
         let head = format!("{comments}{names}\n");
-        Self { path, head, file: None, rows: Vec::new() }
+        Self { path, head, names, file: None, rows: Vec::new() }
     }
 
+    /// Adds rows.
     pub(super) fn add(&mut self, table: &Table) -> Result<()> {
         let mut rows = std::mem::take(&mut self.rows);
         rows.clear();
         write_rows(&mut rows, table);
-        self.begun()?.add_rows(&rows)?;
+        self.begun()?.add(&rows)?;
         self.rows = rows;
         Ok(())
     }
@@ -88,7 +110,7 @@ impl TextTable {
             Some(file) => Ok(file),
             none => {
                 let mut file = GrowingFile::start(self.path.clone())?;
-                file.add_rows(self.head.as_bytes())?;
+                file.add(self.head.as_bytes())?;
                 Ok(none.insert(file))
             }
         }
@@ -99,6 +121,64 @@ impl TextTable {
         self.begun()?.sync();
         Ok(())
     }
+
+    /// Drops the rows after a step, or all, and a half row at the end.
+    pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
+        self.file = None;
+        let file = match File::open(&self.path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == NotFound => return Ok(KeptRows::default()),
+            Err(error) => return Err(Error::file(&self.path, error)),
+        };
+        let (kept, whole) = self.rows_until(step, BufReader::new(file))?;
+        if kept.rows == 0 {
+            remove(&self.path)?;
+        } else {
+            self.file = Some(GrowingFile::go_on(self.path.clone(), whole)?);
+        }
+        Ok(kept)
+    }
+
+    /// The rows up to a step, and how many bytes reach to their end.
+    fn rows_until(&self, step: Option<u64>, mut file: impl BufRead) -> Result<(KeptRows, u64)> {
+        let (mut kept, mut whole, mut number) = (KeptRows::default(), 0, 0);
+        let mut names_seen = false;
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            let read = file.read_until(b'\n', &mut line);
+            let length = read.map_err(|error| Error::file(&self.path, error))?;
+            number += 1;
+            let Some(text) = line.strip_suffix(b"\n") else { return Ok((kept, whole)) };
+            if names_seen {
+                let there = step_of(text).ok_or_else(|| self.refuse(number, text))?;
+                if Some(there) > step {
+                    return Ok((kept, whole));
+                }
+                kept = KeptRows { rows: kept.rows + 1, step: Some(there) };
+            } else if text.first() != Some(&COMMENT) {
+                if text != self.names.as_bytes() {
+                    return Err(self.refuse(number, text));
+                }
+                names_seen = true;
+            }
+            whole += length as u64;
+        }
+    }
+
+    fn refuse(&self, line: u64, found: &[u8]) -> Error {
+        let found = String::from_utf8_lossy(found);
+        let reason = format!(
+            "line {line} is '{found}', but must be of a table with the columns {}",
+            self.names
+        );
+        Error::file(&self.path, reason)
+    }
+}
+
+fn step_of(row: &[u8]) -> Option<u64> {
+    let step = row.split(|&byte| byte == b',').next()?;
+    str::from_utf8(step).ok()?.parse().ok()
 }
 
 fn write_rows(text: &mut Vec<u8>, table: &Table) {

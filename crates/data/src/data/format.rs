@@ -54,6 +54,7 @@ impl Frame {
         }
     }
 
+    /// All tables of a frame.
     pub(super) fn tables(&self) -> [&Table; 4] {
         [&self.grains, &self.contacts, &self.measures, &self.histograms]
     }
@@ -62,7 +63,7 @@ impl Frame {
 /// A way to write frames down. It is used by one thread, which is not the solver's.
 ///
 /// Whatever was written before stays readable whenever the program is killed. A format starts in a
-/// folder that has none of its files.
+/// folder that has none of its files, or, with [`Format::roll_back`] as the next call, in one that has.
 pub(super) trait Format: Send {
     /// Takes the next frame. Its memory must not grow with the number of frames.
     fn add(&mut self, frame: &Frame) -> Result<()>;
@@ -78,9 +79,14 @@ pub(super) trait Format: Send {
         Ok(())
     }
 
+    /// Ends the recording.
     fn finish(&mut self) -> Result<()> {
         self.flush()
     }
+
+    /// Drops what steps after `step` measured, and all frames after that of the step `last_frame`, or all that
+    /// there are, so that the run can go on from `step`.
+    fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()>;
 }
 
 /// What is written where nothing is said.
@@ -99,7 +105,7 @@ pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
     formats.map(|format| check_format(format).map(|()| format)).collect()
 }
 
-/// Fails where this build cannot write it.
+/// Whether this build can write it.
 ///
 /// # Errors
 /// Says what is missing.
@@ -113,6 +119,7 @@ pub fn check_format(format: FormatName) -> Result<()> {
     Err(Error::value("data-format", format.name(), allowed))
 }
 
+/// Starts, or goes on with what is there.
 pub(super) fn start_format(
     format: FormatName,
     folder: &Path,

@@ -7,21 +7,32 @@
 //! number.
 
 use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind::NotFound};
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
 use super::format::{Format, Frame, RunFacts};
-use super::recording_folder::make_folder;
+use super::recording_folder::{make_folder, remove};
 use super::table::{Column, Table, Values};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::GrowingFile;
 use crate::sim::{Moment, OtherBody};
 
+/// Where the dumps are.
 pub(super) const FOLDER: &str = "ovito";
 /// Those of grains and contacts.
 pub(super) const FILES: [&str; 2] = ["grains.dump", "contacts.dump"];
 
+/// Begins what is no frame yet. No reader knows such an item, and each skips it at the end of a file.
+const DRAFT: &str = "ITEM: DRAFT";
+/// What a line begins with that belongs to a draft, also to one of whose word a kill has left a part.
+const OF_A_DRAFT: &str = "ITEM: D";
+/// How the head of a frame begins, …
+const TIME: &str = "ITEM: TIME";
+/// … and what says its step.
+const STEP: &str = "ITEM: TIMESTEP";
 /// Columns of grains as dumps call them, in this order, and ours; all others follow as they are.
 const GRAIN_COLUMNS: [(&str, &str); 10] = [
     ("id", "id"),
@@ -45,69 +56,146 @@ const IN_WORDS: &str = "element";
 /// LAMMPS counts types from here.
 const FIRST_TYPE: u32 = 1;
 
+/// Writes dumps.
 pub(super) struct Lammps {
-    folder: PathBuf,
     facts: RunFacts,
+    grains: GrowingDump,
+    contacts: GrowingDump,
+}
+
+/// A dump that grows.
+struct GrowingDump {
+    path: PathBuf,
     /// From the first frame on.
-    dumps: Option<[GrowingFile; 2]>,
+    file: Option<GrowingFile>,
 }
 
 impl Lammps {
+    /// Starts, or goes on with what is there.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
-        Ok(Self { folder, facts: facts.clone(), dumps: None })
+        let [grains, contacts] =
+            FILES.map(|name| GrowingDump { path: folder.join(name), file: None });
+        Ok(Self { facts: facts.clone(), grains, contacts })
     }
 }
 
 impl Format for Lammps {
     fn add(&mut self, frame: &Frame) -> Result<()> {
-        let facts = self.dumps.is_none().then_some(&self.facts);
-        let texts = [grains(frame, facts), contacts(frame, facts)];
-        let dumps = match &mut self.dumps {
-            Some(dumps) => dumps,
-            none => {
-                let [grains, contacts] =
-                    FILES.map(|name| GrowingFile::start(self.folder.join(name)));
-                none.insert([grains?, contacts?])
-            }
-        };
-        dumps.iter_mut().zip(texts).try_for_each(|(dump, text)| dump.add_whole(text.as_bytes()))
+        self.grains.add(&grains(frame, &self.facts))?;
+        self.contacts.add(&contacts(frame, &self.facts))
     }
 
     fn finish(&mut self) -> Result<()> {
-        self.dumps.iter().flatten().for_each(GrowingFile::sync);
+        let files = [&self.grains.file, &self.contacts.file];
+        files.into_iter().flatten().for_each(GrowingFile::sync);
         Ok(())
+    }
+
+    fn roll_back(&mut self, _step: u64, last_frame: Option<u64>) -> Result<()> {
+        self.grains.roll_back(last_frame)?;
+        self.contacts.roll_back(last_frame)
     }
 }
 
+impl GrowingDump {
+    fn add(&mut self, text: &FrameText) -> Result<()> {
+        match &mut self.file {
+            Some(file) => file.add_at_once(DRAFT, &text.head, &text.rows),
+            none => {
+                let file = none.insert(GrowingFile::start(self.path.clone())?);
+                file.add_at_once(DRAFT, &(text.front.clone() + &text.head), &text.rows)
+            }
+        }
+    }
+
+    fn roll_back(&mut self, last_frame: Option<u64>) -> Result<()> {
+        self.file = None;
+        match length_until(&self.path, last_frame)? {
+            None => Ok(()),
+            Some(0) => remove(&self.path),
+            Some(length) => {
+                self.file = Some(GrowingFile::go_on(self.path.clone(), length)?);
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Length of the frames of a dump of ours up to a step, bytes, or of none; none where there is no file.
+fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
+    let file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == NotFound => return Ok(None),
+        Err(error) => return Err(Error::file(path, error)),
+    };
+    let mut lines = BufReader::new(file);
+    let mut line = String::new();
+    let (mut line_start, mut frame_start) = (0, None);
+    let mut says_step = false;
+    loop {
+        line.clear();
+        let length = lines.read_line(&mut line).map_err(|error| Error::file(path, error))?;
+        if length == 0 || line.starts_with(OF_A_DRAFT) {
+            return Ok(Some(line_start));
+        }
+        let text = line.trim_end();
+        if says_step {
+            let there = text.parse::<u64>().map_err(|_| {
+                let reason = format!("the step is '{text}', but must be a whole number ≥ 0");
+                Error::file(path, reason)
+            })?;
+            if Some(there) > step {
+                return Ok(frame_start);
+            }
+        }
+        says_step = text == STEP;
+        if text == TIME {
+            // What stands ahead of the first frame goes with it.
+            frame_start = Some(frame_start.map_or(0, |_| line_start));
+        }
+        line_start += length as u64;
+    }
+}
+
+/// The text of a frame.
+struct FrameText {
+    /// Ahead of the first frame: units, and what is to be known of the run. Readers skip items that
+    /// they do not know there, and nowhere else.
+    pub front: String,
+    /// All up to the names of the columns.
+    pub head: String,
+    pub rows: String,
+}
+
 /// A row a grain, then a row a fixed disc.
-fn grains(frame: &Frame, facts: Option<&RunFacts>) -> String {
+fn grains(frame: &Frame, facts: &RunFacts) -> FrameText {
     let rows = 0..frame.grains.len();
-    dump("ATOMS", frame, facts, columns(&frame.grains, &GRAIN_COLUMNS), rows)
+    dump("ATOMS", frame, facts, (&frame.grains, &GRAIN_COLUMNS), rows)
 }
 
 /// A row a contact between two discs.
-fn contacts(frame: &Frame, facts: Option<&RunFacts>) -> String {
+fn contacts(frame: &Frame, facts: &RunFacts) -> FrameText {
     let contacts = frame.moment.contacts.iter().enumerate();
     let between_discs =
         contacts.filter(|(_, contact)| !matches!(contact.other, OtherBody::Boundary(_)));
     let rows: Vec<usize> = between_discs.map(|(row, _)| row).collect();
-    dump("BONDS", frame, facts, columns(&frame.contacts, &CONTACT_COLUMNS), rows.into_iter())
+    dump("BONDS", frame, facts, (&frame.contacts, &CONTACT_COLUMNS), rows.into_iter())
 }
 
-/// The text of a frame; the first one has the `facts` ahead of it.
 fn dump(
     label: &str,
     frame: &Frame,
-    facts: Option<&RunFacts>,
-    columns: Vec<(&'static str, &Column)>,
+    facts: &RunFacts,
+    (table, first): (&Table, &[(&'static str, &str)]),
     rows: impl ExactSizeIterator<Item = usize>,
-) -> String {
-    let mut text = facts.map_or_else(String::new, |facts| front(facts, &columns));
-    text += &head(&frame.moment, label, rows.len());
-    columns.iter().for_each(|(name, _)| text.extend([" ", name]));
-    text.push('\n');
+) -> FrameText {
+    let columns = columns(table, first);
+    let mut head = head(&frame.moment, label, rows.len());
+    columns.iter().for_each(|(name, _)| head.extend([" ", name]));
+    head.push('\n');
+    let mut text = String::new();
     for row in rows {
         for (place, (name, column)) in columns.iter().enumerate() {
             if place > 0 {
@@ -117,7 +205,7 @@ fn dump(
         }
         text.push('\n');
     }
-    text
+    FrameText { front: front(facts, &columns), head, rows: text }
 }
 
 fn columns<'a>(
@@ -152,9 +240,8 @@ fn first_code(name: &str) -> u32 {
     if name == "type" { FIRST_TYPE } else { 0 }
 }
 
-/// Units, a line of what is known of the run and one of what the columns are. Readers skip items that they do not
-/// know there, and nowhere else. OVITO looks for the first frame in the first 20 lines alone, and takes a file for none
-/// of its formats if it is not there.
+/// A line of what is known of the run and one of what the columns are: OVITO looks for the first frame in the
+/// first 20 lines alone, and takes a file for none of its formats if it is not there.
 fn front(facts: &RunFacts, columns: &[(&'static str, &Column)]) -> String {
     let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
     let columns = columns.iter().filter(|(name, _)| *name != IN_WORDS);

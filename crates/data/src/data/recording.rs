@@ -1,13 +1,13 @@
 //! A recording: what a run tells of itself goes to files while it goes on.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
 use super::columns::{FrameRow, frames};
-use super::csv::TextTable;
+use super::csv::{KeptRows, TextTable};
 use super::format::{Format, Frame, RunFacts, check_format, start_format};
-use super::recording_folder::{FRAMES, check_recording_folder, remove_recording, write_manifest};
+use super::recording_folder::{FRAMES, RecordingFolder, check_manifest, write_manifest};
 use crate::error::Result;
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{Moment, Observables, Simulation};
@@ -44,13 +44,21 @@ const FRAMES_AT_ONCE: usize = 8;
 /// # Ok::<(), slump_core::error::Error>(())
 /// ```
 pub struct Recording {
-    folder: PathBuf,
+    folder: RecordingFolder,
     /// Rows that wait for the next frame.
     rows: Vec<Observables>,
     frames: u64,
+    /// Step of the last frame that was there when it was gone on with.
+    last_step: Option<u64>,
     schedule: Option<FrameSchedule>,
     /// None once the recording has ended, be it by an error.
-    writer: Option<(SyncSender<RecordingMessage>, JoinHandle<Result<()>>)>,
+    writer: Option<WriterThread>,
+}
+
+/// The thread that writes.
+struct WriterThread {
+    sender: SyncSender<RecordingMessage>,
+    thread: JoinHandle<Result<()>>,
 }
 
 impl Recording {
@@ -58,30 +66,67 @@ impl Recording {
     /// `overwrite` and refused without.
     ///
     /// # Errors
-    /// Where the folder cannot be written to, or another recording lies there.
+    /// Where the folder cannot be written to, or another recording is being written or lies there.
     pub fn start(
         folder: &Path,
         formats: &[FormatName],
         facts: &RunFacts,
         overwrite: bool,
     ) -> Result<Self> {
-        check_recording_folder(folder, overwrite)?;
+        Self::start_in(RecordingFolder::of(folder, overwrite)?, formats, facts)
+    }
+
+    /// Starts a recording in a folder that has been taken.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written to.
+    pub fn start_in(
+        folder: RecordingFolder,
+        formats: &[FormatName],
+        facts: &RunFacts,
+    ) -> Result<Self> {
         formats.iter().try_for_each(|&format| check_format(format))?;
-        if overwrite {
-            remove_recording(folder)?;
-        }
+        folder.clear()?;
         // First of all: it is by this that others know a recording.
-        write_manifest(folder, formats, facts)?;
-        let writer = FormatsWriter::start(folder, formats, facts)?;
+        write_manifest(folder.path(), formats, facts)?;
+        let writer = FormatsWriter::start(folder.path(), formats, facts)?;
+        Ok(Self::with(folder, writer, 0, None))
+    }
+
+    /// Goes on with the recording in a folder, for a run that goes on from a step: what was recorded after
+    /// it is dropped. Without a recording there one is started.
+    ///
+    /// # Errors
+    /// As [`Recording::start`], and where a file there is not what this version writes.
+    pub fn go_on(
+        folder: &Path,
+        formats: &[FormatName],
+        facts: &RunFacts,
+        step: u64,
+    ) -> Result<Self> {
+        let folder = RecordingFolder::to_go_on(folder)?;
+        check_manifest(folder.path(), formats)?;
+        let mut writer = FormatsWriter::start(folder.path(), formats, facts)?;
+        let kept = writer.roll_back(step)?;
+        write_manifest(folder.path(), formats, facts)?;
+        Ok(Self::with(folder, writer, kept.rows, kept.step))
+    }
+
+    fn with(
+        folder: RecordingFolder,
+        writer: FormatsWriter,
+        frames: u64,
+        last_step: Option<u64>,
+    ) -> Self {
         let (sender, messages) = sync_channel(MOST_WAITING);
         let thread = std::thread::spawn(move || writer.run(&messages));
-        let writer = Some((sender, thread));
-        Ok(Self { folder: folder.to_owned(), rows: Vec::new(), frames: 0, schedule: None, writer })
+        let writer = Some(WriterThread { sender, thread });
+        Self { folder, rows: Vec::new(), frames, last_step, schedule: None, writer }
     }
 
     /// Where it is.
     pub fn folder(&self) -> &Path {
-        &self.folder
+        self.folder.path()
     }
 
     /// Frames that it has been given.
@@ -95,7 +140,7 @@ impl Recording {
     /// Where something before could not be written.
     pub fn add_step(&mut self, observables: &Observables) -> Result<()> {
         self.rows.push(*observables);
-        let has_failed = self.writer.as_ref().is_some_and(|(_, thread)| thread.is_finished());
+        let has_failed = self.writer.as_ref().is_some_and(|writer| writer.thread.is_finished());
         if self.rows.len() < MOST_ROWS && !has_failed { Ok(()) } else { self.send_rows() }
     }
 
@@ -110,9 +155,14 @@ impl Recording {
         Ok(())
     }
 
-    /// Has frames made at the steps nearest to some times of the run, by [`Recording::add_if_due`].
-    pub fn at(mut self, times: Times) -> Self {
-        self.schedule = Some(FrameSchedule { times, next: 0 });
+    /// Has frames made at the steps nearest to some times of a run that is at this state, by
+    /// [`Recording::add_if_due`]. Where the recording is gone on with, it has those up to here.
+    pub fn at(mut self, times: Times, simulation: &Simulation) -> Self {
+        let mut schedule = FrameSchedule::new(times);
+        if self.last_step.is_some() {
+            schedule.is_due(simulation);
+        }
+        self.schedule = Some(schedule);
         self
     }
 
@@ -156,7 +206,7 @@ impl Recording {
 
     fn send(&mut self, message: RecordingMessage) -> Result<()> {
         match &self.writer {
-            Some((sender, _)) if sender.send(message).is_ok() => Ok(()),
+            Some(writer) if writer.sender.send(message).is_ok() => Ok(()),
             Some(_) => self.end(),
             None => Ok(()),
         }
@@ -164,7 +214,7 @@ impl Recording {
 
     /// Has the thread end, and tells what went wrong there, once.
     fn end(&mut self) -> Result<()> {
-        let Some((sender, thread)) = self.writer.take() else { return Ok(()) };
+        let Some(WriterThread { sender, thread }) = self.writer.take() else { return Ok(()) };
         drop(sender);
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     }
@@ -173,14 +223,16 @@ impl Recording {
 impl Drop for Recording {
     fn drop(&mut self) {
         // Before the folder is free for others. Whoever wants to know what went wrong calls `finish`.
-        if let Some((sender, thread)) = self.writer.take() {
+        if let Some(WriterThread { sender, thread }) = self.writer.take() {
             drop(sender);
             let _ = thread.join();
         }
     }
 }
 
+/// What a run tells its recording.
 enum RecordingMessage {
+    /// What some steps measured.
     Steps(Vec<Observables>),
     /// A frame, by the number of those before.
     Frame(u64, Box<Moment>),
@@ -197,11 +249,20 @@ struct FormatsWriter {
 }
 
 impl FormatsWriter {
+    /// Starts in a folder that has no recording, or goes on with the one that is there.
     fn start(folder: &Path, formats: &[FormatName], facts: &RunFacts) -> Result<Self> {
         let formats = formats.iter().map(|format| start_format(*format, folder, facts));
         let formats = formats.collect::<Result<_>>()?;
         let index = TextTable::new(folder.join(FRAMES), &RunFacts::default(), &frames(&[]));
         Ok(Self { formats, index, waiting: Vec::new() })
+    }
+
+    /// Drops what was recorded after a step, and frames that not every format has.
+    fn roll_back(&mut self, step: u64) -> Result<KeptRows> {
+        let kept = self.index.roll_back(Some(step))?;
+        let mut formats = self.formats.iter_mut();
+        formats.try_for_each(|format| format.roll_back(step, kept.step))?;
+        Ok(kept)
     }
 
     /// Writes what comes until no more can come. What fails ends the recording; what was written before
@@ -276,21 +337,28 @@ impl Times {
     }
 }
 
+/// The steps of frames.
 #[derive(Clone, Debug, PartialEq)]
 struct FrameSchedule {
     times: Times,
+    /// Number of the next time.
     next: usize,
 }
 
 impl FrameSchedule {
-    /// True if a frame is to be made of the present state. Steps are to be asked for in turn.
+    /// Frames at the steps nearest to some times.
+    fn new(times: Times) -> Self {
+        Self { times, next: 0 }
+    }
+
+    /// Whether a frame is to be made of the present state. Steps are to be asked for in turn.
     fn is_due(&mut self, simulation: &Simulation) -> bool {
         let latest_secs = simulation.time_secs() + 0.5 * simulation.parameters().time_step_secs;
         let step = simulation.observables().step;
         self.is_due_at(step, latest_secs, |secs| simulation.step_at(secs))
     }
 
-    /// True if one is due after a step that stands for all times up to `latest_secs`.
+    /// Whether one is due after a step that stands for all times up to `latest_secs`.
     fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
         let mut due = false;
         while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {
@@ -324,7 +392,7 @@ mod tests {
     use super::*;
 
     fn due(times: Times, time_step_secs: f64, until: u64) -> Vec<u64> {
-        let mut schedule = FrameSchedule { times, next: 0 };
+        let mut schedule = FrameSchedule::new(times);
         let step_at = |secs: f64| (secs / time_step_secs).round() as u64;
         let latest_secs = |step: u64| (step as f64 + 0.5) * time_step_secs;
         let is_due = |&step: &u64| schedule.is_due_at(step, latest_secs(step), step_at);

@@ -1,5 +1,5 @@
-//! The folder of a recording: which of its files are a recording's, and `data.json`, which says what a recording is made
-//! of.
+//! The folder of a recording: which of its files are a recording's, the lock by which it is one recording's alone,
+//! and `data.json`, which says what a recording is made of.
 
 use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::format::RunFacts;
 use super::table::{Column, Values};
 use super::{csv, lammps, vtk};
 use crate::error::{Error, Result};
-use crate::output::{check_writable, final_name, write_file};
+use crate::output::{FolderLock, Locked, check_writable, final_name, write_file};
 use crate::scene::FormatName;
 
 /// What a recording is made of.
@@ -23,28 +23,62 @@ const BEGINNING_OF_PART: &str = "part-";
 /// … and ends with.
 const ENDING_OF_PART: &str = ".parquet";
 
-/// Checks that a recording can go to a folder, which is made where it is not there.
-///
-/// # Errors
-/// Where it cannot be written to, or, without `overwrite`, an earlier recording is there.
-pub fn check_recording_folder(path: &Path, overwrite: bool) -> Result<()> {
-    check_writable("data", path)?;
-    if !overwrite && let Some(first) = files_of_a_recording(path)?.first() {
-        let name = first.strip_prefix(path).unwrap_or(first).display();
-        let allowed = format!(
-            "a folder without an earlier recording ({name} is there), unless --overwrite is given to \
-             remove it"
-        );
-        return Err(Error::value("data", path.display(), allowed));
-    }
-    Ok(())
+/// A folder that no other recording is written to while this is there.
+pub struct RecordingFolder {
+    path: PathBuf,
+    overwrite: bool,
+    _lock: FolderLock,
 }
 
-/// Removes what is there of a recording.
-pub(super) fn remove_recording(path: &Path) -> Result<()> {
-    let remove =
-        |file: &PathBuf| std::fs::remove_file(file).map_err(|error| Error::file(file, error));
-    files_of_a_recording(path)?.iter().try_for_each(remove)
+impl RecordingFolder {
+    /// Makes the folder where it is not there, and takes it.
+    ///
+    /// # Errors
+    /// Where it cannot be written to, another recording is being written to it, or, without `overwrite`, an
+    /// earlier one is there.
+    pub fn of(path: &Path, overwrite: bool) -> Result<Self> {
+        let folder = Self::lock(path)?;
+        if !overwrite && let Some(first) = files_of_a_recording(path)?.first() {
+            let name = first.strip_prefix(path).unwrap_or(first).display();
+            let allowed = format!(
+                "a folder without an earlier recording ({name} is there), unless --overwrite is given to \
+                 remove it"
+            );
+            return Err(Error::value("data", path.display(), allowed));
+        }
+        Ok(Self { overwrite, ..folder })
+    }
+
+    /// Takes a folder to go on with the recording that is there, but for what a kill left of its files.
+    ///
+    /// # Errors
+    /// As [`RecordingFolder::of`].
+    pub fn to_go_on(path: &Path) -> Result<Self> {
+        let folder = Self::lock(path)?;
+        let mut left = files_of_a_recording(path)?;
+        left.retain(|file| is_left(file));
+        left.iter().try_for_each(|file| remove(file))?;
+        Ok(folder)
+    }
+
+    fn lock(path: &Path) -> Result<Self> {
+        check_writable("data", path)?;
+        let lock = FolderLock::of(path, Locked::Recording)?;
+        Ok(Self { path: path.to_owned(), overwrite: false, _lock: lock })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Removes an earlier recording, where that was asked for.
+    pub(super) fn clear(&self) -> Result<()> {
+        if !self.overwrite {
+            return Ok(());
+        }
+        files_of_a_recording(&self.path)?.iter().try_for_each(|file| remove(file))
+    }
 }
 
 /// The files of a recording that are in a folder, whatever its formats and whatever this build can write, and what a
@@ -84,6 +118,18 @@ pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Resu
     Ok(files)
 }
 
+/// Whether a file is what a kill left of one.
+fn is_left(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    name.is_some_and(|name| final_name(name) != name)
+}
+
+/// Removes a file.
+pub(super) fn remove(path: &Path) -> Result<()> {
+    std::fs::remove_file(path).map_err(|error| Error::file(path, error))
+}
+
+/// Makes a folder where it is not there.
 pub(super) fn make_folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path)
         .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))
@@ -111,6 +157,7 @@ pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
     Ok(numbered)
 }
 
+/// Writes the manifest of a recording.
 pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFacts) -> Result<()> {
     let path = folder.join(MANIFEST);
     let facts = run.facts.iter().map(|(name, said)| (name.clone(), Value::from(said.as_str())));
@@ -129,6 +176,21 @@ pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFac
         serde_json::to_string_pretty(&manifest).map_err(|error| Error::file(&path, error))?;
     text.push('\n');
     write_file(&path, text.as_bytes())
+}
+
+/// Refuses to go on with a recording in other formats.
+pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()> {
+    let path = folder.join(MANIFEST);
+    // Without one there is no recording yet.
+    let Ok(text) = std::fs::read(&path) else { return Ok(()) };
+    let manifest: Value = serde_json::from_slice(&text)
+        .map_err(|error| Error::unread(&path, error, "the manifest of a recording"))?;
+    if manifest["formats"] == json!(formats) {
+        return Ok(());
+    }
+    let names: Vec<_> = formats.iter().map(|format| format.name()).collect();
+    let allowed = format!("as {} has it: {}", path.display(), manifest["formats"]);
+    Err(Error::value("data-format", names.join(","), allowed))
 }
 
 fn column_in_manifest(column: &Column) -> Value {

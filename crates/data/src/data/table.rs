@@ -1,5 +1,7 @@
 //! Tables of named columns, whatever writes them.
 
+#[cfg(feature = "data")]
+use crate::column_spec::STEP;
 use crate::column_spec::{CellValue, ColumnSpec};
 
 /// A table: columns of one length.
@@ -63,7 +65,7 @@ impl Values {
         each_kind!(self, list => list.len())
     }
 
-    /// True if there is no row.
+    /// Whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -188,7 +190,7 @@ impl Table {
         self.columns.first().map_or(0, |column| column.values.len())
     }
 
-    /// True if there is no row.
+    /// Whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -199,7 +201,7 @@ impl Table {
     }
 }
 
-/// Tables that grow.
+/// Tables whose rows become more, and fewer again.
 #[cfg(feature = "data")]
 impl Table {
     /// Adds the rows of a table of the same columns.
@@ -209,9 +211,24 @@ impl Table {
         }
     }
 
-    pub(super) fn clear(&mut self) {
+    /// The steps of the rows.
+    pub(super) fn steps(&self) -> &[u64] {
+        match self.column(STEP).map(|column| &column.values) {
+            Some(Values::Counts(steps)) => steps,
+            _ => &[],
+        }
+    }
+
+    /// Drops the rows after a step, or all.
+    pub(super) fn keep_until(&mut self, step: Option<u64>) {
+        let rows = self.steps().partition_point(|&there| Some(there) <= step);
+        self.truncate(rows);
+    }
+
+    /// Drops all rows but the first ones.
+    pub(super) fn truncate(&mut self, rows: usize) {
         for column in &mut self.columns {
-            each_kind!(&mut column.values, list => list.clear());
+            each_kind!(&mut column.values, list => list.truncate(rows));
         }
     }
 

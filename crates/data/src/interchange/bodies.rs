@@ -1,18 +1,18 @@
 //! The bodies behind a problem's W and q: checked and made into a step's problem, for methods that work on bodies, and
 //! taken from a simulation.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
+use slump_core::with_model;
 
 use super::{Friction, ProblemFile, pairs};
 use crate::contact::{ContactLaw, ContactList};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::{ProblemVisitor, RunEnding, Simulation};
-use crate::solver::{
-    Assembled, FixedRow, Kinematics, Model, ModelParts, PairRow, Row, StepProblem,
-};
+use crate::solver::{Assembled, FixedRow, Model, ModelParts, PairRow, Row, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
 /// Two forms of one problem may differ by this part: rounding, with room for a file whose numbers
@@ -26,7 +26,7 @@ pub(super) const DISAGREEMENT: f64 = 1e-9;
 pub struct BodyForm {
     /// 1 (all on the x axis) or 2.
     pub axes: u8,
-    /// True if bodies turn.
+    /// Whether bodies turn.
     pub rotation: bool,
     /// Bond·g·Δt, m/s: c₀ = m_n times this.
     pub capture_speed: f64,
@@ -51,7 +51,7 @@ pub struct BodyForm {
 }
 
 impl BodyForm {
-    /// Checks what a problem can be made of. That W and q are theirs shows in the residual of a solution.
+    /// Checks the bodies, and that the file's W, q and c₀ are theirs.
     pub(super) fn check(&self, file: &ProblemFile) -> Result<()> {
         let (bodies, contacts) = (self.mass.len(), file.nc);
         let lengths = [
@@ -89,7 +89,7 @@ impl BodyForm {
                 }
             }
             let (inertia, solid) = (self.inertia[body], 0.5 * mass * radius * radius);
-            if (inertia - solid).abs() > DISAGREEMENT * solid {
+            if !agree(inertia, solid, solid) {
                 let allowed = format!("{solid}, that of a solid disc");
                 return Err(Error::value(format!("bodies.inertia[{body}]"), inertia, allowed));
             }
@@ -101,7 +101,53 @@ impl BodyForm {
                 return Err(Error::value(format!("bodies.pair[{contact}]"), found, allowed));
             }
         }
-        self.parts(file).map(drop)
+        with_model!(self.parts(file)?, M => self.check_numbers::<M>(file))
+    }
+
+    /// Without friction tangential rows play no part, and need not agree.
+    fn check_numbers<M: Model>(&self, file: &ProblemFile) -> Result<()> {
+        let problem = self.step_problem::<M>(file);
+        let assembled = Assembled::of(&problem)?;
+        let place = |index: u32| 2 * problem.rows.contacts[index as usize / 2] + index % 2;
+        let counts = |index: u32| M::FRICTION || index.is_multiple_of(2);
+        let mut difference: BTreeMap<(u32, u32), f64> = BTreeMap::new();
+        let mut diagonal = vec![0.0; 2 * file.nc];
+        for (row, column, value) in assembled.matrix.entries() {
+            let (row, column) = (place(row), place(column));
+            *difference.entry((row, column)).or_default() += value;
+            if row == column {
+                diagonal[row as usize] = value;
+            }
+        }
+        for (row, column, value) in file.matrix.entries() {
+            *difference.entry((row, column)).or_default() -= value;
+        }
+        for (&(row, column), &off) in &difference {
+            let scale = (diagonal[row as usize] * diagonal[column as usize]).sqrt();
+            if counts(row) && counts(column) && !agree(off, 0.0, scale) {
+                let found = format!("{} off what the bodies make it", off.abs());
+                return Err(Error::value(format!("W[{row}, {column}]"), found, "theirs"));
+            }
+        }
+        let fastest = file.q.iter().fold(0f64, |most, q| most.max(q.abs()));
+        for (index, &q) in (0..).zip(&assembled.free_velocities) {
+            let at = place(index);
+            let found = file.q[at as usize];
+            if counts(index) && !agree(found, q, fastest) {
+                return Err(Error::value(format!("q[{at}]"), found, format!("{q}, the bodies'")));
+            }
+        }
+        let cohesion = file.cohesion_impulses();
+        let rows = problem.rows.iter();
+        for (row, &contact) in rows.zip(&problem.rows.contacts) {
+            let expected = row.effective_mass * self.capture_speed;
+            let found = cohesion[contact as usize];
+            if !agree(found, expected, expected) {
+                let allowed = format!("{expected}, the bodies'");
+                return Err(Error::value(format!("c0[{contact}]"), found, allowed));
+            }
+        }
+        Ok(())
     }
 
     /// The model that solves this problem on its bodies.
@@ -124,13 +170,13 @@ impl BodyForm {
     }
 
     /// The step's problem, its rows in the order of the file, those with fixed bodies first.
-    pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M::Kinematics> {
+    pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M> {
         let coordinates = |body: usize| {
             let [x, y, spin] = self.free_velocity[body];
-            M::Kinematics::from_coordinates([x, y, self.radius[body] * spin])
+            M::from_coordinates([x, y, self.radius[body] * spin])
         };
         let free: Vec<_> = (0..self.mass.len()).map(coordinates).collect();
-        let mut problem = StepProblem::<M::Kinematics>::default();
+        let mut problem = StepProblem::<M>::default();
         problem.bodies.before.clone_from(&free);
         problem.bodies.free = free;
         let cone = if self.capture_speed > 0.0 { file.cone } else { FrictionCone::Shifted };
@@ -154,7 +200,7 @@ impl BodyForm {
                 let row = Row {
                     i,
                     j: j.unwrap_or(0),
-                    normal: M::Kinematics::normal(self.normal[contact]),
+                    normal: M::normal(self.normal[contact]),
                     restitution_velocity: self.restitution_velocity[contact],
                     shifted_impulse: normal / effective_mass + self.capture_speed,
                     tangential_impulse: tangential / effective_mass,
@@ -170,6 +216,11 @@ impl BodyForm {
         problem.form_velocities();
         problem
     }
+}
+
+/// Whether two forms of one number are as near as rounding leaves them; not where one is NaN.
+fn agree(found: f64, expected: f64, scale: f64) -> bool {
+    (found - expected).abs() <= DISAGREEMENT * scale
 }
 
 /// The problem of the step that begins at `at_secs`, the simulation of `scene` having got there by
@@ -220,23 +271,19 @@ struct ProblemFileVisitor<'a> {
 impl ProblemVisitor for ProblemFileVisitor<'_> {
     type Output = Result<ProblemFile>;
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        _: &ContactList,
-    ) -> Result<ProblemFile> {
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Result<ProblemFile> {
         check_can_be_held(problem)?;
         let Assembled { matrix, free_velocities } = Assembled::of(problem)?;
         let grains = self.grains;
         let rows = || problem.rows.iter();
         let fixed = problem.rows.fixed.len();
         let free_velocity = |(body, radius): (_, &f64)| {
-            let [x, y, spin] = M::Kinematics::coordinates(body);
+            let [x, y, spin] = M::coordinates(body);
             [x, y, spin / radius]
         };
         let bodies = BodyForm {
-            axes: M::Kinematics::AXES as u8,
-            rotation: M::Kinematics::ROTATION,
+            axes: M::AXES as u8,
+            rotation: M::ROTATION,
             capture_speed: problem.law.capture_speed(),
             mass: grains.masses.clone(),
             inertia: (0..grains.len()).map(|body| grains.inertia(body)).collect(),
@@ -254,7 +301,7 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
                 .collect(),
             normal: rows()
                 .map(|row| {
-                    let [[[x, y, _], _], _] = M::Kinematics::gradients(row.normal);
+                    let [[[x, y, _], _], _] = M::gradients(row.normal);
                     [x, y]
                 })
                 .collect(),
@@ -280,15 +327,15 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
     }
 }
 
-/// Fails where a file cannot hold a problem.
-fn check_can_be_held<K: Kinematics>(problem: &StepProblem<K>) -> Result<()> {
+/// Whether a file can hold a problem.
+fn check_can_be_held<M: Model>(problem: &StepProblem<M>) -> Result<()> {
     let refuse = |field: &str, holds: &str| {
         Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))
     };
     if problem.is_driven() {
         return refuse("motions.drive", "grains alone");
     }
-    if K::SLIDES {
+    if M::SLIDES {
         return refuse("periodic.shear_rate", "grains whose images stay");
     }
     Ok(())

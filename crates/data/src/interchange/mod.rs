@@ -5,9 +5,11 @@
 //! impulses, restitution's term included; `mu`, a number or a list; and, where there is cohesion,
 //! `c0`, the cohesion impulse C₀Δt of each contact (N·s), and `cone`, `"shifted"` or `"compressive"`.
 //! A solution is u = W r + q with r = (P_n, P_t) in N·s; `start` may give impulses to start from.
-//! Problems of our own have their `bodies` beside W ([`BodyForm`]).
+//! Problems of our own have their `bodies` beside W ([`BodyForm`]). Siconos' text files of plane
+//! problems are read as well (`siconos`).
 
 mod bodies;
+mod siconos;
 mod solution;
 
 pub use bodies::{BodyForm, problem_file_at, problem_file_of};
@@ -22,7 +24,7 @@ use crate::solver::{DelassusProblem, Triplets};
 use crate::world::FrictionCone;
 
 /// What a problem file must be, for messages.
-const FORM: &str = "the JSON of a contact problem";
+const FORM: &str = "the JSON of a contact problem, or Siconos' text of a plane one";
 
 /// μ of all contacts, or of each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,7 +67,7 @@ pub struct ProblemFile {
 }
 
 impl ProblemFile {
-    /// Reads a problem file, and checks it.
+    /// Reads a problem file, or a text file of Siconos', and checks it.
     ///
     /// # Errors
     /// In one sentence that names the file and what is wrong in it.
@@ -75,14 +77,22 @@ impl ProblemFile {
         Self::parse(&text).map_err(|error| Error::file(path, error))
     }
 
-    /// Reads the text of a problem file, and checks it.
+    /// Reads the text of a problem file, or of one of Siconos', and checks it.
     ///
     /// # Errors
     /// In one sentence that names what is wrong.
     pub fn parse(text: &str) -> Result<Self> {
-        let file: Self = serde_json::from_str(text).map_err(|error| {
-            Error::value("the problem", format!("not readable ({error})"), FORM)
-        })?;
+        let file: Self = if text.trim_start().starts_with('{') {
+            serde_json::from_str(text).map_err(|error| {
+                Error::value(
+                    "the problem",
+                    format!("not readable ({error})"),
+                    "the JSON of a contact problem",
+                )
+            })?
+        } else {
+            siconos::parse(text)?
+        };
         file.delassus()?;
         if let Some(bodies) = &file.bodies {
             bodies.check(&file)?;

@@ -3,14 +3,14 @@
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
+use slump_core::with_model;
 
 use super::bodies::DISAGREEMENT;
 use super::{BodyForm, ProblemFile};
 use crate::error::Result;
 use crate::number;
 use crate::solver::{
-    Kinematics, Memory, MethodOrder, Model, ModelVisitor, Ordering, SolveReport, SolverSettings,
-    solve, solve_delassus, visit_model,
+    Memory, MethodOrder, Model, Ordering, SolveReport, SolverSettings, solve, solve_delassus,
 };
 
 /// What a method made of a problem.
@@ -20,7 +20,7 @@ pub struct Solution {
     pub contacts: usize,
     /// The method's name.
     pub method: String,
-    /// True if it worked on bodies, false if on W alone.
+    /// Whether it worked on bodies, or on W alone.
     pub on_bodies: bool,
     /// Sweeps, or iterations that cost about as much.
     pub sweeps: u32,
@@ -28,9 +28,9 @@ pub struct Solution {
     pub factorisations: u32,
     /// Time of the solve alone, s; the least of the repeats.
     pub seconds: f64,
-    /// True if the method got to its tolerance, by what it says and by the residual of `r`.
+    /// Whether the method got to its tolerance, by what it says and by the residual of `r`.
     pub converged: bool,
-    /// True if it did not because it had stalled, rather than being stopped too early: more sweeps are of
+    /// Whether it did not because it had stalled, rather than being stopped too early: more sweeps are of
     /// no use.
     pub stalled: bool,
     /// The common residual of `r`, from the file's W and q.
@@ -64,8 +64,7 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
     let settings = SolverSettings { warm_start: file.start.is_some(), ..*settings };
     let solved = match &file.bodies {
         Some(bodies) => {
-            let solver = BodiesSolver { bodies, file, settings: &settings, repeats };
-            visit_model(bodies.parts(file)?, solver)?
+            with_model!(bodies.parts(file)?, M => solve_bodies::<M>(bodies, file, &settings, repeats))
         }
         None => {
             let start = delassus.clone();
@@ -126,35 +125,27 @@ fn least_time<P: Clone, T>(
     best
 }
 
-struct BodiesSolver<'a> {
-    bodies: &'a BodyForm,
-    file: &'a ProblemFile,
-    settings: &'a SolverSettings,
+fn solve_bodies<M: Model>(
+    bodies: &BodyForm,
+    file: &ProblemFile,
+    settings: &SolverSettings,
     repeats: u32,
-}
-
-impl ModelVisitor for BodiesSolver<'_> {
-    type Output = Result<TimedSolution>;
-
-    fn visit<M: Model>(self) -> Result<TimedSolution> {
-        let Self { bodies, file, settings, repeats } = self;
-        let mut start = bodies.step_problem::<M>(file);
-        if settings.method.info().order == MethodOrder::Always(Ordering::Coloured) {
-            start.sort_by_colours();
-        }
-        let ((seconds, report), problem) = least_time(repeats, &start, |problem| {
-            solve::<M>(problem, &mut Memory::default(), settings)
-        });
-        let mut impulses = vec![[0.0; 2]; file.nc];
-        for ((number, row), &contact) in problem.rows().zip(&problem.rows.contacts) {
-            impulses[contact as usize] =
-                problem.reduced_impulse(number, row).map(|impulse| row.effective_mass * impulse);
-        }
-        let velocity = |(body, radius): (_, &f64)| {
-            let [x, y, spin] = M::Kinematics::coordinates(body);
-            [x, y, spin / radius]
-        };
-        let velocities = problem.bodies.now.iter().zip(&bodies.radius).map(velocity).collect();
-        Ok(TimedSolution { seconds, report, impulses, velocities: Some(velocities) })
+) -> TimedSolution {
+    let mut start = bodies.step_problem::<M>(file);
+    if settings.method.info().order == MethodOrder::Always(Ordering::Coloured) {
+        start.sort_by_colours();
     }
+    let ((seconds, report), problem) =
+        least_time(repeats, &start, |problem| solve(problem, &mut Memory::default(), settings));
+    let mut impulses = vec![[0.0; 2]; file.nc];
+    for ((number, row), &contact) in problem.rows().zip(&problem.rows.contacts) {
+        impulses[contact as usize] =
+            problem.reduced_impulse(number, row).map(|impulse| row.effective_mass * impulse);
+    }
+    let velocity = |(body, radius): (_, &f64)| {
+        let [x, y, spin] = M::coordinates(body);
+        [x, y, spin / radius]
+    };
+    let velocities = problem.bodies.now.iter().zip(&bodies.radius).map(velocity).collect();
+    TimedSolution { seconds, report, impulses, velocities: Some(velocities) }
 }

@@ -7,10 +7,10 @@ mod seal;
 mod terminal;
 
 pub use files::{
-    PendingFile, Texts, check_file, check_writable, final_name, folder_of, remove_folder_if_there,
-    remove_if_there, write_file,
+    FolderLock, Locked, PendingFile, Texts, check_file, check_writable, final_name, folder_of,
+    remove_folder_if_there, remove_if_there, write_file,
 };
-pub use growing::GrowingFile;
+pub use growing::{GrowingFile, end_of_last};
 pub use seal::Seal;
 pub use terminal::{
     Progress, Signal, caught_signal, counted, heed_signals, lost_stdout, note_line, note_printed,

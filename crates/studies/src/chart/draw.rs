@@ -9,9 +9,7 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use plotters::prelude::*;
 use plotters::style::register_font;
 
-use super::{
-    Axis, CAPTION_LINE, Chart, INK, LEGEND, Layer, LegendCorner, Look, MapCell, Rgb, Sheet,
-};
+use super::{Axis, Chart, INK, Layer, Look, MapCell, Rgb, Sheet};
 use crate::error::{Error, Result};
 use crate::output::Texts;
 use crate::png::png_of_rgb;
@@ -23,10 +21,16 @@ const CAPTION: u32 = 20;
 /// Room for the words beside the vertical axis, and for each character of longer ones, pixels.
 const BESIDE: u32 = 104;
 const CHARACTER: u32 = 12;
+/// Room of the legend above its first entry, for a line of words, which a line of the caption has too, between two
+/// entries, and for the key of one; and width of a character of the caption, pixels.
+const ABOVE: u32 = 70;
+const CAPTION_LINE: u32 = 28;
+const BETWEEN: u32 = 8;
+const KEY: u32 = 70;
+const CAPTION_CHARACTER: u32 = 10;
 /// Name that the font goes by; one that browsers know too, for the SVG.
 const FONT: &str = "sans-serif";
 
-/// A pair of axes with what is drawn on them.
 type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<AxisCoordinates, AxisCoordinates>>;
 
 /// The sheet as PNG, which says of itself which command draws it.
@@ -34,9 +38,10 @@ type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<AxisCoordinates, AxisCoo
 /// # Errors
 /// Where plotters or the encoder fails.
 pub fn png(sheet: &Sheet, command: &str) -> Result<Vec<u8>> {
-    let (width, height) = sheet.size;
+    let layout = Layout::of(sheet);
+    let (width, height) = layout.size;
     let mut pixels = vec![0; 3 * width as usize * height as usize];
-    draw(sheet, BitMapBackend::with_buffer(&mut pixels, sheet.size).into_drawing_area())?;
+    draw(&layout, BitMapBackend::with_buffer(&mut pixels, layout.size).into_drawing_area())?;
     let image = RgbImage::from_raw(width, height, pixels)
         .ok_or_else(|| failed("the picture has another size"))?;
     let mut texts = Texts::default();
@@ -49,9 +54,58 @@ pub fn png(sheet: &Sheet, command: &str) -> Result<Vec<u8>> {
 /// # Errors
 /// Where plotters fails.
 pub fn svg(sheet: &Sheet) -> Result<String> {
+    let layout = Layout::of(sheet);
     let mut text = String::new();
-    draw(sheet, SVGBackend::with_string(&mut text, sheet.size).into_drawing_area())?;
+    draw(&layout, SVGBackend::with_string(&mut text, layout.size).into_drawing_area())?;
     Ok(text)
+}
+
+/// Where the parts of a sheet stand: its charts, a legend to their right, and the caption below.
+struct Layout<'a> {
+    sheet: &'a Sheet,
+    size: (u32, u32),
+    /// The curves that the legend tells of, each name once.
+    legend: Vec<(&'a str, Rgb, Look)>,
+    caption: Vec<String>,
+}
+
+impl<'a> Layout<'a> {
+    fn of(sheet: &'a Sheet) -> Self {
+        let mut legend: Vec<(&str, Rgb, Look)> = Vec::new();
+        for layer in sheet.charts.iter().flat_map(|chart| &chart.layers) {
+            if let Layer::Curve { name, in_legend: true, colour, look, .. } = layer
+                && legend.iter().all(|(known, ..)| known != name)
+            {
+                legend.push((name, *colour, *look));
+            }
+        }
+        let lines = || legend.iter().flat_map(|(name, ..)| name.split('\n'));
+        let longest = lines().map(|line| line.chars().count()).max();
+        let beside = longest.map_or(0, |longest| KEY + CHARACTER * longest as u32);
+        let width = sheet.size.0 + beside;
+        let most = (width / CAPTION_CHARACTER) as usize;
+        let caption: Vec<String> =
+            sheet.caption.iter().flat_map(|line| wrapped(line, most)).collect();
+        let entries = CAPTION_LINE * lines().count() as u32 + BETWEEN * legend.len() as u32;
+        let height = sheet.size.1.max(ABOVE + entries) + CAPTION_LINE * caption.len() as u32 + 8;
+        Self { sheet, size: (width, height), legend, caption }
+    }
+}
+
+/// Words in lines of no more than so many characters.
+fn wrapped(words: &str, most: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in words.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.is_empty() => word.clone_into(line),
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= most => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 fn failed(error: impl std::fmt::Display) -> Error {
@@ -65,37 +119,35 @@ fn register_fonts() -> Result<()> {
     if *done { Ok(()) } else { Err(failed("its font is broken")) }
 }
 
-fn draw<DB: DrawingBackend>(sheet: &Sheet, area: DrawingArea<DB, Shift>) -> Result<()> {
+fn draw<DB: DrawingBackend>(layout: &Layout<'_>, area: DrawingArea<DB, Shift>) -> Result<()> {
+    let Layout { sheet, size, legend, caption } = layout;
     register_fonts()?;
     area.fill(&WHITE).map_err(failed)?;
-    let height = sheet.size.1;
-    let caption_height = CAPTION_LINE * sheet.caption.len() as u32 + 8;
-    let (charts, caption) = area.split_vertically(height - caption_height);
-    for (number, line) in sheet.caption.iter().enumerate() {
-        let at = (16, (CAPTION_LINE * number as u32) as i32);
-        let style = (FONT, CAPTION).into_font().color(&RGBColor(90, 90, 90));
-        caption.draw_text(line, &style, at).map_err(failed)?;
+    let below = size.1 - CAPTION_LINE * caption.len() as u32 - 8;
+    let style = (FONT, CAPTION).into_font().color(&RGBColor(90, 90, 90));
+    for (line, y) in caption.iter().zip((below as i32..).step_by(CAPTION_LINE as usize)) {
+        area.draw_text(line, &style, (16, y)).map_err(failed)?;
     }
-    for (chart, [left, top, right, bottom]) in
-        sheet.charts.iter().zip(edges(sheet, height - caption_height))
-    {
-        let panel = &charts.clone().shrink((left, top), (right - left, bottom - top));
-        if chart.only_legend {
-            draw_legend(chart, panel)?;
-        } else {
-            draw_chart(chart, panel)?;
-        }
+    // Charts share the width by their own.
+    let total: f64 = sheet.charts.iter().map(|chart| chart.width).sum();
+    let mut before = 0.0;
+    for chart in &sheet.charts {
+        let edges = [before, before + chart.width];
+        let [left, right] = edges.map(|edge| (edge / total * f64::from(sheet.size.0)) as i32);
+        before = edges[1];
+        draw_chart(chart, &area.clone().shrink((left, 0), (right - left, below as i32)))?;
     }
+    draw_legend(legend, &area.clone().shrink((sheet.size.0, 0), (size.0 - sheet.size.0, below)))?;
     area.present().map_err(failed)
 }
 
-/// The names of a chart's curves, one below the other.
-fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) -> Result<()> {
+fn draw_legend<DB: DrawingBackend>(
+    legend: &[(&str, Rgb, Look)],
+    area: &DrawingArea<DB, Shift>,
+) -> Result<()> {
     let style = (FONT, CAPTION + 2).into_font().color(&rgb(INK));
-    let [above, line_height, between] = LEGEND.map(|room| room as i32);
-    let mut y = above;
-    for layer in &chart.layers {
-        let Layer::Curve { name, colour, look, .. } = layer else { continue };
+    let mut y = ABOVE as i32;
+    for (name, colour, look) in legend {
         let colour = rgb(*colour);
         let (stroke, dot) = strokes(*look, colour);
         let dashes: &[(i32, i32)] = match look {
@@ -107,14 +159,13 @@ fn draw_legend<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>)
             area.draw(&dash).map_err(failed)?;
         }
         if let Some((radius, style)) = dot {
-            let radius = if matches!(look, Look::Dots(_)) { radius.max(6) } else { radius };
             area.draw(&Circle::new((28, y), radius, style)).map_err(failed)?;
         }
         for part in name.split('\n') {
             area.draw_text(part, &style, (58, y - 11)).map_err(failed)?;
-            y += line_height;
+            y += CAPTION_LINE as i32;
         }
-        y += between;
+        y += BETWEEN as i32;
     }
     Ok(())
 }
@@ -141,30 +192,7 @@ fn draw_chart<DB: DrawingBackend>(chart: &Chart, area: &DrawingArea<DB, Shift>) 
         .draw()
         .map_err(failed)?;
 
-    let mut has_legend = false;
-    for layer in &chart.layers {
-        draw_layer(chart, layer, &mut context)?;
-        has_legend |= matches!(layer, Layer::Curve { in_legend: true, .. });
-    }
-    if !has_legend {
-        return Ok(());
-    }
-    let position = match chart.legend {
-        LegendCorner::UpperLeft => SeriesLabelPosition::UpperLeft,
-        LegendCorner::UpperRight => SeriesLabelPosition::UpperRight,
-        LegendCorner::LowerLeft => SeriesLabelPosition::LowerLeft,
-        LegendCorner::LowerRight => SeriesLabelPosition::LowerRight,
-    };
-    context
-        .configure_series_labels()
-        .position(position)
-        .margin(12)
-        .legend_area_size(36)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font((FONT, CAPTION + 2).into_font().color(&rgb(INK)))
-        .draw()
-        .map_err(failed)
+    chart.layers.iter().try_for_each(|layer| draw_layer(chart, layer, &mut context))
 }
 
 fn draw_layer<'a, DB: DrawingBackend + 'a>(
@@ -186,7 +214,7 @@ fn draw_layer<'a, DB: DrawingBackend + 'a>(
             });
             context.draw_series(rectangles).map_err(failed)?;
         }
-        Layer::Curve { name, in_legend, points, colour, look, aside } => {
+        Layer::Curve { points, colour, look, aside, .. } => {
             let colour = rgb(*colour);
             let width = place(chart.x.to, 1.0).0 - place(chart.x.from, 1.0).0;
             let place = |x: f64, y: f64| {
@@ -200,18 +228,16 @@ fn draw_layer<'a, DB: DrawingBackend + 'a>(
             });
             context.draw_series(bars).map_err(failed)?;
             let line = points.iter().map(|point| place(point.x, point.y)).collect();
-            draw_curve(line, colour, *look, in_legend.then_some(name), context)?;
+            draw_curve(line, colour, *look, context)?;
         }
     }
     Ok(())
 }
 
-/// Draws a curve through places of the axes, and names it in the legend if it has a name.
 fn draw_curve<'a, DB: DrawingBackend + 'a>(
     line: Vec<(f64, f64)>,
     colour: RGBColor,
     look: Look,
-    name: Option<&String>,
     context: &mut Context<'a, DB>,
 ) -> Result<()> {
     let (stroke, dot) = strokes(look, colour);
@@ -227,21 +253,6 @@ fn draw_curve<'a, DB: DrawingBackend + 'a>(
         let dots = line.iter().map(|place| Circle::new(*place, radius, style));
         context.draw_series(dots).map_err(failed)?;
     }
-    let Some(name) = name else { return Ok(()) };
-    // Two dashes that touch are a line.
-    let dash = if matches!(look, Look::Dashes(_)) { 11 } else { 14 };
-    let key = move |(x, y): (i32, i32)| {
-        // Without a line there is none in the key either.
-        let seen = if stroke > 0 { 1.0 } else { 0.0 };
-        let style = colour.mix(seen).stroke_width(stroke.max(1));
-        let first = PathElement::new(vec![(x, y), (x + dash, y)], style);
-        let second = PathElement::new(vec![(x + 28 - dash, y), (x + 28, y)], style);
-        let (radius, style) = dot.unwrap_or((0, colour.mix(0.0).filled()));
-        let middle = Circle::new((x + 14, y), radius.min(8), style);
-        EmptyElement::at((0, 0)) + first + second + middle
-    };
-    let nothing: [EmptyElement<(f64, f64), DB>; 0] = [];
-    context.draw_series(nothing).map_err(failed)?.label(name).legend(key);
     Ok(())
 }
 
@@ -257,43 +268,6 @@ fn strokes(look: Look, colour: RGBColor) -> (u32, Option<(u32, ShapeStyle)>) {
 
 fn rgb((red, green, blue): Rgb) -> RGBColor {
     RGBColor(red, green, blue)
-}
-
-/// Left, top, right and bottom edge of each chart, pixels from the corner of a sheet that has that height for
-/// charts. Charts share the width of their row by their own; a legend that ends a sheet of several rows stands
-/// beside all of them.
-fn edges(sheet: &Sheet, height: u32) -> Vec<[i32; 4]> {
-    let (width, height) = (f64::from(sheet.size.0), f64::from(height));
-    let breaks = || sheet.charts.iter().skip(1).filter(|chart| chart.begins_row);
-    let rows = 1 + breaks().count();
-    let (charts, beside) = match sheet.charts.split_last() {
-        Some((legend, charts)) if rows > 1 && legend.only_legend => (charts, Some(legend)),
-        _ => (&sheet.charts[..], None),
-    };
-    let rows_of_charts: Vec<&[Chart]> = charts.chunk_by(|_, next| !next.begins_row).collect();
-    let sum = |row: &[Chart]| row.iter().map(|chart| chart.width).sum::<f64>();
-    let widest = rows_of_charts.iter().map(|row| sum(row)).fold(0.0, f64::max);
-    let total = widest + beside.map_or(0.0, |legend| legend.width);
-    let mut edges = Vec::new();
-    for (number, row) in rows_of_charts.iter().enumerate() {
-        let [top, bottom] = [number, number + 1].map(|at| at as f64 / rows as f64 * height);
-        let mut left = 0.0;
-        for chart in *row {
-            let right = left + chart.width / total * width;
-            edges.push([left, top, right, bottom].map(|edge| edge as i32));
-            left = right;
-        }
-        // Rounding leaves no strip at the right.
-        if let Some([.., last_right, _]) = edges.last_mut()
-            && (left - width).abs() < 0.5
-        {
-            *last_right = width as i32;
-        }
-    }
-    edges.extend(
-        beside.map(|_| [widest / total * width, 0.0, width, height].map(|edge| edge as i32)),
-    );
-    edges
 }
 
 /// A mark this near, in units of the axis, is the one that is meant.
@@ -355,31 +329,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn charts_fill_their_rows_and_a_legend_stands_beside_all() {
+    fn a_sheet_has_room_for_its_legend_and_lines_of_its_caption_are_not_cut() {
         let nowhere = Axis::linear("", 0.0, 1.0);
-        let chart = |begins_row: bool| Chart {
-            begins_row,
-            ..Chart::new("", nowhere.clone(), nowhere.clone())
-        };
-        let mut charts = vec![chart(false), chart(false), chart(true)];
-        let sheet = |charts: &[Chart]| Sheet {
-            size: (500, 0),
-            charts: charts.to_vec(),
-            caption: Vec::new(),
-        };
-        assert_eq!(
-            edges(&sheet(&charts), 300),
-            [[0, 0, 250, 150], [250, 0, 500, 150], [0, 150, 250, 300]]
-        );
-        charts.push(Chart::legend_of(&mut charts.clone(), 0.5));
-        assert_eq!(
-            edges(&sheet(&charts), 300),
-            [[0, 0, 200, 150], [200, 0, 400, 150], [0, 150, 200, 300], [400, 0, 500, 300]]
-        );
-        assert_eq!(
-            edges(&sheet(&charts[..2]), 300),
-            [[0, 0, 250, 300], [250, 0, 500, 300]],
-            "one row has all of the height"
-        );
+        let mut sheet = Sheet::of(Chart::new("", nowhere.clone(), nowhere));
+        assert_eq!(Layout::of(&sheet).size, (1200, 828));
+        sheet.caption = vec!["ten words ".repeat(30)];
+        for number in 0..40 {
+            let name = format!("method {number}\nof two lines");
+            sheet.charts[0].layers.push(Layer::curve(name, Vec::new(), INK, Look::Line(1)));
+        }
+        let layout = Layout::of(&sheet);
+        assert_eq!(layout.size.1, 70 + 40 * (2 * 28 + 8) + 28 * 3 + 8);
+        assert!(layout.caption.iter().all(|line| 10 * line.len() <= layout.size.0 as usize));
     }
 }

@@ -10,7 +10,6 @@ use crate::error::{Error, Result};
 /// A colour, 0 … 255 each.
 pub type Rgb = (u8, u8, u8);
 
-/// Ink of axes and words.
 pub(crate) const INK: Rgb = (40, 40, 40);
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
 pub const PALETTE: [Rgb; 7] = [
@@ -29,13 +28,9 @@ const ASIDE: f64 = 0.006;
 /// One axis of a chart.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What it stands for, with its unit.
     pub(crate) label: String,
-    /// Linear or logarithmic.
     pub(crate) scale: Scale,
-    /// Where it begins.
     pub(crate) from: f64,
-    /// Where it ends.
     pub(crate) to: f64,
     /// Places with words of their own; where there are none, round numbers.
     pub(crate) ticks: Vec<(f64, String)>,
@@ -102,7 +97,7 @@ pub enum Layer {
     Curve {
         /// Name in the CSV, and in the legend where `in_legend`.
         name: String,
-        /// Whether the legend tells of it.
+        /// True if the legend tells of it.
         in_legend: bool,
         /// Its points, in order.
         points: Vec<Point>,
@@ -140,14 +135,9 @@ impl Layer {
     }
 
     /// The same curve, number `index` of `count` side by side.
-    pub fn beside(self, index: usize, count: usize) -> Self {
-        self.aside(ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0)))
-    }
-
-    /// The same curve, so far aside, in widths of the chart.
-    pub(crate) fn aside(mut self, widths: f64) -> Self {
+    pub fn beside(mut self, index: usize, count: usize) -> Self {
         if let Self::Curve { aside, .. } = &mut self {
-            *aside = widths;
+            *aside = ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0));
         }
         self
     }
@@ -163,116 +153,39 @@ impl Layer {
     }
 }
 
-/// Where a legend stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LegendCorner {
-    /// Upper left.
-    UpperLeft,
-    /// Upper right.
-    #[default]
-    UpperRight,
-    /// Lower left.
-    LowerLeft,
-    /// Lower right.
-    LowerRight,
-}
-
 /// One pair of axes.
 #[derive(Clone, Debug)]
 pub struct Chart {
-    /// Above it.
     pub(crate) title: String,
-    /// Horizontal.
     pub(crate) x: Axis,
-    /// Vertical.
     pub(crate) y: Axis,
     /// From back to front.
     pub layers: Vec<Layer>,
-    /// Where the legend stands.
-    pub(crate) legend: LegendCorner,
     /// Its share of the width of the sheet.
     pub(crate) width: f64,
-    /// Whether it is nothing but a legend, without axes: for long ones, beside other charts.
-    pub(crate) only_legend: bool,
-    /// Whether it stands below the charts before it, at the left.
-    pub(crate) begins_row: bool,
 }
 
 impl Chart {
     /// An empty chart.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        Self {
-            title: title.into(),
-            x,
-            y,
-            layers: Vec::new(),
-            legend: LegendCorner::default(),
-            width: 1.0,
-            only_legend: false,
-            begins_row: false,
-        }
-    }
-
-    /// Moves what the legends of some charts say into a column of its own, each name once.
-    pub(crate) fn legend_of(charts: &mut [Self], width: f64) -> Self {
-        let nowhere = Axis::linear("", 0.0, 1.0);
-        let mut column = Self::new("", nowhere.clone(), nowhere);
-        column.width = width;
-        column.only_legend = true;
-        let mut names = std::collections::HashSet::new();
-        for layer in charts.iter_mut().flat_map(|chart| &mut chart.layers) {
-            if let Layer::Curve { name, in_legend, .. } = layer
-                && std::mem::take(in_legend)
-                && names.insert(name.clone())
-            {
-                let mut entry = layer.clone();
-                if let Layer::Curve { in_legend, points, .. } = &mut entry {
-                    *in_legend = true;
-                    points.clear();
-                }
-                column.layers.push(entry);
-            }
-        }
-        column
+        Self { title: title.into(), x, y, layers: Vec::new(), width: 1.0 }
     }
 }
 
-/// Rooms of legends that stand beside charts, pixels: above the first entry, for a line of words, and between two
-/// entries.
-const LEGEND: [u32; 3] = [70, CAPTION_LINE, 8];
-/// Room below the charts for one line of the caption, pixels.
-const CAPTION_LINE: u32 = 28;
-
-/// Charts side by side, with words below.
+/// Charts side by side, with a legend of all curves to their right and words below.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Pixels.
+    /// Of the charts without legend and caption, pixels.
     pub size: (u32, u32),
-    /// From left to right, and from the top to the bottom.
+    /// From left to right.
     pub charts: Vec<Chart>,
     /// Lines of words below.
     pub caption: Vec<String>,
 }
 
 impl Sheet {
-    /// One chart of the usual size.
     pub(crate) fn of(chart: Chart) -> Self {
         Self { size: (1200, 820), charts: vec![chart], caption: Vec::new() }
-    }
-
-    /// The same, as high as its longest legend beside charts needs.
-    pub(crate) fn high_enough(mut self) -> Self {
-        let [above, line, between] = LEGEND;
-        let entry = |layer: &Layer| match layer {
-            Layer::Curve { name, .. } => line * name.split('\n').count() as u32 + between,
-            Layer::Cells { .. } | Layer::Words { .. } => 0,
-        };
-        let legends = self.charts.iter().filter(|chart| chart.only_legend);
-        let height = |chart: &Chart| above + chart.layers.iter().map(entry).sum::<u32>();
-        let caption = CAPTION_LINE * (self.caption.len() as u32 + 1);
-        let needed = legends.map(height).max().unwrap_or(0) + caption;
-        self.size.1 = self.size.1.max(needed);
-        self
     }
 
     /// Every point of every layer as CSV: panel, layer, x, y, low, high, value.
@@ -286,18 +199,27 @@ impl Sheet {
         writer.write_record(names).map_err(refuse)?;
         for (chart, panel) in self.charts.iter().zip(1..) {
             for layer in &chart.layers {
-                let (name, rows): (_, Vec<[String; 5]>) = match layer {
+                let (name, rows): (_, Vec<[Option<f64>; 5]>) = match layer {
                     Layer::Curve { name, points, .. } => {
-                        (name, points.iter().map(point_row).collect())
+                        let row = |Point { x, y, interval }: &Point| {
+                            let (low, high) = interval.unzip();
+                            [Some(*x), Some(*y), low, high, None]
+                        };
+                        (name, points.iter().map(row).collect())
                     }
                     Layer::Cells { name, cells, .. } => {
-                        (name, cells.iter().map(cell_row).collect())
+                        let row = |cell: &MapCell| {
+                            [Some(cell.x.0), Some(cell.y.0), None, None, Some(cell.value)]
+                        };
+                        (name, cells.iter().map(row).collect())
                     }
                     Layer::Words { .. } => continue,
                 };
                 for row in rows {
-                    let cells = [panel.to_string(), name.replace('\n', " ")].into_iter().chain(row);
-                    writer.write_record(cells).map_err(refuse)?;
+                    let cells =
+                        row.map(|cell| cell.map_or_else(String::new, |cell| cell.to_string()));
+                    let named = [panel.to_string(), name.replace('\n', " ")];
+                    writer.write_record(named.into_iter().chain(cells)).map_err(refuse)?;
                 }
             }
         }
@@ -305,30 +227,12 @@ impl Sheet {
     }
 }
 
-/// x, y, low, high and value of a point.
-fn point_row(point: &Point) -> [String; 5] {
-    let [low, high] = point
-        .interval
-        .map_or_else(Default::default, |(low, high)| [low, high].map(|end| end.to_string()));
-    [point.x.to_string(), point.y.to_string(), low, high, String::new()]
-}
-
-/// The same of a cell.
-fn cell_row(cell: &MapCell) -> [String; 5] {
-    let [x, y, value] = [cell.x.0, cell.y.0, cell.value].map(|number| number.to_string());
-    [x, y, String::new(), String::new(), value]
-}
-
-/// How an axis is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
-    /// Evenly.
+pub(crate) enum Scale {
     Linear,
-    /// In ratio.
     Log,
 }
 
-/// Marks on a linear axis, about.
 const MARKS: f64 = 6.0;
 
 /// On a logarithmic axis that ends below this many times its beginning, 2 and 5 have words too.
@@ -408,22 +312,6 @@ fn power_of_ten(exponent: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_sheet_is_as_high_as_its_legend() {
-        let nowhere = Axis::linear("", 0.0, 1.0);
-        let mut chart = Chart::new("", nowhere.clone(), nowhere);
-        let sheet = |mut chart: Chart| {
-            let legend = Chart::legend_of(std::slice::from_mut(&mut chart), 0.3);
-            Sheet { charts: vec![chart.clone(), legend], ..Sheet::of(chart) }.high_enough().size.1
-        };
-        assert_eq!(sheet(chart.clone()), 820);
-        for number in 0..40 {
-            let name = format!("method {number}\nof two lines");
-            chart.layers.push(Layer::curve(name, Vec::new(), INK, Look::Line(1)));
-        }
-        assert_eq!(sheet(chart), 70 + 40 * (2 * 28 + 8) + 28);
-    }
 
     #[test]
     fn marks_are_round_numbers() {

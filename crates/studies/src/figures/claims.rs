@@ -12,12 +12,9 @@ pub(super) const SIGNIFICANT: f64 = 0.05;
 /// Ratio of the ends of an interval that is narrow enough to confirm what lies in it.
 const NARROW: f64 = 3.0;
 
-/// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// The data show it.
     Holds,
-    /// The data show the contrary.
     Fails,
     /// The data show neither.
     Open,
@@ -45,7 +42,6 @@ impl Verdict {
         }
     }
 
-    /// In words.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -68,7 +64,6 @@ pub(super) struct Claim {
     pub said: String,
     /// What was measured, with its interval or p-value.
     pub measured: String,
-    /// Whether it holds.
     pub verdict: Verdict,
     /// How often the test would say that it holds with nothing behind it; empty where nothing is drawn at random.
     pub by_chance: String,
@@ -77,7 +72,6 @@ pub(super) struct Claim {
 }
 
 impl Claim {
-    /// A claim.
     pub(super) fn new(
         said: impl Into<String>,
         measured: impl Into<String>,
@@ -106,7 +100,6 @@ impl Claim {
         ))
     }
 
-    /// The same with the free choices that it hangs on.
     pub(super) fn hanging_on(self, hangs_on: impl Into<String>) -> Self {
         Self { hangs_on: hangs_on.into(), ..self }
     }

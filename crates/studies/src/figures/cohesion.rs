@@ -1,4 +1,4 @@
-//! Whether slump is a matter of Bond and of the work that it takes to break a bond: piles under `range`, whose
+//! Slump against Bond and the work that it takes to break a bond: piles under `range`, whose
 //! debonding distance sets that work, and under `dem`, whose stiffness does, at equal works from the same states.
 //!
 //! `moreau` knows no work of fracture: its contacts pull as long as they are found. Beside the others it is drawn
@@ -7,18 +7,16 @@
 use std::collections::BTreeMap;
 
 use super::claims::{Claim, Verdict};
-use super::comparison::{PairedSlumps, claim, columns, margin, pairs};
+use super::paired::{Comparison, PairedSlumps, pairs, table};
 use super::studies::Rows;
 use super::{Figure, StudyRunner, slump_point};
-use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet};
 use crate::config::{Config, SceneSource};
 use crate::error::{Error, Result};
-use crate::report::ReportTable;
 use crate::scene::Scene;
 use crate::sim::Stepper;
 use crate::statistics::mean;
 
-/// Grains of a pile of the study.
 const GRAINS: usize = 138;
 
 /// Runs at a Bond and a work of fracture under the laws that have one: `range`, then `dem`.
@@ -35,7 +33,6 @@ fn scene(config: &Config) -> Result<Scene> {
     Config { source, ..config.clone() }.without_settling()
 }
 
-/// The work of fracture of some runs, in m g d.
 fn work(rows: &Rows<'_>) -> Result<f64> {
     let none = || Error::value("cohesion", "without a run", "a study with all its runs");
     let (config, _) = rows.0.first().ok_or_else(none)?;
@@ -43,7 +40,6 @@ fn work(rows: &Rows<'_>) -> Result<f64> {
     work.map(|work| work.over_mgd).ok_or_else(none)
 }
 
-/// Every Bond with every work, rising.
 fn equal_works<'a>(rows: &Rows<'a>) -> Result<Vec<EqualWork<'a>>> {
     let mut all = Vec::new();
     for bond in rows.bonds() {
@@ -63,47 +59,46 @@ fn equal_works<'a>(rows: &Rows<'a>) -> Result<Vec<EqualWork<'a>>> {
     Ok(all)
 }
 
-/// Runs of a Bond and a Δt under `moreau`.
-struct CapturingRuns {
-    bond: f64,
-    /// The energy that a step takes up, in m g d.
-    energy: f64,
-    slumps: Vec<f64>,
-}
-
-/// Every Bond with every Δt.
-fn capturing(rows: &Rows<'_>) -> Result<Vec<CapturingRuns>> {
-    let moreau = rows.such_that(|config| config.stepper == Some(Stepper::Moreau));
-    let mut all = Vec::new();
-    for bond in moreau.bonds() {
-        let here = moreau.of_bond(bond);
-        for step in here.steps() {
-            let here = here.of_step(step);
-            let scene = scene(here.0[0].0)?;
-            let g = scene.gravity.magnitude();
-            let speed = scene.parameters.capture_speed(g);
-            // Of two equal grains m_ij is m/2.
-            let energy = 0.25 * speed * speed / (g * scene.mean_diameter);
-            let slumps = here.slumps();
-            all.push(CapturingRuns { bond, energy, slumps });
-        }
-    }
-    Ok(all)
+/// Slumps under `moreau` at a Bond, each Δt at the energy that a step takes up, in m g d.
+fn capturing(rows: &Rows<'_>, bond: f64) -> Result<Vec<Point>> {
+    let here = rows.of_bond(bond).such_that(|config| config.stepper == Some(Stepper::Moreau));
+    let point = |step: f64| {
+        let here = here.of_step(step);
+        let scene = scene(here.0[0].0)?;
+        let g = scene.gravity.magnitude();
+        let speed = scene.parameters.capture_speed(g);
+        // Of two equal grains m_ij is m/2.
+        Ok(slump_point(0.25 * speed * speed / (g * scene.mean_diameter), &here.slumps()))
+    };
+    here.steps().into_iter().map(point).collect()
 }
 
 pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cohesion")?;
     let levels = equal_works(&rows)?;
-    let captured = capturing(&rows)?;
     let bonds = rows.bonds();
-    let mut charts: Vec<Chart> =
-        bonds.iter().map(|&bond| of_bond(bond, &levels, &captured)).collect();
-    charts.push(of_all(&bonds, &levels));
-    let works = levels.iter().flat_map(|level| level.works);
-    let all: Vec<f64> = works.chain(captured.iter().map(|one| one.energy)).collect();
-    let ends = [f64::min, f64::max].map(|pick| all.iter().copied().fold(all[0], pick));
-    for chart in &mut charts {
-        (chart.x.from, chart.x.to) = (0.6 * ends[0], 1.6 * ends[1]);
+    let mut charts = Vec::new();
+    for &bond in &bonds {
+        let x = Axis::log("work of fracture W/(m g d)", 3e-4, 0.3);
+        let y = Axis::linear("slump Δy_G", 0.0, 0.7);
+        let mut chart = Chart::new(format!("Bond {bond}"), x, y);
+        let here = || levels.iter().filter(|level| level.bond == bond);
+        let curve = |law: usize| {
+            here().map(|level| slump_point(level.works[law], &level.runs[law].slumps())).collect()
+        };
+        let moreau = capturing(&rows, bond)?;
+        for (index, (name, points, look)) in [
+            ("range", curve(0), Look::LineAndDots),
+            ("dem", curve(1), Look::LineAndDots),
+            ("moreau, by its Δt", moreau, Look::Rings(5)),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let colour = PALETTE[(index + 1) % 3];
+            chart.layers.push(Layer::curve(name, points, colour, look).beside(index, 3));
+        }
+        charts.push(chart);
     }
     let caption = vec![
         format!(
@@ -115,76 +110,41 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
          step stops."
             .into(),
     ];
-    let sheet = Sheet { size: (520 * charts.len() as u32, 620), charts, caption };
-    let claims = vec![laws_agree(&levels), factor(&bonds, &levels), bonds_agree(&bonds, &levels)];
-    Ok(Figure { name: "cohesion", sheet, claims, table: Some(table(&levels)) })
+    let sheet = Sheet { size: (560 * charts.len().max(2) as u32, 620), charts, caption };
+    let (laws, of_bonds) = (laws(&levels), of_bonds(&bonds, &levels));
+    let claims = vec![laws.alike(LAWS_AGREE), factor(&bonds, &levels), of_bonds.alike(BONDS_AGREE)];
+    let table = Some(table("cohesion", &[laws, of_bonds]));
+    Ok(Figure { name: "cohesion", sheet, claims, table })
 }
 
-/// The curve of a law at a Bond: 0 is `range`, 1 `dem`.
-fn curve(bond: f64, levels: &[EqualWork<'_>], law: usize) -> Vec<Point> {
-    let here = levels.iter().filter(|level| level.bond == bond);
-    here.map(|level| slump_point(level.works[law], &level.runs[law].slumps())).collect()
-}
+const LAWS_AGREE: &str = "Beyond the paper: at equal Bond and work of fracture piles slump under dem as under range, \
+                          within {margin}";
+const BONDS_AGREE: &str = "Beyond the paper: under range piles of the same work of fracture slump alike whatever the \
+                           Bond, within {margin}";
 
-fn axes(title: String) -> Chart {
-    let x = Axis::log("work of fracture W/(m g d)", 1e-3, 1.0);
-    Chart::new(title, x, Axis::linear("slump Δy_G", 0.0, 0.7))
-}
-
-fn of_bond(bond: f64, levels: &[EqualWork<'_>], captured: &[CapturingRuns]) -> Chart {
-    let mut chart = axes(format!("Bond {bond}"));
-    for (law, name) in [(0, "range"), (1, "dem")] {
-        let points = curve(bond, levels, law);
-        let layer = Layer::curve(name, points, PALETTE[1 + law], Look::LineAndDots);
-        chart.layers.push(layer.beside(law, 3));
-    }
-    let here = captured.iter().filter(|one| one.bond == bond);
-    let points = here.map(|one| slump_point(one.energy, &one.slumps)).collect();
-    let layer = Layer::curve("moreau, by its Δt", points, PALETTE[0], Look::Rings(5));
-    chart.layers.push(layer.beside(2, 3));
-    chart
-}
-
-fn of_all(bonds: &[f64], levels: &[EqualWork<'_>]) -> Chart {
-    let mut chart = axes("Every Bond".into());
-    for (index, &bond) in bonds.iter().enumerate() {
-        let colour = PALETTE[1 + index % (PALETTE.len() - 1)];
-        for (law, name, look) in [(0, "range", Look::LineAndDots), (1, "dem", Look::Rings(6))] {
-            let name = format!("{name}, Bond {bond}");
-            // The charts beside it have the intervals.
-            let means = points(curve(bond, levels, law).iter().map(|point| (point.x, point.y)));
-            chart.layers.push(Layer::curve(name, means, colour, look));
-        }
-    }
-    chart
-}
-
-/// That both laws let piles slump alike at equal Bond and work.
-fn laws_agree(levels: &[EqualWork<'_>]) -> Claim {
-    let margin = margin(GRAINS);
-    let pairs = |level: &EqualWork<'_>| {
-        let name = format!("Bond {} at {:.0e} m g d", level.bond, level.works[0]);
-        PairedSlumps::new(name, (level.bond, 0.0), &level.runs[0], &level.runs[1])
+/// `dem` against `range` at equal Bond and work.
+fn laws(levels: &[EqualWork<'_>]) -> Comparison {
+    let level = |level: &EqualWork<'_>| {
+        let [range, dem] = level.works;
+        let name = format!("Bond {} at {range:.0e} m g d", level.bond);
+        let pairs = PairedSlumps::new(name, level.bond, &level.runs[0], &level.runs[1]);
+        (format!("dem, W {dem:.2e} for {range:.2e} m g d"), vec![pairs])
     };
-    let said = format!(
-        "Beyond the paper: at equal Bond and work of fracture piles slump under dem as under range, within {margin}"
-    );
-    claim(said, &levels.iter().map(pairs).collect::<Vec<_>>(), margin)
+    let levels = levels.iter().map(level).collect();
+    Comparison { group: "equal work".into(), base: "range".into(), levels, grains: GRAINS }
 }
 
-/// That slump hangs on the work alone, and not on Bond besides: the largest against the smallest, under `range`.
-fn bonds_agree(bonds: &[f64], levels: &[EqualWork<'_>]) -> Claim {
+/// The largest Bond against the smallest at equal work, under `range`: whether slump hangs on the work alone.
+fn of_bonds(bonds: &[f64], levels: &[EqualWork<'_>]) -> Comparison {
     let (least, most) = (bonds[0], bonds[bonds.len() - 1]);
     let of = |bond: f64| levels.iter().filter(move |level| level.bond == bond);
-    let margin = margin(GRAINS);
-    let pairs = |(one, other): (&EqualWork<'_>, &EqualWork<'_>)| {
+    let level = |(one, other): (&EqualWork<'_>, &EqualWork<'_>)| {
         let name = format!("Bond {most} less {least} at {:.0e} m g d", one.works[0]);
-        PairedSlumps::new(name, (most, 0.0), &one.runs[0], &other.runs[0])
+        let pairs = PairedSlumps::new(name, most, &one.runs[0], &other.runs[0]);
+        (format!("W {:.2e} m g d", one.works[0]), vec![pairs])
     };
-    let said = format!(
-        "Beyond the paper: under range piles of the same work of fracture slump alike whatever the Bond, within {margin}"
-    );
-    claim(said, &of(least).zip(of(most)).map(pairs).collect::<Vec<_>>(), margin)
+    let levels = of(least).zip(of(most)).map(level).collect();
+    Comparison { group: "range".into(), base: format!("Bond {least}"), levels, grains: GRAINS }
 }
 
 /// By which factor the work of `dem` would have to be another for its curve to lie on that of `range`: the shift
@@ -223,21 +183,6 @@ fn factor(bonds: &[f64], levels: &[EqualWork<'_>]) -> Claim {
     );
     let said = "Beyond the paper: what counts of dem's work of fracture is that of a slow break";
     Claim::new(said, measured, Verdict::of_interval(1.0, low, high))
-}
-
-/// The numbers behind the claims.
-fn table(levels: &[EqualWork<'_>]) -> ReportTable {
-    let columns = columns(&["bond", "work_range", "work_dem"], "slump_range");
-    let mut rows = Vec::new();
-    for EqualWork { bond, works, runs } in levels {
-        for one in PairedSlumps::all(&runs[0], &runs[1]) {
-            let mut row = vec![bond.to_string()];
-            row.extend(works.map(|work| format!("{work:.2e}")));
-            row.extend(one.cells());
-            rows.push(row);
-        }
-    }
-    ReportTable { name: "cohesion-differences", columns, rows }
 }
 
 #[cfg(test)]
@@ -287,9 +232,12 @@ mod tests {
             let off = level.works.map(|found| (found / work - 1.0).abs());
             assert!(off.iter().all(|off| *off < 1e-9), "{work}: {:?}", level.works);
         }
-        assert!(table(&levels).rows.iter().all(|row| row.len() == 10 && row[3] == "16"));
         let bonds = [10.0, 20.0];
-        [laws_agree(&levels), factor(&bonds, &levels), bonds_agree(&bonds, &levels)]
+        let (laws, of_bonds) = (laws(&levels), of_bonds(&bonds, &levels));
+        let claims = [laws.alike(LAWS_AGREE), factor(&bonds, &levels), of_bonds.alike(BONDS_AGREE)];
+        let rows = table("cohesion", &[laws, of_bonds]).rows;
+        assert!(rows.len() == 9 && rows.iter().all(|row| row.len() == 13 && row[5] == "16"));
+        claims
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
 use super::studies::{Rows, log_step};
 use super::{Figure, StudyRunner};
 use crate::RunResult;
-use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Point, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet, points};
 use crate::error::Result;
 use crate::scene::NewPile;
 use crate::statistics::{Mean, mean, p_value, slope};
@@ -14,7 +14,6 @@ use crate::statistics::{Mean, mean, p_value, slope};
 const CHOICES: &str = "the base, a row of fixed discs (the paper names none); the stop, a relative change of 1e−7; \
                        restitution without a threshold; the states. pile-choices has what becomes of it where they are \
                        changed";
-/// The cones and the studies in them.
 const CONES: [(&str, &str); 2] = [("shifted", "pile"), ("compressive", "pile-compressive")];
 /// A pile whose slump changes by less than this per decade of Δt is flat: a tenth of what the paper's
 /// cohesive piles do.
@@ -36,7 +35,6 @@ const SLUMP_CLAIMS: [SlumpClaim; 4] = [
     (100.0, "at Bond 100 it rises as Δt grows", rising, 0.0),
 ];
 
-/// Fig. 5a, in both readings of the paper's friction cone.
 pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
     let mut charts = Vec::new();
     let mut claims: Vec<Claim> = Vec::new();
@@ -77,12 +75,10 @@ pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let rows = all.ensemble();
     let overlap = |result: &RunResult| result.tally.mean_overlap;
     let y = Axis::log("mean overlap δ/d", 1e-5, 0.2);
-    let mut of_exponent = chart(&all, "Fig. 5b: mean overlap during 1 s", time_steps(), y, overlap);
-    of_exponent.legend = LegendCorner::UpperLeft;
+    let of_exponent = chart(&all, "Fig. 5b: mean overlap during 1 s", time_steps(), y, overlap);
     let x = Axis::linear("Δt (s)", 0.0, 5.5e-3);
     let y = Axis::linear("mean overlap δ/d", 0.0, END_OF_AXIS);
-    let mut of_paper = chart(&all, "On the paper's axes", x, y, overlap);
-    of_paper.legend = LegendCorner::UpperLeft;
+    let of_paper = chart(&all, "On the paper's axes", x, y, overlap);
     let caption = vec![format!(
         "Means over {} initial states of 138 grains with 95 % intervals; thin: the one state of Fig. 4, which is in no mean.",
         rows.seeds().len()
@@ -93,7 +89,6 @@ pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig5b", sheet, claims, table: None })
 }
 
-/// The axis of the paper's time steps.
 fn time_steps() -> Axis {
     Axis::log("Δt (s)", 8e-5, 6.5e-3)
 }
@@ -123,7 +118,6 @@ fn chart(rows: &Rows<'_>, title: &str, x: Axis, y: Axis, number: fn(&RunResult) 
     chart
 }
 
-/// The mean slope of groups.
 fn slopes(groups: &[Alike]) -> Mean {
     mean(&groups.iter().map(|pairs| slope(pairs)).collect::<Vec<_>>())
 }
@@ -144,14 +138,17 @@ fn flat(states: &[Alike]) -> (String, Verdict) {
 
 fn falling(states: &[Alike]) -> (String, Verdict) {
     let slope = slopes(states);
-    let (p, measured) = (slope.p_below(0.0), measured("slope per decade", &slope));
-    (format!("{measured}; below 0: {}", p_value(p)), Verdict::of(p, slope.p_above(0.0)))
+    tested(&slope, "below", slope.p_below(0.0), slope.p_above(0.0))
 }
 
 fn rising(states: &[Alike]) -> (String, Verdict) {
     let slope = slopes(states);
-    let (p, measured) = (slope.p_above(0.0), measured("slope per decade", &slope));
-    (format!("{measured}; above 0: {}", p_value(p)), Verdict::of(p, slope.p_below(0.0)))
+    tested(&slope, "above", slope.p_above(0.0), slope.p_below(0.0))
+}
+
+fn tested(slope: &Mean, side: &str, p: f64, p_not: f64) -> (String, Verdict) {
+    let measured = measured("slope per decade", slope);
+    (format!("{measured}; {side} 0: {}", p_value(p)), Verdict::of(p, p_not))
 }
 
 /// Both ends lie above the mean of what is between them, state by state. Which Δt is lowest is not

@@ -7,28 +7,27 @@ use super::{Figure, StudyRunner};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Point, Sheet, points};
 use crate::config::Config;
 use crate::error::Result;
-use crate::scene::paper_pile;
 use crate::statistics::{mean, p_value, slope, turning_point};
 
-/// Resamplings of the initial states for the interval of the turning point.
 const RESAMPLINGS: usize = 400;
 /// As many for each of many shuffles.
 const FEWER_RESAMPLINGS: usize = 20;
 
-/// The cohesive time of a run.
-pub(super) fn cohesive_time(config: &Config, unit_secs: f64) -> f64 {
+/// d of the piles, m, and g, m/s².
+const DIAMETER: f64 = 5e-3;
+const GRAVITY: f64 = 9.8;
+
+pub(super) fn cohesive_time(config: &Config) -> f64 {
     config.parameters.bond.unwrap_or(0.0) * config.parameters.time_step_secs.unwrap_or(0.0)
-        / unit_secs
+        / unit_secs()
 }
 
 /// √(d/g) of the piles, s.
-pub(super) fn unit_secs() -> Result<f64> {
-    let pile = paper_pile()?;
-    Ok((pile.mean_diameter / pile.gravity.magnitude()).sqrt())
+pub(super) fn unit_secs() -> f64 {
+    (DIAMETER / GRAVITY).sqrt()
 }
 
 pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
-    let unit_secs = unit_secs()?;
     let cohesive = studies.rows("pile")?.such_that(|config| config.parameters.bond > Some(0.0));
     let rows = cohesive.ensemble();
     let mut chart = Chart::new(
@@ -43,13 +42,13 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         let means = of_bond.steps().into_iter().map(|step| {
             let mean = mean(&of_bond.of_step(step).slumps());
             let interval = Some((mean.low.max(0.0), mean.high));
-            Point { x: bond * step / unit_secs, y: mean.mean, interval }
+            Point { x: bond * step / unit_secs(), y: mean.mean, interval }
         });
         let name = format!("Bond {bond}");
         let curve = Layer::curve(name, means.collect(), PALETTE[index + 1], Look::LineAndDots);
         chart.layers.push(curve);
     }
-    let log_time = |config: &Config| cohesive_time(config, unit_secs).log10();
+    let log_time = |config: &Config| cohesive_time(config).log10();
     let groups = rows.groups(log_time, |result| result.slump);
     let count = rows.seeds().len();
     let turn = turning(&joined(&groups, count), RESAMPLINGS);
@@ -68,7 +67,6 @@ fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
     groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
 }
 
-/// That two regimes part at 1.
 fn guess(groups: &[Alike], count: usize, turn: Turn) -> Claim {
     let verdict = |turn: Turn| Verdict::of_interval(1.0, turn.low, turn.high);
     let holds = |groups: &[Alike]| {
@@ -87,7 +85,6 @@ fn guess(groups: &[Alike], count: usize, turn: Turn) -> Claim {
     .hanging_on("the shifted cone; three Bonds drawn as one curve; a broken line as the shape of the curve")
 }
 
-/// Whether the slump falls and rises.
 fn regimes(groups: &[Alike], count: usize) -> Claim {
     let side = |groups: &[Alike], below: bool| {
         let of_state = |state: &Alike| {

@@ -1,8 +1,10 @@
 //! Fig. 8: where j goes after the shock, on the paper's axes; and what else the paper says of these runs.
 
+use std::ops::RangeInclusive;
+
 use super::fig8::{OPEN_GAP, PHASE_SECS};
 use super::{Claim, Figure, StudyRunner};
-use crate::chart::{Axis, Chart, Layer, LegendCorner, Look, PALETTE, Sheet, points};
+use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
@@ -12,9 +14,9 @@ const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
 /// Where the paper's axes end, s and d.
 const ENDS: (f64, f64) = (2.0, 5.0);
 /// The steps at which the paper has j leave with one velocity, s.
-const FREE_SECS: (f64, f64) = (1e-4, 6e-4);
+const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
 /// The steps at which the paper has k stay with i and j, s.
-const CLUSTER_SECS: (f64, f64) = (7e-4, 3e-3);
+const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
 /// The step at which the paper has i catch up with j, s.
 const CAUGHT_SECS: f64 = 5e-3;
 /// Ratio of the largest to the smallest of velocities that are one.
@@ -24,53 +26,38 @@ const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states
                        cradle-choices";
 
 /// A row of a series: the time since k first touched i, s, and the places of i, j and k, in diameters.
-struct SeriesRow {
-    secs: f64,
-    places: [f64; 3],
-}
+type SeriesRow = (f64, [f64; 3]);
 
-impl SeriesRow {
-    /// Between i and j, in diameters.
-    fn gap(&self) -> f64 {
-        self.places[1] - self.places[0] - 1.0
-    }
-}
-
-/// Where the discs of one run are over time.
 struct DiscSeries {
     step_secs: f64,
     rows: Vec<SeriesRow>,
 }
 
+/// Between i and j, in diameters.
+fn gap((_, [i, j, _]): &SeriesRow) -> f64 {
+    j - i - 1.0
+}
+
 impl DiscSeries {
     fn after_shock(&self) -> impl DoubleEndedIterator<Item = &SeriesRow> {
-        self.rows.iter().filter(|row| row.secs >= 0.0)
-    }
-
-    fn last(&self) -> Option<&SeriesRow> {
-        self.rows.last()
+        self.rows.iter().filter(|(secs, _)| *secs >= 0.0)
     }
 
     fn ends_open(&self) -> bool {
-        self.last().is_some_and(|row| row.gap() > OPEN_GAP)
+        self.rows.last().is_some_and(|row| gap(row) > OPEN_GAP)
     }
 
-    /// The largest gap of i and j after the shock.
-    fn widest(&self) -> f64 {
-        self.after_shock().map(SeriesRow::gap).fold(0.0, f64::max)
-    }
-
-    /// Whether j has come back from the farthest that it has been.
+    /// True if j has come back from the farthest that it has been.
     fn turns_back(&self) -> bool {
-        let farthest = self.after_shock().map(|row| row.places[1]).fold(1.0, f64::max);
-        self.last().is_some_and(|row| row.places[1] < farthest - OPEN_GAP)
+        let farthest = self.after_shock().map(|(_, [_, j, _])| *j).fold(1.0, f64::max);
+        self.rows.last().is_some_and(|(_, [_, j, _])| *j < farthest - OPEN_GAP)
     }
 
     /// Mean velocity of j over the last quarter of a second, d/s.
     fn final_velocity(&self) -> f64 {
-        let Some(last) = self.last() else { return 0.0 };
-        let before = self.after_shock().find(|row| row.secs >= last.secs - 0.25);
-        before.map_or(0.0, |one| (last.places[1] - one.places[1]) / (last.secs - one.secs))
+        let Some((end, [_, last, _])) = self.rows.last() else { return 0.0 };
+        let before = self.after_shock().find(|(secs, _)| *secs >= end - 0.25);
+        before.map_or(0.0, |(secs, [_, j, _])| (last - j) / (end - secs))
     }
 }
 
@@ -81,10 +68,14 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
         let step_secs = config.parameters.time_step_secs.unwrap_or(0.0);
         runs.push(DiscSeries { step_secs, rows: read(&text, diameter)? });
     }
-    let mut near = chart(&runs, "place of j after the shock", (-0.1, 0.8))?;
-    let highest = highest(&near);
+    let mut near = chart(&runs, "place of j after the shock", -0.1, 0.8)?;
+    let curves = near.layers.iter().filter_map(|layer| match layer {
+        Layer::Curve { points, .. } => Some(points),
+        _ => None,
+    });
+    let highest = curves.flatten().map(|point| point.y).fold(1.1, f64::max);
     (near.y.from, near.y.to) = (1.0 - 0.05 * (highest - 1.0), 1.0 + 1.05 * (highest - 1.0));
-    let mut far = chart(&runs, "the same on the paper's axes", (0.0, ENDS.0))?;
+    let mut far = chart(&runs, "the same on the paper's axes", 0.0, ENDS.0)?;
     (far.y.from, far.y.to) = (0.0, ENDS.1);
     let caption = vec!["k starts 7.865 d left of i: a distance that was searched for, as the paper does not tell its own.".into()];
     let sheet = Sheet { size: (2000, 860), charts: vec![near, far], caption };
@@ -93,16 +84,14 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig8", sheet, claims, table: None })
 }
 
-fn chart(runs: &[DiscSeries], title: &str, (from, to): (f64, f64)) -> Result<Chart> {
+fn chart(runs: &[DiscSeries], title: &str, from: f64, to: f64) -> Result<Chart> {
     let axes = (Axis::linear("t − t_shock (s)", from, to), Axis::linear("x_j / d", 0.98, 1.2));
     let mut chart = Chart::new(format!("Fig. 8: {title}"), axes.0, axes.1);
-    chart.legend = LegendCorner::UpperLeft;
     for (index, shown) in SHOWN_SECS.into_iter().enumerate() {
         let run = runs.iter().find(|run| run.step_secs == shown);
         let run = run.ok_or_else(|| Error::value("dt", shown, "part of the study"))?;
-        let on_axes = |one: &&SeriesRow| (from..=to).contains(&one.secs) && one.places[1] <= ENDS.1;
-        let shown_rows = run.rows.iter().filter(on_axes);
-        let places = points(shown_rows.map(|one| (one.secs, one.places[1])));
+        let places = run.rows.iter().map(|(secs, [_, j, _])| (*secs, *j));
+        let places = points(places.filter(|(secs, j)| (from..=to).contains(secs) && *j <= ENDS.1));
         let name = format!("Δt = {shown:e} s").replace('-', "−");
         // Its curve is that of 1e-3 s as long as the bond holds in both.
         let look = if shown == CAUGHT_SECS { Look::Dashes(3) } else { Look::Line(3) };
@@ -111,15 +100,6 @@ fn chart(runs: &[DiscSeries], title: &str, (from, to): (f64, f64)) -> Result<Cha
     Ok(chart)
 }
 
-fn highest(chart: &Chart) -> f64 {
-    let curves = chart.layers.iter().filter_map(|layer| match layer {
-        Layer::Curve { points, .. } => Some(points),
-        _ => None,
-    });
-    curves.flatten().map(|point| point.y).fold(1.1, f64::max)
-}
-
-/// A series from its file.
 fn read(text: &str, diameter: f64) -> Result<Vec<SeriesRow>> {
     let refuse = |error: csv::Error| Error::file("series", error);
     let mut reader = csv::Reader::from_reader(text.as_bytes());
@@ -132,18 +112,17 @@ fn read(text: &str, diameter: f64) -> Result<Vec<SeriesRow>> {
         let [secs, i, j, k] = columns.map(|index| {
             record.get(index).and_then(|cell| cell.parse::<f64>().ok()).unwrap_or(0.0)
         });
-        rows.push(SeriesRow { secs, places: [i, j, k].map(|place| place / diameter) });
+        rows.push((secs, [i, j, k].map(|place| place / diameter)));
     }
     // Within a hundredth of a diameter: rows are further apart than the touch lasts.
-    let touches = |row: &&SeriesRow| row.places[0] - row.places[2] <= 1.01;
-    let shock_secs = rows.iter().find(touches).map_or(0.0, |row| row.secs);
-    rows.iter_mut().for_each(|row| row.secs -= shock_secs);
+    let shock_secs = rows.iter().find(|(_, [i, _, k])| i - k <= 1.01).map_or(0.0, |row| row.0);
+    rows.iter_mut().for_each(|row| row.0 -= shock_secs);
     Ok(rows)
 }
 
 /// The runs with a Δt in a range, its ends among them.
-fn between(runs: &[DiscSeries], (least, most): (f64, f64)) -> impl Iterator<Item = &DiscSeries> {
-    runs.iter().filter(move |run| (least..=most).contains(&run.step_secs))
+fn between(runs: &[DiscSeries], steps: RangeInclusive<f64>) -> impl Iterator<Item = &DiscSeries> {
+    runs.iter().filter(move |run| steps.contains(&run.step_secs))
 }
 
 fn swings(runs: &[DiscSeries]) -> Claim {
@@ -166,18 +145,17 @@ fn caught(runs: &[DiscSeries]) -> Claim {
     let Some(run) = runs.iter().find(|run| run.step_secs == CAUGHT_SECS) else {
         return Claim::new(said, "no run", false.into());
     };
-    let open = |row: &&SeriesRow| row.gap() > OPEN_GAP;
+    let open = |row: &&SeriesRow| gap(row) > OPEN_GAP;
+    let widest = run.after_shock().map(gap).fold(0.0, f64::max);
     let (first, last) = (run.after_shock().find(open), run.after_shock().rev().find(open));
     let measured = match (first, last) {
         (Some(first), Some(last)) => format!(
             "i and j are up to {:.4} d apart, from {:.3} to {:.3} s after the shock",
-            run.widest(),
-            first.secs,
-            last.secs
+            widest, first.0, last.0
         ),
         _ => "i and j are never apart".to_owned(),
     };
-    let holds = run.widest() > OPEN_GAP && !run.ends_open();
+    let holds = widest > OPEN_GAP && !run.ends_open();
     let phase = format!(
         "at Δt ≥ {PHASE_SECS} s the outcome is a matter of phase: fig8-share has how often"
     );
@@ -186,8 +164,8 @@ fn caught(runs: &[DiscSeries]) -> Claim {
 
 fn cluster(runs: &[DiscSeries]) -> Claim {
     let ends: Vec<f64> = between(runs, CLUSTER_SECS)
-        .filter_map(|run| run.last())
-        .map(|row| row.places[0] - row.places[2] - 1.0)
+        .filter_map(|run| run.rows.last())
+        .map(|(_, [i, _, k])| i - k - 1.0)
         .collect();
     let apart = ends.iter().filter(|gap| **gap > OPEN_GAP).count();
     let [least, most] = [f64::min, f64::max].map(|pick| ends.iter().copied().fold(ends[0], pick));

@@ -13,12 +13,10 @@ use crate::statistics::{Mean, mean, p_value};
 
 /// Slump that the scale of colours ends at.
 const MOST: f64 = 0.55;
-/// Contours of the cohesive time.
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
 /// Cohesive times from one over this to this are near 1.
 const NEAR: f64 = 3.0;
-/// Steps of the scale of colours.
 const SHADES: u32 = 64;
 
 /// Slump → colour: dark is a pile that holds.
@@ -31,7 +29,6 @@ fn colour(slump: f64) -> Rgb {
 }
 
 pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
-    let unit_secs = unit_secs()?;
     let rows = studies.rows("pile-map")?;
     let (bonds, steps) = (rows.bonds(), rows.steps());
     let half = 0.5 * (bonds[1] - bonds[0]);
@@ -65,7 +62,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     );
     chart.width = 5.0;
     chart.layers.push(Layer::Cells { name: "mean slump".into(), cells, colour });
-    chart.layers.extend(contours(unit_secs, x_to, y_from..=y_to));
+    chart.layers.extend(contours(x_to, y_from..=y_to));
     let cohesive: Vec<_> = lowest.iter().copied().filter(|(bond, _)| *bond > 0.0).collect();
     let dots = points(cohesive.iter().copied());
     chart.layers.push(Layer::quiet(
@@ -76,7 +73,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     ));
 
     let cohesive = rows.such_that(|config| config.parameters.bond > Some(0.0));
-    let log_time = |config: &Config| cohesive_time(config, unit_secs).log10();
+    let log_time = |config: &Config| cohesive_time(config).log10();
     let groups = cohesive.groups(log_time, |result| result.slump);
     let claim = claim(&groups, rows.seeds().len());
     let sheet = Sheet {
@@ -91,12 +88,12 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
 }
 
 /// Lines of equal cohesive time, each with its number, on axes that end there.
-fn contours(unit_secs: f64, most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
+fn contours(most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
     let mut layers = Vec::new();
     for time in CONTOURS {
         let line: Vec<_> = (1..=400)
             .map(|k| most_bond * f64::from(k) / 400.0)
-            .map(|bond| (bond, time * unit_secs / bond))
+            .map(|bond| (bond, time * unit_secs() / bond))
             .filter(|(_, step)| steps.contains(step))
             .collect();
         let Some(&(bond, step)) = line.get(line.len() / 2) else { continue };
@@ -108,7 +105,6 @@ fn contours(unit_secs: f64, most_bond: f64, steps: RangeInclusive<f64>) -> Vec<L
     layers
 }
 
-/// The scale of colours.
 fn scale() -> Chart {
     let mut scale =
         Chart::new("", Axis::linear("", 0.0, 1.0), Axis::linear("slump Δy_G", 0.0, MOST));

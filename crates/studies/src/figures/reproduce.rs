@@ -10,9 +10,7 @@ use crate::output::{check_writable, note_line, print_line, print_text, write_fil
 use crate::report::write_sheet;
 use crate::solver::worst;
 
-/// The figures that are pictures of grains, drawn together.
 const SNAPSHOTS: &str = "snapshots";
-/// Every figure, but for [`APART`].
 const ALL: &str = "all";
 /// What is not of the paper and takes hours: asked for by name alone.
 const APART: [&str; 6] = ["range", "range-regimes", "dry", "cohesion", "friction", "tolerance"];
@@ -46,13 +44,13 @@ pub fn reproduce(
     };
     check_writable("out", folder)?;
     let mut studies = StudyRunner::new(folder.join("studies"), quick);
-    let mut report = Report::new(quick);
+    let mut report = opening(quick);
     for info in FIGURES.iter().filter(|figure| wanted(figure.name)) {
         let begun = Instant::now();
         for study in info.studies {
             studies.run(study)?;
         }
-        let mut figure = (info.make)(&studies)?;
+        let mut figure = info.figure(&studies)?;
         studies.qualify(info.studies, &mut figure.claims);
         figure.sheet.caption.extend(studies.note(info.studies));
         let quick = if quick { " --quick" } else { "" };
@@ -62,30 +60,26 @@ pub fn reproduce(
             write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
         }
         note_line(format_args!("{}: {:.0} s", info.name, begun.elapsed().as_secs_f64()));
-        report.add(info, &figure);
+        report.push_str(&section(info, &figure));
     }
     if wanted(SNAPSHOTS) {
         snapshots(folder)?;
-        report.snapshots();
+        let pictures = ["fig3", "fig4", "fig7"].map(|name| format!("\n![{name}]({name}.png)\n"));
+        report.push_str(&format!("\n## Snapshots\n{}", pictures.concat()));
     }
+    report.push_str(&closing(&studies, started.elapsed().as_secs_f64()));
     let path = folder.join("report.md");
-    write_file(&path, report.finish(&studies, started.elapsed().as_secs_f64()).as_bytes())?;
+    write_file(&path, report.as_bytes())?;
     print_line(path.display());
     Ok(())
 }
 
-/// `report.md`.
-struct Report {
-    text: String,
-}
-
-impl Report {
-    fn new(quick: bool) -> Self {
-        let mut text = "# What the paper says, and what was measured\n\n".to_owned();
-        if quick {
-            text.push_str("Quick pass: coarser, with fewer initial states than the full one.\n\n");
-        }
-        text.push_str(
+fn opening(quick: bool) -> String {
+    let mut text = "# What the paper says, and what was measured\n\n".to_owned();
+    if quick {
+        text.push_str("Quick pass: coarser, with fewer initial states than the full one.\n\n");
+    }
+    text.push_str(
             "p-values are one-sided unless they say otherwise; a claim holds below 0.05, and does not \
              hold where its contrary is below 0.05. Intervals hold the true value in 95 % of samples. *By chance* says how often \
              the same test says that a claim holds where Δt has no effect, by shuffling Δt among the runs of each initial \
@@ -94,65 +88,59 @@ impl Report {
              diameter somewhere by nature, most of all at large Δt; a claim on runs that lost grains, or had no \
              finite end, is not decided.\n",
         );
-        Self { text }
-    }
+    text
+}
 
-    fn add(&mut self, info: &FigureInfo, figure: &Figure) {
-        // Writing to a string cannot fail.
-        let _ = write!(self.text, "\n## {0}\n\n![{0}]({0}.png)\n\n", figure.name);
-        for claim in &figure.claims {
-            let _ = writeln!(self.text, "* {}.\n  Measured: {}.", claim.said, claim.measured);
-            for (what, words) in [("By chance", &claim.by_chance), ("Hangs on", &claim.hangs_on)] {
-                if !words.is_empty() {
-                    let _ = writeln!(self.text, "  {what}: {words}.");
-                }
+/// The part of the report about a figure, which is printed, too.
+fn section(info: &FigureInfo, figure: &Figure) -> String {
+    let mut text = format!("\n## {0}\n\n![{0}]({0}.png)\n\n", figure.name);
+    // Writing to a string cannot fail.
+    for claim in &figure.claims {
+        let _ = writeln!(text, "* {}.\n  Measured: {}.", claim.said, claim.measured);
+        for (what, words) in [("By chance", &claim.by_chance), ("Hangs on", &claim.hangs_on)] {
+            if !words.is_empty() {
+                let _ = writeln!(text, "  {what}: {words}.");
             }
-            let _ = writeln!(self.text, "  **{}**", claim.verdict.words());
-            print_line(format_args!("{}: {} [{}]", info.name, claim.said, claim.verdict.words()));
-            print_line(format_args!("    {}", claim.measured));
         }
-        if let Some(table) = &figure.table {
-            let _ = write!(self.text, "\n{}", table.to_markdown());
-            print_text(table.to_markdown());
-        }
-        if figure.claims.is_empty() {
-            self.text.push_str("No claim is tested on this figure.\n");
-        }
+        let _ = writeln!(text, "  **{}**", claim.verdict.words());
+        print_line(format_args!("{}: {} [{}]", info.name, claim.said, claim.verdict.words()));
+        print_line(format_args!("    {}", claim.measured));
     }
-
-    fn snapshots(&mut self) {
-        self.text.push_str("\n## Snapshots\n");
-        for name in ["fig3", "fig4", "fig7"] {
-            let _ = write!(self.text, "\n![{name}]({name}.png)\n");
-        }
+    if let Some(table) = &figure.table {
+        let _ = write!(text, "\n{}", table.to_markdown());
+        print_text(table.to_markdown());
     }
+    if figure.claims.is_empty() {
+        text.push_str("No claim is tested on this figure.\n");
+    }
+    text
+}
 
-    fn finish(mut self, studies: &StudyRunner, secs: f64) -> String {
-        self.text.push_str(
-            "\n## Studies\n\n| study | runs | core seconds | steps not solved as asked | largest residual \
+fn closing(studies: &StudyRunner, secs: f64) -> String {
+    let mut text = String::from(
+        "\n## Studies\n\n| study | runs | core seconds | steps not solved as asked | largest residual \
              | not finite |\n|---|---|---|---|---|---|\n",
-        );
-        for (name, (_, table)) in &studies.finished {
-            let results = || table.rows.iter().map(|(.., result)| result);
-            let steps: u64 = results().map(|result| result.tally.steps).sum();
-            let unsolved: u64 = results().map(|result| result.tally.unconverged_steps).sum();
-            let residual = results().map(|result| result.tally.largest_residual).fold(0.0, worst);
-            let _ = writeln!(
-                self.text,
-                "| {name} | {} | {:.0} | {:.2} % | {residual:.1e} | {} |",
-                table.rows.len(),
-                table.core_secs,
-                100.0 * unsolved as f64 / steps.max(1) as f64,
-                table.not_finite()
-            );
-        }
+    );
+    for (name, (_, table)) in &studies.finished {
+        let results = || table.rows.iter().map(|(.., result)| result);
+        let steps: u64 = results().map(|result| result.tally.steps).sum();
+        let unsolved: u64 = results().map(|result| result.tally.unconverged_steps).sum();
+        let residual = results().map(|result| result.tally.largest_residual).fold(0.0, worst);
         let _ = writeln!(
-            self.text,
-            "\nMade by slump {} in {secs:.0} s on {} threads, studies that were there before not \
-             counted.",
-            env!("CARGO_PKG_VERSION"),
-            rayon::current_num_threads()
+            text,
+            "| {name} | {} | {:.0} | {:.2} % | {residual:.1e} | {} |",
+            table.rows.len(),
+            table.core_secs,
+            100.0 * unsolved as f64 / steps.max(1) as f64,
+            table.not_finite()
         );
-        self.text
     }
+    let _ = writeln!(
+        text,
+        "\nMade by slump {} in {secs:.0} s on {} threads, studies that were there before not \
+             counted.",
+        env!("CARGO_PKG_VERSION"),
+        rayon::current_num_threads()
+    );
+    text
 }

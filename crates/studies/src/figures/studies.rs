@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use serde_json::Value;
+
 use super::claims::{Alike, Claim, Verdict};
 use crate::config::Config;
 use crate::error::{Error, Result};
@@ -10,39 +12,30 @@ use crate::results::alarms_of;
 use crate::scene::NewPile;
 use crate::{PlannedRun, RunResult, RunsTable, Status, Study, SweepOptions, series_path, sweep};
 
-/// Studies by name, each with its file's text.
 macro_rules! shipped {
     ($($name:literal)*) => {
         &[$(($name, include_str!(concat!("../../../../assets/studies/", $name, ".toml")))),*]
     };
 }
 
-/// The studies that are shipped.
 const STUDIES: &[(&str, &str)] = shipped![
-    "pile" "pile-compressive" "pile-choices" "cradle" "cradle-courses" "cradle-choices"
+    "pile" "pile-compressive" "pile-choices" "cradle-courses" "cradle-choices"
     "cradle-share" "cradle-map" "pile-map" "pile-size" "pile-tolerance" "range" "range-regimes"
     "range-size" "dry" "cohesion" "friction" "tolerance"
 ];
 
-/// Runs shipped studies, and has those that are finished.
 pub(super) struct StudyRunner {
     folder: PathBuf,
-    /// Whether studies run their quick pass.
+    /// True if studies run their quick pass.
     pub quick: bool,
-    /// Studies and their results.
     pub finished: BTreeMap<&'static str, (Study, RunsTable)>,
 }
 
 impl StudyRunner {
-    /// A runner whose studies lie in `folder`.
     pub(super) fn new(folder: PathBuf, quick: bool) -> Self {
         Self { folder, quick, finished: BTreeMap::new() }
     }
 
-    /// Runs a shipped study, unless it was run before.
-    ///
-    /// # Errors
-    /// As [`sweep`].
     pub(super) fn run(&mut self, wanted: &str) -> Result<()> {
         let Some(&(name, text)) = STUDIES.iter().find(|(name, _)| *name == wanted) else {
             return Err(Error::value("study", wanted, "one that is shipped"));
@@ -123,13 +116,15 @@ impl StudyRunner {
     }
 }
 
-/// Runs and their results.
 pub(super) struct Rows<'a>(pub Vec<(&'a Config, &'a RunResult)>);
 
 impl<'a> Rows<'a> {
-    /// Those that a condition picks.
     pub(super) fn such_that(&self, holds: impl Fn(&Config) -> bool) -> Self {
         Self(self.0.iter().copied().filter(|(config, _)| holds(config)).collect())
+    }
+
+    pub(super) fn parted(&self, holds: impl Fn(&Config) -> bool) -> [Self; 2] {
+        [self.such_that(&holds), self.such_that(|config| !holds(config))]
     }
 
     /// Those of initial states that were not chosen for what they show.
@@ -137,27 +132,22 @@ impl<'a> Rows<'a> {
         self.such_that(|config| config.source.seed != Some(NewPile::default().seed))
     }
 
-    /// Those at a Bond.
     pub(super) fn of_bond(&self, bond: f64) -> Self {
         self.such_that(|config| config.parameters.bond == Some(bond))
     }
 
-    /// Those with a Δt, s.
     pub(super) fn of_step(&self, step: f64) -> Self {
         self.such_that(|config| config.parameters.time_step_secs == Some(step))
     }
 
-    /// Those from an initial state.
     pub(super) fn of_seed(&self, seed: u64) -> Self {
         self.such_that(|config| config.source.seed == Some(seed))
     }
 
-    /// Those with a tolerance.
     pub(super) fn of_tolerance(&self, tolerance: f64) -> Self {
         self.such_that(|config| config.solver.tolerance == Some(tolerance))
     }
 
-    /// The different values of a number, rising.
     pub(super) fn values(&self, number: impl Fn(&Config) -> Option<f64>) -> Vec<f64> {
         let mut values: Vec<f64> = self.0.iter().filter_map(|(config, _)| number(config)).collect();
         values.sort_by(f64::total_cmp);
@@ -165,22 +155,18 @@ impl<'a> Rows<'a> {
         values
     }
 
-    /// Bonds, rising.
     pub(super) fn bonds(&self) -> Vec<f64> {
         self.values(|config| config.parameters.bond)
     }
 
-    /// Δt, rising, s.
     pub(super) fn steps(&self) -> Vec<f64> {
         self.values(|config| config.parameters.time_step_secs)
     }
 
-    /// Tolerances, rising.
     pub(super) fn tolerances(&self) -> Vec<f64> {
         self.values(|config| config.solver.tolerance)
     }
 
-    /// Seeds, rising.
     pub(super) fn seeds(&self) -> Vec<u64> {
         let mut seeds: Vec<u64> =
             self.0.iter().filter_map(|(config, _)| config.source.seed).collect();
@@ -189,12 +175,10 @@ impl<'a> Rows<'a> {
         seeds
     }
 
-    /// A number of the result of each run.
     pub(super) fn results(&self, number: impl Fn(&RunResult) -> f64) -> Vec<f64> {
         self.0.iter().map(|(_, result)| number(result)).collect()
     }
 
-    /// The slump of each run.
     pub(super) fn slumps(&self) -> Vec<f64> {
         self.results(|result| result.slump)
     }
@@ -218,7 +202,19 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The decimal logarithm of a run's Δt.
+/// The settings of a run that are other than those of the first one, but for Bond, Δt and the state.
+pub(super) fn changes(config: &Config, first: &Config) -> String {
+    let settings = |config: &Config| serde_json::to_value(config).unwrap_or_default();
+    let (here, first) = (settings(config), settings(first));
+    let is_change = |(name, value): &(&String, &Value)| {
+        !["bond", "dt", "seed"].contains(&name.as_str()) && first.get(*name) != Some(*value)
+    };
+    let all = here.as_object().into_iter().flatten().filter(is_change);
+    let words = |(name, value): (&String, &Value)| format!("{name} {value}").replace('"', "");
+    let changes: Vec<String> = all.map(words).collect();
+    if changes.is_empty() { "as it is".to_owned() } else { changes.join(", ") }
+}
+
 pub(super) fn log_step(config: &Config) -> f64 {
     config.parameters.time_step_secs.unwrap_or(1.0).log10()
 }
@@ -229,16 +225,16 @@ mod tests {
     use crate::sim::AlarmKind;
 
     fn result(status: Status, lost_grains: u32, alarm: Option<AlarmKind>) -> RunResult {
-        let alarms = alarm.into_iter().collect();
+        let alarms = alarm.map_or("", AlarmKind::name).to_owned();
         RunResult { status, lost_grains, alarms, ..RunResult::of_slump(0.0) }
     }
 
     /// A claim that holds, on those runs.
-    fn qualified(results: &[RunResult]) -> Claim {
+    fn qualified(results: &[&RunResult]) -> Claim {
         let mut studies = StudyRunner::new(PathBuf::new(), true);
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";
         let study = Study::parse(text, "pile.toml".as_ref(), true).expect("a study");
-        let rows = results.iter().map(|&result| (String::new(), Config::default(), result));
+        let rows = results.iter().map(|&result| (String::new(), Config::default(), result.clone()));
         let table = RunsTable { rows: rows.collect(), core_secs: 0.0 };
         studies.finished.insert("pile", (study, table));
         let mut claims = [Claim::new("it falls", "p = 0.001", Verdict::Holds)];
@@ -254,14 +250,14 @@ mod tests {
         let lost = result(Status::Done, 2, Some(AlarmKind::GrainLost));
         let infinite = result(Status::NotFinite, 0, Some(AlarmKind::NotFinite));
 
-        let claim = qualified(&[sound; 40]);
+        let claim = qualified(&[&sound; 40]);
         assert_eq!((claim.measured.as_str(), claim.verdict), ("p = 0.001", Verdict::Holds));
-        let claim = qualified(&[sound, deep, sound]);
+        let claim = qualified(&[&sound, &deep, &sound]);
         assert_eq!(claim.measured, "p = 0.001; 1 of 3 runs raised alarms (overlap 1)");
         assert_eq!(claim.verdict, Verdict::Holds);
-        for spoilt in [lost, infinite] {
-            let mut results = vec![sound; 999];
-            results.extend([deep, spoilt]);
+        for spoilt in [&lost, &infinite] {
+            let mut results = vec![&sound; 999];
+            results.extend([&deep, spoilt]);
             let claim = qualified(&results);
             assert!(claim.measured.starts_with("p = 0.001; 2 of 1001 runs raised"));
             assert!(claim.measured.ends_with(", and 1 lost grains or did not end"));

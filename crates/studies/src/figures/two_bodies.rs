@@ -5,7 +5,7 @@
 use glam::DVec2;
 
 use super::{Claim, Figure, StudyRunner};
-use crate::chart::{Axis, Chart, INK, Layer, LegendCorner, Look, PALETTE, Sheet, points};
+use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Sheet, points};
 use crate::error::Result;
 use crate::scene::{Scene, collision};
 use crate::world::{Grain, Parameters};
@@ -50,7 +50,6 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
         Axis::linear("formal velocity v / (ΔtC₀/m)", -x_reach, x_reach),
         Axis::linear("N / C₀", -y_reach, y_reach),
     );
-    chart.legend = LegendCorner::LowerRight;
     let graph = [(0.0, y_reach), (0.0, -shift), (x_reach, -shift)];
     let graph = points(graph);
     chart.layers.push(Layer::curve("contact law", graph, INK, Look::Line(5)));
@@ -86,7 +85,6 @@ const RESTITUTION: f64 = 0.2;
 /// Opening speeds at the beginning of the step, m/s.
 const SPEEDS: [f64; 5] = [-0.02, 0.01, 0.02, 0.04, 0.06];
 const TIME_STEPS_SECS: (f64, f64) = (0.0, 0.012);
-/// Points a line.
 const POINTS: u32 = 25;
 
 /// The state after one step of two free discs of different sizes that touch and part with `speed`.
@@ -137,7 +135,6 @@ pub(super) fn two_bodies(_: &StudyRunner) -> Result<Figure> {
         Axis::linear("Δt (s)", from, to),
         Axis::linear("vₙ after the step (m/s)", -0.02, 0.075),
     );
-    chart.legend = LegendCorner::UpperRight;
     let mut worst: f64 = 0.0;
     for (number, speed) in SPEEDS.into_iter().enumerate() {
         let colour = PALETTE[number % PALETTE.len()];

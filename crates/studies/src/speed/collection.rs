@@ -16,7 +16,7 @@ use crate::world::ParameterChanges;
 
 /// How the piles get to the steps that are collected: far better solved than any claim about a pile
 /// needs, so that a collection does not favour the errors of the methods it is to compare.
-pub(super) const ADVANCE: SolverSettings = SolverSettings {
+const ADVANCE: SolverSettings = SolverSettings {
     method: Method::Newton,
     ordering: Ordering::Interleaved,
     stop: StopTest::Residual,
@@ -29,10 +29,12 @@ pub(super) const ADVANCE: SolverSettings = SolverSettings {
     islands: false,
 };
 
+/// Width of a box over the root of the number of its grains, in diameters: 16 for 138.
+const WIDTH_BY_ROOT: f64 = 1.35;
+
 /// Which steps to collect: each time of each pile, a pile for every Bond number and time step.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CollectionPlan {
-    /// Bond numbers.
     pub bonds: Vec<f64>,
     /// Δt, s.
     pub time_steps_secs: Vec<f64>,
@@ -40,15 +42,12 @@ pub(super) struct CollectionPlan {
     pub times_secs: Vec<f64>,
     /// Seeds of the initial states, dealt out to the piles in turn.
     pub seeds: Vec<u64>,
-    /// Grains of a pile.
     pub grains: usize,
     /// Width of the box that the piles are made in, in diameters.
     pub box_width_in_diameters: f64,
-    /// How they are made.
     pub deposition: Deposition,
-    /// Whether the walls of the box stay, so that the piles are at rest.
+    /// True if the walls of the box stay, so that the piles are at rest.
     pub in_a_box: bool,
-    /// How the piles get to the steps.
     pub advance: SolverSettings,
     /// Contacts slower than this many g·Δt do not bounce; 0 in the paper's scheme.
     pub restitution_threshold: f64,
@@ -73,12 +72,39 @@ impl CollectionPlan {
         }
     }
 
-    /// 24 of them: the first two times.
     pub(super) fn fewer_piles(restitution_threshold: f64) -> Self {
         Self { times_secs: vec![0.03, 0.1], ..Self::piles(restitution_threshold) }
     }
 
-    /// The names of its steps, in their order.
+    /// Steps at Δt = 1e-3 s of piles without cohesion and with, made quickly, as steep as that of 138 grains: beginning to
+    /// slump or, in their box, at rest. They stand in runs whose every step was certified under bounds of friction, so
+    /// that what a warm start takes over is the error of no method.
+    pub(super) fn of_size(grains: usize, in_a_box: bool, quick: bool) -> Self {
+        let times_secs = match (in_a_box, quick) {
+            (true, true) => vec![5e-3],
+            (true, false) => vec![1e-2, 2e-2],
+            (false, true) => vec![2e-2],
+            (false, false) => vec![3e-2, 0.1],
+        };
+        Self {
+            // The second one is felt, and yet lets a pile of any size slump.
+            bonds: vec![0.0, 10.0],
+            time_steps_secs: vec![1e-3],
+            times_secs,
+            seeds: vec![1],
+            grains,
+            box_width_in_diameters: (WIDTH_BY_ROOT * (grains as f64).sqrt()).round(),
+            deposition: Deposition::DropAndRoll,
+            in_a_box,
+            advance: SolverSettings {
+                method: Method::InteriorPoint,
+                friction_model: FrictionModel::Tresca,
+                ..ADVANCE
+            },
+            restitution_threshold: 2.0,
+        }
+    }
+
     pub(super) fn names(&self) -> Vec<String> {
         let of_pile =
             |config: &Config| self.times_secs.iter().map(|&time| self.name(config, time)).collect();
@@ -124,9 +150,6 @@ impl CollectionPlan {
 /// Collects the steps of a plan, pile after pile, on all cores: the simulations just before them, in the order of their
 /// names; `next_problem` gives their problems. Initial states are kept in
 /// `states_folder`. The same plan gives the same steps to the last bit.
-///
-/// # Errors
-/// Where the folder cannot be written, a state does not settle, or a pile is no longer finite.
 pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Simulation>> {
     let configs = plan.configs();
     let states = States::of(states_folder.to_owned(), configs.iter())?;
@@ -182,37 +205,28 @@ mod tests {
         plan.bonds.len() * plan.time_steps_secs.len() * plan.times_secs.len()
     }
 
-    fn bits(collected: &[Simulation]) -> Vec<u64> {
-        let of = |step: &Simulation| {
-            let grains = &step.world().grains;
-            let places = grains.positions.iter().chain(&grains.velocities);
-            let impulses = step.contacts().impulses();
-            let mut bits: Vec<u64> = places.flat_map(|v| [v.x.to_bits(), v.y.to_bits()]).collect();
-            bits.extend(impulses.iter().flat_map(|i| [i.normal.to_bits(), i.tangential.to_bits()]));
-            bits
-        };
-        collected.iter().flat_map(of).collect()
+    fn bits(step: &Simulation) -> Vec<u64> {
+        let grains = &step.world().grains;
+        let places = grains.positions.iter().chain(&grains.velocities);
+        let impulses = step.contacts().impulses();
+        let mut bits: Vec<u64> = places.flat_map(|v| [v.x.to_bits(), v.y.to_bits()]).collect();
+        bits.extend(impulses.iter().flat_map(|i| [i.normal.to_bits(), i.tangential.to_bits()]));
+        bits
     }
 
     #[test]
-    fn a_collection_is_the_same_every_time_on_any_number_of_threads() {
+    fn a_collection_is_the_same_on_any_number_of_threads_and_steps_stand_at_their_time() {
         let folder = tempfile::tempdir().expect("a folder");
         let plan = small();
         let first = collect(&plan, folder.path()).expect("a collection");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
         let again = pool.install(|| collect(&plan, folder.path())).expect("a collection");
         assert_eq!(first.len(), steps(&plan));
-        assert_eq!(bits(&first), bits(&again));
-        assert!(first.iter().all(|step| !step.contacts().impulses().is_empty()));
-    }
-
-    #[test]
-    fn steps_stand_at_their_time_in_their_pile() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let collected = collect(&small(), folder.path()).expect("a collection");
-        let mut names = small().names();
-        assert_eq!(names.len(), collected.len());
-        for (simulation, name) in collected.iter().zip(&names) {
+        assert!(first.iter().map(bits).eq(again.iter().map(bits)));
+        let mut names = plan.names();
+        assert_eq!(names.len(), first.len());
+        for (simulation, name) in first.iter().zip(&names) {
+            assert!(!simulation.contacts().impulses().is_empty());
             let Parameters { bond, time_step_secs, .. } = simulation.parameters();
             let told = format!(
                 "30 grains, Bond {bond}, dt {time_step_secs:e}, t {:.2}, threshold 2",
@@ -223,7 +237,14 @@ mod tests {
             assert_eq!(simulation.parameters().restitution_threshold, 2.0);
         }
         names.dedup();
-        assert_eq!(names.len(), collected.len(), "every step has a name of its own");
+        assert_eq!(names.len(), first.len(), "every step has a name of its own");
+    }
+
+    #[test]
+    fn boxes_are_as_steep_as_the_papers() {
+        let paper = NewPile::default();
+        let width = CollectionPlan::of_size(paper.grains, false, false).box_width_in_diameters;
+        assert_eq!(width, paper.box_width_in_diameters);
     }
 
     #[test]

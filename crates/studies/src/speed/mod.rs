@@ -1,15 +1,13 @@
-//! Speed charted against accuracy: of single steps, by their size as well, of whole simulations, and what a scene
-//! saves by computing no more than it needs. Every method of the registry is on every chart.
+//! Speed charted against accuracy: of single steps, small and large, and of whole simulations. Every method of
+//! the registry is on every chart.
 //!
 //! The folder of a chart holds pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and
 //! `measured/`: journals of what was measured, by program and processor, so that the same command
 //! goes on where it was stopped and never mixes times of different programs.
 
 mod collection;
-mod models;
 mod performance;
 mod simulations;
-mod sizes;
 mod solves;
 mod steps;
 mod variants;
@@ -24,19 +22,17 @@ use super::chart::Sheet;
 use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, note_line, print_line, print_text, write_file};
-use crate::report::write_sheet;
+use crate::report::{ReportTable, write_sheet};
 use crate::runner::Runner;
 
 /// Something to chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ChartPart {
-    /// Residual against the time of a step, and performance profiles
+    /// Residual against the time of a step
     Step,
     /// Error of the slump against simulated seconds per second
     Simulation,
-    /// What a scene's model costs
-    Model,
-    /// A step of 500 to 10,000 grains, to residuals and to a certificate
+    /// The same of steps of 500 to 10,000 grains, with certificates under `tresca`
     Size,
 }
 
@@ -47,35 +43,21 @@ pub struct ChartOptions {
     pub out: PathBuf,
     /// Coarser, in a few minutes.
     pub quick: bool,
-    /// Also steps of up to 10,000 grains, and simulations of 2,000.
+    /// Also steps of up to 10,000 grains.
     pub large: bool,
     /// The parts; all where there is none.
     pub only: Vec<ChartPart>,
 }
 
-impl ChartOptions {
-    /// The command that charts this, with a folder of one's own.
-    fn command(&self) -> String {
-        let only = self.only.iter().filter_map(clap::ValueEnum::to_possible_value);
-        let only: String = only.map(|part| format!(" --only {}", part.get_name())).collect();
-        let switch = |on: bool, word: &str| if on { format!(" --{word}") } else { String::new() };
-        let switches = switch(self.quick, "quick") + &switch(self.large, "large");
-        format!("slump chart{only}{switches} --out chart")
-    }
-}
-
-/// A finished chart with what is said of it.
 struct ChartSection {
-    /// Name of its files.
     name: String,
     sheet: Sheet,
-    /// Markdown; may be empty.
-    report: String,
-    /// (name, CSV) of tables beside the sheet's own.
-    tables: Vec<(String, String)>,
+    words: String,
+    summary: ReportTable,
+    /// Tables that the report does not show.
+    others: Vec<ReportTable>,
 }
 
-/// Where charts are made.
 struct Bench<'a> {
     options: &'a ChartOptions,
     machine: Machine,
@@ -86,7 +68,6 @@ impl Bench<'_> {
         self.options.out.join("states")
     }
 
-    /// A runner of the measurements of this program on this machine.
     fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         name: &str,
@@ -104,13 +85,13 @@ impl Bench<'_> {
 
     /// Writes the files of a section, and gives its part of the report.
     fn write(&self, section: &ChartSection) -> Result<String> {
-        let ChartSection { name, sheet, report, tables } = section;
+        let ChartSection { name, sheet, words, summary, others } = section;
         let folder = &self.options.out;
-        write_sheet(folder, name, sheet, &self.options.command())?;
-        for (table, text) in tables {
-            write_file(&folder.join(format!("{table}.csv")), text.as_bytes())?;
+        write_sheet(folder, name, sheet, &self.machine.command)?;
+        for table in others.iter().chain([summary]) {
+            write_file(&folder.join(format!("{}.csv", table.name)), &table.to_csv()?)?;
         }
-        Ok(format!("\n![{name}]({name}.png)\n\n{report}\n"))
+        Ok(format!("\n![{name}]({name}.png)\n\n{words}\n\n{}\n", summary.to_markdown()))
     }
 }
 
@@ -124,15 +105,14 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     let is_wanted = |part| match part {
         _ if !options.only.is_empty() => options.only.contains(&part),
         ChartPart::Size => options.large,
-        ChartPart::Step | ChartPart::Simulation | ChartPart::Model => true,
+        ChartPart::Step | ChartPart::Simulation => true,
     };
     let mut report = format!("# Speed against accuracy\n\n{}\n", bench.machine.words());
     type Make = fn(&Bench) -> Result<Vec<ChartSection>>;
-    let makers: [(ChartPart, &str, Make); 4] = [
+    let makers: [(ChartPart, &str, Make); 3] = [
         (ChartPart::Step, "Single steps", steps::make),
         (ChartPart::Simulation, "Whole simulations", simulations::make),
-        (ChartPart::Model, "What a scene's model costs", models::make),
-        (ChartPart::Size, "Steps by size", sizes::make),
+        (ChartPart::Size, "Steps by size", steps::make_sizes),
     ];
     for (_, title, make) in makers.into_iter().filter(|(part, ..)| is_wanted(*part)) {
         let begun = Instant::now();
@@ -149,12 +129,6 @@ pub fn chart_speed(options: &ChartOptions) -> Result<()> {
     Ok(())
 }
 
-/// A number of a CSV table; nothing where there is none.
-fn csv_cell(value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| format!("{value:e}"))
-}
-
-/// Values in words, with commas between them.
 fn listed<T>(values: impl IntoIterator<Item = T>, word: impl Fn(T) -> String) -> String {
     values.into_iter().map(word).collect::<Vec<_>>().join(", ")
 }

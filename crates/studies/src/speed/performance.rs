@@ -1,12 +1,10 @@
-//! How methods are compared over many problems, some of which some methods fail on: means with
-//! failures, performance profiles, and the front of what nothing beats.
+//! How methods are compared over many problems, some of which some methods fail on: means with failures, and the front
+//! of what nothing beats.
 
-/// What one solve took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Timing {
     /// Until it was solved or given up, s.
     pub secs: f64,
-    /// Whether it was solved.
     pub solved: bool,
 }
 
@@ -34,64 +32,16 @@ pub(super) fn median_with_failures(timings: &[Timing]) -> Option<f64> {
     median.is_finite().then_some(median)
 }
 
-/// Share of the problems that were solved.
 pub(super) fn share_solved(timings: &[Timing]) -> f64 {
     let solved = timings.iter().filter(|timing| timing.solved).count();
     solved as f64 / timings.len().max(1) as f64
 }
 
-/// How many times as fast one method is as another, as geometric means over problems.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct SpeedRatio {
-    /// Over the problems that both solve.
-    pub both: Option<f64>,
-    /// How many those are.
-    pub count_both: usize,
-    /// Over all that the method solves; where the base failed, the time after which it gave up
-    /// counts, which is a lower bound of what it would need.
-    pub at_least: Option<f64>,
-    /// How many those are.
-    pub count_at_least: usize,
-}
-
-/// The ratio of `base`'s times to `method`'s, problem by problem. What the method fails on has no
-/// ratio: it shows in [`share_solved`].
-pub(super) fn speed_ratio(base: &[Timing], method: &[Timing]) -> SpeedRatio {
-    let pairs = || base.iter().zip(method).filter(|(_, method)| method.solved);
-    let ratio = |(base, method): (&Timing, &Timing)| base.secs / method.secs;
-    let count_both = pairs().filter(|(base, _)| base.solved).count();
-    SpeedRatio {
-        both: geometric_mean(pairs().filter(|(base, _)| base.solved).map(ratio)),
-        count_both,
-        at_least: geometric_mean(pairs().map(ratio)),
-        count_at_least: pairs().count(),
-    }
-}
-
-/// Performance profiles (E. Dolan, J. Moré 2002): for each method, the share of problems that it
-/// solves within τ times the least time of any method, as the corners (τ, share) of a staircase that
-/// begins at τ = 1. `timings[method][problem]`. Problems that no method solves count against all.
-pub(super) fn performance_profiles(timings: &[Vec<Timing>]) -> Vec<Vec<(f64, f64)>> {
-    let problems = timings.first().map_or(0, Vec::len);
-    let secs = |timing: &Timing| if timing.solved { timing.secs } else { f64::INFINITY };
-    let best: Vec<f64> = (0..problems)
-        .map(|problem| timings.iter().map(|of| secs(&of[problem])).fold(f64::INFINITY, f64::min))
-        .collect();
-    let profile = |of: &Vec<Timing>| {
-        let solved = of.iter().zip(&best).filter(|(timing, _)| timing.solved);
-        let mut factors: Vec<f64> = solved.map(|(timing, best)| timing.secs / best).collect();
-        factors.sort_by(f64::total_cmp);
-        let mut corners = vec![(1.0, 0.0)];
-        for (index, factor) in factors.into_iter().enumerate() {
-            let share = (index + 1) as f64 / problems as f64;
-            match corners.last_mut() {
-                Some(last) if last.0 == factor => last.1 = share,
-                _ => corners.push((factor, share)),
-            }
-        }
-        corners
-    };
-    timings.iter().map(profile).collect()
+/// How many times as fast one method is as another, as a geometric mean over the problems that the method solves. Where the base failed, the time after which it gave up
+/// counts, which is a lower bound of what it would need.
+pub(super) fn speed_ratio(base: &[Timing], method: &[Timing]) -> Option<f64> {
+    let pairs = base.iter().zip(method).filter(|(_, method)| method.solved);
+    geometric_mean(pairs.map(|(base, method)| base.secs / method.secs))
 }
 
 /// The points (speed, error) that no other beats in both, by rising speed. Of equal ones the first
@@ -143,22 +93,10 @@ mod tests {
     fn a_ratio_counts_failures_of_the_base_as_a_bound_and_leaves_out_the_methods_own() {
         let base = [solved(8.0), failed(50.0), solved(4.0), failed(50.0)];
         let method = [solved(2.0), solved(1.0), failed(0.1), failed(0.1)];
-        let ratio = speed_ratio(&base, &method);
-        assert_eq!((ratio.count_both, ratio.count_at_least), (1, 2));
-        assert_eq!(ratio.both, Some(4.0));
+        let ratio = speed_ratio(&base, &method).expect("a ratio");
         // √(4 · 50)
-        assert!((ratio.at_least.expect("a ratio") - 200f64.sqrt()).abs() < 1e-12);
-        assert_eq!(speed_ratio(&base, &[failed(1.0); 4]).both, None);
-    }
-
-    #[test]
-    fn a_profile_is_the_share_within_a_factor_of_the_best() {
-        let fast = vec![solved(1.0), solved(1.0), failed(9.0), failed(9.0)];
-        let slow = vec![solved(2.0), solved(2.0), solved(5.0), failed(9.0)];
-        let profiles = performance_profiles(&[fast, slow]);
-        assert_eq!(profiles[0], [(1.0, 0.5)], "best on two of four, and fails on the others");
-        assert_eq!(profiles[1], [(1.0, 0.25), (2.0, 0.75)]);
-        assert_eq!(performance_profiles(&[vec![failed(1.0)]]), [vec![(1.0, 0.0)]]);
+        assert!((ratio - 200f64.sqrt()).abs() < 1e-12);
+        assert_eq!(speed_ratio(&base, &[failed(1.0); 4]), None);
     }
 
     #[test]

@@ -2,17 +2,13 @@
 
 use std::time::Instant;
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::Bench;
-use super::collection::{CollectionPlan, collect};
 use super::performance::Timing;
 use super::variants::ChartedVariant;
 use crate::contact::ContactList;
 use crate::error::Result;
 use crate::number;
-use crate::runner::{Case, Runner, Threads};
 use crate::sim::{ProblemVisitor, Simulation};
 use crate::solver::{Measures, Memory, Model, SolverSettings, StepProblem, measure, solve};
 
@@ -33,23 +29,18 @@ const FIRST_SWEEPS: u32 = 16;
 /// Share of the time limit from which on a try shows how many sweeps fit into the limit.
 const LONG_TRY: f64 = 0.125;
 
-/// A goal that was reached.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct ReachedGoal {
-    /// What was asked for.
     pub goal: f64,
     /// Least time of a solve, s.
     pub solve_secs: f64,
     /// What the solve came to: the natural map of what was solved.
     pub left: f64,
-    /// The duality gap, where there is one.
     pub duality_gap: Option<f64>,
 }
 
-/// The solves of one step by one variant.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct TimedSolves {
-    /// Contacts of the step.
     pub contacts: usize,
     /// Natural map of the start, with the impulses of the step before.
     #[serde(with = "number")]
@@ -57,75 +48,22 @@ pub(super) struct TimedSolves {
     /// Smallest natural map of any of the solves.
     #[serde(with = "number")]
     pub smallest: f64,
-    /// By falling goal.
     pub reached: Vec<ReachedGoal>,
     /// How long the solve took that did not reach its goal in time, s.
     pub gave_up_secs: Option<f64>,
 }
 
 impl TimedSolves {
-    /// The goal, if it was reached.
     pub(super) fn reached(&self, goal: f64) -> Option<&ReachedGoal> {
         self.reached.iter().find(|reached| reached.goal == goal)
     }
 
-    /// The time to one of the goals.
     pub(super) fn timing(&self, goal: f64) -> Timing {
         match self.reached(goal) {
             Some(reached) => Timing { secs: reached.solve_secs, solved: true },
             None => Timing { secs: self.gave_up_secs.unwrap_or(f64::INFINITY), solved: false },
         }
     }
-}
-
-/// The simulation with other settings of the solver.
-///
-/// # Errors
-/// Where the settings do not fit the simulation.
-pub(super) fn solved_by(simulation: &Simulation, solver: SolverSettings) -> Result<Simulation> {
-    let mut simulation = simulation.clone();
-    simulation.set_solver(solver)?;
-    Ok(simulation)
-}
-
-/// Times every variant on every step of a collection, one after the other, but for what the runner's journal has:
-/// results by variant, then by step.
-///
-/// # Errors
-/// Those of `time`, and where a collection or the journal cannot be made.
-pub(super) fn time_collection<T>(
-    bench: &Bench,
-    runner: &Runner<T>,
-    plan: &CollectionPlan,
-    variants: &[ChartedVariant],
-    time: impl Fn(&Simulation, &ChartedVariant) -> Result<T> + Sync,
-) -> Result<Vec<Vec<T>>>
-where
-    T: Clone + Send + Sync + Serialize + DeserializeOwned,
-{
-    let cases: Vec<Case<(usize, &ChartedVariant)>> = plan
-        .names()
-        .iter()
-        .enumerate()
-        .flat_map(|(step, name)| {
-            variants.iter().map(move |variant| {
-                let key = format!("{name}, {}", variant.name);
-                Case { key, cost: 1.0, setup: (step, variant) }
-            })
-        })
-        .collect();
-    let steps = if cases.iter().all(|case| runner.has(&case.key)) {
-        Vec::new()
-    } else {
-        collect(plan, &bench.states_folder())?
-    };
-    let results =
-        runner.run(&cases, Threads::One, |&(step, variant)| time(&steps[step], variant))?;
-    let mut by_variant: Vec<Vec<T>> = variants.iter().map(|_| Vec::new()).collect();
-    for (index, case) in results.into_iter().enumerate() {
-        by_variant[index % variants.len()].push(case.result);
-    }
-    Ok(by_variant)
 }
 
 /// Times the solves of one step from goal to goal, each from the same start, until one is not reached in time. Copies
@@ -136,29 +74,21 @@ pub(super) struct SolveTimer<'a> {
     pub goals: &'a [f64],
     /// Most time of a solve, s.
     pub limit_secs: f64,
-    /// Whether orders and memory are there from the second solve on, as in a run whose contacts stay.
-    pub keeps_memory: bool,
 }
 
 impl SolveTimer<'_> {
-    /// Times a simulation's next step.
-    ///
-    /// # Errors
-    /// Where the variant does not fit the simulation.
     pub(super) fn time(self, simulation: &Simulation) -> Result<TimedSolves> {
         // The method decides on the order of the problem's rows.
-        Ok(solved_by(simulation, self.variant.sweeps(1))?.next_problem(self))
+        let mut simulation = simulation.clone();
+        simulation.set_solver(self.variant.sweeps(1))?;
+        Ok(simulation.next_problem(self))
     }
 
     /// The sweeps that fit in the time limit, from what so many take that it can be told.
-    fn sweeps_in_time<M: Model>(
-        &self,
-        problem: &StepProblem<M::Kinematics>,
-        memory: &mut Memory<M::Kinematics>,
-    ) -> u32 {
+    fn sweeps_in_time<M: Model>(&self, problem: &StepProblem<M>) -> u32 {
         let mut sweeps = FIRST_SWEEPS;
         loop {
-            let (secs, _) = timed::<M>(problem, memory, &self.variant.sweeps(sweeps));
+            let (secs, _) = timed::<M>(problem, &self.variant.sweeps(sweeps));
             if secs > LONG_TRY * self.limit_secs || sweeps >= MOST_SWEEPS {
                 let fitting = f64::from(sweeps) * self.limit_secs / secs;
                 return fitting.clamp(1.0, f64::from(MOST_SWEEPS)) as u32;
@@ -171,12 +101,8 @@ impl SolveTimer<'_> {
 impl ProblemVisitor for SolveTimer<'_> {
     type Output = TimedSolves;
 
-    fn visit<M: Model>(
-        self,
-        problem: &mut StepProblem<M::Kinematics>,
-        contacts: &ContactList,
-    ) -> TimedSolves {
-        let start = left(&measure::<M>(problem));
+    fn visit<M: Model>(self, problem: &mut StepProblem<M>, contacts: &ContactList) -> TimedSolves {
+        let start = left(&measure(problem));
         let mut solves = TimedSolves {
             contacts: contacts.contacts().len(),
             start,
@@ -184,8 +110,7 @@ impl ProblemVisitor for SolveTimer<'_> {
             reached: Vec::new(),
             gave_up_secs: None,
         };
-        let mut memory = Memory::default();
-        let max_sweeps = self.sweeps_in_time::<M>(problem, &mut memory);
+        let max_sweeps = self.sweeps_in_time::<M>(problem);
         for &goal in self.goals {
             let settings = self.variant.to_residual(goal, max_sweeps);
             let mut reached =
@@ -195,10 +120,7 @@ impl ProblemVisitor for SolveTimer<'_> {
                 if repeat >= LEAST_REPEATS && sum_secs > ENOUGH_SECS {
                     break;
                 }
-                if !self.keeps_memory {
-                    memory = Memory::default();
-                }
-                let (secs, measures) = timed::<M>(problem, &mut memory, &settings);
+                let (secs, measures) = timed::<M>(problem, &settings);
                 reached.left = left(&measures);
                 reached.duality_gap = measures.duality_gap;
                 solves.smallest = solves.smallest.min(reached.left);
@@ -221,19 +143,81 @@ impl ProblemVisitor for SolveTimer<'_> {
 }
 
 /// Seconds of one solve of a copy, and what it came to.
-pub(super) fn timed<M: Model>(
-    problem: &StepProblem<M::Kinematics>,
-    memory: &mut Memory<M::Kinematics>,
-    settings: &SolverSettings,
-) -> (f64, Measures) {
-    let mut copy = problem.clone();
+fn timed<M: Model>(problem: &StepProblem<M>, settings: &SolverSettings) -> (f64, Measures) {
+    let (mut copy, mut memory) = (problem.clone(), Memory::default());
     let started = Instant::now();
-    solve::<M>(&mut copy, memory, settings);
+    solve(&mut copy, &mut memory, settings);
     let secs = started.elapsed().as_secs_f64();
-    (secs, measure::<M>(&copy))
+    (secs, measure(&copy))
 }
 
 /// The natural map of what was solved.
 fn left(measures: &Measures) -> f64 {
     measures.model_residual.unwrap_or(measures.residual)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::collection::{CollectionPlan, collect};
+    use super::super::variants;
+    use super::*;
+    use crate::solver::Method;
+
+    fn collected(grains: usize, in_a_box: bool) -> Vec<Simulation> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let plan = CollectionPlan::of_size(grains, in_a_box, true);
+        collect(&plan, folder.path()).expect("a collection")
+    }
+
+    fn time(
+        step: &Simulation,
+        variant: &ChartedVariant,
+        goals: &[f64],
+        limit_secs: f64,
+    ) -> TimedSolves {
+        SolveTimer { variant, goals, limit_secs }.time(step).expect("times")
+    }
+
+    #[test]
+    fn a_pile_in_a_box_is_at_rest_and_one_without_slumps_each_step_certified() {
+        let speeds = [true, false].map(|in_a_box| {
+            let collected = collected(500, in_a_box);
+            assert_eq!(collected.len(), 2);
+            collected.into_iter().map(|step| {
+                let told = step.observables();
+                assert!(told.converged && told.model_residual.is_some_and(|left| left <= 1e-8));
+                let velocities = step.world().grains.velocities.iter();
+                velocities.map(|velocity| velocity.length()).fold(0.0, f64::max)
+            })
+        });
+        let [at_rest, moving] = speeds.map(Vec::from_iter);
+        assert!(at_rest.iter().all(|speed| *speed < 0.01), "{at_rest:?} m/s");
+        assert!(moving.iter().all(|speed| *speed > 0.1), "{moving:?} m/s");
+    }
+
+    #[test]
+    fn a_certificate_has_a_gap_and_solves_end_at_their_limit() {
+        for step in collected(500, false) {
+            let solves = time(&step, &variants::certified(), &[1e-8], 100.0);
+            let reached = solves.reached(1e-8).expect("it is certified");
+            assert!(reached.left <= 1e-8 * (1.0 + ROUNDING));
+            assert!(reached.duality_gap.is_some_and(|gap| gap.abs() < 1e-4));
+            let solves = time(&step, &variants::of_method(Method::Nsgs), &[1e-3, 1e-8], 1e-7);
+            assert!(solves.start > 1e-3, "there is something to be solved");
+            assert!(solves.reached.is_empty() && solves.gave_up_secs.is_some());
+            assert!(!solves.timing(1e-3).solved);
+        }
+    }
+
+    #[test]
+    fn what_is_solved_too_late_is_not_reached() {
+        // So few grains hold at this Bond number.
+        let step = collected(60, false).pop().expect("a step");
+        let unit = variants::of_method(Method::Nsgs);
+        let ample = time(&step, &unit, &[1e-3], 100.0);
+        assert!(ample.start <= 1e-3 && ample.reached(1e-3).is_some());
+        let short = time(&step, &unit, &[1e-3], 1e-12);
+        assert!(short.smallest <= 1e-3, "a sweep does it");
+        assert!(short.reached.is_empty());
+    }
 }

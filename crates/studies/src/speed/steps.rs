@@ -1,79 +1,130 @@
-//! Speed against accuracy of single steps: residual against time, and performance profiles.
+//! Speed against accuracy of single steps: residual against time.
 
-use super::collection::CollectionPlan;
-use super::performance::{
-    SpeedRatio, Timing, geometric_mean, median_with_failures, performance_profiles, share_solved,
-    speed_ratio,
-};
+use super::collection::{CollectionPlan, collect};
+use super::performance::{Timing, geometric_mean, median_with_failures, share_solved, speed_ratio};
 use super::solves::{
-    LEAST_REPEATS, LONG_SOLVE_SECS, MOST_SWEEPS, ROUNDING, SolveTimer, TimedSolves, time_collection,
+    LEAST_REPEATS, LONG_SOLVE_SECS, MOST_SWEEPS, ROUNDING, SolveTimer, TimedSolves,
 };
-use super::variants::{self, ChartedVariant, staircase};
-use super::{Bench, ChartSection, csv_cell, listed};
-use crate::chart::{Axis, Chart, Layer, LegendCorner, Sheet};
+use super::variants::{self, ChartedVariant};
+use super::{Bench, ChartSection, listed};
+use crate::chart::{Axis, Chart, Sheet};
 use crate::error::Result;
-use crate::solver::{Method, Ordering};
+use crate::report::ReportTable;
+use crate::runner::{Case, Runner, Threads};
+use crate::solver::{FrictionModel, Method, Ordering};
 
 /// Threshold of restitution with which nearly every step has a solution.
 const THRESHOLD: f64 = 2.0;
-/// Residuals of the profiles' panels, and of the tables in words.
-const PROFILED: [f64; 3] = [1e-3, 1e-6, 1e-8];
-/// The method that the others are compared with.
+const REPORTED: [f64; 3] = [1e-3, 1e-6, 1e-8];
 const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 /// A warm start below this residual leaves next to nothing to be told about a method: the pile rests.
 const FAR: f64 = 1e-3;
-/// The table that the window shows; a copy lies in `assets/charts/`.
-const WINDOW: &str = "chart-window";
+const SIZES: [usize; 3] = [500, 2_000, 10_000];
 
 /// A collection of steps, and what every variant made of it.
 #[derive(Clone)]
 struct TimedCollection {
-    /// In the names of files.
-    label: &'static str,
-    /// In titles.
     title: String,
-    /// Names of the steps.
+    /// Most time of a solve, s.
+    limit_secs: f64,
     problems: Vec<String>,
     variants: Vec<ChartedVariant>,
     /// By variant, then by step.
     solves: Vec<Vec<TimedSolves>>,
 }
 
-/// Times all variants over all collections.
+/// Times all variants over steps of 138 grains.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let quick = bench.options.quick;
-    let goals = residuals_asked_for(quick);
+    let timer = CollectionTimer {
+        variants: variants::told_apart(variants::of_problems(!quick)),
+        goals: residuals_asked_for(quick),
+    };
     let limit_secs = if quick { 0.25 } else { 3.0 };
     let pick = if quick { CollectionPlan::fewer_piles } else { CollectionPlan::piles };
     let mut all = Vec::new();
-    for (label, plan, title) in [
-        ("", pick(THRESHOLD), "restitution from 2 g·Δt up"),
-        ("-paper", pick(0.0), "restitution as in the paper"),
+    for (label, threshold, title) in [
+        ("steps", THRESHOLD, "steps, restitution from 2 g·Δt up"),
+        ("steps-paper", 0.0, "steps, restitution as in the paper"),
     ] {
-        let variants = variants::of_problems(!quick);
-        let runner = bench.runner(&format!("steps{label}"))?;
-        let solves = time_collection(bench, &runner, &plan, &variants, |simulation, variant| {
-            SolveTimer { variant, goals: &goals, limit_secs, keeps_memory: false }.time(simulation)
-        })?;
-        let problems = plan.names();
-        let title = format!("{} steps, {title}", problems.len());
-        all.push(TimedCollection { label, title, problems, variants, solves });
+        all.push(timer.time(bench, label, &pick(threshold), title, limit_secs)?);
     }
-    let mut tables = tables(&all, &goals);
-    tables.extend(all.first().map(|first| (WINDOW.to_owned(), first.for_window(bench, &goals))));
-    let mut sections = vec![ChartSection {
-        name: "chart-step".into(),
-        sheet: residuals_sheet(bench, &all, &goals),
-        report: report(&all, limit_secs),
-        tables,
-    }];
-    sections.extend(all.iter().map(|timed| ChartSection {
-        name: format!("chart-step-profiles{}", timed.label),
-        sheet: timed.profiles_sheet(bench),
-        report: String::new(),
-        tables: Vec::new(),
-    }));
+    Ok(vec![timer.section(bench, "chart-step", &all)])
+}
+
+/// Times all variants over steps of larger piles, which begin to slump or rest in their box: under Coulomb's law, and
+/// under a convex model.
+pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
+    let quick = bench.options.quick;
+    let mut variants = variants::of_problems(false);
+    let models = variants::models().into_iter();
+    variants.extend(models.filter(|one| one.solver.friction_model == FrictionModel::Tresca));
+    let variants = variants::told_apart(variants);
+    let timer = CollectionTimer { variants, goals: REPORTED.to_vec() };
+    let mut sections = Vec::new();
+    for (name, in_a_box, state) in
+        [("chart-size-moving", false, "that begin to slump"), ("chart-size-rest", true, "at rest")]
+    {
+        let mut all = Vec::new();
+        for grains in SIZES {
+            let plan = CollectionPlan::of_size(grains, in_a_box, quick);
+            let limit_secs = if quick { 1e-4 } else { 1e-3 } * grains as f64;
+            let title = format!("steps of {grains} grains {state}");
+            all.push(timer.time(bench, "sizes", &plan, &title, limit_secs)?);
+        }
+        sections.push(timer.section(bench, name, &all));
+    }
     Ok(sections)
+}
+
+struct CollectionTimer {
+    variants: Vec<ChartedVariant>,
+    goals: Vec<f64>,
+}
+
+impl CollectionTimer {
+    /// Times every variant on every step, one after the other, but for what the journal of that name has.
+    fn time(
+        &self,
+        bench: &Bench,
+        journal: &str,
+        plan: &CollectionPlan,
+        title: &str,
+        limit_secs: f64,
+    ) -> Result<TimedCollection> {
+        let Self { variants, goals } = self;
+        let runner: Runner<TimedSolves> = bench.runner(journal)?;
+        let problems = plan.names();
+        let mut cases: Vec<Case<(usize, &ChartedVariant)>> = Vec::new();
+        for (step, name) in problems.iter().enumerate() {
+            cases.extend(variants.iter().map(|variant| {
+                let key = format!("{name}, {}", variant.name);
+                Case { key, cost: 1.0, setup: (step, variant) }
+            }));
+        }
+        let is_finished = cases.iter().all(|case| runner.has(&case.key));
+        let steps = if is_finished { Vec::new() } else { collect(plan, &bench.states_folder())? };
+        let results = runner.run(&cases, Threads::One, |&(step, variant)| {
+            SolveTimer { variant, goals, limit_secs }.time(&steps[step])
+        })?;
+        let mut solves: Vec<Vec<TimedSolves>> = variants.iter().map(|_| Vec::new()).collect();
+        for (index, case) in results.into_iter().enumerate() {
+            solves[index % variants.len()].push(case.result);
+        }
+        let title = format!("{} {title}", problems.len());
+        Ok(TimedCollection { title, limit_secs, problems, variants: variants.clone(), solves })
+    }
+
+    fn section(&self, bench: &Bench, name: &str, all: &[TimedCollection]) -> ChartSection {
+        let goals = &self.goals;
+        ChartSection {
+            name: name.to_owned(),
+            sheet: residuals_sheet(bench, all, goals),
+            words: words(all),
+            summary: summary(name, all),
+            others: vec![times(name, all, goals)],
+        }
+    }
 }
 
 /// Residuals by half decades, or, in the quick pass, decades.
@@ -87,29 +138,9 @@ fn residuals_asked_for(quick: bool) -> Vec<f64> {
     (0..=9 * per_decade).map(residual).collect()
 }
 
-/// What a variant comes to at one residual.
-struct StepSummary {
-    share_solved: f64,
-    mean_secs: Option<f64>,
-    /// Against [`BASE`].
-    ratio: SpeedRatio,
-}
-
 impl TimedCollection {
     fn timings(&self, variant: usize, goal: f64) -> Vec<Timing> {
         self.solves[variant].iter().map(|solves| solves.timing(goal)).collect()
-    }
-
-    fn summary(&self, variant: usize, goal: f64) -> StepSummary {
-        let timings = self.timings(variant, goal);
-        let is_base = |one: &ChartedVariant| (one.solver.method, one.solver.ordering) == BASE;
-        let base = self.variants.iter().position(is_base).unwrap_or(0);
-        let solved = timings.iter().filter(|timing| timing.solved).map(|timing| timing.secs);
-        StepSummary {
-            share_solved: share_solved(&timings),
-            mean_secs: geometric_mean(solved),
-            ratio: speed_ratio(&self.timings(base, goal), &timings),
-        }
     }
 
     /// The steps that begin far from their solution.
@@ -140,52 +171,8 @@ impl TimedCollection {
             |&goal: &f64| Some((1e3 * median_with_failures(&self.timings(variant, goal))?, goal));
         goals.iter().filter_map(point).collect()
     }
-
-    /// The curves of one panel as the window reads them.
-    fn for_window(&self, bench: &Bench, goals: &[f64]) -> String {
-        let machine = bench.machine.words();
-        let mut text = format!("# {}; {machine}\nmethod,residual,ms_per_step\n", self.title);
-        for (number, variant) in self.variants.iter().enumerate() {
-            for (ms, goal) in self.medians(number, goals) {
-                text.push_str(&format!("{},{goal:e},{ms:e}\n", variant.name));
-            }
-        }
-        text
-    }
-
-    /// Performance profiles, a panel a residual.
-    fn profiles_sheet(&self, bench: &Bench) -> Sheet {
-        let mut charts = Vec::new();
-        for (panel, goal) in PROFILED.into_iter().enumerate() {
-            let timings: Vec<_> =
-                (0..self.variants.len()).map(|variant| self.timings(variant, goal)).collect();
-            let profiles = performance_profiles(&timings);
-            let most = profiles.iter().flatten().map(|(factor, _)| *factor).fold(10.0, f64::max);
-            let most = 10f64.powf(most.log10().ceil());
-            let mut chart = Chart::new(
-                format!("to a residual of {goal:e}"),
-                Axis::log("times the fastest method's time", 1.0, most),
-                Axis::linear(if panel == 0 { "share of steps solved" } else { "" }, 0.0, 1.0),
-            );
-            for (variant, profile) in self.variants.iter().zip(profiles) {
-                let failed = profile.len() == 1;
-                let name = format!("{}{}", variant.name, if failed { ": none" } else { "" });
-                let make = if panel == 0 || failed { Layer::curve } else { Layer::quiet };
-                let stairs = staircase(&profile, most);
-                chart.layers.push(make(name, stairs, variant.colour(), variant.stroke()));
-            }
-            chart.legend = LegendCorner::LowerRight;
-            charts.push(chart);
-        }
-        let title = format!(
-            "{}; how many are solved within so many times the time of whichever method is fastest on each.",
-            self.title
-        );
-        Sheet { size: (1900, 760), charts, caption: bench.caption(&[&title]) }
-    }
 }
 
-/// Residual against time, a panel a collection.
 fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> Sheet {
     let tightest = goals.iter().copied().fold(1.0, f64::min);
     let mut charts = Vec::new();
@@ -209,95 +196,87 @@ fn residuals_sheet(bench: &Bench, all: &[TimedCollection], goals: &[f64]) -> She
         }
         charts.push(chart);
     }
-    let count = charts.len() as u32;
-    // Each panel has its share of solved steps in the legend.
-    let legend = Chart::legend_of(&mut charts, 0.18 + 0.06 * f64::from(count));
-    charts.push(legend);
     let caption = bench.caption(&[
         "Median time, warm start; a curve ends where half of the steps are solved no further. To 10⁻⁸: share of \
          steps solved to that residual, panel by panel.",
     ]);
-    Sheet { size: (760 * count + 280, 820), charts, caption }
+    Sheet { size: (760 * charts.len() as u32, 760), charts, caption }
 }
 
-/// Markdown: shares solved, times, ratios and residual floors.
-fn report(all: &[TimedCollection], limit_secs: f64) -> String {
+/// How the steps were timed, and the residual floors of each collection.
+fn words(all: &[TimedCollection]) -> String {
     let mut lines = vec![format!(
         "Times are minima of at least {LEAST_REPEATS} repeats, but for solves of more than {LONG_SOLVE_SECS} s; means \
-         geometric. A solve is given up after {MOST_SWEEPS} sweeps or about {limit_secs} s; where nsgs gave up, the \
-         time it took until then stands for the time it would need, and the ratio is a lower bound."
+         geometric. A solve is given up after {MOST_SWEEPS} sweeps or a limit of time; where nsgs gave up, the \
+         time it took until then stands for the time it would need, and the ratio is a lower bound.\n"
     )];
-    for timed in all.iter().flat_map(|all| [all.clone(), all.far()]) {
-        lines.push(format!("\n### {}\n", timed.title));
-        lines.push(
-            "| method | residual | steps solved | mean time of those, ms | times as fast as nsgs where both solve | over all that the method solves, at least |\n|---|---|---|---|---|---|"
-                .into(),
-        );
-        let ratio = |value: Option<f64>, count: usize| {
-            value.map_or("none".into(), |value| format!("{value:.2} ({count} steps)"))
-        };
-        for goal in PROFILED {
-            for (number, variant) in timed.variants.iter().enumerate() {
-                let summary = timed.summary(number, goal);
-                let ms = summary.mean_secs.map(|secs| format!("{:.4}", 1e3 * secs));
-                lines.push(format!(
-                    "| {} | {goal:e} | {:.1} % | {} | {} | {} |",
-                    variant.name,
-                    100.0 * summary.share_solved,
-                    ms.unwrap_or("failed on all".into()),
-                    ratio(summary.ratio.both, summary.ratio.count_both),
-                    ratio(summary.ratio.at_least, summary.ratio.count_at_least)
-                ));
-            }
-        }
+    for timed in all {
         let floors = timed.floors();
         let share = |below: f64| {
             let count = floors.iter().filter(|floor| **floor <= below * (1.0 + ROUNDING)).count();
-            100.0 * count as f64 / floors.len().max(1) as f64
+            format!("{below:e} in {:.0} %", 100.0 * count as f64 / floors.len().max(1) as f64)
         };
         lines.push(format!(
-            "\nSmallest residual that any method reached: at most 1e-10 in {:.0} % of the steps, 1e-8 in \
-             {:.0} %, 1e-6 in {:.0} %, 1e-3 in {:.0} %; largest {:.1e}.",
-            share(1e-10),
-            share(1e-8),
-            share(1e-6),
-            share(1e-3),
+            "* {}, each given up after about {} s: smallest residual that any method reached at most {}; largest {:.1e}.",
+            timed.title,
+            timed.limit_secs,
+            [1e-10, 1e-8, 1e-6, 1e-3].map(share).join(", "),
             floors.last().copied().unwrap_or(0.0)
         ));
     }
     lines.join("\n")
 }
 
-/// Every time, and the summary of every residual, as CSV.
-fn tables(all: &[TimedCollection], goals: &[f64]) -> Vec<(String, String)> {
-    let mut times = String::from(
-        "problem,contacts,start_residual,method,residual,seconds,solved,smallest_residual\n",
-    );
-    let mut ratios = String::from(
-        "collection,method,residual,share_solved,mean_seconds,ratio_to_nsgs,ratio_steps,ratio_at_least,ratio_at_least_steps\n",
-    );
-    for timed in all {
-        for &goal in goals {
-            for (number, ChartedVariant { name, .. }) in timed.variants.iter().enumerate() {
-                for (problem, solves) in timed.problems.iter().zip(&timed.solves[number]) {
-                    let TimedSolves { contacts, start, smallest, .. } = solves;
-                    let Timing { secs, solved } = solves.timing(goal);
-                    times.push_str(&format!(
-                        "\"{problem}\",{contacts},{start:e},{name},{goal:e},{secs:e},{solved},{smallest:e}\n",
-                    ));
-                }
-                let StepSummary { share_solved, mean_secs, ratio } = timed.summary(number, goal);
-                ratios.push_str(&format!(
-                    "\"{}\",{name},{goal:e},{share_solved},{},{},{},{},{}\n",
-                    timed.title,
-                    csv_cell(mean_secs),
-                    csv_cell(ratio.both),
-                    ratio.count_both,
-                    csv_cell(ratio.at_least),
-                    ratio.count_at_least
-                ));
+/// What each variant comes to: over all steps, and over those that begin far from their solution.
+fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
+    let columns = "collection method residual share_solved mean_ms ratio_to_nsgs_at_least";
+    let mut rows = Vec::new();
+    let parts = all.iter().flat_map(|all| [all.clone(), all.far()]);
+    for timed in parts.filter(|timed| !timed.solves[0].is_empty()) {
+        let is_base = |one: &ChartedVariant| (one.solver.method, one.solver.ordering) == BASE;
+        let base = timed.variants.iter().position(is_base).unwrap_or(0);
+        for goal in REPORTED {
+            for (number, variant) in timed.variants.iter().enumerate() {
+                let timings = timed.timings(number, goal);
+                let solved = timings.iter().filter(|timing| timing.solved);
+                let mean_ms = geometric_mean(solved.map(|timing| 1e3 * timing.secs));
+                let ratio = speed_ratio(&timed.timings(base, goal), &timings);
+                let mut row = vec![timed.title.clone(), variant.name.clone(), format!("{goal:e}")];
+                row.push(format!("{:.3}", share_solved(&timings)));
+                row.extend(
+                    [mean_ms, ratio].map(|x| x.map_or(String::new(), |x| format!("{x:.4}"))),
+                );
+                rows.push(row);
             }
         }
     }
-    vec![("chart-step-times".into(), times), ("chart-step-ratios".into(), ratios)]
+    ReportTable { name: format!("{name}-ratios"), columns: columns.split(' ').collect(), rows }
+}
+
+fn times(name: &str, all: &[TimedCollection], goals: &[f64]) -> ReportTable {
+    let columns = "problem contacts start_residual method residual seconds solved smallest_residual duality_gap";
+    let mut rows = Vec::new();
+    for timed in all {
+        for &goal in goals {
+            for (variant, solves) in timed.variants.iter().zip(&timed.solves) {
+                for (problem, solves) in timed.problems.iter().zip(solves) {
+                    let TimedSolves { contacts, start, smallest, .. } = solves;
+                    let Timing { secs, solved } = solves.timing(goal);
+                    let gap = solves.reached(goal).and_then(|reached| reached.duality_gap);
+                    rows.push(vec![
+                        problem.clone(),
+                        contacts.to_string(),
+                        format!("{start:e}"),
+                        variant.name.clone(),
+                        format!("{goal:e}"),
+                        format!("{secs:e}"),
+                        solved.to_string(),
+                        format!("{smallest:e}"),
+                        gap.map_or(String::new(), |gap| format!("{gap:e}")),
+                    ]);
+                }
+            }
+        }
+    }
+    ReportTable { name: format!("{name}-times"), columns: columns.split(' ').collect(), rows }
 }

@@ -11,20 +11,17 @@
 //! what `scene::stability` derives for each scene. In T it sinks by v T = 0.01 d where
 //! s = ln(q/(1 + q)) / ln ρ, q = 0.01 d/(A g Δt T). The border of springs is their critical time step.
 //!
-//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever, and Δt does
-//! not enter. One might fear another where bonds are strong and steps long, with C₀Δt²/m_ij = Bond·g·Δt²
-//! a hundredth of d: an impulse of cohesion, left alone for a step, would pull two grains into each other
-//! by that much. There is none. In the map's corner of Bond 500 and Δt = 0.01 s that is 49 d, and where
-//! steps are solved nothing overlaps: a bond pulls no more than is asked of it.
+//! Over Δt and Bond the border is that of statics, where C₀ no longer carries the cantilever. Δt does not enter: a bond
+//! pulls no more than is asked of it, so that no impulse of cohesion pulls grains into each other, however long a step.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
 
-use super::rest::{sagging, sunk};
+use super::rest::{CANTILEVER, sagging, sunk};
 use super::table::colour;
 use super::{TriedVariant, VARIANTS, jitter};
-use crate::chart::{Axis, Chart, INK, Layer, LegendCorner, Look, MapCell, Sheet, points};
+use crate::chart::{Axis, Chart, INK, Layer, Look, MapCell, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::scene::stability::{
@@ -37,18 +34,14 @@ const DURATION_SECS: f64 = 0.1;
 const COUNTS: f64 = 0.01;
 /// Part of the slowest mode in the motion of a column's top.
 const TOP_OF_COLUMN: f64 = 4.0 / PI;
-
 /// A grain that has gone this far is lost, in d.
 const LOST: f64 = 1.0;
-/// Speed that a scene at rest does not have at its end, in √(g d).
-const SHAKES: f64 = 0.05;
-const SPRINGS_SHAKE: f64 = 4e-3;
+/// Speed that a scene at rest does not have at its end, in √(g d): of grains, and of those on springs.
+const SHAKES: [f64; 2] = [0.05, 4e-3];
 /// Discs of the column whose size is not varied.
 const DISCS: usize = 20;
-/// Discs in a row of the cantilever.
-const CANTILEVER: i32 = 4;
-/// Width of a chart, pixels.
-const CHART_WIDTH: u32 = 500;
+/// Size of a chart, pixels.
+const CHART: (u32, u32) = (500, 500);
 /// Charts side by side.
 const ABREAST: usize = 5;
 
@@ -57,25 +50,36 @@ struct Parameter {
     label: &'static str,
     from: f64,
     to: f64,
-    /// Values of a full pass; a quick one takes half as many.
-    count: usize,
+    /// True of a number that counts.
     whole: bool,
 }
 
+const TIME_STEP: Parameter = Parameter { label: "Δt (s)", from: 1e-4, to: 1e-2, whole: false };
+
+const fn sweeps(to: f64) -> Parameter {
+    Parameter { label: "sweeps (substeps) a step", from: 1.0, to, whole: true }
+}
+
 impl Parameter {
-    /// Its values, in ratio, each with the edges of its cell.
+    /// A dozen values in ratio, half of them in a quick pass, each with the edges of its cell.
     fn values(&self, quick: bool) -> Vec<(f64, [f64; 2])> {
-        let count = if quick { self.count / 2 } else { self.count };
-        let ratio = (self.to / self.from).powf(1.0 / count as f64);
-        let edge = |k: usize| self.from * ratio.powi(k as i32);
-        (0..count)
-            .map(|k| {
-                let middle = (edge(k) * edge(k + 1)).sqrt();
-                (if self.whole { middle.round().max(1.0) } else { middle }, [edge(k), edge(k + 1)])
-            })
-            .collect()
+        let count = if quick { 6 } else { 12 };
+        let ratio = (self.to / self.from).powf(1.0 / f64::from(count));
+        let edge = |k: i32| self.from * ratio.powi(k);
+        let value = |k: i32| {
+            let middle = (edge(k) * edge(k + 1)).sqrt();
+            (if self.whole { middle.round().max(1.0) } else { middle }, [edge(k), edge(k + 1)])
+        };
+        (0..count).map(value).collect()
+    }
+
+    fn axis(&self) -> Axis {
+        Axis::log(self.label, self.from, self.to)
     }
 }
+
+/// A border that theory gives, against x: its name, and the variant that it is of; empty for all of them.
+type Border = (&'static str, &'static str, fn(f64) -> Result<f64>);
 
 /// A map of two parameters.
 struct Map {
@@ -84,22 +88,7 @@ struct Map {
     x: Parameter,
     y: Parameter,
     scene: fn(f64, f64) -> Scene,
-    /// Whether springs swing in it for longer than a run.
-    may_swing: bool,
-    /// Sweeps at the border of Gauss–Seidel, against x.
-    border: Option<fn(f64) -> f64>,
-    /// Substeps at the border of springs, against x.
-    border_of_springs: Option<fn(f64) -> Result<f64>>,
-    /// Border of statics, the same for all methods, against x.
-    border_of_statics: Option<fn(f64) -> f64>,
-}
-
-const fn sweeps(to: f64) -> Parameter {
-    Parameter { label: "sweeps (substeps) a step", from: 1.0, to, count: 14, whole: true }
-}
-
-const fn time_step() -> Parameter {
-    Parameter { label: "Δt (s)", from: 1e-4, to: 1e-2, count: 12, whole: false }
+    borders: &'static [Border],
 }
 
 /// All maps.
@@ -107,59 +96,61 @@ const MAPS: [Map; 4] = [
     Map {
         name: "map-dt-bond",
         title: "cantilever",
-        x: time_step(),
-        y: Parameter { label: "Bond", from: 5.0, to: 500.0, count: 12, whole: false },
+        x: TIME_STEP,
+        y: Parameter { label: "Bond", from: 5.0, to: 500.0, whole: false },
         scene: |time_step_secs, bond| {
             let mut scene = cantilever(CANTILEVER);
             scene.parameters.time_step_secs = time_step_secs;
             scene.parameters.bond = bond;
             scene
         },
-        may_swing: true,
-        border: None,
-        border_of_springs: None,
-        border_of_statics: Some(|_| breaking_bond_of_cantilever(CANTILEVER)),
+        borders: &[(STATICS, "", |_| Ok(breaking_bond_of_cantilever(CANTILEVER)))],
     },
     Map {
         name: "map-dt-sweeps",
         title: "column of 20",
-        x: time_step(),
+        x: TIME_STEP,
         y: sweeps(1e3),
         scene: |time_step_secs, sweeps| sagging_on_line(DISCS, time_step_secs, sweeps),
-        may_swing: false,
-        border: Some(|time_step_secs| {
-            sweeps_at_border(TOP_OF_COLUMN, time_step_secs, contraction_of_column(DISCS as f64))
-        }),
-        border_of_springs: Some(|time_step_secs| substeps_at_border(DISCS, time_step_secs)),
-        border_of_statics: None,
+        borders: &[
+            ("theory", "nsgs", |time_step_secs| {
+                let contraction = contraction_of_column(DISCS as f64);
+                Ok(sweeps_at_border(TOP_OF_COLUMN, time_step_secs, contraction))
+            }),
+            (SPRINGS, "dem", |time_step_secs| substeps_at_border(DISCS, time_step_secs)),
+        ],
     },
     Map {
         name: "map-mass-sweeps",
         title: "heavy on light",
-        x: Parameter { label: "ratio of masses", from: 1.0, to: 1e4, count: 12, whole: false },
+        x: Parameter { label: "ratio of masses", from: 1.0, to: 1e4, whole: false },
         y: sweeps(1e5),
         scene: |ratio, sweeps| {
             let mut scene = mass_ratio(ratio);
             scene.solver = sagging(1, sweeps as u32).solver;
             scene
         },
-        may_swing: false,
-        border: Some(|ratio| sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0))),
-        border_of_springs: None,
-        border_of_statics: None,
+        borders: &[("theory", "nsgs", |ratio| {
+            Ok(sweeps_at_border(1.0, 1e-3, ratio / (ratio + 1.0)))
+        })],
     },
     Map {
         name: "map-discs-sweeps",
         title: "columns",
-        x: Parameter { label: "discs", from: 2.0, to: 100.0, count: 12, whole: true },
+        x: Parameter { label: "discs", from: 2.0, to: 100.0, whole: true },
         y: sweeps(1e4),
         scene: |count, sweeps| sagging_on_line(count as usize, 1e-3, sweeps),
-        may_swing: false,
-        border: Some(|count| sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count))),
-        border_of_springs: Some(|count| substeps_at_border(count as usize, 1e-3)),
-        border_of_statics: None,
+        borders: &[
+            ("theory", "nsgs", |count| {
+                Ok(sweeps_at_border(TOP_OF_COLUMN, 1e-3, contraction_of_column(count)))
+            }),
+            (SPRINGS, "dem", |count| substeps_at_border(count as usize, 1e-3)),
+        ],
     },
 ];
+
+const STATICS: &str = "statics";
+const SPRINGS: &str = "critical time step";
 
 fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
     let mut scene = column_on_line(count);
@@ -168,8 +159,9 @@ fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
     scene
 }
 
-/// 0 where the variant holds, 1 where it sinks or overlaps, 2 where it is lost. `may_swing`: what
-/// stands on springs has not come to rest by the end, and is not lost for that.
+/// 0 where the variant holds, 1 where it sinks or overlaps, 2 where it is lost.
+///
+/// A step left unsolved sinks steadily. Stiff springs that are stable have come to rest, but where they `may_swing`.
 fn class(variant: &TriedVariant, scene: &Scene, may_swing: bool) -> Result<f64> {
     let mut scene = scene.clone();
     variant.apply(&mut scene);
@@ -183,14 +175,8 @@ fn class(variant: &TriedVariant, scene: &Scene, may_swing: bool) -> Result<f64> 
         }
     }
     let way = sunk(&simulation, &scene);
-    // A step left unsolved sinks steadily; stiff springs that are stable have come to rest.
     let springs = simulation.critical_time_step_secs().is_some();
-    let calm = match (springs, may_swing) {
-        (false, _) => SHAKES,
-        (true, false) => SPRINGS_SHAKE,
-        (true, true) => f64::INFINITY,
-    };
-    let shakes = jitter(&simulation) > calm;
+    let shakes = !(springs && may_swing) && jitter(&simulation) > SHAKES[usize::from(springs)];
     Ok(if way > LOST || shakes {
         2.0
     } else if way.max(overlap) > COUNTS {
@@ -200,9 +186,9 @@ fn class(variant: &TriedVariant, scene: &Scene, may_swing: bool) -> Result<f64> 
     })
 }
 
-/// Who has a map.
+/// The methods and steppers of the registry, which alone have maps.
 fn of_registry() -> impl Iterator<Item = &'static TriedVariant> {
-    VARIANTS.iter().filter(|one| one.is_of_registry())
+    VARIANTS.iter().filter(|variant| variant.is_of_registry())
 }
 
 /// All maps, each with its file's name: the methods of the registry side by side.
@@ -214,19 +200,19 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
     for map in &MAPS {
         let mut charts = Vec::new();
         for variant in of_registry() {
-            charts.push(map.chart(variant, quick, &progress)?);
+            charts.push(map.chart(variant, quick)?);
+            progress();
         }
         for (number, charts) in charts.chunks(ABREAST).enumerate() {
             let mut caption = vec![
                 "Green holds; yellow sinks or overlaps by more than 1 % of d in 0.1 s; red is torn, thrown, still shaking or not finite.".to_owned(),
             ];
-            if map.border.is_some() {
-                caption.push("Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs.".into());
-            }
-            if map.border_of_statics.is_some() {
-                caption.push("Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing.".into());
-            }
-            let size = (CHART_WIDTH * charts.len() as u32, 620);
+            caption.push(if map.can_swing() {
+                "Dashed: the Bond number below which it tears by statics, without friction; the friction of 0.5 here lowers it by 5 %. Springs may swing."
+            } else {
+                "Dashed: the border of Gauss–Seidel in theory. Line: the critical time step of springs."
+            }.to_owned());
+            let size = (CHART.0 * charts.len() as u32, CHART.1);
             let sheet = Sheet { size, charts: charts.to_vec(), caption };
             sheets.push((format!("{}-{}", map.name, number + 1), sheet));
         }
@@ -240,46 +226,38 @@ pub fn count_of_maps() -> usize {
 }
 
 impl Map {
-    fn chart(&self, variant: &TriedVariant, quick: bool, progress: &impl Fn()) -> Result<Chart> {
+    /// True of the cantilever, whose springs swing for longer than a run.
+    fn can_swing(&self) -> bool {
+        self.borders.iter().any(|(name, ..)| *name == STATICS)
+    }
+
+    fn chart(&self, variant: &TriedVariant, quick: bool) -> Result<Chart> {
         let rows = self.y.values(quick);
-        let cells = self
-            .x
-            .values(quick)
-            .into_par_iter()
+        let columns = self.x.values(quick).into_par_iter();
+        let cells = columns
             .flat_map_iter(|x| rows.iter().map(move |y| (x, *y)))
             .map(|(x, y)| {
-                let value = class(variant, &(self.scene)(x.0, y.0), self.may_swing)?;
+                let value = class(variant, &(self.scene)(x.0, y.0), self.can_swing())?;
                 Ok(MapCell { x, y, value })
             })
             .collect::<Result<Vec<_>>>()?;
-        let mut chart = Chart::new(
-            format!("{}: {}", self.title, variant.name),
-            Axis::log(self.x.label, self.x.from, self.x.to),
-            Axis::log(self.y.label, self.y.from, self.y.to),
-        );
-        chart.legend = LegendCorner::UpperLeft;
+        let title = format!("{}: {}", self.title, variant.name);
+        let mut chart = Chart::new(title, self.x.axis(), self.y.axis());
         chart.layers.push(Layer::Cells { name: variant.name.into(), cells, colour });
-        let ratio = (self.x.to / self.x.from).powf(1.0 / 60.0);
-        let places: Vec<f64> = (0..=60).map(|k| self.x.from * ratio.powi(k)).collect();
-        let mut push = |name: &str, look, border: &dyn Fn(f64) -> Result<f64>| -> Result<()> {
+        let (from, to) = (self.x.from, self.x.to);
+        for (name, of, border) in self.borders {
+            if !of.is_empty() && *of != variant.name {
+                continue;
+            }
             let mut curve = Vec::new();
-            for &x in &places {
+            for k in 0..=60 {
+                let x = from * (to / from).powf(f64::from(k) / 60.0);
                 curve.push((x, border(x)?));
             }
             curve.retain(|(_, y)| (self.y.from..=self.y.to).contains(y));
-            chart.layers.push(Layer::quiet(name, points(curve), INK, look));
-            Ok(())
-        };
-        if let (Some(border), "nsgs") = (self.border, variant.name) {
-            push("theory", Look::Dashes(3), &|x| Ok(border(x)))?;
+            let look = if *name == SPRINGS { Look::Line(3) } else { Look::Dashes(3) };
+            chart.layers.push(Layer::quiet(*name, points(curve), INK, look));
         }
-        if let Some(border) = self.border_of_statics {
-            push("statics", Look::Dashes(3), &|x| Ok(border(x)))?;
-        }
-        if let (Some(border), "dem") = (self.border_of_springs, variant.name) {
-            push("critical time step", Look::Line(3), &border)?;
-        }
-        progress();
         Ok(chart)
     }
 }

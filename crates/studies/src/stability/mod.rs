@@ -2,7 +2,7 @@
 //! and the parameter that drives it into failure. A scene is in `scene::stability`, its measure in `rest` or `motion`
 //! here, and [`CHALLENGES`] lists all.
 
-pub mod maps;
+mod maps;
 mod motion;
 mod rest;
 mod table;
@@ -18,15 +18,6 @@ use crate::scene::{Preset, Scene};
 use crate::sim::{Simulation, Stepper};
 use crate::solver::{FrictionModel, METHODS, Method, Ordering};
 
-/// From which error on a method no longer holds, and from which on it fails.
-#[derive(Clone, Copy, Debug)]
-pub struct ErrorLimits {
-    /// Up to this error it holds.
-    holds: f64,
-    /// Above this error it fails; between the two it degrades.
-    fails: f64,
-}
-
 /// A scene made to break methods, and what is measured on it.
 #[derive(Clone, Copy, Debug)]
 pub struct Challenge {
@@ -38,9 +29,8 @@ pub struct Challenge {
     pub quick: &'static [f64],
     /// Further values of a full pass, more harmful still.
     further: &'static [f64],
-    /// What counts as holding and as failing.
-    limits: ErrorLimits,
-    /// How the error is measured.
+    /// Up to the first error it holds, above the second it fails; between the two it degrades.
+    limits: [f64; 2],
     error: fn(&Trial) -> Result<f64>,
 }
 
@@ -57,10 +47,6 @@ impl Challenge {
             .ok_or_else(|| Error::value("scene", name, format!("one of {}", names())))
     }
 
-    const fn limits(self, holds: f64, fails: f64) -> Self {
-        Self { limits: ErrorLimits { holds, fails }, ..self }
-    }
-
     const fn further(self, further: &'static [f64]) -> Self {
         Self { further, ..self }
     }
@@ -75,84 +61,92 @@ impl Challenge {
     }
 }
 
+/// Drivers and levels of several challenges.
+const TIME_STEP: &str = "time step (s)";
+const MASSES: &str = "ratio of masses";
+const STEPS: &[f64] = &[2e-4, 1e-3, 5e-3, 2e-2];
+const LONG_STEPS: &[f64] = &[1e-3, 5e-3, 2e-2];
+const SHORT_STEPS: &[f64] = &[1e-4, 1e-3, 5e-3];
+const RATIOS: &[f64] = &[10.0, 100.0, 1e3, 1e4];
+
 const fn challenge(
     name: &'static str,
     driver: &'static str,
     quick: &'static [f64],
+    limits: [f64; 2],
     error: fn(&Trial) -> Result<f64>,
 ) -> Challenge {
-    let limits = ErrorLimits { holds: 0.0, fails: 0.0 };
     Challenge { name, driver, quick, further: &[], limits, error }
 }
 
 /// All challenges.
 pub static CHALLENGES: [Challenge; 28] = [
-    challenge("column", "discs", &[5.0, 20.0, 80.0, 200.0], rest::column)
-        .limits(0.01, 0.2)
+    challenge("column", "discs", &[5.0, 20.0, 80.0, 200.0], [0.01, 0.2], rest::column)
         .further(&[500.0]),
-    challenge("sag", "sweeps a step", &[2000.0, 200.0, 20.0, 4.0], rest::sag).limits(0.01, 0.2),
-    challenge("mass-ratio", "ratio of masses", &[10.0, 100.0, 1e3, 1e4], rest::mass_ratio)
-        .limits(0.01, 0.2),
-    challenge("size-ratio", "ratio of radii", &[2.0, 5.0, 20.0, 100.0], rest::size_ratio)
-        .limits(0.01, 0.2),
-    challenge("chain", "time step (s)", &[2e-4, 1e-3, 5e-3, 2e-2], rest::chain).limits(0.02, 0.2),
-    challenge("cantilever", "time step (s)", &[2e-4, 1e-3, 5e-3, 2e-2], rest::cantilever)
-        .limits(0.1, 1.0),
-    challenge("bridge", "time step (s)", &[2e-4, 1e-3, 5e-3, 2e-2], rest::bridge).limits(0.1, 1.0),
-    challenge("shock", "tolerance (m/s)", &[1e-12, 1e-6, 2.2e-3], rest::shock).limits(0.01, 0.1),
-    challenge("overlap", "overlap (d)", &[0.01, 0.1, 0.5], rest::overlap).limits(0.05, 1.1),
-    challenge("squeeze", "strain", &[1e-4, 1e-2, 5e-2], rest::squeeze).limits(1e-3, 0.1),
-    challenge("moving-walls", "time step (s)", &[5e-4, 3e-3, 2e-2], rest::moving_walls)
-        .limits(0.05, 0.5),
-    challenge("friction-limit", "time step (s)", &[1e-3, 5e-3, 2e-2], rest::friction_limit)
-        .limits(0.05, 0.3),
-    challenge("arch", "time step (s)", &[1e-3, 5e-3, 2e-2], rest::arch).limits(0.05, 0.3),
-    challenge("repose", "time step (s)", &[1e-3, 5e-3, 2e-2], rest::repose).limits(0.01, 0.2),
-    challenge("repose-angle", "rows", &[2.0, 6.0, 12.0], rest::repose_angle)
-        .limits(0.02, 0.2)
+    challenge("sag", "sweeps a step", &[2000.0, 200.0, 20.0, 4.0], [0.01, 0.2], rest::sag),
+    challenge("mass-ratio", MASSES, RATIOS, [0.01, 0.2], rest::mass_ratio),
+    challenge(
+        "size-ratio",
+        "ratio of radii",
+        &[2.0, 5.0, 20.0, 100.0],
+        [0.01, 0.2],
+        rest::size_ratio,
+    ),
+    challenge("chain", TIME_STEP, STEPS, [0.02, 0.2], rest::chain),
+    challenge("cantilever", TIME_STEP, STEPS, [0.1, 1.0], rest::cantilever),
+    challenge("bridge", TIME_STEP, STEPS, [0.1, 1.0], rest::bridge),
+    challenge("shock", "tolerance (m/s)", &[1e-12, 1e-6, 2.2e-3], [0.01, 0.1], rest::shock),
+    challenge("overlap", "overlap (d)", &[0.01, 0.1, 0.5], [0.05, 1.1], rest::overlap),
+    challenge("squeeze", "strain", &[1e-4, 1e-2, 5e-2], [1e-3, 0.1], rest::squeeze),
+    challenge("moving-walls", TIME_STEP, &[5e-4, 3e-3, 2e-2], [0.05, 0.5], rest::moving_walls),
+    challenge("friction-limit", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::friction_limit),
+    challenge("arch", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::arch),
+    challenge("repose", TIME_STEP, LONG_STEPS, [0.01, 0.2], rest::repose),
+    challenge("repose-angle", "rows", &[2.0, 6.0, 12.0], [0.02, 0.2], rest::repose_angle)
         .further(&[24.0]),
-    challenge("rest", "steps", &[300.0, 10000.0], rest::rest).limits(0.01, 0.2).further(&[1e5]),
-    challenge("bounce", "restitution", &[0.0, 0.5, 0.9, 1.0], motion::bounce).limits(0.01, 0.1),
-    challenge("newtons-cradle", "balls", &[2.0, 3.0, 20.0], motion::newtons_cradle)
-        .limits(0.05, 0.5),
-    challenge("thin-wall", "travel a step (d)", &[0.4, 1.0, 4.0], motion::thin_wall)
-        .limits(0.0, 0.3),
-    challenge("far", "distance from the origin (d)", &[1e3, 1e6, 1e9, 1e13], motion::far)
-        .limits(0.01, 0.2),
-    challenge("shuffle", "tolerance", &[1e-9, 1e-6, 1e-3, 1e-1], motion::shuffle).limits(1e-4, 0.1),
-    challenge("lift-off", "ratio of masses", &[10.0, 100.0, 1e3, 1e4], motion::lift_off)
-        .limits(1e-3, 0.1),
+    challenge("rest", "steps", &[300.0, 10000.0], [0.01, 0.2], rest::rest).further(&[1e5]),
+    challenge("bounce", "restitution", &[0.0, 0.5, 0.9, 1.0], [0.01, 0.1], motion::bounce),
+    challenge("newtons-cradle", "balls", &[2.0, 3.0, 20.0], [0.05, 0.5], motion::newtons_cradle),
+    challenge("thin-wall", "travel a step (d)", &[0.4, 1.0, 4.0], [0.0, 0.3], motion::thin_wall),
+    challenge(
+        "far",
+        "distance from the origin (d)",
+        &[1e3, 1e6, 1e9, 1e13],
+        [0.01, 0.2],
+        motion::far,
+    ),
+    challenge("shuffle", "tolerance", &[1e-9, 1e-6, 1e-3, 1e-1], [1e-4, 0.1], motion::shuffle),
+    challenge("lift-off", MASSES, RATIOS, [1e-3, 0.1], motion::lift_off),
     challenge(
         "time-step-switch",
         "factor on 2e-4 s",
         &[2.0, 10.0, 50.0, 200.0],
+        [0.01, 0.2],
         motion::time_step_switch,
+    ),
+    challenge(
+        "sliders",
+        "seconds of sliders at random",
+        &[0.5, 2.0, 8.0],
+        [0.0, 0.0],
+        motion::sliders,
     )
-    .limits(0.01, 0.2),
-    challenge("sliders", "seconds of sliders at random", &[0.5, 2.0, 8.0], motion::sliders)
-        .limits(0.0, 0.0)
-        .further(&[60.0]),
-    challenge("dilatancy", "time step (s)", &[1e-4, 1e-3, 5e-3], motion::dilatancy)
-        .limits(0.01, 0.1)
-        .further(&[2e-2]),
-    challenge("blow", "time step (s)", &[1e-4, 1e-3, 5e-3], motion::blow).limits(0.01, 0.1),
-    challenge("hyperstatic", "displacement (d)", &[1e-4], rest::hyperstatic)
-        .limits(0.01, 0.2)
+    .further(&[60.0]),
+    challenge("dilatancy", TIME_STEP, SHORT_STEPS, [0.01, 0.1], motion::dilatancy).further(&[2e-2]),
+    challenge("blow", TIME_STEP, SHORT_STEPS, [0.01, 0.1], motion::blow),
+    challenge("hyperstatic", "displacement (d)", &[1e-4], [0.01, 0.2], rest::hyperstatic)
         .further(&[1e-6]),
-    challenge("size", "grains", &[138.0, 500.0], rest::size)
-        .limits(1e-3, 0.1)
+    challenge("size", "grains", &[138.0, 500.0], [1e-3, 0.1], rest::size)
         .further(&[2000.0, 10000.0]),
 ];
 
 /// A solver variant that is tried: a method or a stepper, or settings that go together.
 #[derive(Clone, Copy, Debug)]
 pub struct TriedVariant {
-    /// Its name in the table.
     name: &'static str,
     change: VariantChange,
 }
 
-/// What a variant changes of a scene.
 #[derive(Clone, Copy, Debug)]
 enum VariantChange {
     /// The paper's stepper with this method.
@@ -163,7 +157,6 @@ enum VariantChange {
     Model(FrictionModel, u32),
     /// A stepper that solves no problem by a method.
     Stepper(Stepper),
-    /// Settings that go together.
     Preset(Preset),
 }
 
@@ -188,7 +181,7 @@ impl TriedVariant {
         }
     }
 
-    /// Whether it is a method or a stepper, and not settings of one.
+    /// True of a method or a stepper, not of settings of one.
     fn is_of_registry(&self) -> bool {
         matches!(self.change, VariantChange::Method(_) | VariantChange::Stepper(_))
     }
@@ -215,14 +208,12 @@ static VARIANTS: LazyLock<Vec<TriedVariant>> = LazyLock::new(|| {
 /// One variant at one level of a challenge.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
-    /// Who is tried.
     variant: &'static TriedVariant,
     /// The value of the parameter that drives the scene into failure.
     level: f64,
 }
 
 impl Trial {
-    /// The scene at t = 0, stepped by the variant.
     fn start(&self, mut scene: Scene) -> Result<Simulation> {
         self.variant.apply(&mut scene);
         scene.simulation()
@@ -235,13 +226,11 @@ impl Trial {
         scene.simulation()
     }
 
-    /// The level as a count.
     fn count(&self) -> usize {
         self.level as usize
     }
 }
 
-/// Steps for a simulated time, s.
 fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
     simulation.take_steps(simulation.parameters().steps_in(secs))
 }

@@ -75,7 +75,6 @@ pub(super) fn blow(trial: &Trial) -> Result<f64> {
 
 /// Phases of the step in which the wall is reached.
 const PHASES: u32 = 10;
-/// Time after a row of balls is hit, s.
 const AFTER_SECS: f64 = 0.1;
 
 /// Error of the first bounce's height, over that of the fall; with that, for ρ < 1, the speed left
@@ -140,11 +139,8 @@ pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
 
 // What must not matter: where the origin is, and in which order the contacts come.
 
-/// Rows of the heap far from the origin.
 const FAR_ROWS: usize = 4;
-/// Simulated time of its run, s.
 const FAR_SECS: f64 = 0.1;
-/// Rows of the heap that is shuffled.
 const SHUFFLED_ROWS: usize = 6;
 /// Largest component of its grains' velocities, m/s.
 const SPEED: f64 = 0.05;
@@ -198,7 +194,6 @@ const BEFORE: u64 = 50;
 const AFTER: u64 = 30;
 /// Time step before it is switched, s.
 const SMALL_STEP_SECS: f64 = 2e-4;
-/// Rows of the heaps.
 const ROWS: usize = 4;
 /// Half the side of the box around the heap, in d.
 const BOX: f64 = 12.0;

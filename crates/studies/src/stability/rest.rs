@@ -12,11 +12,9 @@ use crate::world::Parameters;
 // leaves a speed, so a column sinks as if its discs were soft: the fake elasticity of an
 // unconverged solver.
 
-/// Simulated time of these runs, s.
 const COLUMN_SECS: f64 = 0.1;
 /// Sweeps of a step, unless they are what is varied: few, as in a window that has to keep up.
 const FEW_SWEEPS: u32 = 100;
-/// Discs of the column whose sag is measured.
 const SAGGING_DISCS: usize = 20;
 
 /// Greatest error of the floor's force in the last quarter of the run, over the weight.
@@ -78,10 +76,8 @@ pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
 
 // Piles that have to stand still, and some that have to give way.
 
-/// Rows of the heap that is left standing.
 const ROWS: usize = 6;
 const STANDING_SECS: f64 = 0.2;
-/// Rows of the heap that is left for very many steps.
 const SMALL_ROWS: usize = 4;
 /// The log pile of equal discs slides below μ = tan 15° = 2 − √3.
 const FRICTION_OF_LOGS: f64 = 0.267_949_192_431_122_7;
@@ -142,7 +138,6 @@ pub(super) fn repose_angle(trial: &Trial) -> Result<f64> {
     Ok((steepest / right - 1.0).abs())
 }
 
-/// Whether any grain of a scene goes far.
 fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
     Ok(way_in(trial, SLIDING_SECS, scene)? >= SLID)
 }
@@ -185,7 +180,6 @@ pub(super) fn size(trial: &Trial) -> Result<f64> {
 // Cohesion: what it has to hold, and when it has to let go. The static pull-off force knows no time
 // step.
 
-/// Discs of the hanging chain.
 const CHAIN: usize = 8;
 /// The watch over a chain, s: overloaded by a hundredth, it opens in a third of that.
 const CHAIN_SECS: f64 = 0.04;
@@ -197,8 +191,7 @@ const SURE: f64 = 1.5;
 const CHAIN_HALVINGS: u32 = 9;
 /// Time that bridge and cantilever are watched, s: torn, they fall 30 d in it.
 const WATCH_SECS: f64 = 0.25;
-/// Grains of a row.
-const CANTILEVER: i32 = 4;
+pub(super) const CANTILEVER: i32 = 4;
 const BRIDGE: i32 = 10;
 /// Time step of the shock, s: the paper's bond opens at it, for want of convergence.
 const SHOCK_STEP_SECS: f64 = 5e-4;

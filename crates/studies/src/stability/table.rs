@@ -5,7 +5,7 @@ use std::fmt;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{CHALLENGES, Challenge, ErrorLimits, Trial, TriedVariant, VARIANTS};
+use super::{CHALLENGES, Challenge, Trial, TriedVariant, VARIANTS};
 use crate::chart::{self, Axis, Chart, INK, Layer, Rgb, Sheet};
 use crate::error::{Error, Result};
 
@@ -22,12 +22,11 @@ pub enum StabilityVerdict {
 }
 
 impl StabilityVerdict {
-    /// The verdict on an error.
-    fn of(error: f64, limits: ErrorLimits) -> Self {
+    fn of(error: f64, [holds, fails]: [f64; 2]) -> Self {
         // Written so that NaN fails.
-        if error <= limits.holds {
+        if error <= holds {
             Self::Holds
-        } else if error <= limits.fails {
+        } else if error <= fails {
             Self::Degrades
         } else {
             Self::Fails
@@ -135,7 +134,6 @@ impl StabilityTable {
         self.cells.iter().filter(of_both).collect()
     }
 
-    /// The challenges that were tried.
     fn challenges(&self) -> Vec<&'static Challenge> {
         let tried =
             |challenge: &&Challenge| self.cells.iter().any(|cell| cell.scene == challenge.name);
@@ -162,7 +160,6 @@ fn cell(challenge: &Challenge, trial: &Trial) -> Result<StabilityCell> {
     })
 }
 
-/// Widths of the columns in words.
 const SCENE_WIDTH: usize = 17;
 const CELL_WIDTH: usize = 16;
 
@@ -203,13 +200,9 @@ const ROW: u32 = 44;
 const BESIDE: u32 = 260;
 const BELOW: u32 = 220;
 
-/// Parameters that a line of the caption names.
-const DRIVERS_A_LINE: usize = 7;
-
 /// Colours of holding, degrading and failing, told apart also by their lightness.
 const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
 
-/// The colour of a verdict, given as 0, 1 or 2.
 pub(super) fn colour(verdict: f64) -> Rgb {
     COLOURS[(verdict as usize).min(2)]
 }
@@ -245,13 +238,12 @@ pub fn picture(table: &StabilityTable) -> Sheet {
     }
     chart.layers.push(Layer::Cells { name: "verdict".into(), cells, colour });
     chart.layers.extend(words);
-    let mut caption = vec![
+    let drivers: Vec<String> =
+        challenges.iter().map(|one| format!("{}: {}", one.name, one.driver)).collect();
+    let caption = vec![
         "Green holds; yellow degrades and red fails, from that value of the parameter on:".into(),
+        drivers.join("; "),
     ];
-    let drivers =
-        challenges.iter().map(|challenge| format!("{}: {}", challenge.name, challenge.driver));
-    let drivers: Vec<String> = drivers.collect();
-    caption.extend(drivers.chunks(DRIVERS_A_LINE).map(|line| line.join("; ")));
     Sheet {
         size: (BESIDE + COLUMN * columns as u32, BELOW + ROW * rows as u32),
         charts: vec![chart],

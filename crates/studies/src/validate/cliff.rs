@@ -10,10 +10,7 @@
 //! It bounds H from above: a slip along a plane is one way to fall, and there may be easier ones.
 
 use super::collapse::CollapsingColumn;
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, SourceKind,
-    seeded,
-};
+use super::experiment::*;
 use super::fit::rank_correlation;
 use super::variants::StepVariant;
 use crate::scene::experiments::half_width;
@@ -30,9 +27,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// H₀/R₀.
 const ASPECT: f64 = 2.0;
-/// Slump below which a cliff stands.
 const STANDS: f64 = 0.2;
 /// tan φ_f of discs with μ = 0.5, about.
 const TAN_OF_FRICTION: f64 = 0.36;

@@ -3,9 +3,7 @@
 //! Grains that pull with C₀ under the pressure P have a second number besides I, η = C₀/(P d). With C₀ = Bond·m g/2 of two
 //! grains of mass m, and P in units of m g/d, η = Bond/(2P).
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, SourceKind,
-};
+use super::experiment::*;
 use super::shear::{PRESSURE, balance, layers};
 use super::variants::StepVariant;
 
@@ -20,7 +18,6 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// I that is aimed at.
 const INERTIAL: f64 = 0.08;
 /// η that is weak, and η that is strong.
 const WEAK: f64 = 1.0;

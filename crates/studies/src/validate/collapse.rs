@@ -1,10 +1,7 @@
 //! Columns of dry grains that collapse and spread: how far they run and how high they end, against how slender they
 //! were.
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, seeded,
-};
+use super::experiment::*;
 use super::fit::power_law;
 use super::variants::StepVariant;
 use super::watched::{WatchedRun, at_rest, centre_of_mass, loose, mean_energy, open_box, settled};
@@ -27,7 +24,6 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// μ.
 const FRICTION: f64 = 0.5;
 /// Up to here run-out is linear in a, and the final height is that of the column where it is lower.
 const LINEAR_TO: f64 = 2.0;
@@ -53,7 +49,6 @@ fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// A column to let go.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CollapsingColumn {
     pub grains: usize,

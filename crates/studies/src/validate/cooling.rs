@@ -20,10 +20,7 @@ use glam::DVec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, seeded,
-};
+use super::experiment::*;
 use super::fit::cooling_law;
 use super::variants::StepVariant;
 use super::watched::{WatchedRun, wall};
@@ -44,9 +41,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// e.
 const RESTITUTION: f64 = 0.9;
-/// φ.
 const SOLID_FRACTION: f64 = 0.1;
 /// √(2T₀/m), m/s: a disc goes a hundredth of its diameter in 1e-3 s.
 const THERMAL_SPEED: f64 = 0.1;

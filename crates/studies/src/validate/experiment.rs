@@ -7,15 +7,12 @@ use crate::error::Result;
 use crate::number;
 use crate::statistics::{Mean, mean};
 
-/// A published experiment.
 pub(super) struct Experiment {
-    /// Its name on the command line.
     pub name: &'static str,
     /// Above its part of the report and its chart.
     pub title: &'static str,
     /// What is done, and after whom.
     pub about: &'static str,
-    /// What is computed.
     pub cases: ExperimentCases,
     /// What the cases of one solver variant come to.
     pub judge: fn(&Measurements) -> Vec<PublishedQuantity>,
@@ -29,13 +26,11 @@ pub(super) enum ExperimentCases {
     Chosen(fn(bool, StepVariant) -> Vec<ExperimentCase>),
 }
 
-/// One run.
 pub(super) struct ExperimentCase {
     /// Numbers that tell it from the others of its experiment and variant.
     pub at: Vec<(&'static str, f64)>,
     /// How long it may take, in the unit of all cases: grains times steps.
     pub cost: f64,
-    /// What computes it.
     pub run: Box<dyn Fn() -> Result<RunReadings> + Send + Sync>,
 }
 
@@ -59,7 +54,6 @@ pub(super) fn seeded<T: Copy>(
     values.iter().flat_map(of).map(|(value, seed)| case(value, seed)).collect()
 }
 
-/// A number that was measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Reading {
     pub name: String,
@@ -67,7 +61,6 @@ pub(super) struct Reading {
     pub value: f64,
 }
 
-/// What one run comes to.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct RunReadings {
     pub readings: Vec<Reading>,
@@ -76,7 +69,7 @@ pub(super) struct RunReadings {
     /// Steps that were not solved as asked. With a number of sweeps nothing is asked but those.
     pub unsolved_steps: u64,
     pub lost_grains: u32,
-    /// Whether its state was no longer finite; it has no readings then.
+    /// True if its state was no longer finite; it has no readings then.
     pub blew_up: bool,
 }
 
@@ -88,18 +81,14 @@ impl RunReadings {
     }
 }
 
-/// Readings by their names.
 pub(super) fn named<const COUNT: usize>(readings: [(&str, f64); COUNT]) -> Vec<Reading> {
-    let reading = |(name, value): (&str, f64)| Reading { name: name.to_owned(), value };
-    readings.into_iter().map(reading).collect()
+    readings.map(|(name, value)| Reading { name: name.to_owned(), value }).into()
 }
 
-/// A case that was computed.
 #[derive(Clone, Debug)]
 pub(super) struct MeasuredCase {
     pub at: Vec<(&'static str, f64)>,
     pub run: RunReadings,
-    /// Wall-clock time, s.
     pub wall_secs: f64,
 }
 
@@ -115,7 +104,6 @@ impl MeasuredCase {
     }
 }
 
-/// Cases that were computed, in their order.
 #[derive(Clone, Debug)]
 pub(super) struct Measurements<'a>(pub Vec<&'a MeasuredCase>);
 
@@ -128,7 +116,6 @@ impl<'a> Measurements<'a> {
         values
     }
 
-    /// The same in words.
     pub(super) fn list(&self, name: &str) -> String {
         self.values(name).iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
     }
@@ -138,22 +125,18 @@ impl<'a> Measurements<'a> {
         self.0.first().map_or(0.0, |case| case.at(name))
     }
 
-    /// The cases that a condition picks.
     pub(super) fn such_that(&self, holds: impl Fn(&MeasuredCase) -> bool) -> Self {
         Self(self.0.iter().copied().filter(|case| holds(case)).collect())
     }
 
-    /// The cases with that value of a number.
     pub(super) fn with(&self, name: &str, value: f64) -> Self {
         self.such_that(|case| case.at(name) == value)
     }
 
-    /// What the cases of each seed come to.
     pub(super) fn by_seed<T>(&self, of: impl Fn(Self) -> T) -> Vec<T> {
         self.values("seed").into_iter().map(|seed| of(self.with("seed", seed))).collect()
     }
 
-    /// A reading of each case.
     pub(super) fn readings(&self, name: &str) -> Vec<f64> {
         self.0.iter().map(|case| case.reading(name)).collect()
     }
@@ -163,20 +146,17 @@ impl<'a> Measurements<'a> {
         self.0.first().map_or(f64::NAN, |case| case.reading(name))
     }
 
-    /// A point of each case.
     pub(super) fn points(&self, point: impl Fn(&MeasuredCase) -> (f64, f64)) -> Vec<(f64, f64)> {
         self.0.iter().map(|case| point(case)).collect()
     }
 
-    /// How many seeds there are, in words.
     pub(super) fn seeds(&self) -> String {
         format!("{} seeds", self.values("seed").len())
     }
 }
 
 /// Where a number comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SourceKind {
     /// Taken from the source, or from a review that quotes it.
     Read,
@@ -189,7 +169,6 @@ pub(super) enum SourceKind {
 }
 
 impl SourceKind {
-    /// In words.
     pub(super) const fn words(self) -> &'static str {
         match self {
             Self::Read => "read",
@@ -200,35 +179,16 @@ impl SourceKind {
     }
 }
 
-/// What a quantity should be.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct Expected {
-    /// The published value, or the middle of what was published.
-    pub value: f64,
-    /// What is within counts as the same: the spread of what was published, or what the experiment's size and its
-    /// idealisations leave open.
-    pub low: f64,
-    /// See `low`.
-    pub high: f64,
-    pub provenance: SourceKind,
-    /// Who says so, or how it follows.
-    pub source: &'static str,
-}
-
-/// Whether the measured agrees with the published.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Agreement {
-    /// The whole interval lies within the band.
+/// How the measured compares with the published.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Agreement {
     Agrees,
-    /// The whole interval lies outside.
     Differs,
     /// Part of it does, or there is none.
     NotDecided,
 }
 
 impl Agreement {
-    /// In words.
     pub(super) const fn words(self) -> &'static str {
         match self {
             Self::Agrees => "agrees",
@@ -241,11 +201,16 @@ impl Agreement {
 /// A published quantity, and what was measured of it by one solver variant.
 #[derive(Clone, Debug)]
 pub(super) struct PublishedQuantity {
-    /// What it is, with its unit.
     pub name: String,
-    /// How large the systems were, in words.
     pub system: String,
-    pub expected: Expected,
+    /// The published value, or the middle of what was published.
+    pub published: f64,
+    /// What is within counts as the same: the spread of what was published, or what the experiment's size and its
+    /// idealisations leave open.
+    pub band: [f64; 2],
+    pub provenance: SourceKind,
+    /// Who says so, or how it follows.
+    pub source: &'static str,
     pub measured: Mean,
 }
 
@@ -255,24 +220,25 @@ impl PublishedQuantity {
         name: impl Into<String>,
         system: &str,
         values: &[f64],
-        [low, value, high]: [f64; 3],
+        [low, published, high]: [f64; 3],
         (provenance, source): (SourceKind, &'static str),
     ) -> Self {
-        let expected = Expected { value, low, high, provenance, source };
-        Self { name: name.into(), system: system.to_owned(), expected, measured: mean(values) }
+        let (name, system) = (name.into(), system.to_owned());
+        let (band, measured) = ([low, high], mean(values));
+        Self { name, system, published, band, provenance, source, measured }
     }
 
     /// Relative deviation of the mean from the published value.
     pub(super) fn error(&self) -> f64 {
-        (self.measured.mean / self.expected.value - 1.0).abs()
+        (self.measured.mean / self.published - 1.0).abs()
     }
 
-    /// Whether the two agree, where all runs are sound.
+    /// How the two compare, where all runs are sound.
     pub(super) fn verdict(&self) -> Agreement {
-        let (Mean { low, high, .. }, band) = (self.measured, self.expected);
-        if low >= band.low && high <= band.high {
+        let (Mean { low, high, .. }, band) = (self.measured, self.band);
+        if low >= band[0] && high <= band[1] {
             Agreement::Agrees
-        } else if high < band.low || low > band.high {
+        } else if high < band[0] || low > band[1] {
             Agreement::Differs
         } else {
             Agreement::NotDecided

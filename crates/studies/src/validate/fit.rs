@@ -7,7 +7,6 @@ use crate::statistics::{mean, slope};
 pub(super) struct DampedWave {
     /// θ, rad.
     pub angle: f64,
-    /// r.
     pub shrinkage: f64,
 }
 
@@ -38,26 +37,24 @@ pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
 }
 
 /// The power p and the time τ of the law y = y₀ (1 + t/τ)^−p that is nearest to points (t, y), y > 0 and t rising from
-/// 0, in the logarithm of y.
-///
-/// For a τ the logarithm is linear in ln(1 + t/τ), whose line is known; the best τ is found on a grid in ratio around
-/// the last t, made finer twice.
+/// 0, in the logarithm of y: for a τ that is linear in ln(1 + t/τ), whose line is known.
 pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
-    let last = points.last().map_or(1.0, |(t, _)| *t);
-    let (mut middle, mut ratio) = (last, 1e3f64);
-    let mut best = [f64::NAN; 2];
+    let line = |tau: f64| {
+        let line: Vec<(f64, f64)> =
+            points.iter().map(|(t, y)| ((t / tau).ln_1p(), y.ln())).collect();
+        line_through(&line)
+    };
+    let tau = nearest(points.last().map_or(1.0, |(t, _)| *t), |tau| line(tau).1);
+    [-line(tau).0, tau]
+}
+
+/// The number with the least misfit: on a grid in ratio around a first guess, made finer thrice.
+pub(super) fn nearest(guess: f64, misfit: impl Fn(f64) -> f64) -> f64 {
+    let (mut best, mut ratio) = (guess, 1e3f64);
     for _ in 0..4 {
-        let mut least = f64::INFINITY;
-        let centre = middle;
-        for number in -40..=40 {
-            let tau = centre * ratio.powf(f64::from(number) / 40.0);
-            let line: Vec<(f64, f64)> =
-                points.iter().map(|(t, y)| ((t / tau).ln_1p(), y.ln())).collect();
-            let (power, misfit) = line_through(&line);
-            if misfit < least {
-                (least, middle, best) = (misfit, tau, [-power, tau]);
-            }
-        }
+        let tried = (-40..=40).map(|number| best * ratio.powf(f64::from(number) / 40.0));
+        let least = tried.min_by(|one, other| misfit(*one).total_cmp(&misfit(*other)));
+        best = least.unwrap_or(f64::NAN);
         ratio = ratio.powf(0.1);
     }
     best

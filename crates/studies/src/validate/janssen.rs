@@ -11,10 +11,8 @@
 
 use glam::DVec2;
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, seeded,
-};
+use super::experiment::*;
+use super::fit::nearest;
 use super::variants::StepVariant;
 use super::watched::{WatchedRun, at_rest, centre_of_mass, loose, open_box, settled};
 use crate::error::Result;
@@ -64,7 +62,6 @@ fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// The silo around grains, with a bottom at y = 0.
 fn silo(grains: Vec<Grain>, variant: StepVariant) -> Scene {
     let mut scene = dry("janssen", grains);
     scene.parameters.friction = FRICTION;
@@ -108,21 +105,14 @@ fn share(heights: f64) -> f64 {
     -(-heights).exp_m1() / heights
 }
 
-/// λ of shares that were measured at heights, by least squares, and the root mean square that it leaves: on a grid in
-/// ratio around the largest height, made finer twice.
+/// λ of shares that were measured at heights, by least squares, and the root mean square that it leaves.
 fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
     let misfit = |length: f64| -> f64 {
         let square = |(height, found): &(f64, f64)| (found - share(height / length)).powi(2);
         (points.iter().map(square).sum::<f64>() / points.len() as f64).sqrt()
     };
-    let (mut best, mut ratio) = (points.iter().map(|point| point.0).fold(0.0, f64::max), 1e3f64);
-    for _ in 0..4 {
-        let lengths = (-40..=40).map(|number| best * ratio.powf(f64::from(number) / 40.0));
-        let nearest = lengths.min_by(|one, other| misfit(*one).total_cmp(&misfit(*other)));
-        best = nearest.unwrap_or(f64::NAN);
-        ratio = ratio.powf(0.1);
-    }
-    [best, misfit(best)]
+    let length = nearest(points.iter().map(|point| point.0).fold(0.0, f64::max), misfit);
+    [length, misfit(length)]
 }
 
 fn judge(all: &Measurements) -> Vec<PublishedQuantity> {

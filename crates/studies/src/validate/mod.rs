@@ -5,7 +5,7 @@
 //! within agrees, what lies outside differs, and what does neither is not decided. Numbers that were recalled, not
 //! read, have generous bands and say so.
 //!
-//! The folder holds `report.md`, `quantities.csv` and `.json`, a figure (`errors.png`, `.svg`, `.csv`), and
+//! The folder holds `report.md`, `quantities.csv`, a figure (`errors.png`, `.svg`, `.csv`), and
 //! `measured/`: journals of finished runs, by program and processor, so that the same command goes on where it was
 //! stopped.
 
@@ -29,11 +29,9 @@ mod watched;
 use std::path::PathBuf;
 use std::time::Instant;
 
-pub use self::experiment::Agreement;
-
 use self::experiment::Experiment;
 use self::runs::run_all;
-use self::variants::VariantChoice;
+use self::variants::step_variants;
 use super::machine::Machine;
 use crate::error::Result;
 use crate::output::{check_writable, print_line, print_text, write_file};
@@ -73,28 +71,6 @@ pub struct ValidateOptions {
     pub tolerances: Vec<f64>,
 }
 
-impl ValidateOptions {
-    /// The command line that asks for them, into a folder of a name of its own.
-    fn command(&self) -> String {
-        fn listed(option: &str, values: impl Iterator<Item = String>) -> String {
-            let values: Vec<String> = values.collect();
-            if values.is_empty() {
-                String::new()
-            } else {
-                format!(" --{option} {}", values.join(","))
-            }
-        }
-        let Self { experiments, quick, methods, time_steps_secs, sweeps, tolerances, .. } = self;
-        let named: String = experiments.iter().map(|name| format!(" {name}")).collect();
-        let quick = if *quick { " --quick" } else { "" };
-        let choices = listed("methods", methods.iter().map(|method| method.name().to_owned()))
-            + &listed("time-steps", time_steps_secs.iter().map(|step| format!("{step:e}")))
-            + &listed("sweeps", sweeps.iter().map(u32::to_string))
-            + &listed("tolerances", tolerances.iter().map(|tolerance| format!("{tolerance:e}")));
-        format!("slump validate{named}{quick}{choices} --out validation")
-    }
-}
-
 /// The names of all experiments.
 pub fn experiment_names() -> Vec<&'static str> {
     EXPERIMENTS.iter().map(|experiment| experiment.name).collect()
@@ -108,7 +84,7 @@ pub fn validate(options: &ValidateOptions) -> Result<()> {
     let started = Instant::now();
     let ValidateOptions { experiments, out, quick, methods, time_steps_secs, sweeps, tolerances } =
         options;
-    let choice = VariantChoice::of(*quick, methods, time_steps_secs, sweeps, tolerances)?;
+    let variants = step_variants(*quick, methods, time_steps_secs, sweeps, tolerances)?;
     check_writable("out", out)?;
     let wanted: Vec<&'static Experiment> = EXPERIMENTS
         .iter()
@@ -116,12 +92,11 @@ pub fn validate(options: &ValidateOptions) -> Result<()> {
         .collect();
     let machine = Machine::this()?;
     let runner = machine.runner(out, *quick, "validation")?;
-    let ran = run_all(&wanted, &choice.variants(), *quick, &runner)?;
+    let ran = run_all(&wanted, &variants, *quick, &runner)?;
     let sheet = report::sheet(&ran, &machine.words());
-    write_sheet(out, "errors", &sheet, &options.command())?;
+    write_sheet(out, "errors", &sheet, &machine.command)?;
     let table = report::table(&ran);
     write_file(&out.join("quantities.csv"), &table.to_csv()?)?;
-    write_file(&out.join("quantities.json"), report::json(&ran)?.as_bytes())?;
     let text = report::markdown(&ran, *quick, &machine.words(), started.elapsed().as_secs_f64());
     let path = out.join("report.md");
     write_file(&path, text.as_bytes())?;

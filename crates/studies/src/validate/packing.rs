@@ -9,10 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, seeded,
-};
+use super::experiment::*;
 use super::variants::StepVariant;
 use super::watched::{loose, mean_energy, open_box, settled, solid_fraction};
 use crate::error::Result;

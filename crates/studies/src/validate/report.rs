@@ -1,29 +1,18 @@
-//! What was measured in words, as a table, as JSON, and as a figure.
+//! What was measured in words, as a table, and as a figure.
 
 use std::fmt::Write as _;
 
-use serde_json::json;
-
-use super::experiment::{Agreement, Expected, PublishedQuantity};
+use super::experiment::{Agreement, PublishedQuantity};
 use super::runs::ExperimentRuns;
 use super::variants::{SolveBudget, StepVariant};
 use crate::chart::{Axis, Chart, INK, Layer, Look, PALETTE, Rgb, Sheet, points};
-use crate::error::{Error, Result};
 use crate::report::ReportTable;
 use crate::solver::Method;
 use crate::statistics::mean;
 
-/// Errors below this are drawn here.
 const LEAST_ERROR: f64 = 1e-3;
-/// Errors above this are drawn here.
 const MOST_ERROR: f64 = 2.0;
-/// Width and height of a chart, pixels.
-const WIDTH: u32 = 440;
-const HEIGHT: u32 = 400;
-/// Charts side by side; fewer leave room for the caption.
-const ABREAST: u32 = 4;
 
-/// A number as it is written.
 fn short(number: f64) -> String {
     if !number.is_finite() {
         return "none".into();
@@ -32,7 +21,6 @@ fn short(number: f64) -> String {
     format!("{number:.digits$}").replace('-', "−")
 }
 
-/// Two ends of a band or an interval.
 fn ends(low: f64, high: f64) -> String {
     match (low.is_finite(), high.is_finite()) {
         (false, false) => "none".into(),
@@ -42,14 +30,14 @@ fn ends(low: f64, high: f64) -> String {
     }
 }
 
-/// Every quantity of every experiment by every variant.
 pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
     let mut rows = Vec::new();
     for runs in all {
         for (quantity, verdict) in runs.judged() {
-            let PublishedQuantity { name, system, expected, measured } = &quantity;
-            let Expected { value, low, high, provenance, source } = expected;
-            let numbers = [*value, *low, *high, measured.mean, measured.low, measured.high];
+            let PublishedQuantity { name, system, published, band, provenance, source, measured } =
+                &quantity;
+            let [low, high] = *band;
+            let numbers = [*published, low, high, measured.mean, measured.low, measured.high];
             let mut row = vec![runs.experiment.name.to_owned(), runs.words(), name.clone()];
             row.extend([system.clone(), (*source).to_owned(), provenance.words().to_owned()]);
             row.extend(numbers.map(|number| number.to_string()));
@@ -61,59 +49,13 @@ pub(super) fn table(all: &[ExperimentRuns]) -> ReportTable {
             rows.push(row);
         }
     }
-    let columns = vec![
-        "experiment",
-        "way",
-        "quantity",
-        "system",
-        "source",
-        "provenance",
-        "published",
-        "published_low",
-        "published_high",
-        "measured",
-        "measured_low",
-        "measured_high",
-        "samples",
-        "verdict",
-        "error",
-        "simulated_secs_per_sec",
-        "wall_secs",
-        "share_of_unsolved_steps",
-    ];
-    ReportTable { name: "quantities", columns, rows }
+    let columns = "experiment way quantity system source provenance published published_low published_high measured \
+                   measured_low measured_high samples verdict error simulated_secs_per_sec wall_secs \
+                   share_of_unsolved_steps";
+    let columns = columns.split(' ').collect();
+    ReportTable { name: "quantities".into(), columns, rows }
 }
 
-/// The same as JSON: numbers as numbers, and those that do not exist as null.
-///
-/// # Errors
-/// Where it cannot be said in JSON.
-pub(super) fn json(all: &[ExperimentRuns]) -> Result<String> {
-    let mut rows = Vec::new();
-    for runs in all {
-        for (quantity, verdict) in runs.judged() {
-            let PublishedQuantity { name, system, expected, measured } = &quantity;
-            rows.push(json!({
-                "experiment": runs.experiment.name,
-                "way": runs.words(),
-                "quantity": name,
-                "system": system,
-                "published": expected,
-                "measured": { "mean": measured.mean, "low": measured.low, "high": measured.high },
-                "samples": measured.count,
-                "verdict": verdict,
-                "error": quantity.error(),
-                "simulated_secs_per_sec": runs.speed(),
-                "wall_secs": runs.wall_secs(),
-                "share_of_unsolved_steps": runs.unsolved(),
-            }));
-        }
-    }
-    let refuse = |error| Error::file("quantities.json", error);
-    serde_json::to_string_pretty(&rows).map(|text| text + "\n").map_err(refuse)
-}
-
-/// `report.md`.
 pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs: f64) -> String {
     let mut text = "# Published experiments\n\n".to_owned();
     if quick {
@@ -141,7 +83,6 @@ pub(super) fn markdown(all: &[ExperimentRuns], quick: bool, machine: &str, secs:
     text
 }
 
-/// How many quantities came out how.
 fn summary(all: &[ExperimentRuns]) -> String {
     let verdicts: Vec<Agreement> =
         all.iter().flat_map(ExperimentRuns::judged).map(|(_, verdict)| verdict).collect();
@@ -155,7 +96,6 @@ fn summary(all: &[ExperimentRuns]) -> String {
     )
 }
 
-/// The quantities of an experiment by one variant.
 fn of_variant(runs: &ExperimentRuns) -> String {
     let mut text = format!(
         "\n**{}**: {} runs in {:.1} s of one core, {:.2} simulated seconds per second.",
@@ -179,14 +119,14 @@ fn of_variant(runs: &ExperimentRuns) -> String {
          |---|---|---|---|---|---|---|---|\n",
     );
     for (quantity, verdict) in runs.judged() {
-        let PublishedQuantity { name, system, expected, measured } = &quantity;
+        let PublishedQuantity { name, system, published, band, provenance, source, measured } =
+            &quantity;
         let _ = writeln!(
             text,
-            "| {name} | {system} | {} | {} | {}: {} | {} | {} | **{}** |",
-            short(expected.value),
-            ends(expected.low, expected.high),
-            expected.provenance.words(),
-            expected.source,
+            "| {name} | {system} | {} | {} | {}: {source} | {} | {} | **{}** |",
+            short(*published),
+            ends(band[0], band[1]),
+            provenance.words(),
             short(measured.mean),
             ends(measured.low, measured.high),
             verdict.words()
@@ -195,66 +135,62 @@ fn of_variant(runs: &ExperimentRuns) -> String {
     text
 }
 
-/// Draws a point for each experiment and variant.
+/// Draws a point for each experiment and variant: how far off its quantities are, and how fast it was.
 pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
-    let mut variants: Vec<StepVariant> = Vec::new();
-    for variant in all.iter().filter_map(|runs| runs.variant) {
-        if !variants.contains(&variant) {
-            variants.push(variant);
+    let mut variants: Vec<StepVariant> = all.iter().filter_map(|runs| runs.variant).collect();
+    let mut seen = Vec::new();
+    variants.retain(|variant| {
+        !seen.contains(variant) && {
+            seen.push(*variant);
+            true
         }
-    }
+    });
+    let mut names: Vec<&str> = all.iter().map(|runs| runs.experiment.name).collect();
+    names.dedup();
+    let count = names.len() as f64;
+    let numbers = |number: fn(&ExperimentRuns) -> f64| {
+        let numbers = all.iter().map(number).filter(|number| number.is_finite());
+        numbers.fold([f64::INFINITY, 0.0], |[least, most], x| [least.min(x), most.max(x)])
+    };
+    let [slowest, fastest] = numbers(ExperimentRuns::speed);
     let mut charts = Vec::new();
-    for of_experiment in all.chunk_by(|one, other| one.experiment.name == other.experiment.name) {
-        let chart = chart(of_experiment, &variants);
-        // Where no variant has a value there is nothing to see.
-        if !chart.layers.is_empty() {
-            charts.push(chart);
+    for (label, ends, number) in [
+        ("mean relative error", [LEAST_ERROR, MOST_ERROR], error as fn(&ExperimentRuns) -> f64),
+        (
+            "simulated seconds per second",
+            [0.5 * slowest.min(1e3), 2.0 * fastest.max(1e-3)],
+            ExperimentRuns::speed,
+        ),
+    ] {
+        let mut y = Axis::linear("", -count, 1.0);
+        y.ticks =
+            (0..).zip(&names).map(|(row, name)| (-f64::from(row), (*name).to_owned())).collect();
+        let mut chart = Chart::new("", Axis::log(label, ends[0], ends[1]), y);
+        for runs in all {
+            let row = names.iter().position(|name| *name == runs.experiment.name).unwrap_or(0);
+            let (name, colour, look) = match runs.variant {
+                None => ("methods of its own".to_owned(), INK, Look::Rings(8)),
+                Some(variant) => look_of(&variant, &variants),
+            };
+            let x = number(runs).clamp(ends[0], ends[1]);
+            let place = points(x.is_finite().then_some((x, -(row as f64))));
+            chart.layers.push(Layer::curve(name, place, colour, look));
         }
+        charts.push(chart);
     }
-    let count = charts.len() as u32;
-    let below = charts.iter_mut().skip(ABREAST as usize).step_by(ABREAST as usize);
-    below.for_each(|chart| chart.begins_row = true);
-    // Where there are fewer, it has the room of those that are not there.
-    let missing = f64::from(ABREAST.saturating_sub(count));
-    let legend = Chart::legend_of(&mut charts, 0.9 + missing);
-    charts.push(legend);
-    let size = (ABREAST * WIDTH + WIDTH * 9 / 10, HEIGHT * count.div_ceil(ABREAST).max(1) + 120);
     let caption = vec![
-        "Mean relative deviation of an experiment's quantities from the published values; those below 1e-3 are drawn \
-         there."
+        "Error: mean deviation of an experiment's quantities from the published values, drawn between 1e-3 and 2. Runs \
+         were timed while the other cores ran others."
             .to_owned(),
-        "Runs were timed while the other cores ran others.".to_owned(),
         machine.to_owned(),
     ];
-    Sheet { size, charts, caption }.high_enough()
+    Sheet { size: (1300, 120 + 46 * names.len() as u32), charts, caption }
 }
 
 /// Mean relative error of the quantities of an experiment by one variant; NaN where one has no value, since the others
 /// alone would look better than they are.
 fn error(runs: &ExperimentRuns) -> f64 {
     mean(&runs.judged().iter().map(|(quantity, _)| quantity.error()).collect::<Vec<_>>()).mean
-}
-
-fn chart(of_experiment: &[ExperimentRuns], variants: &[StepVariant]) -> Chart {
-    let places: Vec<(Option<StepVariant>, (f64, f64))> = of_experiment
-        .iter()
-        .map(|runs| (runs.variant, (runs.speed(), error(runs).clamp(LEAST_ERROR, MOST_ERROR))))
-        .filter(|(_, (speed, error))| speed.is_finite() && error.is_finite())
-        .collect();
-    let speeds = places.iter().map(|(_, (speed, _))| *speed);
-    let slowest = speeds.clone().fold(f64::INFINITY, f64::min).min(1e3);
-    let fastest = speeds.fold(0.0, f64::max).max(2.0 * slowest);
-    let x = Axis::log("simulated seconds per second", 0.5 * slowest, 2.0 * fastest);
-    let title = of_experiment.first().map_or("", |runs| runs.experiment.title);
-    let mut chart = Chart::new(title, x, Axis::log("relative error", LEAST_ERROR, MOST_ERROR));
-    for (variant, place) in places {
-        let (name, colour, look) = match variant {
-            None => ("methods of its own".to_owned(), INK, Look::Rings(8)),
-            Some(variant) => look_of(&variant, variants),
-        };
-        chart.layers.push(Layer::curve(name, points([place]), colour, look));
-    }
-    chart
 }
 
 /// A colour a method and time step; discs for sweeps and rings for residuals, the larger the more work.

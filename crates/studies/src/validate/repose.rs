@@ -7,10 +7,7 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64;
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, seeded,
-};
+use super::experiment::*;
 use super::fit::rank_correlation;
 use super::variants::StepVariant;
 use super::watched::{WatchedRun, centre_of_mass};

@@ -1,14 +1,10 @@
 //! The runs of experiments: every case of every experiment by every solver variant.
 
-use super::experiment::{
-    Agreement, Experiment, ExperimentCase, ExperimentCases, MeasuredCase, Measurements,
-    PublishedQuantity, RunReadings,
-};
+use super::experiment::*;
 use super::variants::{SolveBudget, StepVariant};
 use crate::error::{Error, Result};
 use crate::runner::{Case, Runner, Threads};
 
-/// The runs of an experiment by one solver variant.
 pub(super) struct ExperimentRuns {
     pub experiment: &'static Experiment,
     /// None where the experiment has methods of its own.
@@ -17,7 +13,6 @@ pub(super) struct ExperimentRuns {
 }
 
 impl ExperimentRuns {
-    /// Its variant, in words.
     pub(super) fn words(&self) -> String {
         words(self.variant)
     }
@@ -32,7 +27,6 @@ impl ExperimentRuns {
         })
     }
 
-    /// Its quantities, each with its verdict.
     pub(super) fn judged(&self) -> Vec<(PublishedQuantity, Agreement)> {
         let sound = Measurements(self.cases.iter().filter(|case| !case.run.blew_up).collect());
         let is_spoilt = self.spoilt().is_some();
@@ -43,17 +37,15 @@ impl ExperimentRuns {
         (self.experiment.judge)(&sound).into_iter().map(judge).collect()
     }
 
-    /// Whether all that is asked of a step is a number of sweeps.
+    /// True if all that is asked of a step is a number of sweeps.
     pub(super) fn has_sweeps_alone(&self) -> bool {
         self.variant.is_none_or(|variant| matches!(variant.budget, SolveBudget::Sweeps(_)))
     }
 
-    /// Wall-clock time of all its runs, s.
     pub(super) fn wall_secs(&self) -> f64 {
         self.cases.iter().map(|case| case.wall_secs).sum()
     }
 
-    /// Simulated seconds per second.
     pub(super) fn speed(&self) -> f64 {
         let simulated: f64 = self.cases.iter().map(|case| case.run.simulated_secs).sum();
         simulated / self.wall_secs()
@@ -73,9 +65,6 @@ fn words(variant: Option<StepVariant>) -> String {
 }
 
 /// Runs what is not finished yet, and gives all runs in the order of the report.
-///
-/// # Errors
-/// Where a scene is not sound or the journal cannot be written. A state that is no longer finite is a result.
 pub(super) fn run_all(
     experiments: &[&'static Experiment],
     variants: &[StepVariant],

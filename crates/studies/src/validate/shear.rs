@@ -17,10 +17,7 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, seeded,
-};
+use super::experiment::*;
 use super::fit::middle;
 use super::repose::shuffled;
 use super::variants::StepVariant;
@@ -44,9 +41,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// μ.
 const FRICTION: f64 = 0.4;
-/// ρ.
 const RESTITUTION: f64 = 0.1;
 /// P, in m g/d: √(m/P) is 0.03 s.
 pub(super) const PRESSURE: f64 = 1.0;
@@ -60,7 +55,6 @@ const STRAINS: [f64; 2] = [1.5, 3.0];
 const TIMES_TO_STEADY: f64 = 3.0;
 /// T/N of a layer in which it dies away slowly.
 const SLOWEST: f64 = 0.4;
-/// Moments that are looked at.
 const MOMENTS: u32 = 250;
 /// Each so many of them solid fractions are taken.
 const MOMENTS_OF_CELLS: u32 = 5;
@@ -98,11 +92,9 @@ pub(super) fn layers(
     })
 }
 
-/// A layer to shear.
 #[derive(Clone, Copy, Debug)]
 struct ShearedLayer {
     cell: ShearCell,
-    /// I that is aimed at.
     inertial: f64,
     bond: f64,
     seed: u64,

@@ -5,10 +5,7 @@
 
 use glam::DVec2;
 
-use super::experiment::{
-    Experiment, ExperimentCase, ExperimentCases, Measurements, PublishedQuantity, RunReadings,
-    SourceKind, seeded,
-};
+use super::experiment::*;
 use super::fit::middle;
 use super::variants::StepVariant;
 use super::watched::{WatchedRun, at_rest, loose, settled};
@@ -29,7 +26,6 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// μ.
 const FRICTION: f64 = 0.5;
 /// Parts of the mass that are out when the discharge is taken.
 const OUT: [f64; 2] = [0.08, 0.4];
@@ -57,7 +53,6 @@ fn cases(quick: bool, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// The silo with its plate, around grains.
 fn silo(grains: Vec<Grain>, orifice: f64, gravity: f64, variant: StepVariant) -> Scene {
     let mut scene = dry("silo", grains);
     scene.gravity = Gravity::Uniform { acceleration: -gravity * GRAVITY * DVec2::Y };

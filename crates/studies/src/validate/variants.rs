@@ -9,7 +9,6 @@ use crate::solver::{Method, SolverSettings};
 /// Sweeps within which a step is to be solved to a residual.
 const MOST_SWEEPS: u32 = 1_000;
 
-/// How well a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SolveBudget {
     /// By so many sweeps, whatever they come to.
@@ -19,7 +18,6 @@ pub(super) enum SolveBudget {
 }
 
 impl SolveBudget {
-    /// In words, for keys and tables.
     pub(super) fn words(self) -> String {
         match self {
             Self::Sweeps(1) => "1 sweep".to_owned(),
@@ -29,7 +27,6 @@ impl SolveBudget {
     }
 }
 
-/// A method with a time step and a budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct StepVariant {
     pub method: Method,
@@ -39,13 +36,11 @@ pub(super) struct StepVariant {
 }
 
 impl StepVariant {
-    /// Its name in keys and tables.
     pub(super) fn words(&self) -> String {
         let Self { method, time_step_secs, budget } = self;
         format!("{method}, Δt {time_step_secs:e} s, {}", budget.words())
     }
 
-    /// Has a scene stepped so.
     pub(super) fn apply(&self, scene: &mut Scene) {
         scene.parameters.time_step_secs = self.time_step_secs;
         let (tolerance, max_sweeps) = match self.budget {
@@ -56,64 +51,47 @@ impl StepVariant {
     }
 }
 
-/// What variants are made of.
-#[derive(Clone, Debug)]
-pub(super) struct VariantChoice {
-    pub methods: Vec<Method>,
-    /// Δt, s.
-    pub time_steps_secs: Vec<f64>,
-    pub budgets: Vec<SolveBudget>,
-}
-
-impl VariantChoice {
-    /// What was asked for, and in the place of an empty list what is chosen unasked.
-    ///
-    /// # Errors
-    /// Names the first value outside its range, or one that is given twice.
-    pub(super) fn of(
-        quick: bool,
-        methods: &[Method],
-        time_steps_secs: &[f64],
-        sweeps: &[u32],
-        tolerances: &[f64],
-    ) -> Result<Self> {
-        check_positive("time-steps", time_steps_secs, "a finite number of seconds > 0")?;
-        check_positive("tolerances", tolerances, "a finite number > 0")?;
-        if sweeps.contains(&0) {
-            return Err(Error::value("sweeps", 0, "at least 1"));
-        }
-        check_different("methods", methods)?;
-        check_different("time-steps", time_steps_secs)?;
-        check_different("sweeps", sweeps)?;
-        check_different("tolerances", tolerances)?;
-        let or = |asked: &[f64], unasked: &[f64]| {
-            if asked.is_empty() { unasked.to_vec() } else { asked.to_vec() }
-        };
-        let sweeps = sweeps.iter().map(|&count| SolveBudget::Sweeps(count));
-        let tolerances = tolerances.iter().map(|&residual| SolveBudget::Residual(residual));
-        let mut budgets: Vec<SolveBudget> = sweeps.chain(tolerances).collect();
-        if budgets.is_empty() {
-            budgets = vec![SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
-        }
-        let steps: &[f64] = if quick { &[1e-3] } else { &[1e-3, 3e-4] };
-        Ok(Self {
-            methods: if methods.is_empty() { vec![Method::Nsgs] } else { methods.to_vec() },
-            time_steps_secs: or(time_steps_secs, steps),
-            budgets,
-        })
+/// Every method with every time step and budget that was asked for, and in the place of an empty list what is chosen
+/// unasked.
+///
+/// # Errors
+/// Names the first value outside its range, or one that is given twice.
+pub(super) fn step_variants(
+    quick: bool,
+    methods: &[Method],
+    time_steps_secs: &[f64],
+    sweeps: &[u32],
+    tolerances: &[f64],
+) -> Result<Vec<StepVariant>> {
+    check_positive("time-steps", time_steps_secs, "a finite number of seconds > 0")?;
+    check_positive("tolerances", tolerances, "a finite number > 0")?;
+    if sweeps.contains(&0) {
+        return Err(Error::value("sweeps", 0, "at least 1"));
     }
-
-    /// Every method with every time step and budget.
-    pub(super) fn variants(&self) -> Vec<StepVariant> {
-        let mut variants = Vec::new();
-        for &method in &self.methods {
-            for &time_step_secs in &self.time_steps_secs {
-                let of = |&budget| StepVariant { method, time_step_secs, budget };
-                variants.extend(self.budgets.iter().map(of));
-            }
-        }
-        variants
+    check_different("methods", methods)?;
+    check_different("time-steps", time_steps_secs)?;
+    check_different("sweeps", sweeps)?;
+    check_different("tolerances", tolerances)?;
+    let sweeps = sweeps.iter().map(|&count| SolveBudget::Sweeps(count));
+    let tolerances = tolerances.iter().map(|&residual| SolveBudget::Residual(residual));
+    let mut budgets: Vec<SolveBudget> = sweeps.chain(tolerances).collect();
+    if budgets.is_empty() {
+        budgets = vec![SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
     }
+    let methods = if methods.is_empty() { &[Method::Nsgs] } else { methods };
+    let time_steps_secs: &[f64] = match (time_steps_secs.is_empty(), quick) {
+        (false, _) => time_steps_secs,
+        (true, true) => &[1e-3],
+        (true, false) => &[1e-3, 3e-4],
+    };
+    let mut variants = Vec::new();
+    for &method in methods {
+        for &time_step_secs in time_steps_secs {
+            let of = |&budget| StepVariant { method, time_step_secs, budget };
+            variants.extend(budgets.iter().map(of));
+        }
+    }
+    Ok(variants)
 }
 
 fn check_positive(field: &str, values: &[f64], allowed: &str) -> Result<()> {
@@ -133,23 +111,22 @@ mod tests {
 
     #[test]
     fn what_is_asked_is_crossed_and_the_rest_is_chosen() {
-        let unasked = VariantChoice::of(true, &[], &[], &[], &[]).expect("a choice");
-        assert_eq!(unasked.variants().len(), 2);
+        let unasked = step_variants(true, &[], &[], &[], &[]).expect("a choice");
+        assert_eq!(unasked.len(), 2);
         let methods = [Method::Nsgs, Method::Newton];
-        let asked =
-            VariantChoice::of(true, &methods, &[1e-3, 1e-4], &[5], &[1e-6]).expect("a choice");
-        let variants = asked.variants();
+        let variants =
+            step_variants(true, &methods, &[1e-3, 1e-4], &[5], &[1e-6]).expect("a choice");
         assert_eq!(variants.len(), 8);
         assert_eq!(variants[0].words(), "nsgs, Δt 1e-3 s, 5 sweeps");
         assert_eq!(variants[7].words(), "newton, Δt 1e-4 s, residual 1e-6");
-        let one = VariantChoice::of(true, &[], &[], &[7], &[]).expect("a choice");
-        assert_eq!(one.budgets, [SolveBudget::Sweeps(7)]);
+        let one = step_variants(true, &[], &[], &[7], &[]).expect("a choice");
+        assert!(one.len() == 1 && one[0].budget == SolveBudget::Sweeps(7));
     }
 
     #[test]
     fn what_is_no_number_or_comes_twice_is_refused_by_name() {
         let refused = |steps: &[f64], sweeps: &[u32], tolerances: &[f64]| {
-            let choice = VariantChoice::of(true, &[], steps, sweeps, tolerances);
+            let choice = step_variants(true, &[], steps, sweeps, tolerances);
             choice.expect_err("a refusal").to_string()
         };
         assert!(refused(&[1e-3, -1.0], &[], &[]).starts_with("time-steps is -1"));

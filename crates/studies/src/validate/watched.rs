@@ -28,18 +28,11 @@ pub(super) struct WatchedRun {
 }
 
 impl WatchedRun {
-    /// Of a scene, at t = 0.
-    ///
-    /// # Errors
-    /// Where the scene is not sound.
     pub(super) fn start(scene: &Scene) -> Result<Self> {
         Ok(Self { simulation: scene.simulation()?, tally: Tally::default() })
     }
 
     /// Steps until a simulated time (s); `after` is called after each step.
-    ///
-    /// # Errors
-    /// Where the state is no longer finite.
     pub(super) fn run_until(
         &mut self,
         secs: f64,
@@ -68,9 +61,6 @@ impl WatchedRun {
 
 /// Lets the discs of a scene fall through a medium for as long as the highest takes, and then rest without it: until
 /// they do, or as long once more.
-///
-/// # Errors
-/// Where the scene is not sound, or the state is no longer finite.
 pub(super) fn settled(scene: &Scene) -> Result<WatchedRun> {
     let mut run = WatchedRun::start(scene)?;
     let world = run.simulation.world();
@@ -138,7 +128,6 @@ pub(super) fn mean_energy(simulation: &Simulation) -> f64 {
     simulation.observables().kinetic_energy / unit
 }
 
-/// The centre of mass, m.
 pub(super) fn centre_of_mass(simulation: &Simulation) -> DVec2 {
     let grains = &simulation.world().grains;
     let mass: f64 = grains.masses.iter().sum();

@@ -54,7 +54,6 @@ const REST_SPEED: f64 = 1e-2;
 /// In a large pile there always is a grain that tips over somewhere, so that waiting for the last would take
 /// the longer the larger the pile.
 const GRAINS_A_MOVING_ONE: usize = 10_000;
-/// Steps between two looks at the speeds.
 const STEPS_PER_LOOK: u32 = 10;
 /// Steps after which it is given up, and more for each layer.
 const LIMIT_STEPS: [f64; 2] = [10_000.0, 100.0];
@@ -85,7 +84,6 @@ pub fn drop_and_roll(
     deposit.discs()[fixed..].to_vec()
 }
 
-/// The grains before they settle.
 pub(super) fn start_of(pile: &NewPile) -> Vec<Grain> {
     let mut random = Pcg64::seed_from_u64(pile.seed);
     let radii: Vec<f64> = (0..pile.grains).map(|_| random_radius(&mut random)).collect();
@@ -95,7 +93,6 @@ pub(super) fn start_of(pile: &NewPile) -> Vec<Grain> {
     discs.into_iter().map(|Disc { position, radius }| Grain::at_rest(position, radius)).collect()
 }
 
-/// Drops a pile and lets it settle.
 pub(super) fn settled(
     pile: &NewPile,
     mut progress: impl FnMut(Settling) -> bool,

@@ -27,10 +27,8 @@ words! {
     /// How the grains of a new pile are put in place.
     #[derive(Default)]
     pub enum Deposition {
-        /// They fall together through a medium.
         #[default]
         Rain = "rain", "They fall together through a medium, as for the shipped state: minutes for 2,000 grains";
-        /// One by one, each rolling to where two others hold it.
         DropAndRoll = "drop-and-roll", "One by one, each rolling to where two others hold it: a denser pile with more contacts, in seconds for 10,000 grains";
     }
 }
@@ -121,7 +119,6 @@ const SPREAD: f64 = 0.2;
 /// Radius of the largest disc, m.
 const LARGEST_RADIUS: f64 = 0.5 * DIAMETER * (1.0 + SPREAD);
 
-/// The radius of the next disc, m.
 fn random_radius(random: &mut Pcg64) -> f64 {
     0.5 * DIAMETER * random.random_range(1.0 - SPREAD..=1.0 + SPREAD)
 }
@@ -134,7 +131,7 @@ const REST_SECS: f64 = 0.02;
 pub struct Settling<'a> {
     /// The pile as it is now.
     pub simulation: &'a Simulation,
-    /// Whether grains may still be falling through the medium of the rain.
+    /// True where grains may still be falling through the medium of the rain.
     pub rains: bool,
     /// Simulated time, s.
     pub time_secs: f64,
@@ -158,7 +155,6 @@ pub struct Settled {
 }
 
 impl Settled {
-    /// The grains of a simulation that has come to rest.
     fn of(mut simulation: Simulation) -> Self {
         let kinetic_energy = kinetic_energy(&simulation);
         let &Observables { mean_overlap, max_overlap, .. } = simulation.observables();
@@ -171,12 +167,10 @@ impl Settled {
     }
 }
 
-/// That `progress` ended it.
 fn interrupted() -> Error {
     Error::value("generation", "interrupted", "left to end")
 }
 
-/// That it takes too long.
 fn not_at_rest(speed_over_rest: f64, limit_secs: f64) -> Error {
     let allowed = format!("below 1 within {limit_secs:.1} s of simulated time");
     Error::value("speed over rest", speed_over_rest, allowed)

@@ -23,10 +23,8 @@ const TIME_STEP_SECS: f64 = 1e-4;
 /// A pile whose grains have all been slower than this, in units of √(g·d), for [`REST_SECS`] is at
 /// rest.
 const REST_SPEED: f64 = 2e-4;
-/// Steps between two looks at the speeds.
 const STEPS_PER_LOOK: u32 = 100;
 
-/// Rains a pile.
 pub(super) fn settled(
     rain: &NewPile,
     mut progress: impl FnMut(Settling) -> bool,

@@ -70,16 +70,6 @@ impl Deposit {
         &self.discs
     }
 
-    /// Height of the floor, m.
-    fn floor(&self) -> f64 {
-        self.floor
-    }
-
-    /// The walls are at ± this, m.
-    fn half_width(&self) -> f64 {
-        self.half_width
-    }
-
     /// The highest place at x, not above `highest`, where a disc that falls comes to lie on one of those in place but for
     /// `left`, the one that it falls from; and that one's index. Nothing where it falls to the floor.
     fn landing(
@@ -170,7 +160,7 @@ pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     loop {
         let DVec2 { x, y } = fall.from;
         let Some((height, index)) = deposit.landing(x, radius, y, fall.left) else {
-            let centre = DVec2::new(x, deposit.floor() + radius);
+            let centre = DVec2::new(x, deposit.floor + radius);
             return Rest { centre, supports: (Support::Floor, None) };
         };
         let centre = DVec2::new(x, height);
@@ -237,7 +227,6 @@ fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
     }
 }
 
-/// What a disc that rolls meets first.
 fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
     let &RollingDisc { radius, centre, on, side } = roll;
     let below = &deposit.discs()[on];
@@ -254,11 +243,11 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
             first = (angle, met);
         }
     };
-    let to_wall = (deposit.half_width() - radius - side * below.position.x) / reach;
+    let to_wall = (deposit.half_width - radius - side * below.position.x) / reach;
     if to_wall < 1.0 {
         meet(to_wall.max(-1.0).asin(), Obstacle::Wall);
     }
-    let to_floor = (deposit.floor() + radius - below.position.y) / reach;
+    let to_floor = (deposit.floor + radius - below.position.y) / reach;
     if to_floor > 0.0 {
         meet(to_floor.min(1.0).acos(), Obstacle::Floor);
     }
@@ -301,11 +290,11 @@ fn place_at(deposit: &Deposit, roll: &RollingDisc, met: Obstacle) -> DVec2 {
             below.position + along * towards + side * other_leg(along) * towards.perp()
         }
         Obstacle::Wall => {
-            let x = side * (deposit.half_width() - radius);
+            let x = side * (deposit.half_width - radius);
             DVec2::new(x, below.position.y + other_leg(x - below.position.x))
         }
         Obstacle::Floor => {
-            let y = deposit.floor() + radius;
+            let y = deposit.floor + radius;
             DVec2::new(below.position.x + side * other_leg(y - below.position.y), y)
         }
         Obstacle::Nothing => below.position + DVec2::new(side * reach, 0.0),

@@ -22,8 +22,6 @@ pub fn half_width(grains: usize, aspect: f64) -> f64 {
     (grains as f64 / (GRAINS_OF_SQUARE * aspect)).sqrt()
 }
 
-/// 400 grains that fall into a column twice as high as half of its width and are let go after 0.7 s.
-///
 /// A column of grains between two gates over a rough floor. The gates are pulled away, faster than grains can follow,
 /// and the column spreads to both sides.
 ///
@@ -67,8 +65,6 @@ const FLOOR_DEPTH: f64 = 30.0;
 const PLATE_WAY: f64 = 1.0;
 const PLATE_SECS: f64 = 0.1;
 
-/// 450 grains that flow out of an orifice of seven diameters from 0.5 s on.
-///
 /// A silo with a flat bottom and an orifice in the middle of it. A plate closes it, falls away, and grains flow out onto
 /// a floor below.
 pub fn silo() -> Scene {
@@ -108,8 +104,6 @@ pub const TILT_RATE: f64 = 0.12;
 /// The steepest, rad.
 const STEEPEST: f64 = 0.72;
 
-/// 300 grains in a box that is tilted to the right, to 41 degrees.
-///
 /// A layer of grains in a flat box with a rough bottom that is tilted slowly: up to some angle it stays, then its surface
 /// flows. What is tilted is gravity, so that pictures are those of someone who sits in the box.
 pub fn incline() -> Scene {
@@ -135,8 +129,6 @@ const DRUM_SIDES: usize = 72;
 /// Ω, rad/s: Ω²R/g is 0.05, at which grains roll down a steady slope.
 const DRUM_RATE: f64 = 2.0;
 
-/// 150 grains in a drum.
-///
 /// A drum that turns about its axis, two fifths full: its wall is rough by discs that turn with it, and every sixth of
 /// them is larger, so that one sees it turn.
 pub fn drum() -> Scene {

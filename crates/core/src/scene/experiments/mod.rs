@@ -63,7 +63,6 @@ fn open_box(half_width: f64, height: f64) -> Boundary {
     Boundary::Polyline { points: corners.map(|(x, y)| place(x, y)).into() }
 }
 
-/// A boundary that goes.
 fn moved(boundary: usize, course: MotionCourse) -> Motion {
     Motion { boundaries: vec![boundary], course: Some(course), ..Motion::default() }
 }

@@ -18,7 +18,6 @@ pub struct ShearCell {
     pub rows: u8,
 }
 
-/// That of the scene.
 const CELL: ShearCell = ShearCell { wide: 24, columns: 19, rows: 12 };
 /// Distance of rows at the start, in diameters.
 const ROW_SPACING: f64 = 1.22;
@@ -29,8 +28,6 @@ const SHEAR_PRESSURE: f64 = 10.0;
 /// Speed of the upper plate, m/s. Pressed together the grains are some 9 d high, and I is 0.07.
 const PLATE_SPEED: f64 = 0.6;
 
-/// 228 grains between two plates.
-///
 /// Plane shear at constant pressure: grains between two rough plates in a periodic cell, of which the upper one is drawn
 /// along at a given speed and pressed down by a given pressure (F. da Cruz and others, *Rheophysics of dense granular
 /// materials*, Phys. Rev. E 72, 2005).
@@ -67,12 +64,9 @@ pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     let of_grain = 0.25 * std::f64::consts::PI * DIAMETER * DIAMETER * scene.areal_density;
     let drive = Drive {
         direction: DVec2::NEG_Y,
-        force: None,
         pressure: Some(pressure * of_grain * GRAVITY / DIAMETER),
-        width: None,
         mass: f64::from(wide) * of_grain,
-        damping: 0.0,
-        speed: 0.0,
+        ..Drive::default()
     };
     let course = MotionCourse::Straight { direction: DVec2::X, speed, travel: None };
     scene.motions = vec![Motion {
@@ -95,8 +89,6 @@ const SPREAD: f64 = 0.1;
 /// γ̇, 1/s.
 const SHEAR_RATE: f64 = 10.0;
 
-/// 224 grains that go with the shear at the start.
-///
 /// Shear without walls: a cell whose borders are one and the same line each, and whose upper border slides along the
 /// lower one (`world::periodic`).
 ///
@@ -134,7 +126,6 @@ pub fn shear_periodic() -> Scene {
     scene
 }
 
-/// Number of grains.
 const GRAINS: usize = 300;
 /// Width of the box that they lie in at the start, in diameters.
 const WIDTH: f64 = 19.0;
@@ -151,8 +142,6 @@ const CLOSING_SECS: f64 = 0.35;
 const COMPRESSION: f64 = 5.0;
 const COMPRESSION_SECS: f64 = 2.0;
 
-/// 300 grains between two walls that press and under a lid that comes down.
-///
 /// A biaxial test: a box of grains whose side walls are pressed inward by a constant force each and whose lid goes
 /// down at a given speed. Grains do not feel gravity.
 ///
@@ -179,12 +168,10 @@ pub fn biaxial() -> Scene {
         boundaries: vec![boundary],
         drive: Some(Drive {
             direction,
-            force: None,
             pressure: Some(CONFINING_PRESSURE * of_grain * GRAVITY / DIAMETER),
             width: Some(HEIGHT * DIAMETER),
             mass: rows * of_grain,
-            damping: 0.0,
-            speed: 0.0,
+            ..Drive::default()
         }),
         ..Motion::default()
     };

@@ -24,8 +24,6 @@ fn places(spacing: f64) -> Vec<DVec2> {
     column(-spacing, 0.0).chain(column(0.0, height)).chain(column(spacing, 0.0)).collect()
 }
 
-/// 18 discs and the two walls.
-///
 /// A packing between two walls that move in, without friction and open above.
 ///
 /// Three columns of discs stand side by side, the one in the middle higher by h; with d = 1, columns s
@@ -71,7 +69,6 @@ const SIDE: i32 = 5;
 const SQUEEZED_SPEED: f64 = 0.3;
 
 /// 5 × 5 discs in a box that is shorter than they are by the share `strain`, along each side.
-///
 /// A lattice of discs in a box that is too small for it: more contacts than the discs have freedoms,
 /// and restitution that each of them asks for.
 pub fn squeeze(strain: f64) -> Scene {

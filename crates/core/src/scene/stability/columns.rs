@@ -2,12 +2,10 @@
 
 use glam::DVec2;
 
-use super::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, half_space};
+use super::{DIAMETER, GRAVITY, TOUCH, disc, half_space, on_floor};
 use crate::scene::Scene;
 use crate::world::{Grain, Gravity, Physics};
 
-/// A column of `count` discs on the floor.
-///
 /// A column of n discs. The floor carries n·m·g, the k-th contact n − k of it.
 ///
 /// On the chain of contacts, Jacobi's iteration is P_k ← (P_{k−1} + P_{k+1})/2, with
@@ -16,9 +14,7 @@ use crate::world::{Grain, Gravity, Physics};
 /// is a consistent one (D. M. Young, 1971), and Gauss–Seidel shrinks it by cos²(π/2n) a sweep.
 pub fn column(count: usize) -> Scene {
     let place = |k: usize| (0.5 + k as f64) * (1.0 - TOUCH) - 0.5 * TOUCH;
-    let mut scene = dry("column", (0..count).map(|k| disc(0.0, place(k))).collect());
-    scene.boundaries = vec![floor()];
-    scene
+    on_floor("column", (0..count).map(|k| disc(0.0, place(k))).collect())
 }
 
 /// The same column lying along the x axis, gravity and all: the leanest model there is.
@@ -34,24 +30,19 @@ pub fn column_on_line(count: usize) -> Scene {
     scene
 }
 
-/// A disc of diameter d, and on it one that is `ratio` times as heavy.
-///
 /// A heavy disc on a light one. With R the ratio of their masses, Gauss–Seidel on the two contacts
 /// shrinks its error by W₀₁²/(W₀₀W₁₁) = R/(R + 1) a sweep: it needs sweeps by the R.
 pub fn mass_ratio(ratio: f64) -> Scene {
     let radius = 0.5 * ratio.sqrt();
     let heavy =
         Grain::at_rest(DIAMETER * DVec2::new(0.0, 1.0 + radius - 2.0 * TOUCH), DIAMETER * radius);
-    let mut scene = dry("mass-ratio", vec![disc(0.0, 0.5 - TOUCH), heavy]);
-    scene.boundaries = vec![floor()];
-    scene
+    on_floor("mass-ratio", vec![disc(0.0, 0.5 - TOUCH), heavy])
 }
 
 /// Discs under the heavy one.
 const BELOW: usize = 5;
 
 /// A column of five, and on it, the last in the list, a disc `ratio` times as heavy.
-///
 /// A column with a heavy disc on top that is taken away in mid-run: the impulses that carried it are
 /// the start of the next step's iteration, and must not throw what is left.
 pub fn lift_off(ratio: f64) -> Scene {
@@ -64,8 +55,6 @@ pub fn lift_off(ratio: f64) -> Scene {
     scene
 }
 
-/// Two discs of diameter d side by side, and on them one that is `ratio` times as large.
-///
 /// A large disc on two small ones, as logs are piled.
 ///
 /// With the centres of the small discs (radius r) 2r apart and the large one of radius R, the
@@ -79,16 +68,10 @@ pub fn logs(ratio: f64) -> Scene {
     let height = 0.5 - TOUCH + (reach * reach - half * half).sqrt();
     let large = Grain::at_rest(DIAMETER * DVec2::new(0.0, height), 0.5 * DIAMETER * ratio);
     let small = |x: f64| disc(x, 0.5 - TOUCH);
-    let mut scene = dry("logs", vec![small(-half), small(half), large]);
-    scene.boundaries = vec![floor()];
-    scene
+    on_floor("logs", vec![small(-half), small(half), large])
 }
 
-/// Two discs, one on the other, each overlapping what is below by `overlap` diameters.
-///
-/// Two discs on the floor that overlap at the start. Right is to part them without throwing them.
+/// Two discs, each overlapping what is below by `overlap` diameters. Right is to part them without throwing them.
 pub fn overlapped(overlap: f64) -> Scene {
-    let mut scene = dry("overlap", vec![disc(0.0, 0.5 - overlap), disc(0.0, 1.5 - 2.0 * overlap)]);
-    scene.boundaries = vec![floor()];
-    scene
+    on_floor("overlap", vec![disc(0.0, 0.5 - overlap), disc(0.0, 1.5 - 2.0 * overlap)])
 }

@@ -10,8 +10,6 @@ use crate::world::{Disc, Grain};
 /// to find their balance in.
 const OVERLAP: f64 = 1e-3;
 
-/// A chain of `count` discs.
-///
 /// A chain of n ≥ 2 equal discs under a fixed one. The contact with the fixed disc has
 /// C₀ = Bond·m·g and carries n·m·g; the one below has C₀ = Bond·(m/2)·g and carries (n − 1)·m·g. So
 /// the chain holds above Bond = max(n, 2(n − 1)), at every time step.
@@ -56,8 +54,6 @@ fn truss(name: &str, grains: Vec<Grain>, fixed: Vec<Grain>) -> Scene {
     scene
 }
 
-/// Two rows of `length` grains that reach out from a wall.
-///
 /// A cantilever of 2L discs weighs 2L·m·g, L/2 diameters from its root on average, so its rows carry
 /// L²·m·g·d over their distance of 0.87 d. A contact holds 50 m·g at Bond 100: L = 4, with 18 m·g, is
 /// far from tearing, and L = 8, with 74, must tear.

@@ -14,7 +14,6 @@ use crate::world::Disc;
 const FALLING: [f64; 2] = [0.3, 1.5];
 
 /// A heap of `rows` rows, the lowest of `rows` discs.
-///
 /// A heap with slopes of 60° over a rough base: each disc lies in the notch of two below it, and
 /// what presses on an edge disc from above passes straight on to the one below, so the heap stands
 /// even without friction.
@@ -65,8 +64,6 @@ pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
 /// The steepest slope on which the heap stands, degrees.
 pub const STEEPEST_DEGREES: f64 = 30.0;
 
-/// The heap of `rows` rows on a base that falls to the right at `degrees`.
-///
 /// The heap of [`heap`] on a slope. It stands up to an inclination of exactly 30°, whatever its size and
 /// for every friction below √3.
 ///
@@ -105,8 +102,6 @@ pub const FRICTION_OF_ARCH: f64 = 3.0 - 2.0 * SQRT_2;
 /// Depth of the ground that a fallen arch lies on, below the fixed discs' centres, in diameters.
 const GROUND: f64 = 0.5;
 
-/// The arch; the keystone is the second of its discs.
-///
 /// Three discs as a semicircular arch between two fixed ones: the centres of all five lie on half a
 /// circle, an eighth of a turn apart.
 ///

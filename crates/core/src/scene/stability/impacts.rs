@@ -3,20 +3,17 @@
 use glam::DVec2;
 
 use crate::scene::Scene;
-use crate::scene::stability::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, mass_ratio, view};
+use crate::scene::stability::{DIAMETER, GRAVITY, TOUCH, disc, dry, mass_ratio, on_floor, view};
 use crate::world::{Boundary, Gravity, Physics};
 
 /// Height that it falls, in diameters.
 const DROP: f64 = 5.0;
 
-/// A disc above the floor.
-///
 /// A disc dropped on the floor. It rises to ρ² of its height, and for ρ < 1 it is at rest after
 /// infinitely many bounces, at √(2h/g)·(1 + ρ)/(1 − ρ).
 pub fn bounce(restitution: f64) -> Scene {
-    let mut scene = dry("bounce", vec![disc(0.0, DROP + 0.5)]);
+    let mut scene = on_floor("bounce", vec![disc(0.0, DROP + 0.5)]);
     scene.parameters.restitution = restitution;
-    scene.boundaries = vec![floor()];
     scene.view = view(DVec2::new(-4.5, -0.5), DVec2::new(4.5, DROP + 1.5));
     scene.duration_secs = 10.0 * (2.0 * DROP * DIAMETER / GRAVITY).sqrt();
     scene
@@ -26,7 +23,6 @@ pub fn bounce(restitution: f64) -> Scene {
 const BALL_SPEED: f64 = 3.0;
 
 /// One ball that hits `count` − 1 others on a line, without gravity.
-///
 /// Newton's cradle: a row of balls at rest that touch, and one that hits them. At ρ = 1 the last one
 /// flies off with all the speed: no law that settles all impacts of a step together says so.
 pub fn balls(count: usize) -> Scene {
@@ -52,8 +48,6 @@ const FALLING: f64 = 2.0;
 /// The height that it falls from, in d: the disc below has been solved before the blow at every Δt.
 const HEIGHT: f64 = 0.05;
 
-/// The two discs, the heavy one second.
-///
 /// A disc that slides along the floor, and a heavy one beside it in the air that hits it from above. Neither
 /// turns, and there is no gravity: what the floor pushes is the blow and nothing else.
 ///
@@ -85,8 +79,6 @@ pub fn blow() -> Scene {
 /// Speed at the start, in √(g d).
 const SLIDING_SPEED: f64 = 3.0;
 
-/// A disc on the floor, with speed.
-///
 /// A disc that slides on the floor and does not turn. It must keep its level, and stop.
 ///
 /// A step takes a = μ g Δt of its speed v₀, so that it slides for n = ⌊v₀/a⌋ steps and, moved with the
@@ -109,9 +101,8 @@ const SLIDING_SPEED: f64 = 3.0;
 pub fn dilatancy() -> Scene {
     let mut grain = disc(0.0, 0.5 - TOUCH);
     grain.velocity.x = SLIDING_SPEED * (GRAVITY * DIAMETER).sqrt();
-    let mut scene = dry("dilatancy", vec![grain]);
+    let mut scene = on_floor("dilatancy", vec![grain]);
     scene.physics.rotation = false;
-    scene.boundaries = vec![floor()];
     scene.view = view(DVec2::new(-1.5, -0.5), DVec2::new(11.5, 6.5));
     scene
 }
@@ -120,7 +111,6 @@ pub fn dilatancy() -> Scene {
 pub const WALL_DISTANCE: f64 = 20.0;
 
 /// A disc that flies `travel` diameters a step, and starts a share `phase` of a step further on.
-///
 /// A fast disc and a wall without thickness. A step longer than the disc's radius can carry its
 /// centre past the wall before they ever overlap, or just as they first do; a share of 1 − r/(v Δt)
 /// of all phases then goes through.

@@ -36,6 +36,11 @@ pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     scene
 }
 
+/// The same on the ground.
+fn on_floor(name: &str, grains: Vec<Grain>) -> Scene {
+    Scene { boundaries: vec![floor()], ..dry(name, grains) }
+}
+
 /// A view of so much, in diameters.
 pub(super) fn view(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: DIAMETER * min, max: DIAMETER * max })

@@ -32,7 +32,7 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    /// Whether it is asked for.
+    /// True where it is asked for.
     pub(crate) fn is_on(&self, remedies: &Remedies) -> bool {
         remedies.get(self.name) != Remedies::default().get(self.name)
     }
@@ -49,97 +49,76 @@ settings! {
     /// Remedies for known failures.
     #[serde(default)]
     pub struct Remedies, changes RemedyChanges, heading "Solver" {
-        /// Push overlap out by moving grains apart after the step, without giving them speed.
-        push_out: bool = false, {
-            name: "push-out",
-            value_name: "BOOL",
-            help: "Push overlap out by moving grains apart after each step, without giving them speed",
-            control: Some(Control {
-                label: "Push overlap out",
-                hint: "Grains that overlap are moved apart after each step, without speed.",
-                ..Control::PLAIN
-            }),
+        push_out: bool = false, "push-out",
+            "Push overlap out by moving grains apart after each step, without giving them speed", {
+            control: shown(
+                "Push overlap out",
+                "Grains that overlap are moved apart after each step, without speed.",
+            ),
         }
-        /// Cut a step into pieces in which no grain moves further than this, in d; 0 never does.
-        max_travel: f64 = 0.0, {
-            name: "max-travel",
-            value_name: "D",
-            help: "Cut steps into pieces in which no grain moves further than this, in diameters; 0 \
-                   never does",
+        max_travel: f64 = 0.0, "max-travel" ("D"),
+            "Cut steps into pieces in which no grain moves further than this, in diameters; 0 \
+             never does", {
             allowed: "a finite number of diameters ≥ 0; 0 never cuts a step",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
-        /// Solve a step that did not converge once more without bounces: restitution can ask wedged
-        /// contacts for what contradicts itself, and then a step has no solution with them.
-        calm_unsolved: bool = false, {
-            name: "calm-unsolved",
-            value_name: "BOOL",
-            help: "Solve a step that did not converge once more without bounces, which may contradict \
-                   each other",
-            control: Some(Control {
-                label: "Calm unsolved steps",
-                hint: "A step that did not converge is solved once more without bounces, which may \
-                       contradict each other.",
-                ..Control::PLAIN
-            }),
+        calm_unsolved: bool = false, "calm-unsolved",
+            "Solve a step that did not converge once more without bounces, which may contradict \
+             each other", {
+            control: shown(
+                "Calm unsolved steps",
+                "A step that did not converge is solved once more without bounces, which may \
+                 contradict each other.",
+            ),
         }
-        /// Have shocks run through touching grains one after the other, in scenes without cohesion.
-        sequential_impacts: bool = false, {
-            name: "sequential-impacts",
-            value_name: "BOOL",
-            help: "Have shocks run through touching grains one after the other, as in Newton's cradle; \
-                   not with cohesion",
-            control: Some(Control {
-                label: "Shocks in sequence",
-                hint: "Shocks run through touching grains one after the other, as in Newton's cradle; \
-                       not where Bond is above 0.",
-                ..Control::PLAIN
-            }),
+        sequential_impacts: bool = false, "sequential-impacts",
+            "Have shocks run through touching grains one after the other, as in Newton's cradle; \
+             not with cohesion", {
+            control: shown(
+                "Shocks in sequence",
+                "Shocks run through touching grains one after the other, as in Newton's cradle; \
+                 not where Bond is above 0.",
+            ),
         }
-        /// Let pairs with a gap that would close within the step close that gap and no more.
-        speculative: bool = false, {
-            name: "speculative",
-            value_name: "BOOL",
-            help: "Let pairs that would close their gap within a step close it and no more, so that \
-                   nothing tunnels; it costs bounces",
-            control: Some(Control {
-                label: "Look ahead",
-                hint: "Pairs that would meet within a step close their gap and no more: nothing \
-                       tunnels, but they hardly bounce.",
-                ..Control::PLAIN
-            }),
+        speculative: bool = false, "speculative",
+            "Let pairs that would close their gap within a step close it and no more, so that \
+             nothing tunnels; it costs bounces", {
+            control: shown(
+                "Look ahead",
+                "Pairs that would meet within a step close their gap and no more: nothing \
+                 tunnels, but they hardly bounce.",
+            ),
         }
     }
 }
 
 impl Remedies {
-    /// Whether there are none.
+    /// True where there are none.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 }
 
 /// All remedies, in the order of their settings.
-pub const ROWS: [Remedy; 5] = [
-    Remedy { name: "push-out", taken_by: &[Stepper::Moreau], robust: Some(Value::Switch(true)) },
-    Remedy {
-        name: "max-travel",
-        taken_by: &[Stepper::Moreau, Stepper::Range],
-        robust: Some(Value::Number(ROBUST_TRAVEL)),
-    },
-    Remedy {
-        name: "calm-unsolved",
-        taken_by: &[Stepper::Moreau],
-        robust: Some(Value::Switch(true)),
-    },
-    Remedy {
-        name: "sequential-impacts",
-        taken_by: &[Stepper::Moreau],
-        robust: Some(Value::Switch(true)),
-    },
-    // Fast grains are cut into pieces of a step: looking ahead would cost them their bounce.
-    Remedy { name: "speculative", taken_by: &[Stepper::Moreau], robust: None },
-];
+pub const ROWS: [Remedy; 5] = {
+    const fn row(
+        name: &'static str,
+        taken_by: &'static [Stepper],
+        robust: Option<Value>,
+    ) -> Remedy {
+        Remedy { name, taken_by, robust }
+    }
+    const ON: Option<Value> = Some(Value::Switch(true));
+    const MOREAU: &[Stepper] = &[Stepper::Moreau];
+    [
+        row("push-out", MOREAU, ON),
+        row("max-travel", &[Stepper::Moreau, Stepper::Range], Some(Value::Number(ROBUST_TRAVEL))),
+        row("calm-unsolved", MOREAU, ON),
+        row("sequential-impacts", MOREAU, ON),
+        // Fast grains are cut into pieces of a step: looking ahead would cost them their bounce.
+        row("speculative", MOREAU, None),
+    ]
+};
 
 const _: () = assert!(ROWS.len() == Remedies::ABOUT.len(), "each remedy has a row and a setting");
 
@@ -151,7 +130,13 @@ pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> 
         stage.solve(settings)
     };
     if settings.remedies.calm_unsolved && !report.converged {
-        report = solve_again(stage, settings, report);
+        // ρ v_n^{n−1} can ask wedged contacts for what contradicts itself, and then a step has no solution with it. So it is
+        // solved anew with ρ = 0, from the impulses of the step before; what it measures is that problem's.
+        let mut calm = *settings;
+        calm.parameters.restitution = 0.0;
+        // Detection at the same places finds the same contacts, and their impulses with them.
+        set_up(stage, &calm);
+        report = stage.solve(&calm).after(report);
     }
     report
 }
@@ -163,25 +148,6 @@ pub(super) fn after_step<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings
     }
 }
 
-/// Solves the step anew with ρ = 0, from the impulses of the step before. The work of the solve that failed
-/// counts.
-///
-/// A step that did not converge, solved once more without bounces.
-///
-/// The term ρ v_n^{n−1} can ask wedged contacts for what contradicts itself, and then a step has no solution
-/// with it. What the step measures is then the residual of the problem without.
-pub(in crate::sim) fn solve_again<M: Model>(
-    stage: &mut Stage<'_, M>,
-    settings: &Settings,
-    failed: SolveReport,
-) -> SolveReport {
-    let mut calm = *settings;
-    calm.parameters.restitution = 0.0;
-    // Detection at the same places finds the same contacts, and their impulses with them.
-    set_up(stage, &calm);
-    stage.solve(&calm).after(failed)
-}
-
 /// Furthest way of a grain in a piece where the preset `robust` asks, in d: half of what could jump a wall.
 const ROBUST_TRAVEL: f64 = 0.25;
 
@@ -189,8 +155,6 @@ const ROBUST_TRAVEL: f64 = 0.25;
 const MOST_PIECES: f64 = 1000.0;
 
 /// Pieces of the next step: 1 unless grains are too fast for it.
-///
-/// A step cut into pieces, so that no grain jumps over what it should hit.
 pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
     let world = &state.world;
     let longest = settings.remedies.max_travel * world.mean_diameter;
@@ -229,8 +193,6 @@ struct PushedContact {
 }
 
 /// Moves the grains after a step of that length, whose contacts are still those of its beginning.
-///
-/// Overlap pushed out by places alone.
 ///
 /// After a step the grains are moved by δ so that each contact's gap grows by a part of what it
 /// overlaps too much, and no contact is pushed into overlap by its neighbours. With w = 1/m_i + 1/m_j
@@ -292,8 +254,6 @@ pub(in crate::sim) fn push_out(state: &mut State, time_step_secs: f64) {
 const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 
 /// How far a step that has begun has to look: as far as two bodies of the fastest speed come.
-///
-/// Speculative contacts: pairs with a gap that a step would close.
 ///
 /// A contact that is looked for at the beginning of a step is missed where the pair meets later in it,
 /// and a fast disc is then inside a wall, or through it. So pairs with a gap that would close within

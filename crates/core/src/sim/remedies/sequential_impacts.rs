@@ -44,8 +44,8 @@ use crate::contact::ContactList;
 use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{
-    Bodies, FrictionModel, Kinematics, Memory, Method, Model, SolveReport, SolverSettings,
-    StepProblem, for_each_row, relative_velocities, solve as solve_problem,
+    Bodies, FrictionModel, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
+    for_each_row, relative_velocities, solve as solve_problem,
 };
 
 /// Contacts that close slower than this many g·Δt do not bounce: a step of gravity alone makes a
@@ -77,7 +77,13 @@ pub(in crate::sim) fn solve<M: Model>(
     let mut halvings = 0;
     while M::FRICTION && halvings < HALVINGS && gains_energy(stage.problem) {
         halvings += 1;
-        scale_rebounds(stage.problem, if halvings < HALVINGS { 0.5 } else { 0.0 });
+        let factor = if halvings < HALVINGS { 0.5 } else { 0.0 };
+        for (row, wall_speed) in stage.problem.rows_with_walls() {
+            let rebound = row.restitution_velocity + wall_speed;
+            if rebound < 0.0 {
+                row.restitution_velocity = factor * rebound - wall_speed;
+            }
+        }
         earlier.add(report);
         report = stage.solve(settings);
     }
@@ -114,15 +120,15 @@ pub(in crate::sim) fn follow<M: Model>(
         impacts.take(problem, &mut pass);
     }
     if impacts.fastest_closing() > LEAST_IN_FASTEST * fastest {
-        report.add(impacts.stop_the_rest::<M>(problem, memory, &settings.solver));
+        report.add(impacts.stop_the_rest(problem, memory, &settings.solver));
     }
     impacts.set_rebounds(problem);
     Some(report)
 }
 
-/// Whether the contacts of a solved step have done work on the grains, beyond rounding and beyond what
+/// True where the contacts of a solved step have done work on the grains, beyond rounding and beyond what
 /// the walls that move have put in: velocities are taken relative to those.
-fn gains_energy<K: Kinematics>(problem: &StepProblem<K>) -> bool {
+fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     let (mut gain, mut scale) = (0.0, 0.0);
     for_each_row(problem, |number, row, motion| {
         let [normal, tangential] =
@@ -135,31 +141,20 @@ fn gains_energy<K: Kinematics>(problem: &StepProblem<K>) -> bool {
     gain > LEAST_GAIN * scale
 }
 
-/// Multiplies the speeds that contacts are asked to open with, relative to walls that move.
-fn scale_rebounds<K: Kinematics>(problem: &mut StepProblem<K>, factor: f64) {
-    for (row, wall_speed) in problem.rows_with_walls() {
-        let rebound = row.restitution_velocity + wall_speed;
-        if rebound < 0.0 {
-            row.restitution_velocity = factor * rebound - wall_speed;
-        }
-    }
-}
-
 /// How far the shocks have gone.
-struct ImpactSequence<K: Kinematics> {
+struct ImpactSequence<M: Model> {
     /// Velocities by now.
-    bodies: Vec<K::Body<f64>>,
+    bodies: Vec<M::Body<f64>>,
     /// u of each row, m/s.
     speeds: Vec<f64>,
     /// P/m_ij of each row so far, m/s.
     impulses: Vec<f64>,
-    /// Whether a row's pair touches: one that will do so within the step only has no shock yet.
+    /// True where a row's pair touches: one that will do so within the step only has no shock yet.
     touching: Vec<bool>,
 }
 
-impl<K: Kinematics> ImpactSequence<K> {
-    /// Nothing has happened yet.
-    fn new(problem: &StepProblem<K>, contacts: &ContactList) -> Self {
+impl<M: Model> ImpactSequence<M> {
+    fn new(problem: &StepProblem<M>, contacts: &ContactList) -> Self {
         let bodies = problem.bodies.before.clone();
         let mut speeds = Vec::new();
         relative_velocities(problem, &bodies, &mut speeds);
@@ -178,8 +173,8 @@ impl<K: Kinematics> ImpactSequence<K> {
     /// Sets `pass` up with the rows that close faster than `least` (m/s). Whether there are any.
     fn select(
         &self,
-        problem: &StepProblem<K>,
-        pass: &mut StepProblem<K>,
+        problem: &StepProblem<M>,
+        pass: &mut StepProblem<M>,
         restitution: f64,
         least: f64,
     ) -> bool {
@@ -202,7 +197,7 @@ impl<K: Kinematics> ImpactSequence<K> {
     }
 
     /// Takes over what a pass has led to.
-    fn take(&mut self, problem: &StepProblem<K>, pass: &mut StepProblem<K>) {
+    fn take(&mut self, problem: &StepProblem<M>, pass: &mut StepProblem<M>) {
         for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
         }
@@ -211,10 +206,10 @@ impl<K: Kinematics> ImpactSequence<K> {
     }
 
     /// Stops all contacts that still close, without friction, by the step's own method: there may be many of them.
-    fn stop_the_rest<M: Model<Kinematics = K>>(
+    fn stop_the_rest(
         &mut self,
-        problem: &StepProblem<K>,
-        memory: &mut Memory<K>,
+        problem: &StepProblem<M>,
+        memory: &mut Memory<M>,
         settings: &SolverSettings,
     ) -> SolveReport {
         let mut rest = problem.clone();
@@ -240,7 +235,7 @@ impl<K: Kinematics> ImpactSequence<K> {
 
     /// Asks each contact that was struck for the speed that it has come to. One that was not may not
     /// bounce. The step starts from the impulses of the impacts.
-    fn set_rebounds(&self, problem: &mut StepProblem<K>) {
+    fn set_rebounds(&self, problem: &mut StepProblem<M>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];
             // The law speaks of velocities relative to a wall that moves.

@@ -29,14 +29,13 @@ use crate::sim::settings::Settings;
 use crate::sim::steppers::StepperInfo;
 use crate::sim::steppers::substeps::{self, Substepping, Touching};
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{Kinematics, Model, Row, StepProblem};
+use crate::solver::{Model, Row, StepProblem};
 use crate::world::Parameters;
 
-/// The row of the registry.
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "the step's problem by penalties and multipliers, as far as its iterations get",
     source: "C. Giles, E. Diaz and C. Yuksel (2025)",
-    settings: &["bond", "dt", "tilt", "mu", "cone", "warm-start", "substeps"],
+    settings: "bond dt tilt mu cone warm-start substeps",
     substeps: |_, _, parameters| substeps(parameters),
     ..StepperInfo::WHOLE
 };
@@ -48,7 +47,6 @@ fn substeps(parameters: &Parameters) -> u32 {
     parameters.substeps.max(1)
 }
 
-/// Takes one step.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let substeps = substeps(&settings.parameters);
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
@@ -182,7 +180,7 @@ impl BlockDescent {
 
     /// Begins a substep: bodies that touch something start from where they were, since what carried them then will
     /// carry them now.
-    fn begin<K: Kinematics>(&mut self, problem: &mut StepProblem<K>, start: &[K::Body<f64>]) {
+    fn begin<M: Model>(&mut self, problem: &mut StepProblem<M>, start: &[M::Body<f64>]) {
         for stiffness in self.stiffness.as_flattened_mut() {
             *stiffness = (KEPT * *stiffness).clamp(SOFTEST, STIFFEST);
         }
@@ -198,12 +196,12 @@ impl BlockDescent {
     /// Sets each body's velocity to the minimum of its own energy, the others as they are. `bias` makes b of a gap.
     fn minimise<M: Model>(
         &self,
-        problem: &mut StepProblem<M::Kinematics>,
-        free: &[<M::Kinematics as Kinematics>::Body<f64>],
+        problem: &mut StepProblem<M>,
+        free: &[M::Body<f64>],
         contacts: &[Touching],
         bias: impl Fn(f64) -> f64,
     ) {
-        let inertia = DVec3::from_array(M::Kinematics::INERTIA_OVER_MASS);
+        let inertia = DVec3::from_array(M::INERTIA_OVER_MASS);
         // Coordinates that are no degrees of freedom get a system that is not singular, and stay.
         let diagonal = DVec3::select(inertia.cmpgt(DVec3::ZERO), inertia, DVec3::ONE);
         let mut first = 0;
@@ -211,7 +209,7 @@ impl BlockDescent {
             if first == end {
                 continue;
             }
-            let coordinates = |body| DVec3::from_array(M::Kinematics::coordinates(body));
+            let coordinates = |body| DVec3::from_array(M::coordinates(body));
             let now = coordinates(&problem.bodies.now[body]);
             let mut force = inertia * (coordinates(&free[body]) - now);
             let mut matrix = DMat3::from_diagonal(diagonal);
@@ -224,7 +222,7 @@ impl BlockDescent {
                 let share = if end == 0 { share } else { 1.0 - share };
                 let directions = if M::FRICTION { 0..2 } else { 0..1 };
                 for direction in directions {
-                    let gradient = gradient::<M::Kinematics>(row, end, direction);
+                    let gradient = gradient::<M>(row, end, direction);
                     force += share * push.impulse[direction] * gradient;
                     let stiffness = share * self.stiffness[number][direction];
                     let [x, y, spin] = gradient.to_array();
@@ -234,14 +232,14 @@ impl BlockDescent {
             }
             first = end;
             let reached = now + matrix.inverse() * force;
-            M::Kinematics::set(&mut problem.bodies.now[body], reached.to_array());
+            M::set(&mut problem.bodies.now[body], reached.to_array());
         }
     }
 
     /// Has the multipliers take over what the penalties carry, and stiffens those that are violated.
     fn multiply<M: Model>(
         &mut self,
-        problem: &StepProblem<M::Kinematics>,
+        problem: &StepProblem<M>,
         contacts: &mut [Touching],
         bias: impl Fn(f64) -> f64,
     ) {
@@ -262,7 +260,7 @@ impl BlockDescent {
     #[inline(always)]
     fn push<M: Model>(
         &self,
-        problem: &StepProblem<M::Kinematics>,
+        problem: &StepProblem<M>,
         number: usize,
         contact: &Touching,
         bias: f64,
@@ -270,9 +268,9 @@ impl BlockDescent {
         let row = problem.rows.get(number);
         let i = &problem.bodies.now[row.i as usize];
         let [normal_velocity, tangential_velocity] = if number < problem.rows.fixed.len() {
-            M::Kinematics::velocity(row.normal, i)
+            M::velocity(row.normal, i)
         } else {
-            M::Kinematics::relative_velocity(row.normal, i, &problem.bodies.now[row.j as usize])
+            M::relative_velocity(row.normal, i, &problem.bodies.now[row.j as usize])
         };
         let stiffness = self.stiffness[number];
         let closing = normal_velocity - contact.wall_speed + bias;
@@ -306,8 +304,8 @@ struct Push {
 
 /// ∇c of a row along its normal (0) or tangent (1), for the body at its end.
 #[inline(always)]
-fn gradient<K: Kinematics>(row: &Row<K>, end: usize, direction: usize) -> DVec3 {
-    let mut gradient = K::gradients(row.normal)[end][direction];
-    gradient[K::DEGREES..].fill(0.0);
+fn gradient<M: Model>(row: &Row<M>, end: usize, direction: usize) -> DVec3 {
+    let mut gradient = M::gradients(row.normal)[end][direction];
+    gradient[M::DEGREES..].fill(0.0);
     DVec3::from_array(gradient)
 }

@@ -13,27 +13,17 @@ use crate::sim::state::State;
 use crate::sim::steppers::spring_dashpot::{
     SpringDashpot, contact_time_secs, critical_time_step_secs, substeps,
 };
-use crate::sim::steppers::substeps::{Substepping, Works, set_drive_speeds};
-use crate::sim::steppers::{MeanPair, StepperInfo};
+use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
+use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{DrivenWall, Kinematics, Model, cone_of};
+use crate::solver::{DrivenWall, Model, cone_of};
 
 /// The row of the registry. Springs carry their stretch on whether asked to or not, so nothing is told of a
 /// warm start.
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",
-    settings: &[
-        "bond",
-        "dt",
-        "tilt",
-        "rho",
-        "mu",
-        "cone",
-        "stiffness",
-        "damping-ratio",
-        "substeps",
-    ],
+    settings: "bond dt tilt rho mu cone stiffness damping-ratio substeps",
     takes_drives: true,
     substeps,
     critical_time_step_secs: |world, physics, parameters| {
@@ -44,7 +34,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     },
     fracture_work: |world, physics, parameters| {
         let springs = SpringDashpot::of(world, physics.axes, parameters);
-        MeanPair::of(world).fracture_work(physics, parameters, |force| springs.fracture_work(force))
+        fracture_work_of(world, physics, parameters, |force| springs.fracture_work(force))
     },
     ..StepperInfo::WHOLE
 };
@@ -76,11 +66,11 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         let bodies = &stage.problem.bodies.now;
         let list = stage.state.contacts.contacts();
         for (contact, &(mass, impulse, of_wall)) in list.iter().zip(&pushes) {
-            let normal = M::Kinematics::normal_of(&stage.state.world, contact);
-            let of = |bodies: &[_]| velocity::<M::Kinematics>(normal, contact, bodies);
+            let normal = M::normal_of(&stage.state.world, contact);
+            let of = |bodies: &[_]| velocity::<M>(normal, contact, bodies);
             let velocities = [of(&substepping.start), of(bodies)];
             let works = &mut substepping.works;
-            works.add::<M::Kinematics>(mass, normal, impulse, velocities, of_wall);
+            add_work::<M>(works, mass, normal, impulse, velocities, of_wall);
         }
         substepping.add_gravity_work(bodies, &stage.state.world.grains.masses);
         drive_walls(stage, substepping.substep_secs, &pushes, &mut substepping.works);
@@ -93,15 +83,15 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
 
 /// (v_n, v_t) of a contact, m/s.
 #[inline(always)]
-fn velocity<K: Kinematics>(
-    normal: K::Normal<f64>,
+fn velocity<M: Model>(
+    normal: M::Normal<f64>,
     contact: &Contact,
-    bodies: &[K::Body<f64>],
+    bodies: &[M::Body<f64>],
 ) -> [f64; 2] {
     let i = &bodies[contact.grain as usize];
     match bodies.get(contact.other as usize) {
-        Some(j) => K::relative_velocity(normal, i, j),
-        None => K::velocity(normal, i),
+        Some(j) => M::relative_velocity(normal, i, j),
+        None => M::velocity(normal, i),
     }
 }
 
@@ -130,7 +120,7 @@ impl Elements {
         let cohesion = mass * self.cohesive_acceleration;
         memory.normal_force = push - cohesion;
         if M::FRICTION {
-            let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            let part = 1.0 / M::TANGENTIAL_COMPLIANCE;
             let bound = self.law.with_capture_speed(cohesion).friction_bound(push);
             let dashpot = part * damping * tangential_velocity;
             let spring = part * stiffness;
@@ -146,7 +136,7 @@ impl Elements {
     fn push<M: Model>(
         &self,
         stage: &mut Stage<'_, M>,
-        start: &[<M::Kinematics as Kinematics>::Body<f64>],
+        start: &[M::Body<f64>],
         totals: &mut Totals,
         pushes: &mut Vec<(f64, [f64; 2], [f64; 2])>,
     ) {
@@ -156,14 +146,13 @@ impl Elements {
         let masses = &world.grains.masses;
         let (list, impulses, memories) = contacts.parts_mut();
         pushes.clear();
-        totals.rewind();
+        totals.next = 0;
         for ((contact, sum), memory) in list.iter().zip(impulses).zip(memories) {
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let share = masses.get(j).map_or(1.0, |other| other / (masses[i] + other));
             let mass = masses[i] * share;
-            let normal = M::Kinematics::normal_of(world, contact);
-            let [normal_velocity, tangential_velocity] =
-                velocity::<M::Kinematics>(normal, contact, start);
+            let normal = M::normal_of(world, contact);
+            let [normal_velocity, tangential_velocity] = velocity::<M>(normal, contact, start);
             let of_wall = walls.velocity(world, contact);
             let slip = [normal_velocity - of_wall[0], tangential_velocity - of_wall[1]];
             self.force::<M>(memory, contact.gap, mass, slip);
@@ -178,11 +167,11 @@ impl Elements {
             pushes.push((mass, reduced, of_wall));
             if j < bodies.len() {
                 let (mut one, mut other) = (bodies[i], bodies[j]);
-                M::Kinematics::push_pair(&mut one, &mut other, normal, reduced, share);
+                M::push_pair(&mut one, &mut other, normal, reduced, share);
                 bodies[i] = one;
                 bodies[j] = other;
             } else {
-                M::Kinematics::push_single(&mut bodies[i], normal, reduced);
+                M::push_single(&mut bodies[i], normal, reduced);
             }
         }
     }
@@ -201,11 +190,6 @@ impl Totals {
         Self { contacts: contacts.to_vec(), impulses, next: 0 }
     }
 
-    /// Before the contacts of another substep.
-    fn rewind(&mut self) {
-        self.next = 0;
-    }
-
     /// Adds to the contact of that pair, if it is one of them. Both lists are sorted alike.
     fn add(&mut self, contact: &Contact, impulse: Impulse) {
         let behind = |then: &Contact| then.pair() < contact.pair();
@@ -219,9 +203,8 @@ impl Totals {
     }
 }
 
-/// Ends a substep of such walls; `pushes` are m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
-///
-/// Walls that a force drives, among springs: like grains they go on by the forces of the beginning of a substep.
+/// Ends a substep of walls that a force drives: like grains they go on by the forces of its beginning. `pushes` are m_ij,
+/// the impulses λ and the velocity of the wall (m/s) of each contact.
 ///
 /// That is stable while h < 2 √(M/nk) of a wall of mass M with n contacts of stiffness k, which is surely so where M is
 /// that of as many of the lightest grains: substeps are short enough for those.
@@ -229,7 +212,7 @@ fn drive_walls<M: Model>(
     stage: &mut Stage<'_, M>,
     substep_secs: f64,
     pushes: &[(f64, [f64; 2], [f64; 2])],
-    works: &mut Works,
+    works: &mut StepResult,
 ) {
     let State { world, walls, contacts, .. } = &mut *stage.state;
     let mut driven: Vec<DrivenWall> = walls.driven(world, substep_secs).collect();
@@ -247,7 +230,7 @@ fn drive_walls<M: Model>(
         driven[wall].now -= driven[wall].response * along;
     }
     for (wall, along) in pushed() {
-        works.wall += 0.5 * along * (driven[wall].now - driven[wall].before);
+        works.measures.wall_work += 0.5 * along * (driven[wall].now - driven[wall].before);
     }
-    works.drives += walls.take_driven(world, &driven);
+    works.drive_work += walls.take_driven(world, &driven);
 }

@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::law::cohesion_force;
 use crate::error::Result;
 use crate::setting::words;
+use crate::sim::remedies::sequential_impacts;
 use crate::sim::settings::Settings;
 use crate::sim::stepping::{Advance, Stage, StepResult};
 use crate::solver::Model;
@@ -27,17 +28,12 @@ words! {
     /// A way to take a step of Δt, with its contact law.
     #[derive(Default)]
     pub enum Stepper {
-        /// The paper's.
         #[default]
         Moreau = "moreau", "the paper's law: a contact and its bond live while the gap is negative";
-        /// Bonds that live until they are stretched by the debonding distance.
         Range = "range", "a bond lives until it has been opened by δc, whatever Δt";
-        /// Substeps with soft contacts.
         TgsSoft = "tgs-soft",
             "substeps with soft contacts and a relaxing sweep, as game engines step";
-        /// Penalties that stiffen, minimised body by body.
         Avbd = "avbd", "augmented vertex block descent: stiffening penalties, body by body, as game engines try";
-        /// Discrete elements with springs and dashpots.
         Dem = "dem", "smooth discrete elements: springs, dashpots and a constant attraction";
     }
 }
@@ -49,12 +45,12 @@ pub struct StepperInfo {
     pub solves: &'static str,
     /// Where it comes from.
     pub source: &'static str,
-    /// The settings that it reads, by name. With `solver` among them it solves the step's problem by a
-    /// method.
-    pub settings: &'static [&'static str],
+    /// The settings that it reads, by name, with spaces between. With `solver` among them it solves the step's problem
+    /// by a method.
+    pub settings: &'static str,
     /// Observables that it has beside those that all have.
     pub observables: &'static [&'static str],
-    /// Whether it moves walls that a force drives.
+    /// True where it moves walls that a force drives.
     pub takes_drives: bool,
     /// Refuses numbers that do not go with it.
     pub check: fn(&Parameters) -> Result<()>,
@@ -73,7 +69,7 @@ impl StepperInfo {
     pub(super) const WHOLE: Self = Self {
         solves: "",
         source: "",
-        settings: &[],
+        settings: "",
         observables: &[],
         takes_drives: false,
         check: |_| Ok(()),
@@ -96,17 +92,17 @@ impl Stepper {
         }
     }
 
-    /// Whether it reads the setting of that name.
+    /// True where it reads the setting of that name.
     pub fn reads(self, name: &str) -> bool {
-        self.info().settings.contains(&name)
+        self.info().settings.split(' ').any(|setting| setting == name)
     }
 
-    /// Whether it solves the step's problem by one of the methods.
+    /// True where it solves the step's problem by one of the methods.
     pub fn uses_method(self) -> bool {
         self.reads("solver")
     }
 
-    /// Whether it tells of bonds.
+    /// True where it tells of bonds.
     pub(super) fn has_bonds(self) -> bool {
         self.info().observables.contains(&"bond_energy")
     }
@@ -116,7 +112,7 @@ impl Stepper {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StepperMemory {
-    range: range::RangeMemory,
+    pub range: range::RangeMemory,
 }
 
 impl Advance for StepperMemory {
@@ -132,19 +128,11 @@ impl Advance for StepperMemory {
 }
 
 impl StepperMemory {
-    /// Where a step since the last call was too long for the bonds that were about to break in it: the longest
-    /// that is not, s.
-    pub(super) fn take_longest_step_secs(&mut self) -> Option<f64> {
-        self.range.longest_step_secs.take()
-    }
-
     /// Detects the contacts of the next step and sets up its problem, as it is before any solution.
     pub(super) fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
             Stepper::Range => range::prepare(stage, settings),
-            Stepper::Moreau | Stepper::TgsSoft | Stepper::Avbd | Stepper::Dem => {
-                moreau::set_up(stage, settings);
-            }
+            _ => moreau::set_up(stage, settings),
         }
     }
 
@@ -153,9 +141,11 @@ impl StepperMemory {
     #[inline(never)]
     pub(super) fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
-            Stepper::Moreau => moreau::set_up_with_impacts(stage, settings),
             Stepper::Range => range::set_up(stage, settings, &mut self.range),
-            Stepper::TgsSoft | Stepper::Avbd | Stepper::Dem => moreau::set_up(stage, settings),
+            _ => moreau::set_up(stage, settings),
+        }
+        if settings.stepper == Stepper::Moreau && settings.remedies.sequential_impacts {
+            sequential_impacts::follow(stage, settings);
         }
     }
 }
@@ -169,48 +159,26 @@ pub struct FractureWork {
     pub over_mgd: f64,
 }
 
-/// Two grains of the mean mass.
-pub(super) struct MeanPair {
-    /// m, kg.
-    mass: f64,
-    /// g, m/s².
-    gravity_magnitude: f64,
-    /// d, m.
-    diameter: f64,
+/// m_ij of two grains of the mean mass, kg.
+pub(super) fn effective_mass_of_mean(world: &World) -> f64 {
+    let masses = &world.grains.masses;
+    0.5 * (masses.iter().sum::<f64>() / masses.len() as f64)
 }
 
-impl MeanPair {
-    /// Of a world's grains.
-    pub(super) fn of(world: &World) -> Self {
-        let masses = &world.grains.masses;
-        Self {
-            mass: masses.iter().sum::<f64>() / masses.len() as f64,
-            gravity_magnitude: world.gravity.magnitude(),
-            diameter: world.mean_diameter,
-        }
+/// The work of fracture of a law under which a bond of some C₀ (N) takes `work` (J).
+pub(super) fn fracture_work_of(
+    world: &World,
+    physics: Physics,
+    parameters: &Parameters,
+    work: impl FnOnce(f64) -> f64,
+) -> Option<FractureWork> {
+    if !physics.cohesion {
+        return None;
     }
-
-    /// m_ij, kg.
-    pub(super) fn effective_mass(&self) -> f64 {
-        0.5 * self.mass
-    }
-
-    /// The work of a law under which a bond of some C₀ (N) takes `work` (J).
-    pub(super) fn fracture_work(
-        &self,
-        physics: Physics,
-        parameters: &Parameters,
-        work: impl FnOnce(f64) -> f64,
-    ) -> Option<FractureWork> {
-        if !physics.cohesion {
-            return None;
-        }
-        let Self { mass, gravity_magnitude, diameter } = *self;
-        let joules =
-            work(cohesion_force(parameters.bond, self.effective_mass(), gravity_magnitude));
-        let lift = mass * gravity_magnitude * diameter;
-        Some(FractureWork { joules, over_mgd: if lift > 0.0 { joules / lift } else { 0.0 } })
-    }
+    let (effective_mass, g) = (effective_mass_of_mean(world), world.gravity.magnitude());
+    let joules = work(cohesion_force(parameters.bond, effective_mass, g));
+    let lift = 2.0 * effective_mass * g * world.mean_diameter;
+    Some(FractureWork { joules, over_mgd: if lift > 0.0 { joules / lift } else { 0.0 } })
 }
 
 #[cfg(test)]
@@ -222,8 +190,8 @@ mod tests {
         let remedies = |name: &str| crate::sim::remedies::ROWS.iter().any(|row| row.name == name);
         let names: Vec<&str> = Settings::about().map(|about| about.name).collect();
         for stepper in Stepper::ALL {
-            for name in stepper.info().settings {
-                assert!(names.contains(name), "{stepper} reads {name}");
+            for name in stepper.info().settings.split(' ') {
+                assert!(names.contains(&name), "{stepper} reads {name}");
             }
         }
         for name in names {

@@ -35,7 +35,7 @@
 //! With k_t = k m_t/m_n and γ_t = γ m_t/m_n the tangential mode is as fast as the normal one.
 
 use crate::sim::pull::gravity_that_scales;
-use crate::sim::steppers::MeanPair;
+use crate::sim::steppers::effective_mass_of_mean;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
 /// Overlap that the weight of a whole pile makes, in d. Smaller: stiffer and dearer, h ∝ its root;
@@ -134,7 +134,6 @@ fn damping_ratio(restitution: f64) -> f64 {
     high
 }
 
-/// The restitution that a damping ratio gives.
 fn restitution_of(damping_ratio: f64) -> f64 {
     match angle_and_root(damping_ratio) {
         Some((angle, root)) => (-2.0 * damping_ratio * angle / root).exp(),
@@ -171,7 +170,7 @@ pub(super) fn critical_time_step_secs(
 /// t_c, s, of two grains of the mean mass.
 pub(super) fn contact_time_secs(world: &World, physics: Physics, parameters: &Parameters) -> f64 {
     let springs = SpringDashpot::of(world, physics.axes, parameters);
-    springs.contact_time_secs(MeanPair::of(world).effective_mass())
+    springs.contact_time_secs(effective_mass_of_mean(world))
 }
 
 /// As many substeps as are asked for, or as keep h at the safe fraction of the critical step.

@@ -11,125 +11,106 @@ use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::moreau::set_up;
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{
-    DrivenRow, Kinematics, Measures, Model, Row, SolveReport, StepProblem, measure,
-};
+use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, measure};
 
 /// A step on its way through its substeps. Lives for one step: what is carried on is in the
 /// world and in the contacts' memories.
-pub(super) struct Substepping<K: Kinematics> {
+pub(super) struct Substepping<M: Model> {
     /// h, s.
     pub substep_secs: f64,
     /// Bodies at the beginning of the substep.
-    pub start: Vec<K::Body<f64>>,
+    pub start: Vec<M::Body<f64>>,
     /// Bodies at the end of the substep if no contact acted.
-    pub free: Vec<K::Body<f64>>,
-    pub works: Works,
+    pub free: Vec<M::Body<f64>>,
+    /// Works since the beginning of the step.
+    pub works: StepResult,
 }
 
-/// Works since the beginning of the step, J.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Works {
-    normal: f64,
-    tangential: f64,
-    gravity: f64,
-    pub wall: f64,
-    border: f64,
-    pub drives: f64,
-}
-
-impl<K: Kinematics> Substepping<K> {
+impl<M: Model> Substepping<M> {
     /// Begins a step in so many substeps: its problem is set up, and the bodies are where they were.
-    pub(super) fn begin_step<M: Model<Kinematics = K>>(
-        stage: &mut Stage<'_, M>,
-        settings: &Settings,
-        substeps: u32,
-    ) -> Self {
+    pub(super) fn begin_step(stage: &mut Stage<'_, M>, settings: &Settings, substeps: u32) -> Self {
         set_up(stage, settings);
         stage.problem.bodies.now.clone_from(&stage.problem.bodies.before);
         Self {
             substep_secs: settings.parameters.time_step_secs / f64::from(substeps),
             start: Vec::new(),
             free: Vec::new(),
-            works: Works::default(),
+            works: StepResult::nothing_yet(),
         }
     }
 
     /// Ends the step, after so many passes over its contacts.
-    pub(super) fn end_step<M: Model<Kinematics = K>>(
-        &self,
-        stage: &Stage<'_, M>,
-        sweeps: u32,
-    ) -> StepResult {
-        let Works { normal, tangential, gravity, wall, border, drives } = self.works;
+    pub(super) fn end_step(&self, stage: &Stage<'_, M>, sweeps: u32) -> StepResult {
+        let Measures { normal_work, tangential_work, wall_work, border_work, .. } =
+            self.works.measures;
         let measures = Measures {
-            normal_work: normal,
-            tangential_work: tangential,
-            wall_work: wall,
-            border_work: border,
-            ..measure::<M>(stage.problem)
+            normal_work,
+            tangential_work,
+            wall_work,
+            border_work,
+            ..measure(stage.problem)
         };
-        let report = SolveReport { sweeps, ..SolveReport::nothing_yet() };
-        StepResult { report, measures, gravity_work: gravity, drive_work: drives, bonds: None }
+        let report = SolveReport { sweeps, ..self.works.report };
+        StepResult { report, measures, ..self.works }
     }
 
     /// Begins a substep: gravity and a spring that pulls act on the bodies.
-    pub(super) fn begin<M: Model<Kinematics = K>>(&mut self, stage: &mut Stage<'_, M>) {
-        let push = stage.state.push_of_pull(K::AXES, self.substep_secs);
+    pub(super) fn begin(&mut self, stage: &mut Stage<'_, M>) {
+        let State { world, pull, .. } = &*stage.state;
+        let push = pull.and_then(|pull| pull.push(world, M::AXES, self.substep_secs));
         let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);
         self.start.clone_from(bodies);
         for (index, body) in bodies.iter_mut().enumerate() {
             if world.grains.feels_gravity[index] {
-                *body = K::accelerated(body, world, index, self.substep_secs);
+                *body = M::accelerated(body, world, index, self.substep_secs);
             }
         }
         if let Some(push) = push {
-            push.apply::<K>(bodies);
+            push.apply::<M>(bodies);
         }
         self.free.clone_from(bodies);
     }
 
     /// Moves the grains for h with the bodies' velocities.
-    pub(super) fn place<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
+    pub(super) fn place(&self, stage: &mut Stage<'_, M>) {
         self.store(stage);
         stage.state.integrate::<M>(self.substep_secs);
     }
 
     /// Hands the bodies' velocities to the world.
-    pub(super) fn store<M: Model<Kinematics = K>>(&self, stage: &mut Stage<'_, M>) {
+    pub(super) fn store(&self, stage: &mut Stage<'_, M>) {
         for (index, body) in stage.problem.bodies.now.iter().enumerate() {
-            K::store(body, &mut stage.state.world, index);
+            M::store(body, &mut stage.state.world, index);
         }
     }
 
     /// Counts the work of gravity and of the spring in the substep that ends with `bodies`.
-    pub(super) fn add_gravity_work(&mut self, bodies: &[K::Body<f64>], masses: &[f64]) {
+    pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
-            self.works.gravity += K::work_of_gravity(start, body, free, masses[index]);
+            self.works.gravity_work += M::work_of_gravity(start, body, free, masses[index]);
         }
     }
 }
 
-impl Works {
-    /// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
-    /// the mean of the velocities at its beginning and its end. `wall` is (V_n, V_t) of its wall, m/s.
-    #[inline(always)]
-    pub(super) fn add<K: Kinematics>(
-        &mut self,
-        mass: f64,
-        normal: K::Normal<f64>,
-        impulse: [f64; 2],
-        [start, end]: [[f64; 2]; 2],
-        wall: [f64; 2],
-    ) {
-        self.normal += 0.5 * mass * impulse[0] * (start[0] + end[0]);
-        self.tangential += 0.5 * mass * impulse[1] * (start[1] + end[1]);
-        self.wall += mass * (impulse[0] * wall[0] + impulse[1] * wall[1]);
-        if K::SLIDES {
-            let along = K::slide_along(normal);
-            self.border += mass * (impulse[0] * along[0] + impulse[1] * along[1]);
-        }
+/// Counts the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
+/// the mean of the velocities at its beginning and its end. `wall` is (V_n, V_t) of its wall, m/s.
+#[inline(always)]
+pub(super) fn add_work<M: Model>(
+    works: &mut StepResult,
+    mass: f64,
+    normal: M::Normal<f64>,
+    impulse: [f64; 2],
+    [start, end]: [[f64; 2]; 2],
+    wall: [f64; 2],
+) {
+    let works = &mut works.measures;
+    works.normal_work += 0.5 * mass * impulse[0] * (start[0] + end[0]);
+    works.tangential_work += 0.5 * mass * impulse[1] * (start[1] + end[1]);
+    works.wall_work += mass * (impulse[0] * wall[0] + impulse[1] * wall[1]);
+    if M::SLIDES {
+        let along = M::slide_along(normal);
+        works.border_work += mass * (impulse[0] * along[0] + impulse[1] * along[1]);
     }
 }
 
@@ -172,7 +153,7 @@ impl Touching {
 /// The contacts in the order of the rows, with the forces of the step before for so long (s).
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
-    let contact = |((number, row), &index): ((usize, &Row<M::Kinematics>), &u32)| {
+    let contact = |((number, row), &index): ((usize, &Row<M>), &u32)| {
         let memory = contacts.memories()[index as usize];
         let per_mass = warm_secs / row.effective_mass;
         let wall_speed = problem.wall_speed(number);
@@ -192,8 +173,8 @@ pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<To
 }
 
 /// Has the gaps follow the bodies' velocities for h.
-pub(super) fn follow_gaps<K: Kinematics>(
-    problem: &StepProblem<K>,
+pub(super) fn follow_gaps<M: Model>(
+    problem: &StepProblem<M>,
     contacts: &mut [Touching],
     substep_secs: f64,
 ) {
@@ -204,10 +185,10 @@ pub(super) fn follow_gaps<K: Kinematics>(
 }
 
 /// Sums up impulses and works of a substep.
-pub(super) fn end_substep<K: Kinematics>(
-    problem: &StepProblem<K>,
+pub(super) fn end_substep<M: Model>(
+    problem: &StepProblem<M>,
     contacts: &mut [Touching],
-    substepping: &mut Substepping<K>,
+    substepping: &mut Substepping<M>,
 ) {
     let Substepping { works, start, .. } = substepping;
     let start = velocities(problem, start);
@@ -218,7 +199,7 @@ pub(super) fn end_substep<K: Kinematics>(
         contact.total[1] += contact.impulse[1];
         let velocities = [start, end];
         let wall = contact.wall_velocity();
-        works.add::<K>(row.effective_mass, row.normal, contact.impulse, velocities, wall);
+        add_work::<M>(works, row.effective_mass, row.normal, contact.impulse, velocities, wall);
     }
 }
 
@@ -242,7 +223,7 @@ pub(super) fn remember<M: Model>(
 }
 
 /// Gives the problem of the step the impulses that were summed up.
-pub(super) fn hand_over<K: Kinematics>(problem: &mut StepProblem<K>, contacts: &[Touching]) {
+pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touching]) {
     let capture_speed = problem.law.capture_speed();
     for (row, contact) in problem.rows.iter_mut().zip(contacts) {
         row.shifted_impulse = contact.total[0] + capture_speed;
@@ -251,11 +232,11 @@ pub(super) fn hand_over<K: Kinematics>(problem: &mut StepProblem<K>, contacts: &
 }
 
 /// The relative velocities of all rows with the given bodies, m/s.
-pub(super) fn velocities<'a, K: Kinematics>(
-    problem: &'a StepProblem<K>,
-    bodies: &'a [K::Body<f64>],
+pub(super) fn velocities<'a, M: Model>(
+    problem: &'a StepProblem<M>,
+    bodies: &'a [M::Body<f64>],
 ) -> impl Iterator<Item = [f64; 2]> + 'a {
     let fixed = problem.rows.fixed.iter();
-    let of_fixed = fixed.map(|row| K::velocity(row.normal, &bodies[row.i as usize]));
+    let of_fixed = fixed.map(|row| M::velocity(row.normal, &bodies[row.i as usize]));
     of_fixed.chain(problem.rows.pairs.iter().map(|row| row.velocity(bodies)))
 }

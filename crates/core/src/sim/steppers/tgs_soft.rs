@@ -24,26 +24,15 @@ use crate::sim::pull::gravity_that_scales;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 use crate::sim::steppers::StepperInfo;
-use crate::sim::steppers::substeps::{self, Substepping, Touching, Works, set_drive_speeds};
+use crate::sim::steppers::substeps::{self, Substepping, Touching, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{DrivenRow, DrivenWall, Kinematics, Model, Row, StepProblem};
+use crate::solver::{DrivenRow, DrivenWall, Model, Row, StepProblem};
 use crate::world::{Parameters, World};
 
-/// The row of the registry.
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "E. Catto, Solver2D (2024)",
-    settings: &[
-        "bond",
-        "dt",
-        "tilt",
-        "rho",
-        "mu",
-        "cone",
-        "restitution-threshold",
-        "warm-start",
-        "substeps",
-    ],
+    settings: "bond dt tilt rho mu cone restitution-threshold warm-start substeps",
     takes_drives: true,
     substeps: |_, _, parameters| substeps(parameters),
     ..StepperInfo::WHOLE
@@ -55,7 +44,6 @@ fn substeps(parameters: &Parameters) -> u32 {
     if parameters.substeps == 0 { DEFAULT_SUBSTEPS } else { parameters.substeps }
 }
 
-/// Takes one step.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let substeps = substeps(&settings.parameters);
     let substepping = &mut Substepping::begin_step(stage, settings, substeps);
@@ -84,9 +72,16 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
             softness.solve::<M, false>(contact, velocity)
         });
         substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
-        substepping.works.drives += take_walls(stage, &mut contacts, walls);
+        substepping.works.drive_work += take_walls(stage, &mut contacts, walls);
         substeps::end_substep(stage.problem, &mut contacts, substepping);
-        correct_wall_works(stage.problem, &contacts, walls, &mut substepping.works);
+        // Contacts told of the work of walls with their last speed in the substep; they had the mean one.
+        for (row, contact) in stage.problem.rows.fixed.iter().zip(&contacts) {
+            if let Some(DrivenRow { by, .. }) = contact.driven {
+                let (wall, along) = (&walls[by.wall as usize], by.part_along(contact.impulse));
+                let surplus = -0.5 * row.effective_mass * along * (wall.now - wall.before);
+                substepping.works.measures.wall_work += surplus;
+            }
+        }
         // The spring that pulls a grain looks at its velocity.
         substepping.store(stage);
     });
@@ -102,11 +97,11 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
 }
 
 /// Gives contacts that met, and pushed, the speed they part with.
-fn restitute<K: Kinematics>(
-    problem: &mut StepProblem<K>,
+fn restitute<M: Model>(
+    problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
     contacts: &mut [Touching],
-    works: &mut Works,
+    works: &mut StepResult,
 ) {
     update(problem, walls, contacts, |row, contact, [normal_velocity, _]| {
         if contact.rebound >= 0.0 || contact.total[0] <= 0.0 {
@@ -117,10 +112,10 @@ fn restitute<K: Kinematics>(
         let (push, before, after) = ([missing, 0.0], normal_velocity, normal_velocity + missing);
         contact.total[0] += missing;
         let (velocities, wall) = ([[before, 0.0], [after, 0.0]], contact.wall_velocity());
-        works.add::<K>(row.effective_mass, row.normal, push, velocities, wall);
+        add_work::<M>(works, row.effective_mass, row.normal, push, velocities, wall);
         // The wall gave way, which takes so much off its mean speed.
         let given_way = (contact.answers[0] - 1.0) * missing;
-        works.wall += -0.5 * row.effective_mass * missing * given_way;
+        works.measures.wall_work += -0.5 * row.effective_mass * missing * given_way;
         push
     });
 }
@@ -128,25 +123,25 @@ fn restitute<K: Kinematics>(
 /// Calls `change` with every row, its contact and its relative velocities, and pushes the bodies by
 /// the impulses λ that it returns.
 #[inline(always)]
-fn update<K: Kinematics>(
-    problem: &mut StepProblem<K>,
+fn update<M: Model>(
+    problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
     contacts: &mut [Touching],
-    mut change: impl FnMut(&Row<K>, &mut Touching, [f64; 2]) -> [f64; 2],
+    mut change: impl FnMut(&Row<M>, &mut Touching, [f64; 2]) -> [f64; 2],
 ) {
     let (bodies, rows) = (&mut problem.bodies.now, &problem.rows);
     let (of_fixed, of_pairs) = contacts.split_at_mut(rows.fixed.len());
     for (row, contact) in rows.fixed.iter().zip(of_fixed) {
         let i = &mut bodies[row.i as usize];
         contact.see(walls);
-        let impulse = change(row, contact, K::velocity(row.normal, i));
-        K::push_single(i, row.normal, impulse);
+        let impulse = change(row, contact, M::velocity(row.normal, i));
+        M::push_single(i, row.normal, impulse);
         contact.push_back(walls, row.effective_mass, impulse);
     }
     for (row, contact) in rows.pairs.iter().zip(of_pairs) {
         let (mut i, mut j) = (bodies[row.i as usize], bodies[row.j as usize]);
-        let impulse = change(row, contact, K::relative_velocity(row.normal, &i, &j));
-        K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+        let impulse = change(row, contact, M::relative_velocity(row.normal, &i, &j));
+        M::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
         bodies[row.i as usize] = i;
         bodies[row.j as usize] = j;
     }
@@ -163,8 +158,6 @@ const DAMPING_RATIO: f64 = 10.0;
 const PUSH_OUT_SPEED: f64 = 1.0;
 
 /// What all contacts of a step share.
-///
-/// A soft contact in a substep.
 ///
 /// **Softness.** The spring's force is −k s − γ ṡ at gap s, with ω² = k/m_ij and ζ = γ/(2 m_ij ω). Taken
 /// at the end of the substep, s + h v and v, its impulse is σ = −h(ω²(s + h v) + 2ζω v), which with
@@ -234,7 +227,7 @@ impl Softness {
         contact.impulse[0] = shifted - contact.capture_speed;
         if M::FRICTION {
             let bound = self.bound::<M>(shifted, contact.capture_speed);
-            let part = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            let part = 1.0 / M::TANGENTIAL_COMPLIANCE;
             let slip = tangential_velocity - contact.surface_speed;
             contact.impulse[1] = law::coulomb(before[1] - part * slip / tangential_answer, bound);
         }
@@ -287,23 +280,14 @@ fn begin_walls<M: Model>(
     let State { world, walls, .. } = &*stage.state;
     let mut driven: Vec<DrivenWall> = walls.driven(world, substep_secs).collect();
     driven.iter_mut().for_each(|wall| wall.now = wall.free);
-    set_answers::<M::Kinematics>(stage.problem, contacts, &driven);
-    driven
-}
-
-/// Tells contacts d_n and d_t.
-fn set_answers<K: Kinematics>(
-    problem: &StepProblem<K>,
-    contacts: &mut [Touching],
-    walls: &[DrivenWall],
-) {
-    for (row, contact) in problem.rows.fixed.iter().zip(contacts) {
+    for (row, contact) in stage.problem.rows.fixed.iter().zip(contacts) {
         if let Some(DrivenRow { by, .. }) = contact.driven {
-            let share = walls[by.wall as usize].response * row.effective_mass;
+            let share = driven[by.wall as usize].response * row.effective_mass;
             let [normal, tangential] = by.along.map(|along| share * along * along);
-            contact.answers = [1.0 + normal, 1.0 + tangential / K::TANGENTIAL_COMPLIANCE];
+            contact.answers = [1.0 + normal, 1.0 + tangential / M::TANGENTIAL_COMPLIANCE];
         }
     }
+    driven
 }
 
 /// Has the walls go on as a sweep has left them, and gives the work of what drives them since the substep began, J.
@@ -315,21 +299,4 @@ fn take_walls<M: Model>(
     contacts.iter_mut().for_each(|contact| contact.see(driven));
     let State { world, walls, .. } = &mut *stage.state;
     walls.take_driven(world, driven)
-}
-
-/// Takes off what contacts told of the work of walls with their last speed in a substep, since they had the mean one.
-fn correct_wall_works<K: Kinematics>(
-    problem: &StepProblem<K>,
-    contacts: &[Touching],
-    walls: &[DrivenWall],
-    works: &mut Works,
-) {
-    for (row, contact) in problem.rows.fixed.iter().zip(contacts) {
-        if let Some(DrivenRow { by, .. }) = contact.driven {
-            let wall = &walls[by.wall as usize];
-            let along = by.part_along(contact.impulse);
-            let gained = wall.now - wall.before;
-            works.wall += -0.5 * row.effective_mass * along * gained;
-        }
-    }
 }

@@ -4,8 +4,8 @@
 //! them, W = G M⁻¹ Gᵀ and q = G v^free, plus restitution's term in the normal rows. A contact
 //! meets those that share one of its grains, and no others: where n of them share one, W has n² blocks.
 
-use crate::error::{Error, Result};
-use crate::solver::kinematics::Kinematics;
+use crate::error::{self, Error, Result};
+use crate::solver::kinematics::Model;
 use crate::solver::problem::{Row, StepProblem};
 
 /// Two entries of W that stand opposite each other may differ by this part of √(W_ii W_jj): what a
@@ -59,9 +59,7 @@ pub(super) type EntryBlock = ([u32; 2], [[f64; 2]; 2]);
 /// The blocks of W in rows.
 pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBlock>> {
     let Triplets { row, col, val } = matrix;
-    if val.is_empty() {
-        return Err(Error::value("W", "empty", "a matrix with an entry on each diagonal place"));
-    }
+    error::check(!val.is_empty(), "W", "empty", "a matrix with an entry on each diagonal place")?;
     check_length("W.row", row.len(), val.len(), "that of W.val")?;
     check_length("W.col", col.len(), val.len(), "that of W.val")?;
     check_each("W.val", val, "a finite number", |value| value.is_finite())?;
@@ -95,9 +93,7 @@ pub(super) fn own_blocks(blocks: &[EntryBlock], contacts: usize) -> Result<Vec<[
     }
     for (contact, [[normal, mixed], [_, tangential]]) in own.iter().enumerate() {
         for (value, index) in [(normal, 2 * contact), (tangential, 2 * contact + 1)] {
-            if *value <= 0.0 {
-                return Err(Error::value(format!("W[{index}, {index}]"), value, "> 0"));
-            }
+            error::check(*value > 0.0, format!("W[{index}, {index}]"), value, "> 0")?;
         }
         let determinant = normal * tangential - mixed * mixed;
         if determinant <= 0.0 {
@@ -146,7 +142,7 @@ impl Assembled {
     ///
     /// # Errors
     /// Names the body that most contacts share, where they make W too large.
-    pub fn of<K: Kinematics>(problem: &StepProblem<K>) -> Result<Self> {
+    pub fn of<M: Model>(problem: &StepProblem<M>) -> Result<Self> {
         let mut contacts_of_body = vec![Vec::new(); problem.bodies.masses.len()];
         for (number, row) in problem.rows() {
             contacts_of_body[row.i as usize].push(number);
@@ -202,26 +198,26 @@ fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
 }
 
 /// The entry of W of two rows, each by its number and axis: 0 normal, 1 tangential.
-fn entry<K: Kinematics>(
-    problem: &StepProblem<K>,
+fn entry<M: Model>(
+    problem: &StepProblem<M>,
     [number, axis]: [usize; 2],
     [other_number, other_axis]: [usize; 2],
 ) -> f64 {
     let (row, other) = (problem.rows.get(number), problem.rows.get(other_number));
-    if K::AXES == 1 && (axis, other_axis) != (0, 0) {
+    if M::AXES == 1 && (axis, other_axis) != (0, 0) {
         let same = number == other_number && axis == other_axis;
         return if same { 1.0 / row.effective_mass } else { 0.0 };
     }
     let bodies =
-        |row: &Row<K>, number: usize| [Some(row.i), problem.rows.is_pair(number).then_some(row.j)];
-    let gradients = [K::gradients(row.normal), K::gradients(other.normal)];
+        |row: &Row<M>, number: usize| [Some(row.i), problem.rows.is_pair(number).then_some(row.j)];
+    let gradients = [M::gradients(row.normal), M::gradients(other.normal)];
     let mut sum = 0.0;
     for (side, body) in bodies(row, number).into_iter().enumerate() {
         for (other_side, other_body) in bodies(other, other_number).into_iter().enumerate() {
             let Some(body) = body.filter(|_| body == other_body) else { continue };
             let mass = problem.bodies.masses[body as usize];
             let (one, two) = (gradients[0][side][axis], gradients[1][other_side][other_axis]);
-            let inertias = K::INERTIA_OVER_MASS.iter().take(K::DEGREES);
+            let inertias = M::INERTIA_OVER_MASS.iter().take(M::DEGREES);
             for ((a, b), inertia) in one.iter().zip(two).zip(inertias) {
                 sum += a * b / (mass * inertia);
             }

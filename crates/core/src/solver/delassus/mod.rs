@@ -27,7 +27,7 @@ use super::methods::{
     ContactSystem, ScaledVector, SolveReport, WorkVectors, solve_system, sweep_until_settled,
 };
 use super::settings::{SolverSettings, StopTest};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::world::FrictionCone;
 
 /// The residual, which costs as much as a sweep, is looked at where ‖ΔP‖₂ of a sweep is at most this
@@ -81,9 +81,7 @@ impl DelassusProblem {
         cone: FrictionCone,
     ) -> Result<Self> {
         let contacts = friction.len();
-        if contacts == 0 {
-            return Err(Error::value("nc", 0, "at least 1"));
-        }
+        error::check(contacts != 0, "nc", 0, "at least 1")?;
         check_length("q", free_velocities.len(), 2 * contacts, "2 nc")?;
         check_length("c0", cohesion_impulses.len(), contacts, "nc")?;
         check_each("q", free_velocities, "a finite number", |q| q.is_finite())?;
@@ -130,7 +128,7 @@ impl DelassusProblem {
         self.rows.len()
     }
 
-    /// Whether there is no contact; never so.
+    /// True where there is no contact; never so.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
@@ -254,18 +252,18 @@ pub fn solve_delassus(
 fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveReport {
     let near = NEAR * settings.tolerance * problem.scale;
     let sweep = |problem: &mut DelassusProblem, sweeps: u32| {
-        let squared_change = problem.sweep();
+        let squared_change = problem.pass();
         let is_tested = squared_change <= near * near
             || sweeps.is_multiple_of(TEST_INTERVAL)
             || sweeps == settings.max_sweeps;
-        is_tested && problem.is_solved(settings)
+        is_tested && problem.residual() <= settings.tolerance
     };
     sweep_until_settled(problem, settings, sweep, |problem| problem.residual())
 }
 
 impl DelassusProblem {
     /// One pass over all contacts; gives Σ‖ΔP‖², (N·s)².
-    fn sweep(&mut self) -> f64 {
+    fn pass(&mut self) -> f64 {
         let mut squared_change = 0.0;
         for contact in 0..self.len() {
             let free = self.velocity_of_others(contact);
@@ -276,19 +274,13 @@ impl DelassusProblem {
         }
         squared_change
     }
-
-    /// The stopping test, which without bodies is always the residual's.
-    fn is_solved(&self, settings: &SolverSettings) -> bool {
-        debug_assert_eq!(settings.stop, StopTest::Residual);
-        DelassusProblem::residual(self) <= settings.tolerance
-    }
 }
 
 impl ContactSystem for DelassusProblem {
     const FRICTION: bool = true;
 
     fn len(&self) -> usize {
-        DelassusProblem::len(self)
+        self.rows.len()
     }
 
     fn read(&self, impulses: &mut ScaledVector) {
@@ -358,20 +350,22 @@ impl ContactSystem for DelassusProblem {
     }
 
     fn sweep(&mut self) {
-        DelassusProblem::sweep(self);
+        self.pass();
     }
 
     fn tested_sweep(&mut self, settings: &SolverSettings) -> bool {
-        DelassusProblem::sweep(self);
-        self.is_solved(settings)
+        self.pass();
+        self.is_settled(&[], settings)
     }
 
     fn residual(&self) -> f64 {
-        DelassusProblem::residual(self)
+        Self::residual(self)
     }
 
+    /// Without bodies the stopping test is always the residual's.
     fn is_settled(&self, _before: &[[f64; 2]], settings: &SolverSettings) -> bool {
-        self.is_solved(settings)
+        debug_assert_eq!(settings.stop, StopTest::Residual);
+        self.residual() <= settings.tolerance
     }
 }
 

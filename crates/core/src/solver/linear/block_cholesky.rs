@@ -195,7 +195,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
                 here[row] *= factor[row][row];
             }
             vector[place] = here;
-            for edge in elimination.starts[place] as usize..elimination.starts[place + 1] as usize {
+            for edge in elimination.row(place) {
                 let there = &mut vector[elimination.later[edge] as usize];
                 for (factors, here) in self.upper[edge].0.iter().zip(here) {
                     for (entry, factor) in there.iter_mut().zip(factors) {
@@ -206,7 +206,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
         for place in (0..vector.len()).rev() {
             let mut here = vector[place];
-            for edge in elimination.starts[place] as usize..elimination.starts[place + 1] as usize {
+            for edge in elimination.row(place) {
                 let there = &vector[elimination.later[edge] as usize];
                 for (entry, factors) in here.iter_mut().zip(&self.upper[edge].0) {
                     for (factor, number) in factors.iter().zip(there) {
@@ -305,19 +305,14 @@ fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Pad
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::linear::tests::{grid, numbers};
 
     /// Springs of random directions and strengths between the bodies of a grid, and unit masses.
     #[test]
     fn a_grid_of_springs_is_solved_to_rounding() {
         let side = 15u32;
         let bodies = side * side;
-        let pairs: Vec<(u32, u32)> = (0..bodies)
-            .flat_map(|k| {
-                let right = (k % side + 1 < side).then_some((k, k + 1));
-                let up = (k + side < bodies).then_some((k, k + side));
-                [right, up].into_iter().flatten()
-            })
-            .collect();
+        let pairs = grid(side);
         let mut elimination = Elimination::default();
         elimination.analyse(bodies as usize, pairs.iter().copied());
         let supernodes = elimination.supernodes.windows(2);
@@ -327,11 +322,7 @@ mod tests {
                 .any(|places| { places.len() > 2 && elimination.row(places.end - 1).len() > 4 }),
             "one that changes blocks by threes and single ones"
         );
-        let mut random = 1u64;
-        let mut number = || {
-            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (random >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        };
+        let mut number = numbers();
         let mut matrix = SymmetricBlockMatrix::<3>::default();
         matrix.clear(&elimination);
         let solution: Vec<[f64; 3]> = (0..bodies).map(|k| [1.0, f64::from(k), -2.0]).collect();

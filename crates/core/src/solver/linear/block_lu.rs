@@ -6,9 +6,19 @@
 //! are not finite or a step that is refused.
 
 use super::elimination::Elimination;
+use crate::solver::kinematics::Model;
 
 /// A block of D × D numbers.
 pub(crate) type Block<const D: usize> = [[f64; D]; D];
+
+/// The inertias of a body of that mass, kg.
+pub(crate) fn inertia<M: Model, const D: usize>(mass: f64) -> Block<D> {
+    let mut block = [[0.0; D]; D];
+    for (axis, row) in block.iter_mut().enumerate() {
+        row[axis] = mass * M::INERTIA_OVER_MASS[axis];
+    }
+    block
+}
 
 /// A matrix, then its factors. Memory is kept between matrices.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +45,14 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
+    /// The inertias of bodies alone, of these masses (kg).
+    pub(crate) fn start<M: Model>(&mut self, elimination: &Elimination, masses: &[f64]) {
+        self.clear(elimination);
+        for (&place, &mass) in elimination.place_of.iter().zip(masses) {
+            self.diagonal[place as usize] = inertia::<M, D>(mass);
+        }
+    }
+
     /// The diagonal block of a place.
     pub(crate) fn diagonal_mut(&mut self, place: u32) -> &mut Block<D> {
         &mut self.diagonal[place as usize]
@@ -58,7 +76,7 @@ impl<const D: usize> BlockMatrix<D> {
         for place in 0..self.diagonal.len() {
             let inverse = inverse(&self.diagonal[place]);
             self.diagonal[place] = inverse;
-            let range = elimination.starts[place] as usize..elimination.starts[place + 1] as usize;
+            let range = elimination.row(place);
             for edge in range.clone() {
                 self.lower[edge] = product(&self.lower[edge], &inverse);
             }
@@ -83,14 +101,14 @@ impl<const D: usize> BlockMatrix<D> {
     pub(crate) fn solve(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
         for place in 0..vector.len() {
             let here = vector[place];
-            for edge in elimination.starts[place] as usize..elimination.starts[place + 1] as usize {
+            for edge in elimination.row(place) {
                 let there = &mut vector[elimination.later[edge] as usize];
                 subtract_applied(there, &self.lower[edge], &here);
             }
         }
         for place in (0..vector.len()).rev() {
             let mut here = vector[place];
-            for edge in elimination.starts[place] as usize..elimination.starts[place + 1] as usize {
+            for edge in elimination.row(place) {
                 let there = vector[elimination.later[edge] as usize];
                 subtract_applied(&mut here, &self.upper[edge], &there);
             }
@@ -180,25 +198,16 @@ fn inverse<const D: usize>(block: &Block<D>) -> Block<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::linear::tests::{grid, numbers};
 
     #[test]
     fn a_grid_of_unsymmetric_blocks_is_solved_to_rounding() {
         let side = 6u32;
         let bodies = (side * side) as usize;
-        let pairs: Vec<(u32, u32)> = (0..side * side)
-            .flat_map(|k| {
-                let right = (k % side + 1 < side).then_some((k, k + 1));
-                let up = (k + side < side * side).then_some((k, k + side));
-                [right, up].into_iter().flatten()
-            })
-            .collect();
+        let pairs = grid(side);
         let mut elimination = Elimination::default();
         elimination.analyse(bodies, pairs.iter().copied());
-        let mut random = 1u64;
-        let mut number = || {
-            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (random >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        };
+        let mut number = numbers();
         let mut block = || [(); 3].map(|()| [(); 3].map(|()| number()));
         let mut matrix = BlockMatrix::<3>::default();
         matrix.clear(&elimination);

@@ -11,7 +11,7 @@
 
 use smallvec::SmallVec;
 
-use crate::solver::kinematics::Kinematics;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 
 /// BodyNeighbours of a body. A disc has seldom more than six at first, and elimination seldom doubles
@@ -65,9 +65,8 @@ impl Elimination {
 
     /// The block of places a < b, which must be neighbours.
     pub(crate) fn block(&self, a: u32, b: u32) -> usize {
-        let (start, end) = (self.starts[a as usize], self.starts[a as usize + 1]);
-        let row = &self.later[start as usize..end as usize];
-        start as usize + row.partition_point(|&place| place < b)
+        let row = self.row(a as usize);
+        row.start + self.later[row].partition_point(|&place| place < b)
     }
 
     /// The blocks of a place with its later neighbours.
@@ -180,7 +179,7 @@ impl Elimination {
         self.supernodes.push(bodies as u32);
         self.targets.clear();
         for place in 0..bodies {
-            let range = self.starts[place] as usize..self.starts[place + 1] as usize;
+            let range = self.row(place);
             for first in range.clone() {
                 // What comes later than both is among the later neighbours of the first of them, and both lists rise.
                 let mut block = self.starts[self.later[first] as usize] as usize;
@@ -269,7 +268,7 @@ pub(crate) struct ContactGraph {
 
 impl ContactGraph {
     /// Orders the elimination, unless the contacts between grains are those of the last time.
-    pub(crate) fn analyse<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+    pub(crate) fn analyse<M: Model>(&mut self, problem: &StepProblem<M>) {
         let pairs = || problem.rows.pairs.iter().map(|row| (row.i, row.j));
         let bodies = problem.bodies.now.len();
         if self.bodies == bodies && pairs().eq(self.pairs.iter().copied()) {
@@ -291,21 +290,18 @@ impl ContactGraph {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::linear::tests::grid;
 
     #[test]
     fn every_fill_in_has_its_block() {
         let side = 9;
-        let grid = (0..side * side).flat_map(|k: u32| {
-            let right = (k % side + 1 < side).then_some((k, k + 1));
-            let up = (k + side < side * side).then_some((k, k + side));
-            [right, up].into_iter().flatten()
-        });
+        let pairs = grid(side);
         let mut elimination = Elimination::default();
-        elimination.analyse((side * side) as usize, grid.clone());
+        elimination.analyse((side * side) as usize, pairs.iter().copied());
         for (place, &body) in elimination.body_at.iter().enumerate() {
             assert_eq!(elimination.place_of[body as usize] as usize, place);
         }
-        for (i, j) in grid {
+        for (i, j) in pairs {
             let (a, b) = (elimination.place_of[i as usize], elimination.place_of[j as usize]);
             let block = elimination.block(a.min(b), a.max(b));
             assert_eq!(elimination.later[block], a.max(b));
@@ -319,13 +315,11 @@ mod tests {
             assert!(before.is_none_or(children), "{place} comes right after one of its children");
             assert!(parent.is_none_or(|&parent| parent as usize > place));
         }
-        let rows: Vec<usize> = (0..elimination.supernodes.len() - 1)
-            .flat_map(|at| {
-                let places =
-                    elimination.supernodes[at] as usize..elimination.supernodes[at + 1] as usize;
-                places.clone().map(move |place| places.end - 1 - place)
-            })
-            .collect();
+        let within = |ends: &[u32]| {
+            let (start, end) = (ends[0] as usize, ends[1] as usize);
+            (start..end).map(move |place| end - 1 - place)
+        };
+        let rows: Vec<usize> = elimination.supernodes.windows(2).flat_map(within).collect();
         for (place, &within) in rows.iter().enumerate() {
             let row = &elimination.later[elimination.row(place)];
             let end = place + within;
@@ -336,7 +330,7 @@ mod tests {
         assert_eq!(rows.len(), (side * side) as usize);
         let mut targets = elimination.targets.iter();
         for place in 0..(side * side) as usize {
-            let range = elimination.starts[place] as usize..elimination.starts[place + 1] as usize;
+            let range = elimination.row(place);
             for first in range.clone() {
                 for second in first + 1..range.end {
                     let target = *targets.next().expect("a target for every pair") as usize;

@@ -5,5 +5,27 @@ mod block_lu;
 mod elimination;
 
 pub(super) use self::block_cholesky::SymmetricBlockMatrix;
-pub(super) use self::block_lu::{Block, BlockMatrix};
+pub(super) use self::block_lu::{Block, BlockMatrix, inertia};
 pub(super) use self::elimination::{ContactGraph, Elimination};
+
+#[cfg(test)]
+mod tests {
+    /// Neighbours on a grid of so many bodies along each side.
+    pub(super) fn grid(side: u32) -> Vec<(u32, u32)> {
+        let neighbours = |k: u32| {
+            let right = (k % side + 1 < side).then_some((k, k + 1));
+            let up = (k + side < side * side).then_some((k, k + side));
+            [right, up].into_iter().flatten()
+        };
+        (0..side * side).flat_map(neighbours).collect()
+    }
+
+    /// Numbers between −½ and ½, the same ones every time.
+    pub(super) fn numbers() -> impl FnMut() -> f64 {
+        let mut random = 1u64;
+        move || {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (random >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        }
+    }
+}

@@ -19,9 +19,8 @@
 use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
 use super::stopping::{SolveReport, is_tested};
 use crate::contact::law::{coulomb, signorini};
-use crate::solver::kinematics::Kinematics;
+use crate::solver::kinematics::Model;
 use crate::solver::linear::{BlockMatrix, Elimination};
-use crate::solver::model::Model;
 use crate::solver::problem::{Row, StepProblem};
 use crate::solver::settings::SolverSettings;
 
@@ -44,8 +43,6 @@ pub(crate) struct AdmmMemory {
     three: Directions<3>,
     /// The best impulses of a solve.
     best: ScaledVector,
-    /// Of the system whose residual is looked at.
-    root_masses: Vec<f64>,
 }
 
 impl Clone for AdmmMemory {
@@ -68,30 +65,28 @@ struct Directions<const D: usize> {
     before: ScaledVector,
 }
 
-/// Solves a prepared problem.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut AdmmMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    let AdmmMemory { one, two, three, best, root_masses } = memory;
-    match M::Kinematics::DEGREES {
-        1 => run::<M, 1>(problem, one, best, root_masses, settings),
-        2 => run::<M, 2>(problem, two, best, root_masses, settings),
-        _ => run::<M, 3>(problem, three, best, root_masses, settings),
+    let AdmmMemory { one, two, three, best } = memory;
+    match M::DEGREES {
+        1 => run::<M, 1>(problem, one, best, settings),
+        2 => run::<M, 2>(problem, two, best, settings),
+        _ => run::<M, 3>(problem, three, best, settings),
     }
 }
 
 fn run<M: Model, const D: usize>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     directions: &mut Directions<D>,
     best_impulses: &mut ScaledVector,
-    roots: &mut Vec<f64>,
     settings: &SolverSettings,
 ) -> SolveReport {
     let pairs = problem.rows.pairs.iter().map(|row| (row.i, row.j));
     directions.elimination.analyse(problem.bodies.now.len(), pairs);
-    let mut best = BestIterate::new(&BodySystem::<M>::new(problem, roots), best_impulses);
+    let mut best = BestIterate::new(&BodySystem::new(problem), best_impulses);
     let mut report = SolveReport::default();
     let mut compliance = FIRST_COMPLIANCE;
     directions.factorise::<M>(problem, compliance);
@@ -101,12 +96,12 @@ fn run<M: Model, const D: usize>(
         report.sweeps += 1;
         let is_tested = is_tested(report.sweeps, settings);
         if is_tested {
-            BodySystem::<M>::new(problem, roots).read(&mut directions.before);
+            BodySystem::new(problem).read(&mut directions.before);
         }
         let balance = directions.apply_law::<M>(problem, compliance);
         if is_tested {
             problem.form_velocities();
-            let system = BodySystem::<M>::new(problem, roots);
+            let system = BodySystem::new(problem);
             if system.is_settled(&directions.before, settings) {
                 report.converged = true;
                 break;
@@ -131,24 +126,17 @@ fn run<M: Model, const D: usize>(
     }
     if !report.converged {
         problem.form_velocities();
-        report.stalled =
-            best.restore(&mut BodySystem::<M>::new(problem, roots), report.sweeps).stalled;
+        report.stalled = best.restore(&mut BodySystem::new(problem), report.sweeps).stalled;
     }
     report
 }
 
 impl<const D: usize> Directions<D> {
     /// Factorises the matrix of a compliance ε.
-    fn factorise<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>, compliance: f64) {
+    fn factorise<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, matrix, .. } = self;
-        matrix.clear(elimination);
-        for (body, &mass) in problem.bodies.masses.iter().enumerate() {
-            let block = matrix.diagonal_mut(elimination.place_of[body]);
-            for (axis, entries) in block.iter_mut().enumerate() {
-                entries[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
-            }
-        }
-        let tangential = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+        matrix.start::<M>(elimination, &problem.bodies.masses);
+        let tangential = 1.0 / M::TANGENTIAL_COMPLIANCE;
         let add = |block: &mut [[f64; D]; D], stiffness: f64, a: &Gradients, b: &Gradients| {
             for (row, entries) in block.iter_mut().enumerate() {
                 for (column, entry) in entries.iter_mut().enumerate() {
@@ -160,12 +148,12 @@ impl<const D: usize> Directions<D> {
             }
         };
         for row in &problem.rows.fixed {
-            let [on_i, _] = M::Kinematics::gradients(row.normal);
+            let [on_i, _] = M::gradients(row.normal);
             let i = elimination.place_of[row.i as usize];
             add(matrix.diagonal_mut(i), row.effective_mass / compliance, &on_i, &on_i);
         }
         for row in &problem.rows.pairs {
-            let [on_i, on_j] = M::Kinematics::gradients(row.normal);
+            let [on_i, on_j] = M::gradients(row.normal);
             let i = elimination.place_of[row.i as usize];
             let j = elimination.place_of[row.j as usize];
             let stiffness = row.effective_mass / compliance;
@@ -180,12 +168,12 @@ impl<const D: usize> Directions<D> {
     }
 
     /// V and z of the present impulses.
-    fn start<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>) {
+    fn start<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies =
             self.elimination.body_at.iter().map(|&body| &problem.bodies.now[body as usize]);
         self.vector.clear();
         self.vector.extend(bodies.map(|body| {
-            let coordinates = M::Kinematics::coordinates(body);
+            let coordinates = M::coordinates(body);
             std::array::from_fn::<f64, D, _>(|axis| coordinates[axis])
         }));
         let mut targets = std::mem::take(&mut self.targets);
@@ -200,8 +188,8 @@ impl<const D: usize> Directions<D> {
 
     /// (v_n, v_t) of V at a contact, m/s.
     #[inline(always)]
-    fn velocity<M: Model>(&self, row: &Row<M::Kinematics>, is_pair: bool) -> [f64; 2] {
-        let [on_i, on_j] = M::Kinematics::gradients(row.normal);
+    fn velocity<M: Model>(&self, row: &Row<M>, is_pair: bool) -> [f64; 2] {
+        let [on_i, on_j] = M::gradients(row.normal);
         let along = |gradient: &[f64; 3], body: u32| -> f64 {
             let velocity = &self.vector[self.elimination.place_of[body as usize] as usize];
             (0..D).map(|axis| gradient[axis] * velocity[axis]).sum()
@@ -216,11 +204,7 @@ impl<const D: usize> Directions<D> {
 
     /// Takes the rows' impulses and z from V. Gives the factor by which ε would have to change for
     /// the two residuals to be alike.
-    fn apply_law<M: Model>(
-        &mut self,
-        problem: &mut StepProblem<M::Kinematics>,
-        compliance: f64,
-    ) -> f64 {
+    fn apply_law<M: Model>(&mut self, problem: &mut StepProblem<M>, compliance: f64) -> f64 {
         let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
         let mut targets = std::mem::take(&mut self.targets);
         let law = problem.law;
@@ -228,7 +212,7 @@ impl<const D: usize> Directions<D> {
             // V knows no images, and no surfaces.
             let is_pair = problem.rows.is_pair(number);
             let [away, along] = match is_pair {
-                true => M::Kinematics::slide_along(problem.rows.get(number).normal),
+                true => M::slide_along(problem.rows.get(number).normal),
                 false => [0.0, problem.rows.surface_speed(number)],
             };
             let row = problem.rows.get_mut(number);
@@ -244,7 +228,7 @@ impl<const D: usize> Directions<D> {
             };
             note(change, (target[0] - before) / compliance);
             if M::FRICTION {
-                let softness = compliance * M::Kinematics::TANGENTIAL_COMPLIANCE;
+                let softness = compliance * M::TANGENTIAL_COMPLIANCE;
                 let bound = law.friction_bound(shifted);
                 let slip = tangential - along;
                 let moved = coulomb(row.tangential_impulse - slip / softness, bound);
@@ -261,24 +245,24 @@ impl<const D: usize> Directions<D> {
     }
 
     /// The right-hand side from impulses and z.
-    fn take_loads<M: Model>(&mut self, problem: &StepProblem<M::Kinematics>, compliance: f64) {
+    fn take_loads<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, vector, targets, .. } = self;
         for (place, &body) in elimination.body_at.iter().enumerate() {
-            let free = M::Kinematics::coordinates(&problem.bodies.free[body as usize]);
+            let free = M::coordinates(&problem.bodies.free[body as usize]);
             let mass = problem.bodies.masses[body as usize];
             for axis in 0..D {
-                let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+                let inertia = mass * M::INERTIA_OVER_MASS[axis];
                 vector[place][axis] = inertia * free[axis];
             }
         }
-        let softness = compliance * M::Kinematics::TANGENTIAL_COMPLIANCE;
+        let softness = compliance * M::TANGENTIAL_COMPLIANCE;
         for ((number, row), target) in problem.rows().zip(targets) {
             let [normal, tangential] = problem.reduced_impulse(number, row);
             let mass = row.effective_mass;
             let normal = mass * (normal + target[0] / compliance);
             let tangential =
                 if M::FRICTION { mass * (tangential + target[1] / softness) } else { 0.0 };
-            let [on_i, on_j] = M::Kinematics::gradients(row.normal);
+            let [on_i, on_j] = M::gradients(row.normal);
             let mut push = |gradients: &Gradients, body: u32| {
                 let load = &mut vector[elimination.place_of[body as usize] as usize];
                 for (axis, load) in load.iter_mut().enumerate() {

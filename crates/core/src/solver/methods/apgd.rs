@@ -21,30 +21,16 @@
 //!   place of the projected step takes two to three times as many iterations.
 //! * w is affine, so w(y) is formed from the w(x) at hand: one product with A an iteration.
 
-use super::contact_system::{
-    BestIterate, ContactSystem, ScaledVector, SystemMemory, WorkVectors, projected,
-};
+use super::contact_system::{BestIterate, ContactSystem, ScaledVector, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};
-use crate::solver::model::Model;
-use crate::solver::problem::StepProblem;
 use crate::solver::settings::SolverSettings;
 
 /// L after a step that was too long, over the curvature that it met: a little more than needed, or
 /// the next step meets as much again.
 const MARGIN: f64 = 1.05;
 
-/// Solves a prepared problem.
-pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
-    memory: &mut SystemMemory,
-    settings: &SolverSettings,
-) -> SolveReport {
-    let (mut system, vectors) = memory.system::<M>(problem);
-    solve_system(&mut system, settings, vectors)
-}
-
 /// Solves a system from its present impulses. Every product with A counts as an iteration.
-pub(super) fn solve_system<S: ContactSystem>(
+pub(super) fn solve<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
     vectors: &mut WorkVectors,
@@ -60,7 +46,11 @@ pub(super) fn solve_system<S: ContactSystem>(
     let mut lipschitz = 1.0;
     let mut theta = 1.0;
     for sweeps in 1..=settings.max_sweeps {
-        step(system, y, w_y, lipschitz, next);
+        next.clear();
+        next.extend(y.iter().zip(&*w_y).enumerate().map(|(contact, (y, w))| {
+            let tangential = w[1] / system.tangential_diagonal(contact);
+            projected(system, contact, [y[0] - w[0] / lipschitz, y[1] - tangential / lipschitz])
+        }));
         system.write(next);
         system.velocities(w_next);
         let curvature = curvature(system, [y, w_y], [next, w_next]);
@@ -75,7 +65,13 @@ pub(super) fn solve_system<S: ContactSystem>(
         if best.look(system, next, sweeps, settings) {
             return best.restore(system, sweeps);
         }
-        let momentum = if leads_away(system, y, next, x) {
+        // (y − next)·D⁻¹(next − now).
+        let mut product = 0.0;
+        for (contact, ((y, next), now)) in y.iter().zip(&*next).zip(&*x).enumerate() {
+            product += (y[0] - next[0]) * (next[0] - now[0])
+                + system.tangential_diagonal(contact) * (y[1] - next[1]) * (next[1] - now[1]);
+        }
+        let momentum = if product > 0.0 {
             theta = 1.0;
             0.0
         } else {
@@ -93,21 +89,6 @@ pub(super) fn solve_system<S: ContactSystem>(
     best.restore(system, settings.max_sweeps)
 }
 
-/// The projected step from y.
-fn step<S: ContactSystem>(
-    system: &S,
-    y: &ScaledVector,
-    w: &ScaledVector,
-    lipschitz: f64,
-    next: &mut ScaledVector,
-) {
-    next.clear();
-    next.extend(y.iter().zip(w).enumerate().map(|(contact, (y, w))| {
-        let tangential = w[1] / system.tangential_diagonal(contact);
-        projected(system, contact, [y[0] - w[0] / lipschitz, y[1] - tangential / lipschitz])
-    }));
-}
-
 /// Δ·AΔ / Δ·D⁻¹Δ between two points with their w; 0 where they are the same.
 fn curvature<S: ContactSystem>(
     system: &S,
@@ -122,21 +103,6 @@ fn curvature<S: ContactSystem>(
             change[0] * change[0] + system.tangential_diagonal(contact) * change[1] * change[1];
     }
     if squared > 0.0 { energy / squared } else { 0.0 }
-}
-
-/// (y − next)·D⁻¹(next − now) > 0.
-fn leads_away<S: ContactSystem>(
-    system: &S,
-    y: &ScaledVector,
-    next: &ScaledVector,
-    now: &ScaledVector,
-) -> bool {
-    let mut product = 0.0;
-    for (contact, ((y, next), now)) in y.iter().zip(next).zip(now).enumerate() {
-        product += (y[0] - next[0]) * (next[0] - now[0])
-            + system.tangential_diagonal(contact) * (y[1] - next[1]) * (next[1] - now[1]);
-    }
-    product > 0.0
 }
 
 /// next + momentum · (next − now).

@@ -1,42 +1,16 @@
 //! `auto`: a method by the size of a step's problem and by how it is stopped.
 //!
 //! The choice is that of the charts of speed against accuracy (`slump chart`). Newton's method wins
-//! at every residual up to some hundred discs. On larger problems fewer of its guesses come true while a factorisation costs more, and conjugate gradients
-//! take the lead. A stop by the impulses of one sweep belongs to Gauss–Seidel, whose error is what
-//! such a study is about.
+//! at every residual up to some hundred discs. On larger problems fewer of its guesses come true while a factorisation
+//! costs more, and conjugate gradients take the lead. A stop by the impulses of one sweep belongs to Gauss–Seidel, whose
+//! error is what such a study is about.
 
-use super::contact_system::SystemMemory;
-use super::newton::{self, NewtonMemory};
-use super::stopping::SolveReport;
-use super::{nncg, nsgs};
 use crate::solver::method::Method;
-use crate::solver::model::Model;
-use crate::solver::problem::StepProblem;
 use crate::solver::settings::{SolverSettings, StopTest};
 
 /// Up to so many contacts Newton's method is taken. At 270 contacts it wins by far, at 1,000 by a
 /// little, at 4,000 it solves few steps (`slump chart --large`).
 const CONTACTS_FOR_NEWTON: usize = 1_000;
-
-/// What the methods keep that it picks from.
-#[derive(Clone, Debug, Default)]
-pub(super) struct AutoMemory {
-    newton: NewtonMemory,
-    nncg: SystemMemory,
-}
-
-/// Solves a prepared problem by the method that is picked.
-pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
-    memory: &mut AutoMemory,
-    settings: &SolverSettings,
-) -> SolveReport {
-    match pick(settings.stop, problem.rows.len(), problem.is_driven()) {
-        Method::Newton => newton::solve::<M>(problem, &mut memory.newton, settings),
-        Method::Nncg => nncg::solve::<M>(problem, &mut memory.nncg, settings),
-        _ => nsgs::solve::<M>(problem, settings),
-    }
-}
 
 /// The method that solves a problem of so many contacts, with walls that a force drives or without: that of the
 /// settings, unless they leave it to `auto`. Contacts are counted only then, since to find islands takes time.
@@ -45,18 +19,12 @@ pub(crate) fn picked(
     contacts: impl FnOnce() -> usize,
     is_driven: bool,
 ) -> Method {
-    if settings.method != Method::Auto {
-        return settings.method;
-    }
-    pick(settings.stop, contacts(), is_driven)
-}
-
-fn pick(stop: StopTest, contacts: usize, is_driven: bool) -> Method {
-    match stop {
-        StopTest::ImpulsePerMass => Method::Nsgs,
+    match (settings.method, settings.stop) {
+        (Method::Auto, StopTest::ImpulsePerMass) => Method::Nsgs,
         // Newton's method knows of no walls that a force drives.
-        _ if contacts <= CONTACTS_FOR_NEWTON && !is_driven => Method::Newton,
-        _ => Method::Nncg,
+        (Method::Auto, _) if !is_driven && contacts() <= CONTACTS_FOR_NEWTON => Method::Newton,
+        (Method::Auto, _) => Method::Nncg,
+        (method, _) => method,
     }
 }
 

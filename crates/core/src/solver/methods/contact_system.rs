@@ -16,8 +16,7 @@
 use super::nsgs::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
 use crate::contact::law;
-use crate::solver::kinematics::Kinematics;
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::{ContactRows, Row, StepProblem, residual};
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::world::FrictionCone;
@@ -25,7 +24,7 @@ use crate::world::FrictionCone;
 /// Scaled impulses or velocities of all contacts: (normal, tangential) each, √J.
 pub type ScaledVector = Vec<[f64; 2]>;
 
-/// WorkVectors that a method works with. Memory is kept between steps, contents are not.
+/// What a method works with. Memory is kept between steps, contents are not.
 #[derive(Debug, Default)]
 pub(crate) struct WorkVectors {
     /// As many vectors as the hungriest method needs.
@@ -44,13 +43,13 @@ impl Clone for WorkVectors {
 /// One step's contact problem in scaled variables (see the module). `contact` is an index below
 /// [`ContactSystem::len`].
 pub trait ContactSystem {
-    /// Whether contacts carry tangential impulses. Where they do not, tangential entries are 0.
+    /// True where contacts carry tangential impulses. Where they do not, tangential entries are 0.
     const FRICTION: bool;
 
     /// Number of contacts.
     fn len(&self) -> usize;
 
-    /// Whether there is no contact.
+    /// True where there is no contact.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -86,53 +85,34 @@ pub trait ContactSystem {
     /// The common residual of the present impulses.
     fn residual(&self) -> f64;
 
-    /// Whether the stopping test is met by an iteration that led from the impulses `before` to the
+    /// True where the stopping test is met by an iteration that led from the impulses `before` to the
     /// present ones.
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool;
-}
-
-/// What is kept by a method that works on a system of bodies.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SystemMemory {
-    vectors: WorkVectors,
-    root_masses: Vec<f64>,
-}
-
-impl SystemMemory {
-    /// A problem as a system, and vectors to work with.
-    pub(crate) fn system<'a, M: Model>(
-        &'a mut self,
-        problem: &'a mut StepProblem<M::Kinematics>,
-    ) -> (BodySystem<'a, M>, &'a mut WorkVectors) {
-        (BodySystem::new(problem, &mut self.root_masses), &mut self.vectors)
-    }
 }
 
 /// The problem of a step: impulses move bodies, and A is never formed.
 #[derive(Debug)]
 pub struct BodySystem<'a, M: Model> {
-    problem: &'a mut StepProblem<M::Kinematics>,
-    /// √m_n of the rows, kg^½.
-    root_masses: &'a [f64],
+    problem: &'a mut StepProblem<M>,
 }
 
 impl<'a, M: Model> BodySystem<'a, M> {
-    /// Contacts are numbered as the rows: those with fixed bodies first. `root_masses` is cleared
-    /// first.
-    pub fn new(problem: &'a mut StepProblem<M::Kinematics>, root_masses: &'a mut Vec<f64>) -> Self {
+    /// Contacts are numbered as the rows: those with fixed bodies first.
+    pub fn new(problem: &'a mut StepProblem<M>) -> Self {
+        let StepProblem { rows, root_masses, .. } = &mut *problem;
         root_masses.clear();
-        root_masses.extend(problem.rows.iter().map(|row| row.effective_mass.sqrt()));
-        Self { problem, root_masses }
+        root_masses.extend(rows.iter().map(|row| row.effective_mass.sqrt()));
+        Self { problem }
     }
 
     /// √m_n of a contact, kg^½: P = √m_n s.
     pub fn root_mass(&self, contact: usize) -> f64 {
-        self.root_masses[contact]
+        self.problem.root_masses[contact]
     }
 
     /// Rows with √m_n, kg^½.
-    fn rows(&self) -> impl Iterator<Item = (&Row<M::Kinematics>, &f64)> {
-        self.problem.rows.iter().zip(self.root_masses)
+    fn rows(&self) -> impl Iterator<Item = (&Row<M>, &f64)> {
+        self.problem.rows.iter().zip(&self.problem.root_masses)
     }
 }
 
@@ -140,7 +120,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     const FRICTION: bool = M::FRICTION;
 
     fn len(&self) -> usize {
-        self.root_masses.len()
+        self.problem.root_masses.len()
     }
 
     fn read(&self, impulses: &mut ScaledVector) {
@@ -152,11 +132,11 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 
     fn write(&mut self, impulses: &[[f64; 2]]) {
-        let rows = self.problem.rows.iter_mut();
-        for ((row, root), [normal, tangential]) in rows.zip(self.root_masses).zip(impulses) {
-            row.shifted_impulse = normal / root;
+        let StepProblem { rows, root_masses, .. } = &mut *self.problem;
+        for ((row, root), [normal, tangential]) in rows.iter_mut().zip(root_masses).zip(impulses) {
+            row.shifted_impulse = normal / *root;
             if M::FRICTION {
-                row.tangential_impulse = tangential / root;
+                row.tangential_impulse = tangential / *root;
             }
         }
         self.problem.form_velocities();
@@ -164,7 +144,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
 
     fn velocities(&self, velocities: &mut ScaledVector) {
         velocities.clear();
-        let mut roots = self.root_masses.iter();
+        let mut roots = self.problem.root_masses.iter();
         self.problem.for_each_velocity(&self.problem.bodies.now, |row, [normal, tangential]| {
             let Some(root) = roots.next() else { return };
             let tangential = if M::FRICTION { root * tangential } else { 0.0 };
@@ -174,7 +154,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
 
     #[inline(always)]
     fn tangential_diagonal(&self, _contact: usize) -> f64 {
-        M::Kinematics::TANGENTIAL_COMPLIANCE
+        M::TANGENTIAL_COMPLIANCE
     }
 
     #[inline(always)]
@@ -188,7 +168,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
         match law.cone() {
             FrictionCone::Shifted => law.friction_bound(normal),
             FrictionCone::Compressive => {
-                let root = self.root_masses[contact];
+                let root = self.problem.root_masses[contact];
                 root * law.friction_bound(normal / root)
             }
         }
@@ -230,11 +210,11 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 
     fn tested_sweep(&mut self, settings: &SolverSettings) -> bool {
-        tested_sweep::<M>(self.problem, settings)
+        tested_sweep(self.problem, settings)
     }
 
     fn residual(&self) -> f64 {
-        residual::<M>(self.problem)
+        residual(self.problem)
     }
 
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool {

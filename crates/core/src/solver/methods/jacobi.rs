@@ -13,24 +13,11 @@
 //! a projected gradient step whose D is small enough for any pile. Impulses spread by one contact an
 //! iteration and are weakened by k, so it takes many; but no order of contacts enters.
 
-use super::contact_system::{BestIterate, ContactSystem, SystemMemory, WorkVectors, projected};
+use super::contact_system::{BestIterate, ContactSystem, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};
-use crate::solver::model::Model;
-use crate::solver::problem::StepProblem;
 use crate::solver::settings::SolverSettings;
 
-/// Solves a prepared problem.
-pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
-    memory: &mut SystemMemory,
-    settings: &SolverSettings,
-) -> SolveReport {
-    let (mut system, vectors) = memory.system::<M>(problem);
-    solve_system(&mut system, settings, vectors)
-}
-
-/// Solves a system from its present impulses.
-pub(super) fn solve_system<S: ContactSystem>(
+pub(super) fn solve<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
     vectors: &mut WorkVectors,

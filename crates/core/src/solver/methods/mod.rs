@@ -10,19 +10,20 @@ mod newton;
 mod nncg;
 mod nsgs;
 mod nsgs_parallel;
+#[cfg(test)]
+mod random_problem;
 mod stopping;
 mod sweep;
 
 pub(crate) use self::auto::picked;
-use self::contact_system::SystemMemory;
 pub(crate) use self::contact_system::WorkVectors;
 pub use self::contact_system::{BodySystem, ContactSystem, ScaledVector};
 pub(super) use self::interior_point::fall_back;
 pub use self::nsgs::sweep;
 pub use self::stopping::SolveReport;
 pub(super) use self::stopping::sweep_until_settled;
+use super::kinematics::Model;
 use super::method::Method;
-use super::model::Model;
 use super::problem::StepProblem;
 use super::settings::SolverSettings;
 
@@ -31,34 +32,30 @@ use super::settings::SolverSettings;
 pub(super) struct MethodMemory {
     nsgs_parallel: nsgs_parallel::BlockMemory,
     newton: newton::NewtonMemory,
-    nncg: SystemMemory,
-    apgd: SystemMemory,
     admm: admm::AdmmMemory,
-    jacobi: SystemMemory,
     pub(super) interior_point: interior_point::InteriorMemory,
-    auto: auto::AutoMemory,
+    vectors: WorkVectors,
 }
 
 /// Solves a prepared problem with the method of the settings.
 pub(super) fn solve_by_method<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut MethodMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
-    match settings.method {
-        Method::Nsgs => nsgs::solve::<M>(problem, settings),
-        Method::NsgsParallel => {
-            nsgs_parallel::solve::<M>(problem, &mut memory.nsgs_parallel, settings)
-        }
-        Method::Newton => newton::solve::<M>(problem, &mut memory.newton, settings),
-        Method::Nncg => nncg::solve::<M>(problem, &mut memory.nncg, settings),
-        Method::Apgd => apgd::solve::<M>(problem, &mut memory.apgd, settings),
-        Method::Admm => admm::solve::<M>(problem, &mut memory.admm, settings),
-        Method::Jacobi => jacobi::solve::<M>(problem, &mut memory.jacobi, settings),
-        Method::InteriorPoint => {
-            interior_point::solve::<M>(problem, &mut memory.interior_point, settings)
-        }
-        Method::Auto => auto::solve::<M>(problem, &mut memory.auto, settings),
+    let MethodMemory { nsgs_parallel: blocks, newton, admm, interior_point: path, vectors } =
+        memory;
+    match picked(settings, || problem.rows.len(), problem.is_driven()) {
+        Method::Nsgs | Method::Auto => nsgs::solve(problem, settings),
+        Method::NsgsParallel => nsgs_parallel::solve(problem, blocks, settings),
+        Method::Newton => newton::solve(problem, newton, vectors, settings),
+        Method::Admm => admm::solve(problem, admm, settings),
+        Method::InteriorPoint => interior_point::solve(problem, path, settings, |problem, rest| {
+            newton::solve(problem, newton, vectors, rest)
+        }),
+        Method::Nncg => nncg::solve(&mut BodySystem::new(problem), settings, vectors),
+        Method::Apgd => apgd::solve(&mut BodySystem::new(problem), settings, vectors),
+        Method::Jacobi => jacobi::solve(&mut BodySystem::new(problem), settings, vectors),
     }
 }
 
@@ -69,14 +66,12 @@ pub(crate) fn solve_system<S: ContactSystem>(
     settings: &SolverSettings,
     vectors: &mut WorkVectors,
 ) -> Option<SolveReport> {
-    if system.is_empty() {
-        return Some(SolveReport::nothing_yet());
-    }
     match settings.method {
+        _ if system.is_empty() => Some(SolveReport::nothing_yet()),
         // Without bodies there is nothing to factorise.
-        Method::Nncg | Method::Auto => Some(nncg::solve_system(system, settings, vectors)),
-        Method::Apgd => Some(apgd::solve_system(system, settings, vectors)),
-        Method::Jacobi => Some(jacobi::solve_system(system, settings, vectors)),
+        Method::Nncg | Method::Auto => Some(nncg::solve(system, settings, vectors)),
+        Method::Apgd => Some(apgd::solve(system, settings, vectors)),
+        Method::Jacobi => Some(jacobi::solve(system, settings, vectors)),
         Method::Nsgs
         | Method::NsgsParallel
         | Method::Newton

@@ -24,14 +24,13 @@
 //! The method is that of an augmented Lagrangian treated by generalised Newton steps (P. Alart,
 //! A. Curnier 1991), with ε adapted as in a trust region.
 
-use super::contact_system::SystemMemory;
+use super::contact_system::{BodySystem, WorkVectors};
 use super::nncg;
-use super::nsgs::{sweep, tested_sweep};
+use super::nsgs::{settles_in, sweep};
 use super::stopping::SolveReport;
 use crate::contact::law::{coulomb, signorini};
-use crate::solver::kinematics::Kinematics;
+use crate::solver::kinematics::Model;
 use crate::solver::linear::{BlockMatrix, ContactGraph};
-use crate::solver::model::Model;
 use crate::solver::problem::{Row, StepProblem, residual};
 use crate::solver::settings::SolverSettings;
 
@@ -51,7 +50,6 @@ const SWEEPS_FIRST: u32 = 4;
 const SWEEPS_AFTER: u32 = 4;
 /// Sweeps where Newton stalls, doubled each time up to [`MOST_SWEEPS_BETWEEN`].
 const SWEEPS_BETWEEN: u32 = 20;
-/// See [`SWEEPS_BETWEEN`].
 const MOST_SWEEPS_BETWEEN: u32 = 200;
 /// Factorisations without halving the best residual after which the solve is given up.
 const PATIENCE: u32 = 100;
@@ -60,7 +58,6 @@ const PATIENCE: u32 = 100;
 /// the residual may rise for a few steps on the way down. With 1, steps are refused that lead on;
 /// with 15, many are taken that lead nowhere.
 const HISTORY: usize = 6;
-/// See [`HISTORY`].
 const ENOUGH: f64 = 0.99;
 
 /// A workspace for each number of degrees of freedom; those that are not used hold no memory.
@@ -69,8 +66,6 @@ pub(crate) struct NewtonMemory {
     one: NewtonWorkspace<1>,
     two: NewtonWorkspace<2>,
     three: NewtonWorkspace<3>,
-    /// Of the conjugate gradients that go on where Newton's method leads nowhere.
-    gradients: SystemMemory,
 }
 
 /// What is kept where a body has `D` degrees of freedom.
@@ -95,26 +90,26 @@ enum Guess {
     Slip(f64),
 }
 
-/// Solves a prepared problem.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut NewtonMemory,
+    vectors: &mut WorkVectors,
     settings: &SolverSettings,
 ) -> SolveReport {
-    let NewtonMemory { one, two, three, gradients } = memory;
-    match M::Kinematics::DEGREES {
-        1 => Newton::<M, 1> { problem, settings, workspace: one, gradients }.run(),
-        2 => Newton::<M, 2> { problem, settings, workspace: two, gradients }.run(),
-        _ => Newton::<M, 3> { problem, settings, workspace: three, gradients }.run(),
+    let NewtonMemory { one, two, three } = memory;
+    match M::DEGREES {
+        1 => Newton::<M, 1> { problem, settings, workspace: one, vectors }.run(),
+        2 => Newton::<M, 2> { problem, settings, workspace: two, vectors }.run(),
+        _ => Newton::<M, 3> { problem, settings, workspace: three, vectors }.run(),
     }
 }
 
-/// One solve.
 struct Newton<'a, M: Model, const D: usize> {
-    problem: &'a mut StepProblem<M::Kinematics>,
+    problem: &'a mut StepProblem<M>,
     settings: &'a SolverSettings,
     workspace: &'a mut NewtonWorkspace<D>,
-    gradients: &'a mut SystemMemory,
+    /// Of the conjugate gradients that go on where Newton's method leads nowhere.
+    vectors: &'a mut WorkVectors,
 }
 
 impl<M: Model, const D: usize> Newton<'_, M, D> {
@@ -125,7 +120,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
             return report;
         }
         self.workspace.graph.analyse(self.problem);
-        let mut history = ResidualHistory::new(residual::<M>(self.problem));
+        let mut history = ResidualHistory::new(residual(self.problem));
         self.problem.rows.read_impulses(&mut self.workspace.saved);
         self.workspace.best.clone_from(&self.workspace.saved);
         let mut compliance = FIRST_COMPLIANCE;
@@ -140,7 +135,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
             if self.settles_in(1, &mut report) {
                 return report;
             }
-            let mut now = residual::<M>(self.problem);
+            let mut now = residual(self.problem);
             history.since_milestone += 1;
             // Not a number is not below anything.
             if now < history.bound() {
@@ -157,7 +152,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                 }
                 sweeps_between = (2 * sweeps_between).min(MOST_SWEEPS_BETWEEN);
                 compliance = FIRST_COMPLIANCE;
-                now = residual::<M>(self.problem);
+                now = residual(self.problem);
             }
             self.problem.rows.read_impulses(&mut self.workspace.saved);
             if history.accept(now) {
@@ -168,16 +163,9 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.go_on_without(report)
     }
 
-    /// Sweeps up to so many times; whether the stopping test is met.
+    /// Sweeps up to so many times. True where the stopping test is met.
     fn settles_in(&mut self, sweeps: u32, report: &mut SolveReport) -> bool {
-        for _ in 0..sweeps {
-            report.sweeps += 1;
-            if tested_sweep::<M>(self.problem, self.settings) {
-                report.converged = true;
-                break;
-            }
-        }
-        report.converged
+        settles_in(self.problem, self.settings, sweeps, report)
     }
 
     /// Where Newton's method leads nowhere, conjugate gradients use up the sweeps that are left:
@@ -188,7 +176,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
             return report;
         }
         let settings = SolverSettings { max_sweeps: left, ..*self.settings };
-        let rest = nncg::solve::<M>(self.problem, self.gradients, &settings);
+        let rest = nncg::solve(&mut BodySystem::new(self.problem), &settings, self.vectors);
         SolveReport {
             sweeps: report.sweeps + rest.sweeps,
             factorisations: report.factorisations,
@@ -223,8 +211,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
                 false => rows.fixed[number].velocity(&bodies.now),
             };
             let row = rows.get_mut(number);
-            let [[normal_i, tangent_i], [normal_j, tangent_j]] =
-                M::Kinematics::gradients(row.normal);
+            let [[normal_i, tangent_i], [normal_j, tangent_j]] = M::gradients(row.normal);
             normal_velocity += along(&normal_i, row.i);
             tangential_velocity += along(&tangent_i, row.i);
             if is_pair {
@@ -239,7 +226,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
             row.shifted_impulse = shifted;
             if M::FRICTION {
                 let bound = law.friction_bound(shifted);
-                let softness = M::Kinematics::TANGENTIAL_COMPLIANCE * compliance;
+                let softness = M::TANGENTIAL_COMPLIANCE * compliance;
                 row.tangential_impulse = match guess {
                     Guess::Open => 0.0,
                     Guess::Stick => {
@@ -254,28 +241,21 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
 
 /// Guesses what every contact does, and sets up the equations of the velocities that follow.
 fn assemble<M: Model, const D: usize>(
-    problem: &StepProblem<M::Kinematics>,
+    problem: &StepProblem<M>,
     workspace: &mut NewtonWorkspace<D>,
     compliance: f64,
 ) {
     let NewtonWorkspace { graph, matrix, vector, guesses, .. } = workspace;
     let (elimination, pair_blocks) = (&graph.elimination, &graph.pair_blocks);
-    matrix.clear(elimination);
+    matrix.start::<M>(elimination, &problem.bodies.masses);
     vector.clear();
     vector.resize(problem.bodies.now.len(), [0.0; D]);
-    for (body, &mass) in problem.bodies.masses.iter().enumerate() {
-        let place = elimination.place_of[body];
-        let block = matrix.diagonal_mut(place);
-        for (axis, row) in block.iter_mut().enumerate() {
-            row[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
-        }
-    }
     guesses.clear();
     for row in &problem.rows.fixed {
         let velocity = row.velocity(&problem.bodies.now);
         let guess = guess::<M>(problem, row, velocity);
         guesses.push(guess);
-        let gradients = M::Kinematics::gradients(row.normal);
+        let gradients = M::gradients(row.normal);
         let terms = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[0]);
         let place = elimination.place_of[row.i as usize];
         terms.add(matrix.diagonal_mut(place), &terms);
@@ -285,7 +265,7 @@ fn assemble<M: Model, const D: usize>(
         let velocity = row.velocity(&problem.bodies.now);
         let guess = guess::<M>(problem, row, velocity);
         guesses.push(guess);
-        let gradients = M::Kinematics::gradients(row.normal);
+        let gradients = M::gradients(row.normal);
         let on_i = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[0]);
         let on_j = Terms::<D>::new::<M>(problem, row, velocity, guess, compliance, &gradients[1]);
         let i = elimination.place_of[row.i as usize];
@@ -304,8 +284,8 @@ fn assemble<M: Model, const D: usize>(
 
 /// What a contact would do next, by its law.
 fn guess<M: Model>(
-    problem: &StepProblem<M::Kinematics>,
-    row: &Row<M::Kinematics>,
+    problem: &StepProblem<M>,
+    row: &Row<M>,
     [normal_velocity, tangential_velocity]: [f64; 2],
 ) -> Guess {
     let shifted = row.shifted_impulse - normal_velocity - row.restitution_velocity;
@@ -316,7 +296,7 @@ fn guess<M: Model>(
     if bound == 0.0 {
         return Guess::Slip(0.0);
     }
-    let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+    let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let tangential = row.tangential_impulse - compliance * tangential_velocity;
     if tangential.abs() <= bound { Guess::Stick } else { Guess::Slip(tangential.signum()) }
 }
@@ -338,8 +318,8 @@ struct Terms<const D: usize> {
 impl<const D: usize> Terms<D> {
     #[inline(always)]
     fn new<M: Model>(
-        problem: &StepProblem<M::Kinematics>,
-        row: &Row<M::Kinematics>,
+        problem: &StepProblem<M>,
+        row: &Row<M>,
         [normal_velocity, tangential_velocity]: [f64; 2],
         guess: Guess,
         compliance: f64,
@@ -354,7 +334,7 @@ impl<const D: usize> Terms<D> {
         let (slope, normal_stiffness, tangential_stiffness, changes) = match guess {
             Guess::Open => (0.0, 0.0, 0.0, [-shifted, -tangential]),
             Guess::Stick => {
-                let softness = M::Kinematics::TANGENTIAL_COMPLIANCE;
+                let softness = M::TANGENTIAL_COMPLIANCE;
                 let tangential_change = -tangential_velocity / (softness * compliance);
                 (0.0, stiffness, stiffness / softness, [normal_change, tangential_change])
             }
@@ -411,7 +391,6 @@ struct ResidualHistory {
 }
 
 impl ResidualHistory {
-    /// From a residual.
     fn new(residual: f64) -> Self {
         let mut history = [0.0; HISTORY];
         history[0] = residual;

@@ -11,24 +11,11 @@
 //! sweep solves Coulomb's law as it stands, so the method does too; what leaves the cone by
 //! extrapolation is brought back by the next sweep, and the result is always a sweep's.
 
-use super::contact_system::{BestIterate, ContactSystem, SystemMemory, WorkVectors, dot};
+use super::contact_system::{BestIterate, ContactSystem, WorkVectors, dot};
 use super::stopping::{SolveReport, is_tested};
-use crate::solver::model::Model;
-use crate::solver::problem::StepProblem;
 use crate::solver::settings::SolverSettings;
 
-/// Solves a prepared problem.
-pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
-    memory: &mut SystemMemory,
-    settings: &SolverSettings,
-) -> SolveReport {
-    let (mut system, vectors) = memory.system::<M>(problem);
-    solve_system(&mut system, settings, vectors)
-}
-
-/// Solves a system from its present impulses.
-pub(super) fn solve_system<S: ContactSystem>(
+pub(super) fn solve<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
     vectors: &mut WorkVectors,

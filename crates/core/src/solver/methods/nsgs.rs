@@ -8,12 +8,11 @@
 use super::stopping::{SolveReport, is_settled, is_tested, sweep_until_settled};
 use super::sweep::{ImpulseChange, squared_impulse};
 use crate::contact::{ContactLaw, law};
-use crate::solver::kinematics::Kinematics;
+use crate::solver::kinematics::Model;
 use crate::solver::method::Ordering;
-use crate::solver::model::Model;
 use crate::solver::problem::{
-    Bodies, BoundedFriction, ConeFriction, ContactRows, CoulombFriction, DrivenRow, DrivenWall,
-    FixedRow, FrictionProjection, MovingWalls, StepProblem, natural_map,
+    Bodies, BoundedFriction, ContactRows, CoulombFriction, DrivenRow, DrivenWall, FixedRow,
+    FrictionProjection, StepProblem, natural_map, with_projection,
 };
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
@@ -23,36 +22,28 @@ const SWEEPS_FOR_NEW_BOUNDS: u32 = 10;
 
 /// Solves a prepared problem by sweeps, under the model of friction that it was prepared for.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     settings: &SolverSettings,
 ) -> SolveReport {
-    solve_models::<M>(problem, settings, |problem| {
-        let sweep = |problem: &mut StepProblem<M::Kinematics>, sweeps| {
+    solve_models(problem, settings, |problem| {
+        let sweep = |problem: &mut StepProblem<M>, sweeps| {
             let backward = settings.ordering == Ordering::Symmetric && sweeps % 2 == 0;
             if is_tested(sweeps, settings) {
-                return sweep_of_model::<M>(problem, settings, backward);
+                return sweep_of_model(problem, settings, backward);
             }
-            match problem.friction.model {
-                FrictionModel::Tresca if M::FRICTION => {
-                    sweep_by::<M, BoundedFriction, false>(problem, backward)
-                }
-                FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
-                    sweep_by::<M, ConeFriction, false>(problem, backward)
-                }
-                _ => sweep_by::<M, CoulombFriction, false>(problem, backward),
-            };
+            with_projection!(problem, M, P => sweep_by::<M, P, false>(problem, backward));
             false
         };
-        sweep_until_settled(problem, settings, sweep, |problem| natural_map::<M>(problem))
+        sweep_until_settled(problem, settings, sweep, |problem| natural_map(problem))
     })
 }
 
 /// Solves a problem by `solve_once` as often as the settings ask for, the lagged numbers of its model of friction
 /// taken anew each time. The step is solved where the last solve is: those before it only say what lags.
 pub(super) fn solve_models<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     settings: &SolverSettings,
-    mut solve_once: impl FnMut(&mut StepProblem<M::Kinematics>) -> SolveReport,
+    mut solve_once: impl FnMut(&mut StepProblem<M>) -> SolveReport,
 ) -> SolveReport {
     if !M::FRICTION || problem.friction.model == FrictionModel::Coulomb {
         return solve_once(problem);
@@ -74,32 +65,41 @@ pub(super) fn solve_models<M: Model>(
 
 /// One sweep of the model of friction that a problem was prepared for, and whether the stopping test is met
 /// after it.
-pub(super) fn sweep_of_model<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+fn sweep_of_model<M: Model>(
+    problem: &mut StepProblem<M>,
     settings: &SolverSettings,
     backward: bool,
 ) -> bool {
-    match problem.friction.model {
-        FrictionModel::Tresca if M::FRICTION => {
-            tested::<M, BoundedFriction>(problem, settings, backward)
+    with_projection!(problem, M, P => tested::<M, P>(problem, settings, backward))
+}
+
+/// Sweeps up to so many times under the model of friction of a problem. True where the stopping test is met.
+pub(super) fn settles_in<M: Model>(
+    problem: &mut StepProblem<M>,
+    settings: &SolverSettings,
+    sweeps: u32,
+    report: &mut SolveReport,
+) -> bool {
+    for _ in 0..sweeps {
+        report.sweeps += 1;
+        if sweep_of_model(problem, settings, false) {
+            report.converged = true;
+            break;
         }
-        FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
-            tested::<M, ConeFriction>(problem, settings, backward)
-        }
-        _ => tested::<M, CoulombFriction>(problem, settings, backward),
     }
+    report.converged
 }
 
 /// One sweep under Coulomb's law, and whether the stopping test is met after it.
 pub(super) fn tested_sweep<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     settings: &SolverSettings,
 ) -> bool {
     tested::<M, CoulombFriction>(problem, settings, false)
 }
 
 fn tested<M: Model, P: FrictionProjection>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     settings: &SolverSettings,
     backward: bool,
 ) -> bool {
@@ -115,7 +115,7 @@ fn tested<M: Model, P: FrictionProjection>(
 }
 
 /// Σ P², (N·s)².
-fn squared_impulses<K: Kinematics>(problem: &mut StepProblem<K>) -> f64 {
+fn squared_impulses<M: Model>(problem: &mut StepProblem<M>) -> f64 {
     let squared = |number: usize| {
         let row = problem.rows.get(number);
         squared_impulse(row.effective_mass, problem.reduced_impulse(number, row))
@@ -125,26 +125,24 @@ fn squared_impulses<K: Kinematics>(problem: &mut StepProblem<K>) -> f64 {
 }
 
 /// One pass over all contacts under Coulomb's law.
-pub fn sweep<M: Model, const MEASURE: bool>(
-    problem: &mut StepProblem<M::Kinematics>,
-) -> ImpulseChange {
+pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> ImpulseChange {
     sweep_by::<M, CoulombFriction, MEASURE>(problem, false)
 }
 
 /// One pass over all contacts, from the last to the first where it goes backward.
 fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     backward: bool,
 ) -> ImpulseChange {
     if !P::LAGS && problem.is_driven() {
-        return pass_with_driven_walls::<M, MEASURE>(problem, backward);
+        return pass::<M, P, MEASURE, true>(problem, backward);
     }
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx") {
         // SAFETY: the processor has just been asked.
         return unsafe { pass_with_avx::<M, P, MEASURE>(problem, backward) };
     }
-    pass::<M, P, MEASURE>(problem, backward)
+    pass::<M, P, MEASURE, false>(problem, backward)
 }
 
 /// The same operations in the same order, and so bitwise the same result, in the three-operand
@@ -152,80 +150,58 @@ fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx")]
 fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     backward: bool,
 ) -> ImpulseChange {
-    pass::<M, P, MEASURE>(problem, backward)
+    pass::<M, P, MEASURE, false>(problem, backward)
 }
 
+/// Where walls are driven (`problem::walls`), what a contact does to its wall is told to the wall at once, and each
+/// contact is solved for its wall's answer as for its grain's.
 #[inline(always)]
-fn pass<M: Model, P: FrictionProjection, const MEASURE: bool>(
-    problem: &mut StepProblem<M::Kinematics>,
+fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool>(
+    problem: &mut StepProblem<M>,
     backward: bool,
 ) -> ImpulseChange {
     let law = problem.law;
     let lagged = &problem.friction.now;
     let Bodies { now: bodies, .. } = &mut problem.bodies;
     let ContactRows { fixed, pairs, .. } = &mut problem.rows;
+    let walls = &mut problem.walls;
     let first_pair = fixed.len();
     let project = |number: usize| {
         let lagged = if P::LAGS { lagged[number] } else { 0.0 };
         move |trial| P::project::<M>(&law, lagged, trial)
     };
     let mut change = ImpulseChange::default();
+    let mut solve_fixed =
+        |number: usize, row: &mut FixedRow<M>, bodies: &mut [_], change: &mut _| {
+            if DRIVEN && let Some(known) = walls.driven_row(number).copied() {
+                let wall = &mut walls.driven[known.by.wall as usize];
+                let impulse = solve_driven(&law, row, &known, &mut bodies[row.i as usize], wall);
+                ImpulseChange::add::<M, MEASURE>(change, row.effective_mass, impulse);
+            } else {
+                row.solve::<MEASURE>(bodies, change, project(number));
+            }
+        };
     if backward {
         for (number, row) in pairs.iter_mut().enumerate().rev() {
-            row.solve::<M, MEASURE>(bodies, &mut change, project(first_pair + number));
+            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
         }
         for (number, row) in fixed.iter_mut().enumerate().rev() {
-            row.solve::<M, MEASURE>(bodies, &mut change, project(number));
+            solve_fixed(number, row, bodies, &mut change);
         }
     } else {
         for (number, row) in fixed.iter_mut().enumerate() {
-            row.solve::<M, MEASURE>(bodies, &mut change, project(number));
+            solve_fixed(number, row, bodies, &mut change);
         }
         for (number, row) in pairs.iter_mut().enumerate() {
-            row.solve::<M, MEASURE>(bodies, &mut change, project(first_pair + number));
+            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
         }
     }
-    change
-}
-
-/// A pass where walls are driven (`problem::walls`): what a contact does to its wall is told to the wall at once, and
-/// each contact is solved for its wall's answer as for its grain's.
-fn pass_with_driven_walls<M: Model, const MEASURE: bool>(
-    problem: &mut StepProblem<M::Kinematics>,
-    backward: bool,
-) -> ImpulseChange {
-    let law = problem.law;
-    let project = |trial| CoulombFriction::project::<M>(&law, 0.0, trial);
-    let Bodies { now: bodies, .. } = &mut problem.bodies;
-    let ContactRows { fixed, pairs, .. } = &mut problem.rows;
-    let walls = &mut problem.walls;
-    let mut change = ImpulseChange::default();
-    let fixed_count = fixed.len();
-    let mut solve_fixed = |number: usize, bodies: &mut [_], change: &mut ImpulseChange| {
-        let row: &mut FixedRow<_> = &mut fixed[number];
-        let Some(known) = walls.driven_row(number).copied() else {
-            return row.solve::<M, MEASURE>(bodies, change, project);
-        };
-        let MovingWalls { driven, .. } = &mut *walls;
-        let wall = &mut driven[known.by.wall as usize];
-        let impulse = solve_driven::<M>(&law, row, &known, &mut bodies[row.i as usize], wall);
-        change.add::<M, MEASURE>(row.effective_mass, impulse);
-    };
-    if backward {
-        for row in pairs.iter_mut().rev() {
-            row.solve::<M, MEASURE>(bodies, &mut change, project);
-        }
-        (0..fixed_count).rev().for_each(|number| solve_fixed(number, bodies, &mut change));
-    } else {
-        (0..fixed_count).for_each(|number| solve_fixed(number, bodies, &mut change));
-        for row in pairs {
-            row.solve::<M, MEASURE>(bodies, &mut change, project);
-        }
+    if DRIVEN {
+        problem.tell_of_walls();
     }
-    problem.tell_of_walls();
     change
 }
 
@@ -233,32 +209,32 @@ fn pass_with_driven_walls<M: Model, const MEASURE: bool>(
 /// wall along the tangent, too, where it goes askew, so the tangential velocity is read after it.
 fn solve_driven<M: Model>(
     law: &ContactLaw,
-    row: &mut FixedRow<M::Kinematics>,
+    row: &mut FixedRow<M>,
     known: &DrivenRow,
-    i: &mut <M::Kinematics as Kinematics>::Body<f64>,
+    i: &mut M::Body<f64>,
     wall: &mut DrivenWall,
 ) -> [f64; 2] {
     let [along_normal, along_tangent] = known.by.along;
     let answer = wall.response * row.effective_mass;
-    let [normal_velocity, _] = M::Kinematics::velocity(row.normal, i);
+    let [normal_velocity, _] = M::velocity(row.normal, i);
     let closing = normal_velocity + known.still[0] - along_normal * wall.now;
     let before = row.shifted_impulse;
     let compliance = 1.0 + answer * along_normal * along_normal;
     row.shifted_impulse = law::signorini(before - closing / compliance);
     let normal = row.shifted_impulse - before;
-    M::Kinematics::push_single(i, row.normal, [normal, 0.0]);
+    M::push_single(i, row.normal, [normal, 0.0]);
     wall.now -= answer * along_normal * normal;
     if !M::FRICTION {
         return [normal, 0.0];
     }
-    let [_, tangential_velocity] = M::Kinematics::velocity(row.normal, i);
+    let [_, tangential_velocity] = M::velocity(row.normal, i);
     let slip = tangential_velocity - known.still[1] - along_tangent * wall.now;
     let before = row.tangential_impulse;
-    let compliance = M::Kinematics::TANGENTIAL_COMPLIANCE + answer * along_tangent * along_tangent;
+    let compliance = M::TANGENTIAL_COMPLIANCE + answer * along_tangent * along_tangent;
     let bound = law.friction_bound(row.shifted_impulse);
     row.tangential_impulse = law::coulomb(before - slip / compliance, bound);
     let tangential = row.tangential_impulse - before;
-    M::Kinematics::push_single(i, row.normal, [0.0, tangential]);
+    M::push_single(i, row.normal, [0.0, tangential]);
     wall.now -= answer * along_tangent * tangential;
     [normal, tangential]
 }

@@ -72,7 +72,7 @@ const SWEEPS_TESTED_EACH: u32 = 16;
 /// Sweeps between two tests of a long solve; the most that are done in vain.
 const TEST_INTERVAL: u32 = 8;
 
-/// Whether the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
+/// True where the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
 pub(super) fn is_tested(sweeps: u32, settings: &SolverSettings) -> bool {
     sweeps <= SWEEPS_TESTED_EACH
         || sweeps.is_multiple_of(TEST_INTERVAL)
@@ -103,7 +103,7 @@ pub(in crate::solver) fn sweep_until_settled<P>(
     SolveReport { sweeps, stalled, ..SolveReport::default() }
 }
 
-/// Whether the stopping test is met after a sweep that made this change, by a mean mass (kg) of the
+/// True where the stopping test is met after a sweep that made this change, by a mean mass (kg) of the
 /// grains, by Σ P² ((N·s)²), or by the residual.
 pub(super) fn is_settled<P>(
     problem: &mut P,
@@ -168,7 +168,7 @@ impl StallWatch {
         self.in_vain >= LOOKS_IN_VAIN && settings.stop == StopTest::Residual
     }
 
-    /// Whether a solve that was given up after so many sweeps with this residual had stalled.
+    /// True where a solve that was given up after so many sweeps with this residual had stalled.
     /// Compared is the last look at no more than half as many sweeps.
     pub(super) fn has_stalled(&self, sweeps: u32, residual: f64) -> bool {
         let last_look = self.next_look / 2;

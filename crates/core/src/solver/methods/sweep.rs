@@ -8,18 +8,14 @@
 //! same trial impulses in another way (`problem::friction`).
 
 use crate::contact::Lanes;
-use crate::solver::kinematics::Kinematics;
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::{FixedRow, PairRow, Row};
-
-/// A body of a model; with several lanes, a body a lane.
-pub(crate) type ModelBody<M, T> = <<M as Model>::Kinematics as Kinematics>::Body<T>;
 
 /// What an update needs of a row beside its impulses; with several lanes, of a row a lane. Units as
 /// in [`Row`].
 #[derive(Clone, Copy)]
-pub(crate) struct Local<K: Kinematics, T: Lanes> {
-    pub normal: K::Normal<T>,
+pub(crate) struct Local<M: Model, T: Lanes> {
+    pub normal: M::Normal<T>,
     pub restitution_velocity: T,
     pub effective_mass: T,
 }
@@ -63,48 +59,48 @@ impl<T: Lanes> ImpulseChange<T> {
     }
 }
 
-impl<K: Kinematics, T: Lanes> Local<K, T> {
+impl<M: Model, T: Lanes> Local<M, T> {
     /// (v_n, v_t) of grains i against fixed bodies, as [`FixedRow::velocity`] has it, m/s.
     #[inline(always)]
-    pub(crate) fn velocity(&self, surface_speed: T, i: &K::Body<T>) -> [T; 2] {
-        let [normal, tangential] = K::velocity(self.normal, i);
+    pub(crate) fn velocity(&self, surface_speed: T, i: &M::Body<T>) -> [T; 2] {
+        let [normal, tangential] = M::velocity(self.normal, i);
         [normal, tangential - surface_speed]
     }
 
     /// Solves contacts of grains i with fixed bodies, of which `impulse` is (σ, λ_t).
     #[inline(always)]
-    pub(crate) fn solve_fixed<M: Model<Kinematics = K>, const MEASURE: bool>(
+    pub(crate) fn solve_fixed<const MEASURE: bool>(
         &self,
         surface_speed: T,
         impulse: &mut [T; 2],
-        i: &mut K::Body<T>,
+        i: &mut M::Body<T>,
         change: &mut ImpulseChange<T>,
         project: impl FnOnce([T; 2]) -> [T; 2],
     ) {
-        let pushed = self.update::<M>(impulse, self.velocity(surface_speed, i), project);
-        K::push_single(i, self.normal, pushed);
+        let pushed = self.update(impulse, self.velocity(surface_speed, i), project);
+        M::push_single(i, self.normal, pushed);
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
     /// Solves contacts between grains i and j, g_i being `share`.
     #[inline(always)]
-    pub(crate) fn solve_pair<M: Model<Kinematics = K>, const MEASURE: bool>(
+    pub(crate) fn solve_pair<const MEASURE: bool>(
         &self,
         share: T,
         impulse: &mut [T; 2],
-        [i, j]: [&mut K::Body<T>; 2],
+        [i, j]: [&mut M::Body<T>; 2],
         change: &mut ImpulseChange<T>,
         project: impl FnOnce([T; 2]) -> [T; 2],
     ) {
-        let velocity = K::relative_velocity(self.normal, i, j);
-        let pushed = self.update::<M>(impulse, velocity, project);
-        K::push_pair(i, j, self.normal, pushed, share);
+        let velocity = M::relative_velocity(self.normal, i, j);
+        let pushed = self.update(impulse, velocity, project);
+        M::push_pair(i, j, self.normal, pushed, share);
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
     /// Solves at the given (v_n, v_t) and returns the change of (λ_n, λ_t).
     #[inline(always)]
-    fn update<M: Model<Kinematics = K>>(
+    fn update(
         &self,
         impulse: &mut [T; 2],
         [normal_velocity, tangential_velocity]: [T; 2],
@@ -112,7 +108,7 @@ impl<K: Kinematics, T: Lanes> Local<K, T> {
     ) -> [T; 2] {
         let before = *impulse;
         let closing = normal_velocity + self.restitution_velocity;
-        let compliance = closing.same(1.0 / K::TANGENTIAL_COMPLIANCE);
+        let compliance = closing.same(1.0 / M::TANGENTIAL_COMPLIANCE);
         let after = project([before[0] - closing, before[1] - compliance * tangential_velocity]);
         impulse[0] = after[0];
         let normal_change = after[0] - before[0];
@@ -124,45 +120,45 @@ impl<K: Kinematics, T: Lanes> Local<K, T> {
     }
 }
 
-impl<K: Kinematics> FixedRow<K> {
+impl<M: Model> FixedRow<M> {
     /// Solves the contact of one of the bodies with a fixed one.
     #[inline(always)]
-    pub(crate) fn solve<M: Model<Kinematics = K>, const MEASURE: bool>(
+    pub(crate) fn solve<const MEASURE: bool>(
         &mut self,
-        bodies: &mut [K::Body<f64>],
+        bodies: &mut [M::Body<f64>],
         change: &mut ImpulseChange,
         project: impl FnOnce([f64; 2]) -> [f64; 2],
     ) {
         let mut impulse = self.impulse();
         let i = &mut bodies[self.i as usize];
         let speed = self.surface_speed;
-        self.local().solve_fixed::<M, MEASURE>(speed, &mut impulse, i, change, project);
+        self.local().solve_fixed::<MEASURE>(speed, &mut impulse, i, change, project);
         [self.shifted_impulse, self.tangential_impulse] = impulse;
     }
 }
 
-impl<K: Kinematics> PairRow<K> {
+impl<M: Model> PairRow<M> {
     /// Solves the contact between two of the bodies.
     #[inline(always)]
-    pub(crate) fn solve<M: Model<Kinematics = K>, const MEASURE: bool>(
+    pub(crate) fn solve<const MEASURE: bool>(
         &mut self,
-        bodies: &mut [K::Body<f64>],
+        bodies: &mut [M::Body<f64>],
         change: &mut ImpulseChange,
         project: impl FnOnce([f64; 2]) -> [f64; 2],
     ) {
         let mut impulse = self.impulse();
         let (mut i, mut j) = (bodies[self.i as usize], bodies[self.j as usize]);
         let both = [&mut i, &mut j];
-        self.local().solve_pair::<M, MEASURE>(self.share, &mut impulse, both, change, project);
+        self.local().solve_pair::<MEASURE>(self.share, &mut impulse, both, change, project);
         bodies[self.i as usize] = i;
         bodies[self.j as usize] = j;
         [self.shifted_impulse, self.tangential_impulse] = impulse;
     }
 }
 
-impl<K: Kinematics> Row<K> {
+impl<M: Model> Row<M> {
     #[inline(always)]
-    fn local(&self) -> Local<K, f64> {
+    fn local(&self) -> Local<M, f64> {
         let Self { normal, restitution_velocity, effective_mass, .. } = *self;
         Local { normal, restitution_velocity, effective_mass }
     }

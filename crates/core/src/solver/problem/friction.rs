@@ -18,8 +18,7 @@
 use super::residual::{projection_residual, residual};
 use super::{Row, StepProblem};
 use crate::contact::{ContactLaw, ContactList, Lanes, law};
-use crate::solver::kinematics::Kinematics;
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
 /// The bound of a contact that has not been solved yet: none is set.
@@ -36,7 +35,7 @@ pub(crate) struct LaggedFriction {
 }
 
 /// How a contact's impulses are projected under a model of friction.
-pub(crate) trait FrictionProjection {
+pub(crate) trait FrictionProjection: Sized {
     /// True where each row has a lagged number.
     const LAGS: bool;
 
@@ -44,8 +43,31 @@ pub(crate) trait FrictionProjection {
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 
     /// The natural map's residual of this projection.
-    fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64;
+    fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
+        projection_residual::<M, Self>(problem)
+    }
 }
+
+/// Evaluates an expression for the projection that a problem is solved by.
+macro_rules! with_projection {
+    ($problem:expr, $M:ident, $P:ident => $work:expr) => {
+        match $problem.friction.model {
+            FrictionModel::Tresca if $M::FRICTION => {
+                type $P = $crate::solver::problem::BoundedFriction;
+                $work
+            }
+            FrictionModel::Associated | FrictionModel::Desaxce if $M::FRICTION => {
+                type $P = $crate::solver::problem::ConeFriction;
+                $work
+            }
+            _ => {
+                type $P = $crate::solver::problem::CoulombFriction;
+                $work
+            }
+        }
+    };
+}
+pub(crate) use with_projection;
 
 /// Coulomb's law itself.
 pub(crate) enum CoulombFriction {}
@@ -58,8 +80,8 @@ impl FrictionProjection for CoulombFriction {
         project_by_coulomb::<M, f64>(law, trial)
     }
 
-    fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
-        residual::<M>(problem)
+    fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
+        residual(problem)
     }
 }
 
@@ -92,10 +114,6 @@ impl FrictionProjection for BoundedFriction {
         let bound = if lagged == UNSET_BOUND { law.friction_bound(shifted) } else { lagged };
         [shifted, law::coulomb(tangential, bound)]
     }
-
-    fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
-        projection_residual::<M, Self>(problem)
-    }
 }
 
 /// `associated` and `desaxce`: what is added to w lags.
@@ -106,22 +124,14 @@ impl FrictionProjection for ConeFriction {
 
     #[inline(always)]
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2] {
-        let compliance = M::Kinematics::TANGENTIAL_COMPLIANCE;
+        let compliance = M::TANGENTIAL_COMPLIANCE;
         law::nearest_on_cone(law.friction, compliance, [trial[0] - lagged, trial[1]])
-    }
-
-    fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
-        projection_residual::<M, Self>(problem)
     }
 }
 
-impl<K: Kinematics> StepProblem<K> {
+impl<M: Model> StepProblem<M> {
     /// Says by which model a problem is to be solved whose rows and velocities are there.
-    pub(super) fn begin_friction<M: Model<Kinematics = K>>(
-        &mut self,
-        contacts: &ContactList,
-        model: FrictionModel,
-    ) {
+    pub(super) fn begin_friction(&mut self, contacts: &ContactList, model: FrictionModel) {
         self.friction.model = model;
         let mut lagged = std::mem::take(&mut self.friction.at_start);
         lagged.clear();
@@ -170,8 +180,7 @@ impl<K: Kinematics> StepProblem<K> {
 
     /// True where contacts are to be bounded that have not been solved yet.
     pub(crate) fn has_unset_bounds(&self) -> bool {
-        let LaggedFriction { model, now, .. } = &self.friction;
-        *model == FrictionModel::Tresca && now.contains(&UNSET_BOUND)
+        self.friction.model == FrictionModel::Tresca && self.friction.now.contains(&UNSET_BOUND)
     }
 
     /// Gives such contacts Coulomb's bounds at the present impulses, for all solves of the step.
@@ -193,7 +202,7 @@ impl<K: Kinematics> StepProblem<K> {
     }
 
     /// Takes as lagged what `lagged_of` makes of each row and its v_t.
-    fn lag_by(&mut self, lagged_of: impl Fn(&ContactLaw, &Row<K>, f64) -> f64) {
+    fn lag_by(&mut self, lagged_of: impl Fn(&ContactLaw, &Row<M>, f64) -> f64) {
         let mut lagged = std::mem::take(&mut self.friction.now);
         lagged.clear();
         self.for_each_velocity(&self.bodies.now, |row, [_, tangential]| {
@@ -204,22 +213,20 @@ impl<K: Kinematics> StepProblem<K> {
 }
 
 /// g of `tresca` after a solve.
-fn bound<K: Kinematics>(law: &ContactLaw, row: &Row<K>, _: f64) -> f64 {
+fn bound<M: Model>(law: &ContactLaw, row: &Row<M>, _: f64) -> f64 {
     law.friction_bound(row.shifted_impulse)
 }
 
 /// s of `desaxce` after a solve that came to this v_t.
-fn opening<K: Kinematics>(law: &ContactLaw, _: &Row<K>, tangential_velocity: f64) -> f64 {
+fn opening<M: Model>(law: &ContactLaw, _: &Row<M>, tangential_velocity: f64) -> f64 {
     law.friction * tangential_velocity.abs()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::{Plane, SpinningPlane, StepModel};
+    use crate::solver::{Plane, SpinningPlane};
     use crate::world::FrictionCone;
-
-    type Turning = StepModel<SpinningPlane, true>;
 
     fn law(friction: f64) -> ContactLaw {
         ContactLaw::new(friction, 0.0, FrictionCone::Shifted)
@@ -227,7 +234,7 @@ mod tests {
 
     /// ½(σ − a)² + ½c(λ − b)².
     fn distance<M: Model>(point: [f64; 2], trial: [f64; 2]) -> f64 {
-        let across = M::Kinematics::TANGENTIAL_COMPLIANCE * (point[1] - trial[1]).powi(2);
+        let across = M::TANGENTIAL_COMPLIANCE * (point[1] - trial[1]).powi(2);
         0.5 * ((point[0] - trial[0]).powi(2) + across)
     }
 
@@ -252,13 +259,14 @@ mod tests {
 
     #[test]
     fn the_projection_on_the_cone_is_the_nearest_point_in_its_metric() {
-        no_point_of_the_cone_is_nearer::<Turning>();
-        no_point_of_the_cone_is_nearer::<StepModel<Plane, true>>();
+        no_point_of_the_cone_is_nearer::<SpinningPlane>();
+        no_point_of_the_cone_is_nearer::<Plane>();
     }
 
     #[test]
     fn a_bound_lags_but_for_contacts_that_have_none_yet() {
-        let project = |bound, trial| BoundedFriction::project::<Turning>(&law(0.5), bound, trial);
+        let project =
+            |bound, trial| BoundedFriction::project::<SpinningPlane>(&law(0.5), bound, trial);
         assert_eq!(project(0.3, [4.0, -9.0]), [4.0, -0.3]);
         assert_eq!(project(0.3, [-4.0, 9.0]), [0.0, 0.3]);
         assert_eq!(project(UNSET_BOUND, [4.0, -9.0]), [4.0, -2.0]);

@@ -14,7 +14,7 @@ use glam::DVec2;
 
 pub(crate) use self::friction::{
     BoundedFriction, ConeFriction, CoulombFriction, FrictionProjection, LaggedFriction,
-    project_by_coulomb,
+    project_by_coulomb, with_projection,
 };
 use self::order::RowOrder;
 pub use self::residual::{
@@ -22,10 +22,9 @@ pub use self::residual::{
 };
 pub(crate) use self::residual::{errors, natural_map, residual_of, squared_residual_scale};
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
-pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, Surface};
-pub(crate) use self::walls::{MovingSurfaces, MovingWalls};
-use super::kinematics::Kinematics;
-use super::model::Model;
+pub(crate) use self::walls::MovingWalls;
+pub use self::walls::{DrivenBy, DrivenRow, DrivenWall, MovingSurfaces, Surface};
+use super::kinematics::Model;
 use super::settings::SolverSettings;
 use crate::contact::{Contact, ContactLaw, ContactList, Impulse, Numbering, Other, law};
 use crate::threads;
@@ -35,12 +34,12 @@ use crate::world::{FrictionCone, World};
 ///
 /// From outside a problem can be looked at; its impulses are changed by the methods, and by one of your own
 /// through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows in step.
-#[derive(Clone, Debug)]
-pub struct StepProblem<K: Kinematics> {
+#[derive(Clone, Debug, Default)]
+pub struct StepProblem<M: Model> {
     /// The bodies that the rows' impulses move.
-    pub bodies: Bodies<K>,
+    pub bodies: Bodies<M>,
     /// One row a contact.
-    pub rows: ContactRows<K>,
+    pub rows: ContactRows<M>,
     /// The numbers of the contact law.
     pub law: ContactLaw,
     /// Fixed bodies whose surfaces move.
@@ -48,19 +47,8 @@ pub struct StepProblem<K: Kinematics> {
     /// What is asked of friction.
     pub(crate) friction: LaggedFriction,
     pub(super) order: RowOrder,
-}
-
-impl<K: Kinematics> Default for StepProblem<K> {
-    fn default() -> Self {
-        Self {
-            bodies: Bodies::default(),
-            rows: ContactRows::default(),
-            law: ContactLaw::default(),
-            walls: MovingWalls::default(),
-            friction: LaggedFriction::default(),
-            order: RowOrder::default(),
-        }
-    }
+    /// √m_ij of the rows, kg^½, for methods that work on scaled variables.
+    pub(super) root_masses: Vec<f64>,
 }
 
 /// The numbers that a problem is set up with.
@@ -87,23 +75,11 @@ pub struct Approach {
     pub in_touch: bool,
 }
 
-impl<K: Kinematics> StepProblem<K> {
-    /// Sets up a step in which no surface moves: free velocities, and rows in the order of the method and its
-    /// settings that carry the impulses of `contacts` (warm start) or none. `rebound` gives what the law
-    /// adds to v_n of a contact, m/s.
-    pub fn prepare<M: Model<Kinematics = K>>(
-        &mut self,
-        world: &World,
-        contacts: &ContactList,
-        numbers: ProblemNumbers,
-        settings: &SolverSettings,
-        rebound: impl Fn(Approach) -> f64 + Sync,
-    ) {
-        self.prepare_among::<M>(world, contacts, numbers, settings, rebound, None);
-    }
-
-    /// The same among surfaces that move.
-    pub(crate) fn prepare_among<M: Model<Kinematics = K>>(
+impl<M: Model> StepProblem<M> {
+    /// Sets up a step: free velocities, and rows in the order of the method and its settings that carry the impulses of
+    /// `contacts` (warm start) or none. `rebound` gives what the law adds to v_n of a contact, m/s; `surfaces` are
+    /// those that move, if any does.
+    pub fn prepare(
         &mut self,
         world: &World,
         contacts: &ContactList,
@@ -124,12 +100,12 @@ impl<K: Kinematics> StepProblem<K> {
             let capture = |index| if in_touch(index) { capture_speed } else { 0.0 };
             self.rows.captures.extend(self.rows.contacts.iter().map(capture));
         }
-        self.fill_rows::<M>(world, contacts, fixed, settings.warm_start, &rebound);
+        self.fill_rows(world, contacts, fixed, settings.warm_start, &rebound);
         if let Some(surfaces) = surfaces {
-            self.add_surfaces::<M>(contacts, &rebound, surfaces);
+            self.add_surfaces(contacts, &rebound, surfaces);
         }
         self.form_velocities();
-        self.begin_friction::<M>(contacts, settings.friction_model);
+        self.begin_friction(contacts, settings.friction_model);
     }
 
     /// Packs the bodies as they are, and as gravity alone would leave them.
@@ -138,15 +114,15 @@ impl<K: Kinematics> StepProblem<K> {
         let Bodies { before, free, masses, mean_mass, .. } = &mut self.bodies;
         *mean_mass = grains.masses.iter().sum::<f64>() / grains.len() as f64;
         masses.clone_from(&grains.masses);
-        threads::fill(before, grains.len(), |index| K::body(world, index));
+        threads::fill(before, grains.len(), |index| M::body(world, index));
         threads::fill(free, grains.len(), |index| match grains.feels_gravity[index] {
-            true => K::accelerated(&before[index], world, index, time_step_secs),
+            true => M::accelerated(&before[index], world, index, time_step_secs),
             false => before[index],
         });
     }
 
     /// Makes the rows, of which the first `fixed` are with fixed bodies.
-    fn fill_rows<M: Model<Kinematics = K>>(
+    fn fill_rows(
         &mut self,
         world: &World,
         contacts: &ContactList,
@@ -174,7 +150,7 @@ impl<K: Kinematics> StepProblem<K> {
             Row {
                 i: contact.grain,
                 j: contact.other,
-                normal: K::normal_of(world, contact),
+                normal: M::normal_of(world, contact),
                 restitution_velocity: rebound(approach),
                 shifted_impulse,
                 tangential_impulse,
@@ -185,7 +161,7 @@ impl<K: Kinematics> StepProblem<K> {
         threads::fill(&mut fixed_rows, fixed, |number| {
             let contact = contact(number);
             let i = contact.grain as usize;
-            let [velocity, _] = K::velocity(K::normal_of(world, contact), &before[i]);
+            let [velocity, _] = M::velocity(M::normal_of(world, contact), &before[i]);
             FixedRow { row: row(number, velocity, masses[i]), surface_speed: 0.0 }
         });
         threads::fill(&mut pair_rows, self.rows.contacts.len() - fixed, |number| {
@@ -194,8 +170,8 @@ impl<K: Kinematics> StepProblem<K> {
             // Grains come first among the bodies.
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let share = masses[j] / (masses[i] + masses[j]);
-            let normal = K::normal_of(world, contact);
-            let [velocity, _] = K::relative_velocity(normal, &before[i], &before[j]);
+            let normal = M::normal_of(world, contact);
+            let [velocity, _] = M::relative_velocity(normal, &before[i], &before[j]);
             PairRow { row: row(number, velocity, masses[i] * share), share }
         });
         (self.rows.fixed, self.rows.pairs) = (fixed_rows, pair_rows);
@@ -205,15 +181,16 @@ impl<K: Kinematics> StepProblem<K> {
     pub fn form_velocities(&mut self) {
         let Bodies { now, free, .. } = &mut self.bodies;
         now.clone_from(free);
-        let captures = Captures { all: self.law.capture_speed(), each: &self.rows.captures };
+        let impulse = |number: usize, row: &Row<M>| {
+            let capture = self.rows.capture(number, &self.law);
+            [row.shifted_impulse - capture, row.tangential_impulse]
+        };
         for (number, row) in self.rows.fixed.iter().enumerate() {
-            let impulse = captures.reduced_impulse(number, row);
-            K::push_single(&mut now[row.i as usize], row.normal, impulse);
+            M::push_single(&mut now[row.i as usize], row.normal, impulse(number, row));
         }
         for (number, row) in (self.rows.fixed.len()..).zip(&self.rows.pairs) {
-            let impulse = captures.reduced_impulse(number, row);
             let (mut i, mut j) = (now[row.i as usize], now[row.j as usize]);
-            K::push_pair(&mut i, &mut j, row.normal, impulse, row.share);
+            M::push_pair(&mut i, &mut j, row.normal, impulse(number, row), row.share);
             now[row.i as usize] = i;
             now[row.j as usize] = j;
         }
@@ -226,7 +203,7 @@ impl<K: Kinematics> StepProblem<K> {
     /// method that needs it.
     pub fn sort_by_colours(&mut self) {
         let Self { rows, order, bodies, .. } = self;
-        let contact = |row: &Row<K>, other: u32| Contact {
+        let contact = |row: &Row<M>, other: u32| Contact {
             grain: row.i,
             other,
             normal: DVec2::ZERO,
@@ -247,22 +224,17 @@ impl<K: Kinematics> StepProblem<K> {
     /// The capture speed of a row by its number, m/s.
     #[inline(always)]
     pub fn capture(&self, number: usize) -> f64 {
-        self.captures().of(number)
+        self.rows.capture(number, &self.law)
     }
 
     /// (λ_n, λ_t) of a row with its number, m/s.
     #[inline(always)]
-    pub fn reduced_impulse(&self, number: usize, row: &Row<K>) -> [f64; 2] {
-        self.captures().reduced_impulse(number, row)
-    }
-
-    #[inline(always)]
-    fn captures(&self) -> Captures<'_> {
-        Captures { all: self.law.capture_speed(), each: &self.rows.captures }
+    pub fn reduced_impulse(&self, number: usize, row: &Row<M>) -> [f64; 2] {
+        [row.shifted_impulse - self.capture(number), row.tangential_impulse]
     }
 
     /// The rows with their numbers.
-    pub fn rows(&self) -> impl Iterator<Item = (usize, &Row<K>)> {
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &Row<M>)> {
         self.rows.iter().enumerate()
     }
 
@@ -271,8 +243,8 @@ impl<K: Kinematics> StepProblem<K> {
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,
-        bodies: &[K::Body<f64>],
-        mut visit: impl FnMut(&Row<K>, [f64; 2]),
+        bodies: &[M::Body<f64>],
+        mut visit: impl FnMut(&Row<M>, [f64; 2]),
     ) {
         for row in &self.rows.fixed {
             visit(row, row.velocity(bodies));
@@ -310,26 +282,5 @@ impl<K: Kinematics> StepProblem<K> {
             [row.shifted_impulse, row.tangential_impulse] = impulse;
         }
         self.form_velocities();
-    }
-}
-
-/// The capture speeds of rows, m/s.
-#[derive(Clone, Copy)]
-struct Captures<'a> {
-    /// That of all rows where they do not differ.
-    all: f64,
-    /// That of each row; empty where they do not differ.
-    each: &'a [f64],
-}
-
-impl Captures<'_> {
-    #[inline(always)]
-    fn of(self, number: usize) -> f64 {
-        if self.each.is_empty() { self.all } else { self.each[number] }
-    }
-
-    #[inline(always)]
-    fn reduced_impulse<K: Kinematics>(self, number: usize, row: &Row<K>) -> [f64; 2] {
-        [row.shifted_impulse - self.of(number), row.tangential_impulse]
     }
 }

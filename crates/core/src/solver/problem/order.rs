@@ -86,17 +86,18 @@ impl RowOrder {
         }
         let grains = world.grains.len();
         let is_pair = |index: &u32| (contacts[*index as usize].other as usize) < grains;
-        let all = 0..contacts.len() as u32;
-        self.append(
-            ordering,
-            world,
-            contacts,
-            all.clone().filter(|index| !is_pair(index)),
-            rows,
-            0,
-        );
-        let fixed = rows.len();
-        self.append(ordering, world, contacts, all.filter(is_pair), rows, 1);
+        let mut fixed = 0;
+        // Of one kind after the other, in the order of detection.
+        for (kind, are_pairs) in [false, true].into_iter().enumerate() {
+            fixed = rows.len();
+            self.take((0..contacts.len() as u32).filter(|index| is_pair(index) == are_pairs), kind);
+            match ordering {
+                Ordering::Detected => rows.extend(&self.detected),
+                Ordering::Interleaved | Ordering::Symmetric => self.interleave(rows),
+                Ordering::BottomUp => self.sort_by_height(world, contacts, rows),
+                Ordering::Coloured => self.colour(grains, contacts, rows, kind),
+            }
+        }
         fixed
     }
 
@@ -118,26 +119,7 @@ impl RowOrder {
         rows
     }
 
-    /// Appends the contacts `numbers` of one kind (0: with fixed bodies, 1: between grains), given in the order
-    /// of detection, to `rows`.
-    fn append(
-        &mut self,
-        ordering: Ordering,
-        world: &World,
-        contacts: &[Contact],
-        numbers: impl Iterator<Item = u32>,
-        rows: &mut Vec<u32>,
-        kind: usize,
-    ) {
-        self.take(numbers, kind);
-        match ordering {
-            Ordering::Detected => rows.extend(&self.detected),
-            Ordering::Interleaved | Ordering::Symmetric => self.interleave(rows),
-            Ordering::BottomUp => self.sort_by_height(world, contacts, rows),
-            Ordering::Coloured => self.colour(world.grains.len(), contacts, rows, kind),
-        }
-    }
-
+    /// Takes up the contacts of one kind (0: with fixed bodies, 1: between grains).
     fn take(&mut self, numbers: impl Iterator<Item = u32>, kind: usize) {
         self.detected.clear();
         self.detected.extend(numbers);
@@ -191,7 +173,7 @@ impl RowOrder {
         self.taken.fill(0);
         for at in 0..self.between.len() {
             let number = self.between[at];
-            self.take_colour(self.tiles.count(), number, grains_of(number));
+            self.take_colour(self.tiles.count, number, grains_of(number));
         }
         self.group(rows, kind);
     }
@@ -210,7 +192,7 @@ impl RowOrder {
 
     /// Counts how many contacts each colour of each tile has, and puts them there in the order of detection.
     fn group(&mut self, rows: &mut Vec<u32>, kind: usize) {
-        let tiles = self.tiles.count();
+        let tiles = self.tiles.count;
         let (counts, groups) = (&mut self.counts, &mut self.groups[kind]);
         counts.clear();
         counts.resize((tiles + 1) * COLOURS as usize, 0);
@@ -306,11 +288,6 @@ impl Tiles {
         self.of_grain.resize(grains, 0);
     }
 
-    /// How many there are.
-    fn count(&self) -> usize {
-        self.count
-    }
-
     /// The tile that all of these grains lie in; none where they lie in several.
     fn of(&self, grains: [Option<usize>; 2]) -> Option<usize> {
         let mut tiles = grains.into_iter().flatten().map(|grain| self.of_grain[grain] as usize);
@@ -328,16 +305,8 @@ mod tests {
 
     fn world(grains: impl Iterator<Item = Grain>) -> World {
         let grains: Vec<Grain> = grains.collect();
-        World {
-            mean_diameter: 2.0 * grains[0].radius,
-            grains: Grains::new(&grains, 1.0),
-            fixed_discs: Vec::new(),
-            boundaries: Vec::new(),
-            motions: Vec::new(),
-            gravity_turn: None,
-            periodic: None,
-            gravity: Gravity::Uniform { acceleration: -9.8 * DVec2::Y },
-        }
+        let gravity = Gravity::Uniform { acceleration: -9.8 * DVec2::Y };
+        World::of(Grains::new(&grains, 1.0), gravity, 2.0 * grains[0].radius)
     }
 
     /// Discs whose height goes up and down with their number.
@@ -418,7 +387,7 @@ mod tests {
         let mut tiles = Tiles::default();
         tiles.lay(&lattice(place));
         assert_eq!(tiles.of_grain.len(), SIDE * SIDE);
-        assert!(tiles.of_grain.iter().all(|&tile| (tile as usize) < tiles.count()));
+        assert!(tiles.of_grain.iter().all(|&tile| (tile as usize) < tiles.count));
         tiles
     }
 
@@ -426,7 +395,7 @@ mod tests {
     fn tiles_of_a_dense_packing_are_squares_wherever_it_lies() {
         let tiles = laid(|at| at);
         // 59 diameters between the outermost, by 22.6.
-        assert_eq!(tiles.count(), 9);
+        assert_eq!(tiles.count, 9);
         for tile in 0..9 {
             let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
             let numbers = (0..SIDE * SIDE).filter(|&k| tiles.of_grain[k] == tile);
@@ -447,14 +416,14 @@ mod tests {
     fn few_grains_are_one_tile_and_far_ones_do_not_make_many() {
         for far in [1e3, 1e12, 1e300] {
             let tiles = laid(|at| at * far);
-            assert!(tiles.count() <= SIDE * SIDE / LEAST_GRAINS_A_TILE, "{}", tiles.count());
+            assert!(tiles.count <= SIDE * SIDE / LEAST_GRAINS_A_TILE, "{}", tiles.count);
         }
         // So far apart that the distance is no number.
-        assert_eq!(laid(|at| (at - DVec2::splat(0.5)).signum() * f64::MAX).count(), 1);
+        assert_eq!(laid(|at| (at - DVec2::splat(0.5)).signum() * f64::MAX).count, 1);
         let mut tiles = Tiles::default();
         tiles.lay_by_number(GRAINS_IN_ONE);
-        assert_eq!(tiles.count(), 1);
+        assert_eq!(tiles.count, 1);
         tiles.lay_by_number(GRAINS_IN_ONE + 1);
-        assert_eq!(tiles.count(), 5);
+        assert_eq!(tiles.count, 5);
     }
 }

@@ -14,10 +14,9 @@
 
 use std::ops::Range;
 
-use super::{BoundedFriction, ConeFriction, FrictionProjection, Row, StepProblem};
+use super::{FrictionProjection, Row, StepProblem, with_projection};
 use crate::contact::{ContactLaw, Lanes, law};
-use crate::solver::kinematics::Kinematics;
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 use crate::threads;
 
@@ -92,9 +91,9 @@ impl Measures {
 /// something errs. Rows hold p/m_n and P_t/m_n, so each row's terms are
 /// formed in m/s and weighted by m_n.
 #[inline(never)]
-pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
-    let add_error = |sums: &mut Sums, row: (usize, &Row<_>), motion: RowVelocities| {
-        sums.add_error::<M>(problem, row, &motion);
+pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
+    let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
+        sums.add_error(problem, number, row, &motion);
     };
     sum_of_rows(problem, add_error, Sums::add_all).residual::<M>(problem)
 }
@@ -102,9 +101,9 @@ pub fn residual<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
 /// The same of the model of friction that a problem is solved by: the natural map of its projection
 /// (`problem::friction`), over the same scale, so that both can be set side by side.
 pub(super) fn projection_residual<M: Model, P: FrictionProjection>(
-    problem: &StepProblem<M::Kinematics>,
+    problem: &StepProblem<M>,
 ) -> f64 {
-    let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+    let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         let opening = motion.now[0] + row.restitution_velocity;
         let [normal, tangential] = row.impulse();
@@ -116,26 +115,17 @@ pub(super) fn projection_residual<M: Model, P: FrictionProjection>(
 }
 
 /// The natural map's residual of what a problem is solved for: of its model of friction, or the common one.
-pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
-    match problem.friction.model {
-        FrictionModel::Tresca if M::FRICTION => BoundedFriction::residual::<M>(problem),
-        FrictionModel::Associated | FrictionModel::Desaxce if M::FRICTION => {
-            ConeFriction::residual::<M>(problem)
-        }
-        _ => residual::<M>(problem),
-    }
+pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M>) -> f64 {
+    with_projection!(problem, M, P => P::residual(problem))
 }
 
 /// The residual of the model of friction of a problem; none under Coulomb's law.
-fn model_residual<M: Model>(
-    problem: &StepProblem<M::Kinematics>,
-    common_residual: f64,
-) -> Option<f64> {
+fn model_residual<M: Model>(problem: &StepProblem<M>, common_residual: f64) -> Option<f64> {
     match problem.friction.model {
         FrictionModel::Coulomb => None,
         // Without friction all models are one.
         _ if !M::FRICTION => Some(common_residual),
-        _ => Some(natural_map::<M>(problem)),
+        _ => Some(natural_map(problem)),
     }
 }
 
@@ -157,12 +147,12 @@ pub fn worst(one: f64, other: f64) -> f64 {
 /// ½(v^n + v^{n−1})·(ΔtF + HP), so a contact impulse does the work P·½(u^n + u^{n−1}) with u its
 /// relative velocity. Summed with gravity's this closes the budget to rounding, whatever the solver
 /// left undone. Where j is an image that slides, u is relative to that, and P·(what it slides by) is the border's work.
-pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
+pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
     type Sum = (Sums, Measures);
     let visit = |(sums, measures): &mut Sum,
                  (number, row): (usize, &Row<_>),
                  motion: RowVelocities| {
-        sums.add_error::<M>(problem, (number, row), &motion);
+        sums.add_error(problem, number, row, &motion);
         let [normal, tangential] = problem.reduced_impulse(number, row);
         let half_mass = 0.5 * row.effective_mass;
         measures.compressive_contacts += u32::from(normal > 0.0);
@@ -171,8 +161,8 @@ pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
         if M::FRICTION {
             measures.tangential_work += half_mass * tangential * (motion.now[1] + motion.before[1]);
         }
-        if M::Kinematics::SLIDES {
-            let [along_normal, along_tangent] = M::Kinematics::slide_along(row.normal);
+        if M::SLIDES {
+            let [along_normal, along_tangent] = M::slide_along(row.normal);
             let work = normal * along_normal + tangential * along_tangent;
             measures.border_work += row.effective_mass * work;
         }
@@ -187,8 +177,8 @@ pub fn measure<M: Model>(problem: &StepProblem<M::Kinematics>) -> Measures {
         measures.tangential_work += tangential_part;
     }
     let residual = sums.residual::<M>(problem);
-    let model_residual = model_residual::<M>(problem, residual);
-    Measures { residual, model_residual, duality_gap: duality_gap::<M>(problem), ..measures }
+    let model_residual = model_residual(problem, residual);
+    Measures { residual, model_residual, duality_gap: duality_gap(problem), ..measures }
 }
 
 /// (e_n, e_t) of [`residual`] over the effective masses, m/s, of contacts with these (σ, λ_t) and (v_n, v_t).
@@ -203,13 +193,13 @@ pub(crate) fn errors<M: Model, T: Lanes>(
     if !M::FRICTION {
         return [error, error.same(0.0)];
     }
-    let compliance = shifted.same(1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE);
+    let compliance = shifted.same(1.0 / M::TANGENTIAL_COMPLIANCE);
     let bound = law.friction_bound(shifted);
     [error, tangential - law::coulomb(tangential - compliance * tangential_velocity, bound)]
 }
 
 /// The square of the scale of [`residual`], which is the same during a whole solve.
-pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M::Kinematics>) -> f64 {
+pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let add_scale = |sums: &mut Sums, (_, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_scale::<M>(row, motion.free);
     };
@@ -218,7 +208,7 @@ pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M::Kinemati
 
 /// [`residual`] from the squares of its error and scale.
 pub(crate) fn residual_of<M: Model>(
-    problem: &StepProblem<M::Kinematics>,
+    problem: &StepProblem<M>,
     [squared_error, squared_scale]: [f64; 2],
 ) -> f64 {
     Sums { error: squared_error, scale: squared_scale }.residual::<M>(problem)
@@ -240,8 +230,9 @@ impl Sums {
     #[inline(always)]
     fn add_error<M: Model>(
         &mut self,
-        problem: &StepProblem<M::Kinematics>,
-        (number, row): (usize, &Row<M::Kinematics>),
+        problem: &StepProblem<M>,
+        number: usize,
+        row: &Row<M>,
         motion: &RowVelocities,
     ) {
         let now = problem.own_part(number, row, motion.now).unwrap_or(motion.now);
@@ -253,7 +244,7 @@ impl Sums {
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
-        row: &Row<M::Kinematics>,
+        row: &Row<M>,
         [error, tangential_error]: [f64; 2],
         motion: &RowVelocities,
     ) {
@@ -267,20 +258,20 @@ impl Sums {
 
     /// Adds what a row would do if no contact acted, by its free (v_n, v_t), m/s.
     #[inline(always)]
-    fn add_scale<M: Model>(&mut self, row: &Row<M::Kinematics>, free: [f64; 2]) {
+    fn add_scale<M: Model>(&mut self, row: &Row<M>, free: [f64; 2]) {
         let squared_mass = row.effective_mass * row.effective_mass;
         let normal = free[0] + row.restitution_velocity;
         self.scale += squared_mass * normal * normal;
         if M::FRICTION {
-            let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
             let tangential = compliance * free[1];
             self.scale += squared_mass * tangential * tangential;
         }
     }
 
-    fn residual<M: Model>(&self, problem: &StepProblem<M::Kinematics>) -> f64 {
+    fn residual<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
         if self.error > 0.0 && self.scale == 0.0 {
-            let squared = |row: &Row<M::Kinematics>| {
+            let squared = |row: &Row<M>| {
                 let [normal, tangential] = row.impulse();
                 row.effective_mass.powi(2) * (normal * normal + tangential * tangential)
             };
@@ -295,14 +286,14 @@ impl Sums {
 /// as in the residual; dimensionless, ≥ 0 but for rounding. None under Coulomb's law, which has no dual.
 ///
 /// Its square root bounds the error of the velocities, over those that the contacts had to undo.
-fn duality_gap<M: Model>(problem: &StepProblem<M::Kinematics>) -> Option<f64> {
+fn duality_gap<M: Model>(problem: &StepProblem<M>) -> Option<f64> {
     let model = problem.friction.model;
     if model == FrictionModel::Coulomb {
         return None;
     }
     let on_cone = M::FRICTION && model != FrictionModel::Tresca;
     let (mut gap, mut scale, mut impulses) = (0.0, 0.0, 0.0);
-    for_each_row::<M::Kinematics>(problem, |number, row, motion| {
+    for_each_row(problem, |number, row, motion| {
         let lagged = problem.friction.now.get(number).copied().unwrap_or(0.0);
         let [normal_velocity, tangential_velocity] = motion.now;
         let [shifted, tangential] = row.impulse();
@@ -321,7 +312,7 @@ fn duality_gap<M: Model>(problem: &StepProblem<M::Kinematics>) -> Option<f64> {
         let free = motion.free[0] + row.restitution_velocity;
         let mut squared = free * free;
         if M::FRICTION {
-            squared += motion.free[1] * motion.free[1] / M::Kinematics::TANGENTIAL_COMPLIANCE;
+            squared += motion.free[1] * motion.free[1] / M::TANGENTIAL_COMPLIANCE;
         }
         gap += row.effective_mass * of_contact;
         scale += row.effective_mass * squared;
@@ -349,18 +340,18 @@ pub struct RowVelocities {
 }
 
 /// Visits the rows with their numbers and motions.
-pub fn for_each_row<K: Kinematics>(
-    problem: &StepProblem<K>,
-    visit: impl FnMut(usize, &Row<K>, RowVelocities),
+pub fn for_each_row<M: Model>(
+    problem: &StepProblem<M>,
+    visit: impl FnMut(usize, &Row<M>, RowVelocities),
 ) {
     for_each_row_of(problem, 0..problem.rows.len(), visit);
 }
 
 /// Adds up what rows come to, in stretches of one length: `visit` adds a row to the sum of its stretch, `join` that of
 /// the next stretch to those before.
-fn sum_of_rows<K: Kinematics, S: Default + Send>(
-    problem: &StepProblem<K>,
-    visit: impl Fn(&mut S, (usize, &Row<K>), RowVelocities) + Sync,
+fn sum_of_rows<M: Model, S: Default + Send>(
+    problem: &StepProblem<M>,
+    visit: impl Fn(&mut S, (usize, &Row<M>), RowVelocities) + Sync,
     join: impl Fn(&mut S, S),
 ) -> S {
     let of_stretch = |stretch: Range<usize>| {
@@ -376,10 +367,10 @@ fn sum_of_rows<K: Kinematics, S: Default + Send>(
 }
 
 #[inline(always)]
-fn for_each_row_of<K: Kinematics>(
-    problem: &StepProblem<K>,
+fn for_each_row_of<M: Model>(
+    problem: &StepProblem<M>,
     rows: Range<usize>,
-    mut visit: impl FnMut(usize, &Row<K>, RowVelocities),
+    mut visit: impl FnMut(usize, &Row<M>, RowVelocities),
 ) {
     let (bodies, fixed) = (&problem.bodies, problem.rows.fixed.len());
     for number in rows.start..rows.end.min(fixed) {
@@ -399,9 +390,9 @@ fn for_each_row_of<K: Kinematics>(
 }
 
 /// v_n of every row among `bodies`, relative to a wall that moves, m/s; `speeds` is cleared first.
-pub fn relative_velocities<K: Kinematics>(
-    problem: &StepProblem<K>,
-    bodies: &[K::Body<f64>],
+pub fn relative_velocities<M: Model>(
+    problem: &StepProblem<M>,
+    bodies: &[M::Body<f64>],
     speeds: &mut Vec<f64>,
 ) {
     speeds.clear();

@@ -2,32 +2,28 @@
 
 use std::ops::{Deref, DerefMut};
 
-use crate::solver::kinematics::Kinematics;
+use crate::contact::ContactLaw;
+use crate::solver::kinematics::Model;
 
 /// The bodies of a step, one a grain.
 #[derive(Clone, Debug)]
-pub struct Bodies<K: Kinematics> {
+pub struct Bodies<M: Model> {
     /// As the rows' impulses move them.
-    pub now: Vec<K::Body<f64>>,
+    pub now: Vec<M::Body<f64>>,
     /// At the beginning of the step.
-    pub before: Vec<K::Body<f64>>,
+    pub before: Vec<M::Body<f64>>,
     /// At the end of the step if no contact acted.
-    pub free: Vec<K::Body<f64>>,
+    pub free: Vec<M::Body<f64>>,
     /// Masses, kg.
     pub masses: Vec<f64>,
     /// Mean mass of the grains, kg.
     pub mean_mass: f64,
 }
 
-impl<K: Kinematics> Default for Bodies<K> {
+impl<M: Model> Default for Bodies<M> {
     fn default() -> Self {
-        Self {
-            now: Vec::new(),
-            before: Vec::new(),
-            free: Vec::new(),
-            masses: Vec::new(),
-            mean_mass: 0.0,
-        }
+        let [now, before, free] = [(); 3].map(|()| Vec::new());
+        Self { now, before, free, masses: Vec::new(), mean_mass: 0.0 }
     }
 }
 
@@ -37,13 +33,13 @@ impl<K: Kinematics> Default for Bodies<K> {
 /// problem shows its rows and takes none.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub struct Row<K: Kinematics> {
+pub struct Row<M: Model> {
     /// Grain i.
     pub i: u32,
     /// Grain j; unused in a row against a fixed body.
     pub j: u32,
     /// n, from j to i.
-    pub normal: K::Normal<f64>,
+    pub normal: M::Normal<f64>,
     /// What is added to v_n in the contact law, m/s: ρ v_n^{n−1}, or 0 below the threshold, and less
     /// the speed of a wall that comes (`problem::walls`).
     pub restitution_velocity: f64,
@@ -61,9 +57,9 @@ pub struct Row<K: Kinematics> {
 /// (`cargo bench --bench layout`).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct FixedRow<K: Kinematics> {
+pub struct FixedRow<M: Model> {
     /// What every row has.
-    pub row: Row<K>,
+    pub row: Row<M>,
     /// How fast the body's surface goes along t, m/s. The law's v_t is relative to it.
     pub surface_speed: f64,
 }
@@ -71,27 +67,27 @@ pub struct FixedRow<K: Kinematics> {
 /// A contact between two grains: exactly one cache line in the plane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct PairRow<K: Kinematics> {
+pub struct PairRow<M: Model> {
     /// What every row has.
-    pub row: Row<K>,
+    pub row: Row<M>,
     /// g_i = m_ij/m_i.
     pub share: f64,
 }
 
 macro_rules! is_a_row {
     ($name:ident) => {
-        impl<K: Kinematics> Deref for $name<K> {
-            type Target = Row<K>;
+        impl<M: Model> Deref for $name<M> {
+            type Target = Row<M>;
 
             #[inline(always)]
-            fn deref(&self) -> &Row<K> {
+            fn deref(&self) -> &Row<M> {
                 &self.row
             }
         }
 
-        impl<K: Kinematics> DerefMut for $name<K> {
+        impl<M: Model> DerefMut for $name<M> {
             #[inline(always)]
-            fn deref_mut(&mut self) -> &mut Row<K> {
+            fn deref_mut(&mut self) -> &mut Row<M> {
                 &mut self.row
             }
         }
@@ -101,7 +97,7 @@ macro_rules! is_a_row {
 is_a_row!(FixedRow);
 is_a_row!(PairRow);
 
-impl<K: Kinematics> Row<K> {
+impl<M: Model> Row<M> {
     /// (σ, λ_t), m/s.
     #[inline(always)]
     pub fn impulse(&self) -> [f64; 2] {
@@ -109,32 +105,32 @@ impl<K: Kinematics> Row<K> {
     }
 }
 
-impl<K: Kinematics> FixedRow<K> {
+impl<M: Model> FixedRow<M> {
     /// (v_n, v_t) of the grain, m/s. v_t is relative to the body's surface. v_n is relative to a body at
     /// rest, since the speed of a wall that comes is in `restitution_velocity`.
     #[inline(always)]
-    pub fn velocity(&self, bodies: &[K::Body<f64>]) -> [f64; 2] {
-        let [normal, tangential] = K::velocity(self.normal, &bodies[self.i as usize]);
+    pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
+        let [normal, tangential] = M::velocity(self.normal, &bodies[self.i as usize]);
         [normal, tangential - self.surface_speed]
     }
 }
 
-impl<K: Kinematics> PairRow<K> {
+impl<M: Model> PairRow<M> {
     /// (v_n, v_t) of grain i relative to grain j, m/s.
     #[inline(always)]
-    pub fn velocity(&self, bodies: &[K::Body<f64>]) -> [f64; 2] {
-        K::relative_velocity(self.normal, &bodies[self.i as usize], &bodies[self.j as usize])
+    pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
+        M::relative_velocity(self.normal, &bodies[self.i as usize], &bodies[self.j as usize])
     }
 }
 
 /// The rows of a step. They are numbered through: first those against fixed bodies, then those between
 /// grains, each in the order of the sweep (`problem::order`).
-#[derive(Clone, Debug)]
-pub struct ContactRows<K: Kinematics> {
+#[derive(Clone, Debug, Default)]
+pub struct ContactRows<M: Model> {
     /// Rows against fixed bodies.
-    pub fixed: Vec<FixedRow<K>>,
+    pub fixed: Vec<FixedRow<M>>,
     /// Rows between grains.
-    pub pairs: Vec<PairRow<K>>,
+    pub pairs: Vec<PairRow<M>>,
     /// The contact behind each row.
     pub contacts: Vec<u32>,
     /// The capture speed of each row, m/s, where rows differ in it (law `range`); else empty. Sweeps do
@@ -142,19 +138,13 @@ pub struct ContactRows<K: Kinematics> {
     pub captures: Vec<f64>,
 }
 
-impl<K: Kinematics> Default for ContactRows<K> {
-    fn default() -> Self {
-        Self { fixed: Vec::new(), pairs: Vec::new(), contacts: Vec::new(), captures: Vec::new() }
-    }
-}
-
-impl<K: Kinematics> ContactRows<K> {
+impl<M: Model> ContactRows<M> {
     /// How many there are.
     pub fn len(&self) -> usize {
         self.fixed.len() + self.pairs.len()
     }
 
-    /// Whether there are none.
+    /// True where there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -168,24 +158,24 @@ impl<K: Kinematics> ContactRows<K> {
     }
 
     /// The rows by their numbers.
-    pub fn iter(&self) -> impl Iterator<Item = &Row<K>> {
+    pub fn iter(&self) -> impl Iterator<Item = &Row<M>> {
         self.fixed.iter().map(|row| &row.row).chain(self.pairs.iter().map(|row| &row.row))
     }
 
     /// The same, to be changed.
-    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Row<K>> {
+    pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Row<M>> {
         let fixed = self.fixed.iter_mut().map(|row| &mut row.row);
         fixed.chain(self.pairs.iter_mut().map(|row| &mut row.row))
     }
 
-    /// Whether the row of a number is one between grains.
+    /// True where the row of a number is one between grains.
     #[inline(always)]
     pub fn is_pair(&self, number: usize) -> bool {
         number >= self.fixed.len()
     }
 
     /// The row of a number.
-    pub(crate) fn get(&self, number: usize) -> &Row<K> {
+    pub(crate) fn get(&self, number: usize) -> &Row<M> {
         match number.checked_sub(self.fixed.len()) {
             None => &self.fixed[number],
             Some(number) => &self.pairs[number],
@@ -193,7 +183,7 @@ impl<K: Kinematics> ContactRows<K> {
     }
 
     /// The same, to be changed.
-    pub(crate) fn get_mut(&mut self, number: usize) -> &mut Row<K> {
+    pub(crate) fn get_mut(&mut self, number: usize) -> &mut Row<M> {
         match number.checked_sub(self.fixed.len()) {
             None => &mut self.fixed[number],
             Some(number) => &mut self.pairs[number],
@@ -212,13 +202,19 @@ impl<K: Kinematics> ContactRows<K> {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
     }
 
+    /// The capture speed of the row of a number, m/s: under a law, where rows do not differ in it.
+    #[inline(always)]
+    pub(super) fn capture(&self, number: usize, law: &ContactLaw) -> f64 {
+        if self.captures.is_empty() { law.capture_speed() } else { self.captures[number] }
+    }
+
     /// Adds a copy of row `number` of others, changed by `change`. In the place of the contact behind it stands
     /// that number.
     pub(crate) fn push_copy(
         &mut self,
         others: &Self,
         number: usize,
-        change: impl FnOnce(&mut Row<K>),
+        change: impl FnOnce(&mut Row<M>),
     ) {
         match number.checked_sub(others.fixed.len()) {
             None => {

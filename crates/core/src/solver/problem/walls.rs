@@ -30,8 +30,7 @@ use glam::DVec2;
 
 use super::{Approach, Row, StepProblem};
 use crate::contact::{Contact, ContactList};
-use crate::solver::kinematics::Kinematics;
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 
 /// No wall.
 const NONE: u32 = u32::MAX;
@@ -127,7 +126,7 @@ pub(crate) struct MovingWalls {
 }
 
 /// The surfaces that a problem is prepared among.
-pub(crate) struct MovingSurfaces<'a> {
+pub struct MovingSurfaces<'a> {
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
     /// The surface that a contact touches, if it moves.
@@ -166,9 +165,9 @@ impl MovingWalls {
     }
 }
 
-impl<K: Kinematics> StepProblem<K> {
+impl<M: Model> StepProblem<M> {
     /// Tells the rows, which have just been made, of surfaces that move.
-    pub(super) fn add_surfaces<M: Model<Kinematics = K>>(
+    pub(super) fn add_surfaces(
         &mut self,
         contacts: &ContactList,
         rebound: &impl Fn(Approach) -> f64,
@@ -185,7 +184,7 @@ impl<K: Kinematics> StepProblem<K> {
             });
             let [speed, slide] = surface.map_or([0.0; 2], |surface| surface.along(contact.normal));
             row.surface_speed = slide;
-            let [velocity, _] = K::velocity(row.normal, &bodies.before[row.i as usize]);
+            let [velocity, _] = M::velocity(row.normal, &bodies.before[row.i as usize]);
             let in_touch = contacts.is_in_touch(index as usize);
             let approach = Approach { velocity: velocity - speed, gap: contact.gap, in_touch };
             row.restitution_velocity = rebound(approach) - speed;
@@ -199,7 +198,7 @@ impl<K: Kinematics> StepProblem<K> {
     /// Gives a row, by its number, another normal; how fast its wall comes along that, m/s.
     pub(crate) fn turn_row(&mut self, number: usize, normal: DVec2) -> f64 {
         let row = self.rows.get_mut(number);
-        row.normal = K::sliding(K::normal(normal.to_array()), K::slide(row.normal));
+        row.normal = M::sliding(M::normal(normal.to_array()), M::slide(row.normal));
         let Some(surface) = self.walls.surfaces.get(number).copied().flatten() else { return 0.0 };
         let [speed, slide] = surface.along(normal);
         self.rows.fixed[number].surface_speed = slide;
@@ -238,17 +237,27 @@ impl<K: Kinematics> StepProblem<K> {
     /// rows' own velocities, being relative, leave out.
     pub(crate) fn surface_works(&self) -> [f64; 2] {
         let [whole, along_tangents] = self.surface_works_of(self, |number| number);
-        // Rows tell of driven walls as they go at the end.
-        let surplus = if self.is_driven() { self.surplus_of_driven_walls() } else { 0.0 };
+        // Rows tell of driven walls as they go at the end, but these had their mean speeds: Σ P·b ½(V − V⁻) too much.
+        let surplus = |known: &DrivenRow| {
+            let number = known.number as usize;
+            let row = &self.rows.fixed[number];
+            let along = known.by.part_along(self.reduced_impulse(number, row));
+            let wall = &self.walls.driven[known.by.wall as usize];
+            0.5 * row.effective_mass * along * (wall.now - wall.before)
+        };
+        let surplus = match self.is_driven() {
+            true => self.walls.driven_rows.iter().map(surplus).sum(),
+            false => 0.0,
+        };
         [whole - surplus, along_tangents]
     }
 
-    /// The same of a part of this problem's rows: in the place of the contact behind each stands its number here.
-    pub(crate) fn surface_works_in(&self, part: &Self) -> [f64; 2] {
-        self.surface_works_of(part, |number| part.rows.contacts[number] as usize)
-    }
-
-    fn surface_works_of(&self, part: &Self, number_here: impl Fn(usize) -> usize) -> [f64; 2] {
+    /// The same of rows of a part of this problem, whose numbers here `number_here` gives.
+    pub(crate) fn surface_works_of(
+        &self,
+        part: &Self,
+        number_here: impl Fn(usize) -> usize,
+    ) -> [f64; 2] {
         let (mut whole, mut along_tangents) = (0.0, 0.0);
         for (number, row) in part.rows.fixed.iter().enumerate() {
             let [normal, tangential] = part.reduced_impulse(number, row);
@@ -261,7 +270,7 @@ impl<K: Kinematics> StepProblem<K> {
     }
 
     /// Every row, to be changed, with how fast its wall comes, m/s: 0 where that does not move.
-    pub(crate) fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<K>, f64)> {
+    pub(crate) fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<M>, f64)> {
         let walls = self.walls.speeds.iter().copied().chain(std::iter::repeat(0.0));
         self.rows.iter_mut().zip(walls)
     }
@@ -304,14 +313,14 @@ impl<K: Kinematics> StepProblem<K> {
     pub(super) fn own_part(
         &self,
         number: usize,
-        row: &Row<K>,
+        row: &Row<M>,
         [normal, tangential]: [f64; 2],
     ) -> Option<[f64; 2]> {
         let DrivenBy { wall, along } = self.walls.driven_row(number)?.by;
         let answer = self.walls.driven[wall as usize].response * row.effective_mass;
         let [of_normal, of_tangential] = along.map(|along| 1.0 + answer * along * along);
         let added = row.restitution_velocity;
-        let of_tangential = 1.0 + (of_tangential - 1.0) / K::TANGENTIAL_COMPLIANCE;
+        let of_tangential = 1.0 + (of_tangential - 1.0) / M::TANGENTIAL_COMPLIANCE;
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
@@ -320,7 +329,7 @@ impl<K: Kinematics> StepProblem<K> {
     pub(super) fn free_part(
         &self,
         number: usize,
-        row: &Row<K>,
+        row: &Row<M>,
         [normal, tangential]: [f64; 2],
     ) -> Option<[f64; 2]> {
         let DrivenBy { wall, along } = self.walls.driven_row(number)?.by;
@@ -364,19 +373,6 @@ impl<K: Kinematics> StepProblem<K> {
         }
     }
 
-    /// What of the work (J) that rows tell of their walls' present speeds is to be taken away, since the walls had their
-    /// mean speeds in the step: Σ P·b ½(V − V⁻).
-    fn surplus_of_driven_walls(&self) -> f64 {
-        let of_row = |known: &DrivenRow| {
-            let number = known.number as usize;
-            let row = &self.rows.fixed[number];
-            let along = known.by.part_along(self.reduced_impulse(number, row));
-            let wall = &self.walls.driven[known.by.wall as usize];
-            0.5 * row.effective_mass * along * (wall.now - wall.before)
-        };
-        self.walls.driven_rows.iter().map(of_row).sum()
-    }
-
     /// Contacts of the wall of each row, and κ (b_n² + b_t² m_t/m_n) of the row; none where its body is not driven.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
@@ -384,7 +380,7 @@ impl<K: Kinematics> StepProblem<K> {
         driven_rows.iter().for_each(|row| counts[row.by.wall as usize] += 1.0);
         self.rows.fixed.iter().enumerate().map(move |(number, row)| {
             let DrivenBy { wall, along: [normal, tangential] } = self.walls.driven_row(number)?.by;
-            let squared = normal * normal + tangential * tangential / K::TANGENTIAL_COMPLIANCE;
+            let squared = normal * normal + tangential * tangential / M::TANGENTIAL_COMPLIANCE;
             let response = driven[wall as usize].response;
             Some(counts[wall as usize] * response * row.effective_mass * squared)
         })

@@ -3,8 +3,10 @@
 
 use std::collections::BTreeSet;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::{
     COMMENT, DiscRow, NUMBERS, RecordedGrains, discs_of_rows, empty_grains, has_needed,
@@ -24,56 +26,24 @@ const MOST_SHOWN: usize = 80;
 /// # Errors
 /// Where a line is none; the message names it.
 pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
-    read_lines(text.as_bytes(), path, None)
+    CsvFile { path, wanted: None, open: || Ok(text.as_bytes()) }.read()
 }
 
 /// Reads the moment of a step, or the last one.
 pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
-    let file = File::open(path).map_err(|error| Error::unread(path, error, FORM))?;
-    read_lines(BufReader::new(file), path, step)
+    let open = || File::open(path).map_err(|error| Error::unread(path, error, FORM));
+    CsvFile { path, wanted: step, open }.read()
 }
 
-fn read_lines(text: impl BufRead, path: &Path, wanted: Option<u64>) -> Result<RecordedGrains> {
-    let mut columns = None;
-    let (mut rows, mut steps) = (Vec::new(), BTreeSet::new());
-    for (number, line) in (1..).zip(text.lines()) {
-        let line = line.map_err(|error| Error::unread(path, error, FORM))?;
-        // Some programs begin a file with a mark of its encoding.
-        let line = line.trim_start_matches('\u{feff}');
-        if line.is_empty() || line.as_bytes()[0] == COMMENT {
-            continue;
-        }
-        let cells = line.split(',').map(|cell| cell.trim().trim_matches('"')).collect();
-        let Some(columns) = &columns else {
-            columns = Some(CsvColumns::of(cells, path)?);
-            continue;
-        };
-        let line = CsvLine { path, number, cells };
-        if let Some(place) = columns.step {
-            let step = line.whole(place, "step")?;
-            let last = steps.last().copied();
-            steps.insert(step);
-            if wanted.or(last).is_some_and(|wanted| step < wanted)
-                || wanted.is_some_and(|wanted| step > wanted)
-            {
-                continue;
-            }
-            if last.is_some_and(|last| last < step) {
-                rows.clear();
-            }
-        }
-        rows.push(line.row(columns)?);
-    }
-    if columns.is_none() {
-        CsvColumns::of(Vec::new(), path)?;
-    }
-    let known: Vec<u64> = steps.into_iter().collect();
-    match wanted {
-        Some(step) if !known.contains(&step) => Err(no_such_step(path, step, &known)),
-        _ => discs_of_rows(path, rows, |line| (path.to_owned(), format!("line {line}"))),
-    }
+/// A file that is being read.
+struct CsvFile<'a, Open> {
+    path: &'a Path,
+    wanted: Option<u64>,
+    /// Opens it: once to be read, and once more where a message is to name a line.
+    open: Open,
 }
 
+/// Where in a row the columns are.
 struct CsvColumns {
     all: usize,
     step: Option<usize>,
@@ -82,66 +52,114 @@ struct CsvColumns {
     numbers: [Option<usize>; NUMBERS.len()],
 }
 
-impl CsvColumns {
-    fn of(names: Vec<&str>, path: &Path) -> Result<Self> {
-        let refuse = |reason: String| Err(Error::file(path, reason));
-        if !has_needed(&names) {
-            let found: String = names.join(",").chars().take(MOST_SHOWN).collect();
+impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
+    fn read(&self) -> Result<RecordedGrains> {
+        let mut reader = ReaderBuilder::new()
+            .comment(Some(COMMENT))
+            .trim(Trim::All)
+            .flexible(true)
+            .from_reader((self.open)()?);
+        let refuse = |error| Error::unread(self.path, error, FORM);
+        let places = self.places(reader.headers().map_err(refuse)?)?;
+        let (mut rows, mut steps) = (Vec::new(), BTreeSet::new());
+        let mut record = StringRecord::new();
+        while reader.read_record(&mut record).map_err(refuse)? {
+            if let Some(place) = places.step {
+                let step = self.whole(&record, place, "step")?;
+                let last = steps.last().copied();
+                steps.insert(step);
+                if self.wanted.or(last).is_some_and(|wanted| step < wanted)
+                    || self.wanted.is_some_and(|wanted| step > wanted)
+                {
+                    continue;
+                }
+                if last.is_some_and(|last| last < step) {
+                    rows.clear();
+                }
+            }
+            rows.push(self.row(&places, &record)?);
+        }
+        let known: Vec<u64> = steps.into_iter().collect();
+        match self.wanted {
+            Some(step) if !known.contains(&step) => Err(no_such_step(self.path, step, &known)),
+            _ => discs_of_rows(self.path, rows, |byte| (self.path.to_owned(), self.line_at(byte))),
+        }
+    }
+
+    fn places(&self, names: &StringRecord) -> Result<CsvColumns> {
+        let refuse = |reason: String| Err(Error::file(self.path, reason));
+        let all: Vec<String> = names.iter().map(str::to_owned).collect();
+        if !has_needed(&all) {
+            let found: String = all.join(",").chars().take(MOST_SHOWN).collect();
             return refuse(format!(
                 "the header line is '{found}', but must be one that names x, y and radius"
             ));
         }
         let known = empty_grains();
-        if let Some(unknown) = names.iter().find(|name| known.column(name).is_none()) {
+        if let Some(unknown) = all.iter().find(|name| known.column(name).is_none()) {
             let known: Vec<_> = known.columns.iter().map(|column| column.name).collect();
             return refuse(format!(
                 "the header line names {unknown}, but must name nothing but {}",
                 known.join(", ")
             ));
         }
-        let is_twice = |(place, name): &(usize, &&str)| names[..*place].contains(name);
-        if let Some((_, twice)) = names.iter().enumerate().find(is_twice) {
+        let is_twice = |(place, name): &(usize, &String)| all[..*place].contains(name);
+        if let Some((_, twice)) = all.iter().enumerate().find(is_twice) {
             return refuse(format!("the header line names {twice} twice, but must name it once"));
         }
-        let place = |name: &str| names.iter().position(|there| *there == name);
+        let place = |name: &str| all.iter().position(|there| there == name);
         let (step, id, kind) = (place("step"), place("id"), place("kind"));
-        Ok(Self { all: names.len(), step, id, kind, numbers: NUMBERS.map(place) })
+        Ok(CsvColumns { all: all.len(), step, id, kind, numbers: NUMBERS.map(place) })
     }
-}
 
-struct CsvLine<'a> {
-    path: &'a Path,
-    number: u64,
-    cells: Vec<&'a str>,
-}
-
-impl CsvLine<'_> {
-    fn row(&self, columns: &CsvColumns) -> Result<DiscRow> {
-        if self.cells.len() != columns.all {
-            let found = self.cells.len();
-            return Err(self.refuse(&format!("has {found} columns, but must have {}", columns.all)));
+    fn row(&self, places: &CsvColumns, record: &StringRecord) -> Result<DiscRow> {
+        if record.len() != places.all {
+            let reason = format!("has {} columns, but must have {}", record.len(), places.all);
+            return Err(self.refuse(record, &reason));
         }
         let mut numbers = [0.0; NUMBERS.len()];
-        for ((number, place), name) in numbers.iter_mut().zip(columns.numbers).zip(NUMBERS) {
+        for ((number, place), name) in numbers.iter_mut().zip(places.numbers).zip(NUMBERS) {
             let Some(place) = place else { continue };
-            let said = self.cells[place];
+            let said = record.get(place).unwrap_or_default();
             *number = said.parse().map_err(|_| {
-                self.refuse(&format!("{name}: '{said}' is none, but must be a number"))
+                self.refuse(record, &format!("{name}: '{said}' is none, but must be a number"))
             })?;
         }
-        let id = columns.id.map(|place| self.whole(place, "id")).transpose()?;
-        let kind = columns.kind.map(|place| self.cells[place].to_owned());
-        Ok(DiscRow { place: self.number, id, kind, numbers })
+        let id = places.id.map(|place| self.whole(record, place, "id")).transpose()?;
+        let kind = places.kind.and_then(|place| record.get(place)).map(str::to_owned);
+        Ok(DiscRow { place: byte_of(record), id, kind, numbers })
     }
 
-    fn whole(&self, place: usize, name: &str) -> Result<u64> {
-        let said = self.cells.get(place).copied().unwrap_or_default();
+    fn whole(&self, record: &StringRecord, place: usize, name: &str) -> Result<u64> {
+        let said = record.get(place).unwrap_or_default();
         said.parse().map_err(|_| {
-            self.refuse(&format!("{name}: '{said}' is none, but must be a whole number ≥ 0"))
+            let reason = format!("{name}: '{said}' is none, but must be a whole number ≥ 0");
+            self.refuse(record, &reason)
         })
     }
 
-    fn refuse(&self, reason: &str) -> Error {
-        Error::file(self.path, format!("line {}: {reason}", self.number))
+    fn refuse(&self, record: &StringRecord, reason: &str) -> Error {
+        Error::file(self.path, format!("{}: {reason}", self.line_at(byte_of(record))))
     }
+
+    /// Which line the record is that was read from a byte on: the reader's own place is before the blank
+    /// lines and comments that it skipped.
+    fn line_at(&self, byte: u64) -> String {
+        let Ok(source) = (self.open)() else { return "a line".to_owned() };
+        let mut start = 0;
+        for (line, number) in
+            BufReader::new(source).split(b'\n').map_while(std::result::Result::ok).zip(1..)
+        {
+            let is_blank = line.is_empty() || line == b"\r" || line[0] == COMMENT;
+            if start >= byte && !is_blank {
+                return format!("line {number}");
+            }
+            start += line.len() as u64 + 1;
+        }
+        "the last line".to_owned()
+    }
+}
+
+fn byte_of(record: &StringRecord) -> u64 {
+    record.position().map_or(0, csv::Position::byte)
 }

@@ -9,6 +9,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use ::csv::ReaderBuilder;
 use glam::DVec2;
 
 pub use self::csv::parse_grains;
@@ -66,16 +67,16 @@ pub fn read_grains(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
 
 fn read_folder(folder: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     // Frames that are not yet in every format are none.
-    let wanted = step.or_else(|| last_step(folder));
+    let wanted = step.map_or_else(|| last_step(folder), |step| Ok(Some(step)));
     for parts_of in [&folder.join(empty_grains().name), folder] {
         let parts = numbered_parts(parts_of)?;
         if !parts.is_empty() {
-            return read_parts(parts_of, &parts, wanted);
+            return read_parts(parts_of, &parts, wanted?);
         }
     }
     let text = folder.join(CSV_FOLDER).join("grains.csv");
     if text.exists() {
-        return csv::read(&text, wanted);
+        return csv::read(&text, wanted?);
     }
     let is_written_alone = [vtk::FOLDER, lammps::FOLDER].iter().any(|it| folder.join(it).exists());
     let found =
@@ -96,15 +97,25 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     }
     // Of a table that grows, a frame may be cut.
     let recording = path.parent().and_then(Path::parent);
-    csv::read(path, step.or_else(|| last_step(recording?)))
+    let wanted = match (step, recording) {
+        (None, Some(recording)) => last_step(recording)?,
+        (step, _) => step,
+    };
+    csv::read(path, wanted)
 }
 
 /// The step of the last frame of the recording in a folder; none where no such thing is told.
-fn last_step(folder: &Path) -> Option<u64> {
-    let text = std::fs::read_to_string(folder.join(FRAMES)).ok()?;
-    // A row that a kill cut short is none.
-    let row = text.lines().rfind(|row| row.split(',').count() == 3)?;
-    row.split(',').next()?.parse().ok()
+fn last_step(folder: &Path) -> Result<Option<u64>> {
+    let path = folder.join(FRAMES);
+    let Ok(file) = File::open(&path) else { return Ok(None) };
+    let mut rows = ReaderBuilder::new().comment(Some(COMMENT)).flexible(true).from_reader(file);
+    let mut last = None;
+    for row in rows.records() {
+        let row = row.map_err(|error| Error::unread(&path, error, "the frames of a recording"))?;
+        // A row that a kill cut short is none.
+        last = row.get(0).filter(|_| row.len() == 3).and_then(|step| step.parse().ok()).or(last);
+    }
+    Ok(last)
 }
 
 #[cfg(not(feature = "data"))]
@@ -184,9 +195,9 @@ struct DiscRow {
     pub numbers: [f64; NUMBERS.len()],
 }
 
-/// True if the columns are there without which there are no discs.
-fn has_needed(names: &[impl AsRef<str>]) -> bool {
-    NEEDED.iter().all(|needed| names.iter().any(|name| name.as_ref() == *needed))
+/// Whether the columns are there without which there are no discs.
+fn has_needed(names: &[String]) -> bool {
+    NEEDED.iter().all(|needed| names.iter().any(|name| name == needed))
 }
 
 /// Refuses a file that lacks a column.

@@ -11,20 +11,21 @@
 mod poly_data;
 
 use std::fs::File;
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
 use self::poly_data::{PolyData, VtkCells};
 use super::format::{Format, Frame, RunFacts};
-use super::recording_folder::make_folder;
+use super::recording_folder::{files_named, make_folder, remove};
 use super::table::{Column, Table, Values};
 use crate::column_spec::STEP;
 use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::{ContactState, Moment, OtherBody};
 
+/// Where the files are.
 pub(super) const FOLDER: &str = "vtk";
 /// Of the files, the beginnings of their names.
 const KINDS: [&str; 2] = ["grains", "contacts"];
@@ -33,6 +34,8 @@ const ENDING_OF_SERIES: &str = ".pvd";
 
 /// What the time is called, s: VTK's readers look for this name.
 const TIME: &str = "TimeValue";
+/// Bytes in which a file says both.
+const LONGEST_HEAD: u64 = 1024;
 /// Columns that are the same in all rows of a frame.
 const OF_FRAME: [&str; 2] = ["step", "time"];
 /// In front of the names of what is measured of the whole pile, since grains have arrays of the same names.
@@ -43,26 +46,48 @@ const VECTORS: [(&str, [&str; 2]); 3] =
 /// What stands where a law knows no such thing as a flag.
 const NEITHER: i8 = -1;
 
+/// Bytes of a slot: a part of a page, so that none lies in two, and enough for any time and name.
+const SLOT: usize = 128;
+/// Bytes ahead of the first slot.
+const HEAD: usize = 256;
+/// Slots of a file that begins.
+const FIRST_SLOTS: usize = 32;
+
 const OPENING: &str = "<?xml version=\"1.0\"?>\n\
      <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
 const CLOSING: &str = "</Collection>\n</VTKFile>\n";
 
+/// Writes series of files.
 pub(super) struct Vtk {
     folder: PathBuf,
     facts: RunFacts,
-    /// From the first frame on, one of a kind.
+    /// Once there is a frame, or frames of before are gone on with; one of a kind.
     series: Option<[PvdSeries; 2]>,
 }
 
 impl Vtk {
+    /// Starts, or goes on with what is there.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
         Ok(Self { folder, facts: facts.clone(), series: None })
     }
+
+    /// Begins the series with the files of the first frames, each with its time, s.
+    fn begin(&mut self, times: &[f64]) -> Result<&mut [PvdSeries; 2]> {
+        let [grains, contacts] = KINDS.map(|kind| {
+            let files =
+                times.iter().zip(0..).map(|(&time, number)| (time, file_name(kind, number)));
+            PvdSeries::of(
+                self.folder.join(format!("{kind}{ENDING_OF_SERIES}")),
+                &files.collect::<Vec<_>>(),
+            )
+        });
+        Ok(self.series.insert([grains?, contacts?]))
+    }
 }
 
-/// True if a file in the folder has a name of these files.
+/// Whether a file in the folder has a name of these files.
 pub(super) fn is_name_of_file(name: &str) -> bool {
     KINDS
         .iter()
@@ -72,16 +97,11 @@ pub(super) fn is_name_of_file(name: &str) -> bool {
 
 impl Format for Vtk {
     fn add(&mut self, frame: &Frame) -> Result<()> {
-        let series = match &mut self.series {
-            Some(series) => series,
-            none => {
-                let [grains, contacts] = KINDS.map(|kind| {
-                    PvdSeries::start(self.folder.join(format!("{kind}{ENDING_OF_SERIES}")))
-                });
-                none.insert([grains?, contacts?])
-            }
-        };
+        if self.series.is_none() {
+            self.begin(&[])?;
+        }
         let texts = [grains_file(frame, &self.facts), contacts_file(frame, &self.facts)];
+        let series = self.series.iter_mut().flatten();
         for ((kind, series), bytes) in KINDS.iter().zip(series).zip(texts) {
             let name = file_name(kind, frame.number);
             let mut file = PendingFile::start(&self.folder.join(&name))?;
@@ -91,6 +111,36 @@ impl Format for Vtk {
             series.add(frame.moment.observables.time_secs, &name)?;
         }
         Ok(())
+    }
+
+    fn roll_back(&mut self, _step: u64, last_frame: Option<u64>) -> Result<()> {
+        self.series = None;
+        let mut times = Vec::new();
+        loop {
+            let number = times.len() as u64;
+            let [path, of_contacts] = KINDS.map(|kind| self.folder.join(file_name(kind, number)));
+            if !path.exists() || !of_contacts.exists() {
+                break;
+            }
+            let (step_of_file, time_secs) = moment_of(&path)?;
+            if Some(step_of_file) > last_frame {
+                break;
+            }
+            times.push(time_secs);
+        }
+        if !times.is_empty() {
+            // What readers look at goes first.
+            self.begin(&times)?;
+        }
+        let is_later = |name: &str| {
+            let ours = KINDS.iter().find_map(|kind| name.strip_prefix(kind));
+            let number = ours.and_then(number_of);
+            number.map_or(ours == Some(ENDING_OF_SERIES) && times.is_empty(), |number| {
+                number >= times.len() as u64
+            })
+        };
+        let later = files_named(&self.folder, is_later)?;
+        later.iter().try_for_each(|path| remove(path))
     }
 }
 
@@ -123,6 +173,24 @@ fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     let points = ends.iter().map(DVec2::to_array);
     file(PolyData::new(VtkCells::Lines, points), frame, &frame.contacts, "", facts)
         .finish("normal_force")
+}
+
+/// Step and time, s, of the frame that a file has.
+fn moment_of(path: &Path) -> Result<(u64, f64)> {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST_HEAD).read_to_end(&mut head));
+    read.map_err(|error| Error::file(path, error))?;
+    let head = String::from_utf8_lossy(&head);
+    let number = |name: &str| {
+        let (_, rest) = head.split_once(&format!("Name=\"{name}\""))?;
+        let (number, _) = rest.split_once('>')?.1.split_once('<')?;
+        Some(number.to_owned())
+    };
+    let step = number(STEP).and_then(|number| number.parse().ok());
+    let time_secs = number(TIME).and_then(|number| number.parse().ok());
+    step.zip(time_secs).ok_or_else(|| {
+        Error::file(path, format!("says no {STEP} and {TIME}, but must be a file that slump wrote"))
+    })
 }
 
 /// From centre to centre as they are now, or to the touched point of a boundary, which the branch
@@ -222,35 +290,78 @@ fn add(file: &mut PolyData, Column { name, values, .. }: &Column) {
     }
 }
 
-/// A `.pvd` file: which file shows which time, for ParaView. An entry takes the place of the closing tags, which follow
-/// it in the same write, so that it is whole whenever somebody reads it.
+/// A `.pvd` file: which file shows which time, for ParaView.
+///
+/// It grows by a frame at a time and must be whole whenever somebody reads it or the program is killed.
+/// So the entries stand in slots of one length ahead of the closing tags, and what slots are free is blank:
+/// a new entry is one write within one page of memory, which no kill cuts. Where none is free the file is
+/// written anew with twice as many, which comes to a constant time a frame.
 struct PvdSeries {
     path: PathBuf,
     file: File,
-    /// Where the next entry goes, bytes.
-    end: u64,
+    /// Entries.
+    count: usize,
+    slots: usize,
 }
 
 impl PvdSeries {
-    fn start(path: PathBuf) -> Result<Self> {
-        let file = File::create(&path)
-            .map_err(|error| Error::file(&path, format!("cannot be written ({error})")))?;
-        let mut series = Self { path, file, end: 0 };
-        series.write(OPENING)?;
-        Ok(series)
+    /// A series of files of the folder that it lies in, each with its time, s.
+    fn of(path: PathBuf, files: &[(f64, String)]) -> Result<Self> {
+        let entries: Vec<u8> =
+            files.iter().flat_map(|(time_secs, name)| entry(*time_secs, name)).collect();
+        Self::write_anew(path, &entries, (2 * files.len()).max(FIRST_SLOTS))
     }
 
     /// Adds the file of a time, s, which lies in the series' folder.
     fn add(&mut self, time_secs: f64, file: &str) -> Result<()> {
-        self.write(&format!("<DataSet timestep=\"{time_secs:?}\" file=\"{file}\"/>\n"))
+        if self.count == self.slots {
+            let text = std::fs::read(&self.path).map_err(|error| Error::file(&self.path, error))?;
+            let entries = text.get(HEAD..HEAD + self.count * SLOT).unwrap_or_default();
+            *self = Self::write_anew(self.path.clone(), entries, 2 * self.slots)?;
+        }
+        let place = HEAD + self.count * SLOT;
+        let written = self.file.seek(SeekFrom::Start(place as u64));
+        let written = written.and_then(|_| self.file.write_all(&entry(time_secs, file)));
+        written.map_err(|error| Error::file(&self.path, error))?;
+        self.count += 1;
+        Ok(())
     }
 
-    fn write(&mut self, text: &str) -> Result<()> {
-        let written = self.file.seek(SeekFrom::Start(self.end));
-        let written =
-            written.and_then(|_| self.file.write_all(format!("{text}{CLOSING}").as_bytes()));
-        written.map_err(|error| Error::file(&self.path, error))?;
-        self.end += text.len() as u64;
-        Ok(())
+    fn write_anew(path: PathBuf, entries: &[u8], slots: usize) -> Result<Self> {
+        let mut file = PendingFile::start(&path)?;
+        file.write(&padded(OPENING, HEAD))?;
+        file.write(entries)?;
+        let count = entries.len() / SLOT;
+        file.write(&padded("", SLOT).repeat(slots - count))?;
+        file.write(CLOSING.as_bytes())?;
+        file.finish(false)?;
+        let file = File::options().write(true).open(&path);
+        let file = file.map_err(|error| Error::file(&path, error))?;
+        Ok(Self { path, file, count, slots })
+    }
+}
+
+/// A slot that is taken.
+fn entry(time_secs: f64, file: &str) -> Vec<u8> {
+    padded(&format!("<DataSet timestep=\"{time_secs:?}\" file=\"{file}\"/>"), SLOT)
+}
+
+/// A line of that many bytes.
+fn padded(text: &str, length: usize) -> Vec<u8> {
+    let mut line = format!("{:1$}", text, length - 1).into_bytes();
+    line.push(b'\n');
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_time_and_name_fit_into_a_slot() {
+        for time_secs in [-f64::MIN_POSITIVE, f64::MAX, 1.0 / 3.0, -1.234_567_890_123_456_7e-300] {
+            let slot = entry(time_secs, &format!("contacts_{}.vtp", u64::MAX));
+            assert_eq!(slot.len(), SLOT, "{}", String::from_utf8_lossy(&slot));
+        }
     }
 }

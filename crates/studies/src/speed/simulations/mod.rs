@@ -21,7 +21,7 @@ use crate::error::{Error, Result};
 use crate::number;
 use crate::output::Progress;
 use crate::runner::{Case, Runner, Threads};
-use crate::scene::{Deposition, NewPile, Scene};
+use crate::scene::{NewPile, Scene};
 use crate::sim::{RunEnding, Stepper, Tally};
 use crate::solver::{Method, SolverSettings, StopTest};
 use crate::states::States;
@@ -32,9 +32,12 @@ use crate::world::ParameterChanges;
 const MOST_SWEEPS: u32 = 5_000;
 /// Contacts slower than this many g·Δt do not bounce.
 const THRESHOLD: f64 = 2.0;
-/// Piles of 2,000 grains.
-const LARGE: NewPile =
-    NewPile { grains: 2_000, box_width_in_diameters: 60.0, seed: 1, deposition: Deposition::Rain };
+/// Δt of the reference with the least error of the time step, s.
+const FINEST_SECS: f64 = 1e-4;
+const DURATION_SECS: f64 = 1.0;
+/// What the references are solved by, and their residuals: the second ones show the floor.
+const REFERENCE: Method = Method::Newton;
+const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
 /// A pile that slumps less than this holds.
 const HOLDS: f64 = 0.1;
 /// The law under which the floor is measured.
@@ -43,31 +46,24 @@ const FLOOR_LAW: Stepper = Stepper::Moreau;
 const STEPS_PER_LOOK: u64 = 16;
 /// What disturbs a run that takes longer, s, averages out within it.
 const LONG_ENOUGH_SECS: f64 = 2.0;
-/// Errors below this are drawn here.
 const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
 
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
-    let quick = bench.options.quick;
-    let mut plans = vec![SimulationPlan::of_paper(quick)];
-    plans.extend(bench.options.large.then(|| SimulationPlan::of_large(quick)));
-    plans.iter().map(|plan| section(bench, plan)).collect()
-}
-
-fn section(bench: &Bench, plan: &SimulationPlan) -> Result<ChartSection> {
+    let plan = &SimulationPlan::new(bench.options.quick);
     let configs: Vec<_> =
-        (0..plan.piles.len()).map(|pile| plan.config(pile, plan.finest_secs, FLOOR_LAW)).collect();
+        (0..plan.piles.len()).map(|pile| plan.config(pile, FINEST_SECS, FLOOR_LAW)).collect();
     let states = States::of(bench.states_folder(), configs.iter())?;
-    let runner = bench.runner(&format!("simulations{}", plan.label))?;
+    let runner = bench.runner("simulations")?;
     let references = References::run(plan, &states, &runner)?;
     let simulated = run_all(plan, &states, &runner, &references)?;
-    let name = format!("chart-simulation{}", plan.label);
-    Ok(ChartSection {
+    Ok(vec![ChartSection {
+        name: "chart-simulation".into(),
         sheet: report::sheet(bench, plan, &simulated, &references),
-        report: report::report(plan, &simulated, &references),
-        tables: vec![(format!("{name}-points"), report::table(plan, &simulated))],
-        name,
-    })
+        words: report::words(plan, &references),
+        summary: report::table(plan, &simulated),
+        others: Vec::new(),
+    }])
 }
 
 /// A variant with its budget: how well it is to solve its steps.
@@ -76,108 +72,44 @@ struct BudgetedVariant {
     variant: usize,
     /// Whose references it is held against.
     law: Stepper,
-    /// The budget in words.
     budget: String,
     solver: SolverSettings,
     /// Of a stepper without a method; its own number where this is 0.
     substeps: u32,
 }
 
-/// The budgets that each variant is tried with.
-struct Budgets {
-    residuals: Vec<f64>,
-    sweeps: Vec<u32>,
-    substeps: Vec<u32>,
-}
-
-/// What is simulated.
+/// What is simulated: piles of the paper's 138 grains.
 struct SimulationPlan {
-    /// In the names of files.
-    label: &'static str,
     time_steps_secs: Vec<f64>,
-    /// What the piles are made as; each has a seed of its own.
-    made_as: NewPile,
-    /// Simulated time of a run, s.
-    duration_secs: f64,
     /// (Bond, seed) of each pile.
     piles: Vec<(f64, u64)>,
     variants: Vec<ChartedVariant>,
     budgeted: Vec<BudgetedVariant>,
-    /// Laws that have references.
     laws: Vec<Stepper>,
-    /// Δt of the reference with the least error of the time step, s.
-    finest_secs: f64,
-    /// How the references are solved.
-    reference: ChartedVariant,
-    /// Residual of the references, and of those that show the floor.
-    tolerances: [f64; 2],
-    /// How often a run is timed.
     repeats: u32,
     /// Wall time that a simulated second may take, s.
     limit_secs: f64,
 }
 
 impl SimulationPlan {
-    /// The paper's 138 grains. What the law range costs is told by one good method, and by long runs.
-    fn of_paper(quick: bool) -> Self {
-        let laws =
-            if quick { vec![Stepper::Moreau] } else { vec![Stepper::Moreau, Stepper::Range] };
-        let budgets = if quick {
-            Budgets { residuals: vec![1e-2, 1e-4, 1e-6], sweeps: vec![20], substeps: vec![0] }
-        } else {
-            Budgets {
-                residuals: vec![1e-1, 1e-2, 1e-4, 1e-6, 1e-8],
-                sweeps: vec![10, 40],
-                substeps: vec![0, 16, 64],
-            }
-        };
-        let (variants, budgeted) = budgeted(&laws, &budgets);
+    /// What the law range costs is told by one good method, and by long runs.
+    fn new(quick: bool) -> Self {
+        let laws: &[Stepper] =
+            if quick { &[Stepper::Moreau] } else { &[Stepper::Moreau, Stepper::Range] };
+        let (variants, budgeted) = budgeted(laws, quick);
         Self {
-            label: "",
             time_steps_secs: if quick { vec![1e-3, 5e-3] } else { vec![1e-3, 2e-3, 5e-3] },
-            made_as: NewPile::default(),
-            duration_secs: 1.0,
-            piles: paper_piles(quick),
+            piles: piles(quick),
             variants,
             budgeted,
-            laws,
-            finest_secs: 1e-4,
-            reference: variants::of_method(Method::Newton),
-            tolerances: [1e-8, 1e-9],
+            laws: laws.to_vec(),
             repeats: if quick { 1 } else { 2 },
             limit_secs: if quick { 0.8 } else { 10.0 },
         }
     }
 
-    /// 2,000 grains. Coulomb's law is not solved there, so that the references are certified under the bounds of
-    /// friction that piles do not tell from it. A quick pass has no time for rain.
-    fn of_large(quick: bool) -> Self {
-        let laws = vec![Stepper::Moreau];
-        let residuals = if quick { vec![1e-2] } else { vec![1e-2, 1e-4] };
-        let budgets = Budgets { residuals, sweeps: vec![40], substeps: vec![0] };
-        let (variants, budgeted) = budgeted(&laws, &budgets);
-        let bonds: &[f64] = if quick { &[0.0, 20.0] } else { &[0.0, 20.0, 50.0] };
-        let deposition = if quick { Deposition::DropAndRoll } else { LARGE.deposition };
-        Self {
-            label: "-large",
-            time_steps_secs: if quick { vec![2e-3, 5e-3] } else { vec![1e-3, 5e-3] },
-            made_as: NewPile { deposition, ..LARGE },
-            duration_secs: if quick { 0.2 } else { 1.0 },
-            piles: bonds.iter().map(|&bond| (bond, LARGE.seed)).collect(),
-            variants,
-            budgeted,
-            laws,
-            finest_secs: if quick { 2e-3 } else { 1e-3 },
-            reference: variants::certified(),
-            tolerances: [1e-8, 1e-7],
-            repeats: 1,
-            limit_secs: if quick { 15.0 } else { 60.0 },
-        }
-    }
-
-    /// A pile at a time step under a law.
     fn config(&self, pile: usize, time_step_secs: f64, law: Stepper) -> Config {
-        let (bond, seed) = self.piles[pile];
+        let ((bond, seed), made_as) = (self.piles[pile], NewPile::default());
         let parameters = ParameterChanges {
             bond: Some(bond),
             time_step_secs: Some(time_step_secs),
@@ -185,19 +117,22 @@ impl SimulationPlan {
             ..ParameterChanges::default()
         };
         let source = SceneSource {
-            grains: Some(self.made_as.grains),
-            box_width: Some(self.made_as.box_width_in_diameters),
-            deposition: Some(self.made_as.deposition),
+            grains: Some(made_as.grains),
+            box_width: Some(made_as.box_width_in_diameters),
+            deposition: Some(made_as.deposition),
             seed: Some(seed),
-            duration: Some(self.duration_secs),
+            duration: Some(DURATION_SECS),
             ..SceneSource::default()
         };
         Config { source, stepper: Some(law), parameters, ..Config::default() }
     }
 }
 
-/// All variants with all their budgets.
-fn budgeted(laws: &[Stepper], budgets: &Budgets) -> (Vec<ChartedVariant>, Vec<BudgetedVariant>) {
+fn budgeted(laws: &[Stepper], quick: bool) -> (Vec<ChartedVariant>, Vec<BudgetedVariant>) {
+    let residuals: &[f64] =
+        if quick { &[1e-2, 1e-4, 1e-6] } else { &[1e-1, 1e-2, 1e-4, 1e-6, 1e-8] };
+    let sweeps: &[u32] = if quick { &[20] } else { &[10, 40] };
+    let all_substeps: &[u32] = if quick { &[0] } else { &[0, 16, 64] };
     let (mut variants, mut budgeted) = (Vec::new(), Vec::new());
     let of_law = |law| variants::all().into_iter().map(move |variant| (law, variant));
     let models = variants::models().into_iter().map(|model| (Stepper::Moreau, model));
@@ -208,22 +143,21 @@ fn budgeted(laws: &[Stepper], budgets: &Budgets) -> (Vec<ChartedVariant>, Vec<Bu
             }
             variant.stepper = law;
             variant.name.push_str(" (range)");
-            variant.look += variants::looks();
         }
         let number = variants.len();
         let mut add = |budget: String, solver, substeps| {
             budgeted.push(BudgetedVariant { variant: number, law, budget, solver, substeps });
         };
         if variant.method().is_some() {
-            for &tolerance in &budgets.residuals {
+            for &tolerance in residuals {
                 let solver = variant.to_residual(tolerance, MOST_SWEEPS);
                 add(format!("residual {tolerance:e}"), solver, 0);
             }
-            for &count in budgets.sweeps.iter().filter(|_| law == Stepper::Moreau) {
+            for &count in sweeps.iter().filter(|_| law == Stepper::Moreau) {
                 add(format!("{count} sweeps"), variant.sweeps(count), 0);
             }
         } else {
-            for &count in &budgets.substeps {
+            for &count in all_substeps {
                 let budget = match count {
                     0 => "its own substeps".to_owned(),
                     count => format!("{count} substeps"),
@@ -233,12 +167,12 @@ fn budgeted(laws: &[Stepper], budgets: &Budgets) -> (Vec<ChartedVariant>, Vec<Bu
         }
         variants.push(variant);
     }
-    (variants, budgeted)
+    (variants::told_apart(variants), budgeted)
 }
 
 /// (Bond, seed) of each pile of 138 grains. Bond numbers are dealt out to the seeds: each is met by several, and each
 /// meets several.
-fn paper_piles(quick: bool) -> Vec<(f64, u64)> {
+fn piles(quick: bool) -> Vec<(f64, u64)> {
     let shared = NewPile::default().seed;
     if quick {
         return vec![(0.0, shared), (20.0, 1), (50.0, 2), (100.0, 3)];
@@ -249,22 +183,10 @@ fn paper_piles(quick: bool) -> Vec<(f64, u64)> {
     seeds.into_iter().enumerate().flat_map(of).collect()
 }
 
-/// How a timed run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum TimedEnding {
-    /// At its full duration.
-    Done,
-    /// It took longer than it was given.
-    TooSlow,
-    /// Its state was no longer finite.
-    NotFinite,
-}
-
-/// One timed run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct TimedRun {
-    ending: TimedEnding,
+    /// Why it did not reach its end, in words.
+    failed: Option<String>,
     /// Least of its repeats, s.
     least_secs: f64,
     simulated_secs: f64,
@@ -284,7 +206,7 @@ struct TimedRun {
 fn timed_run(scene: &Scene, repeats: u32, limit_secs: f64) -> Result<TimedRun> {
     let mut run = timed_once(scene, limit_secs)?;
     for _ in 1..repeats {
-        if run.ending != TimedEnding::Done || run.least_secs > LONG_ENOUGH_SECS {
+        if run.failed.is_some() || run.least_secs > LONG_ENOUGH_SECS {
             break;
         }
         run.least_secs = run.least_secs.min(timed_once(scene, limit_secs)?.least_secs);
@@ -303,16 +225,16 @@ fn timed_once(scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
         let is_over = looks && started.elapsed().as_secs_f64() > limit_secs;
         Ok(if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     })?;
-    let ending = match ended {
-        RunEnding::Done => TimedEnding::Done,
-        RunEnding::Stopped => TimedEnding::TooSlow,
+    let failed = match ended {
+        RunEnding::Done => None,
+        RunEnding::Stopped => Some("too slow".to_owned()),
         RunEnding::NotFinite(_) => {
             tally.add(simulation.observables());
-            TimedEnding::NotFinite
+            Some("not finite".to_owned())
         }
     };
     Ok(TimedRun {
-        ending,
+        failed,
         least_secs: started.elapsed().as_secs_f64(),
         simulated_secs: simulation.time_secs(),
         steps: tally.steps,
@@ -322,14 +244,13 @@ fn timed_once(scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
     })
 }
 
-/// Tells a reference from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct ReferenceCase {
     law: Stepper,
     time_step_secs: f64,
     /// Number in `SimulationPlan::piles`.
     pile: usize,
-    /// Number in `SimulationPlan::tolerances`.
+    /// Number in [`TOLERANCES`].
     tolerance: usize,
 }
 
@@ -340,12 +261,9 @@ impl References {
     /// All references of a plan. The floor is that of the charted Δt alone.
     fn cases(plan: &SimulationPlan) -> Vec<ReferenceCase> {
         let mut cases = Vec::new();
-        let is_charted = plan.time_steps_secs.contains(&plan.finest_secs);
-        let finest = std::iter::once(plan.finest_secs).filter(|_| !is_charted);
-        let steps: Vec<f64> = finest.chain(plan.time_steps_secs.iter().copied()).collect();
         for &law in &plan.laws {
-            for &time_step_secs in &steps {
-                let has_floor = law == FLOOR_LAW && plan.time_steps_secs.contains(&time_step_secs);
+            for &time_step_secs in [FINEST_SECS].iter().chain(&plan.time_steps_secs) {
+                let has_floor = law == FLOOR_LAW && time_step_secs != FINEST_SECS;
                 for pile in 0..plan.piles.len() {
                     let of = |tolerance| ReferenceCase { law, time_step_secs, pile, tolerance };
                     cases.extend((0..if has_floor { 2 } else { 1 }).map(of));
@@ -358,7 +276,7 @@ impl References {
     fn run(plan: &SimulationPlan, states: &States, runner: &Runner<TimedRun>) -> Result<Self> {
         let case = |setup: ReferenceCase| {
             let ReferenceCase { law, time_step_secs, pile, tolerance } = setup;
-            let ((bond, seed), tolerance) = (plan.piles[pile], plan.tolerances[tolerance]);
+            let ((bond, seed), tolerance) = (plan.piles[pile], TOLERANCES[tolerance]);
             let key = format!(
                 "reference {tolerance:e}, law {law}, Bond {bond}, seed {seed}, dt {time_step_secs:e}"
             );
@@ -368,12 +286,12 @@ impl References {
         let runs = runner.run(&cases, Threads::All, |case| {
             let ReferenceCase { law, time_step_secs, pile, tolerance } = *case;
             let mut scene = states.scene(&plan.config(pile, time_step_secs, law))?;
-            let tolerance = plan.tolerances[tolerance];
-            let stop = StopTest::Residual;
-            scene.solver = SolverSettings { stop, tolerance, ..plan.reference.solver };
+            let tolerance = TOLERANCES[tolerance];
+            let (method, stop) = (REFERENCE, StopTest::Residual);
+            scene.solver = SolverSettings { method, stop, tolerance, ..SolverSettings::default() };
             timed_run(&scene, 1, f64::INFINITY)
         })?;
-        if let Some(run) = runs.iter().find(|run| run.result.ending != TimedEnding::Done) {
+        if let Some(run) = runs.iter().find(|run| run.result.failed.is_some()) {
             return Err(Error::value(&run.key, "not finite", "finite to compare with it"));
         }
         Ok(Self(cases.iter().zip(runs).map(|(case, run)| (case.setup, run.result)).collect()))
@@ -410,9 +328,7 @@ struct SimulatedPoint<'a> {
     time_step_secs: f64,
     /// The runs that reached their end, pile by pile.
     runs: Vec<TimedRun>,
-    /// Why there is no point, where there is none.
-    failed: Option<&'static str>,
-    /// Simulated seconds per second.
+    failed: Option<String>,
     speed: f64,
     /// Mean |slump − reference| at the same Δt, and at the finest.
     errors: [f64; 2],
@@ -420,7 +336,6 @@ struct SimulatedPoint<'a> {
     verdicts: f64,
 }
 
-/// Every variant with every budget at every Δt.
 fn run_all<'a>(
     plan: &'a SimulationPlan,
     states: &States,
@@ -447,16 +362,12 @@ fn run_all<'a>(
                     let mut scene = states.scene(&plan.config(pile, time_step_secs, *law))?;
                     (scene.stepper, scene.solver) = (charted.stepper, *solver);
                     scene.parameters.substeps = *substeps;
-                    timed_run(&scene, plan.repeats, plan.limit_secs * plan.duration_secs)
+                    timed_run(&scene, plan.repeats, plan.limit_secs * DURATION_SECS)
                 })?;
-                failed = match run.result.ending {
-                    TimedEnding::Done => None,
-                    TimedEnding::TooSlow => Some("too slow"),
-                    TimedEnding::NotFinite => Some("not finite"),
-                };
+                failed = run.result.failed.clone();
                 runs.extend(failed.is_none().then_some(run.result));
             }
-            simulated.push(summed_up(plan, references, variant, time_step_secs, runs, failed));
+            simulated.push(summed_up(references, variant, time_step_secs, runs, failed));
         }
     }
     progress.finish();
@@ -464,12 +375,11 @@ fn run_all<'a>(
 }
 
 fn summed_up<'a>(
-    plan: &SimulationPlan,
     references: &References,
     variant: &'a BudgetedVariant,
     time_step_secs: f64,
     runs: Vec<TimedRun>,
-    failed: Option<&'static str>,
+    failed: Option<String>,
 ) -> SimulatedPoint<'a> {
     let sum = |number: fn(&TimedRun) -> f64| runs.iter().map(number).sum::<f64>();
     let (law, tolerance) = (variant.law, 0);
@@ -490,7 +400,7 @@ fn summed_up<'a>(
         time_step_secs,
         failed,
         speed: sum(|run| run.simulated_secs) / sum(|run| run.least_secs),
-        errors: [error(time_step_secs), error(plan.finest_secs)],
+        errors: [error(time_step_secs), error(FINEST_SECS)],
         verdicts: agree.count() as f64 / runs.len().max(1) as f64,
         runs,
     }

@@ -1,6 +1,7 @@
 //! How simulations are drawn and told.
 
 use super::*;
+use crate::report::ReportTable;
 
 /// Draws a point for each variant, budget and Δt: against the same Δt, and against the finest one.
 pub(super) fn sheet(
@@ -12,9 +13,9 @@ pub(super) fn sheet(
     let good = || simulated.iter().filter(|point| point.failed.is_none()).map(|point| point.speed);
     let slowest = 0.7 * good().fold(f64::INFINITY, f64::min).min(1.0);
     let fastest = 1.5 * good().fold(0.0, f64::max).max(10.0 * slowest);
-    let finest = format!("Δt = {:e} s", plan.finest_secs);
+    let finest = format!("Δt = {:e} s", FINEST_SECS);
     let panels = [("the same Δt", Some(references.floor(plan))), (finest.as_str(), None)];
-    let mut charts: Vec<Chart> = panels
+    let charts: Vec<Chart> = panels
         .into_iter()
         .enumerate()
         .map(|(panel, (against, floor))| {
@@ -26,23 +27,20 @@ pub(super) fn sheet(
             with_errors(chart, plan, simulated, panel, floor)
         })
         .collect();
-    let legend = Chart::legend_of(&mut charts, 0.42);
-    charts.push(legend);
     let steps = listed(&plan.time_steps_secs, |step| format!("{step:e} s"));
-    let (piles, grains) = (plan.piles.len(), plan.made_as.grains);
+    let (piles, grains) = (plan.piles.len(), NewPile::default().grains);
     let caption = bench.caption(&[
         &format!(
             "A point for each method, effort and Δt (the larger the dot, the larger: {steps}); means over {piles} piles of {grains} grains."
         ),
         &format!(
             "References by {}. Slump after {} s. On the lower edge: the reference itself.",
-            plan.reference.name, plan.duration_secs
+            REFERENCE, DURATION_SECS
         ),
     ]);
-    Sheet { size: (1800, 900), charts, caption }.high_enough()
+    Sheet { size: (1500, 840), charts, caption }
 }
 
-/// Adds the points with their Pareto front, and how far two references are from each other.
 fn with_errors(
     mut chart: Chart,
     plan: &SimulationPlan,
@@ -80,68 +78,42 @@ fn with_errors(
     chart
 }
 
-/// The report's lines.
-pub(super) fn report(
-    plan: &SimulationPlan,
-    simulated: &[SimulatedPoint],
-    references: &References,
-) -> String {
-    let [tight, tighter] = plan.tolerances;
+pub(super) fn words(plan: &SimulationPlan, references: &References) -> String {
+    let [tight, tighter] = TOLERANCES;
     let [unsolved, steps] = references.unsolved();
-    let mut lines = vec![
-        format!(
-            "References are by {}. Two at the same Δt, solved to residuals of {tight:e} and {tighter:e}, differ by \
-             {:.4} in the mean: no smaller error means anything. {unsolved} of their {steps} steps were not solved as \
-             asked. Runs that take more than {} s a simulated second are given up as too slow. Every time is the least \
-             of {}.",
-            plan.reference.name,
-            references.floor(plan),
-            plan.limit_secs,
-            if plan.repeats == 1 { "1 run".into() } else { format!("{} runs", plan.repeats) }
-        ),
-        "\n| method | Δt, s | effort | simulated s per s | error, same Δt | error, finest Δt | verdicts agreed |\n|---|---|---|---|---|---|---|".into(),
-    ];
-    for point in simulated {
-        let (name, budget) = (&plan.variants[point.variant.variant].name, &point.variant.budget);
-        let numbers = match point.failed {
-            Some(why) => format!("{why} | | | |"),
-            None => format!(
-                "{:.2} | {:.4} | {:.4} | {:.0} % |",
-                point.speed,
-                point.errors[0],
-                point.errors[1],
-                100.0 * point.verdicts
-            ),
-        };
-        lines.push(format!("| {name} | {:e} | {budget} | {numbers}", point.time_step_secs));
-    }
-    lines.join("\n")
+    format!(
+        "References are by {REFERENCE}. Two at the same Δt, solved to residuals of {tight:e} and {tighter:e}, differ by \
+         {:.4} in the mean: no smaller error means anything. {unsolved} of their {steps} steps were not solved as \
+         asked. Runs that take more than {} s a simulated second are given up as too slow. Every time is the least \
+         of {}.",
+        references.floor(plan),
+        plan.limit_secs,
+        if plan.repeats == 1 { "1 run".into() } else { format!("{} runs", plan.repeats) }
+    )
 }
 
-/// Every point as CSV.
-pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> String {
-    let mut text = String::from(
-        "method,time_step_secs,effort,failed,simulated_secs_per_sec,error_same_step,error_finest_step,\
-         verdicts_agreed,mean_overlap,unconverged_steps,steps\n",
-    );
-    for point in simulated {
+pub(super) fn table(plan: &SimulationPlan, simulated: &[SimulatedPoint]) -> ReportTable {
+    let columns = "method time_step_secs effort failed simulated_secs_per_sec error_same_step error_finest_step \
+                   verdicts_agreed mean_overlap unconverged_steps steps";
+    let row = |point: &SimulatedPoint| {
         let runs = &point.runs;
         let overlap = mean(&runs.iter().map(|run| run.mean_overlap).collect::<Vec<_>>()).mean;
         let sum = |number: fn(&TimedRun) -> u64| runs.iter().map(number).sum::<u64>();
-        let numbers = match point.failed {
-            Some(why) => format!("{why},,,,,,,"),
-            None => format!(
-                ",{},{},{},{},{overlap},{},{}",
-                point.speed,
-                point.errors[0],
-                point.errors[1],
-                point.verdicts,
-                sum(|run| run.unconverged_steps),
-                sum(|run| run.steps)
-            ),
-        };
-        let (name, budget) = (&plan.variants[point.variant.variant].name, &point.variant.budget);
-        text.push_str(&format!("{name},{:e},{budget},{numbers}\n", point.time_step_secs));
-    }
-    text
+        let name = &plan.variants[point.variant.variant].name;
+        let mut row = vec![name.clone(), format!("{:e}", point.time_step_secs)];
+        row.push(point.variant.budget.clone());
+        row.push(point.failed.clone().unwrap_or_default());
+        let numbers = [point.speed, point.errors[0], point.errors[1], point.verdicts];
+        let mut numbers = numbers.map(|x| format!("{x:.4}")).to_vec();
+        numbers.push(format!("{overlap:.2e}"));
+        numbers.extend(
+            [sum(|run| run.unconverged_steps), sum(|run| run.steps)].map(|x| x.to_string()),
+        );
+        let is_there = point.failed.is_none();
+        row.extend(numbers.into_iter().map(|number| if is_there { number } else { String::new() }));
+        row
+    };
+    let rows = simulated.iter().map(row).collect();
+    let name = "chart-simulation-points".to_owned();
+    ReportTable { name, columns: columns.split(' ').collect(), rows }
 }

@@ -23,9 +23,7 @@ use crate::sim::settings::Settings;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::steppers::range::shocks::{self, ClosedBond, Shocks};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{
-    Kinematics, Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve,
-};
+use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 
 /// Solutions of a step after which bounds are left as they are: bonds that still ask for less are few,
 /// and the next step looks at them again.
@@ -49,7 +47,7 @@ pub(in crate::sim) struct RangeMemory {
     pub(super) shocks: Shocks,
     #[serde(skip)]
     lowered: Vec<(usize, f64)>,
-    /// Whether bonds were about to break in the last step.
+    /// True where bonds were about to break in the last step.
     pub restless: bool,
     /// Where a step was too long for the bonds that were about to break in it: the longest that is not, s.
     #[serde(skip)]
@@ -64,8 +62,8 @@ pub(super) fn solve_range<M: Model>(
     settings: &Settings,
     may_break: bool,
 ) -> Result<StepResult, SolveReport> {
-    let shocks_result = pass_shocks(stage, remembered, settings);
-    let mut result = shocks_result.unwrap_or_else(StepResult::nothing_yet);
+    let passed = shocks::pass(stage, &mut remembered.shocks, settings);
+    let mut result = passed.unwrap_or_else(StepResult::nothing_yet);
     let numbers = StepNumbers::of(stage.world(), settings);
     let RangeMemory { shocks, lowered, restless, .. } = remembered;
     let Stage { state, problem, memory, .. } = stage;
@@ -74,7 +72,7 @@ pub(super) fn solve_range<M: Model>(
     let mut round = 0;
     loop {
         round += 1;
-        result.report.add(solve::<M>(problem, memory, &settings.solver));
+        result.report.add(solve(problem, memory, &settings.solver));
         let limits = BondLimits { bonds: contacts.bonds(), shocks, numbers };
         if round == 1 {
             *restless |= limits.is_restless::<M>(problem, fastest, lowered);
@@ -97,7 +95,7 @@ pub(super) fn solve_range<M: Model>(
 struct BondOpening {
     /// The part of the step.
     part: f64,
-    /// Whether a shock closed it.
+    /// True where a shock closed it.
     is_closed: bool,
     /// v at the beginning, m/s.
     speed: f64,
@@ -110,16 +108,14 @@ struct BondOpening {
 impl BondOpening {
     /// That of a row which tells of a bond. Other forces are even over the whole step, so that a part of it
     /// has that part of them.
-    fn of<K: Kinematics>(
-        problem: &StepProblem<K>,
+    fn of<M: Model>(
+        problem: &StepProblem<M>,
         number: usize,
         motion: &RowVelocities,
         shocks: &Shocks,
-        bond: Bond,
-        numbers: StepNumbers,
     ) -> Self {
         let row = problem.rows.get(number);
-        let closed = shocks.closed(number, bond.alive, numbers.time_step_secs);
+        let closed = shocks.closed(number);
         let ClosedBond { part, gained } = closed.unwrap_or(ClosedBond { part: 1.0, gained: 0.0 });
         let [impulse, _] = problem.reduced_impulse(number, row);
         let [now, before] = [motion.now, motion.before].map(|[normal, _]| normal);
@@ -140,8 +136,8 @@ impl BondOpening {
 }
 
 /// Tells the bonds, one a contact, what the solved step has made of them.
-fn update_bonds<K: Kinematics>(
-    problem: &StepProblem<K>,
+fn update_bonds<M: Model>(
+    problem: &StepProblem<M>,
     bonds: &mut [Bond],
     shocks: &Shocks,
     numbers: StepNumbers,
@@ -151,7 +147,7 @@ fn update_bonds<K: Kinematics>(
     for_each_row(problem, |number, row, motion| {
         let bond = &mut bonds[problem.rows.contacts[number] as usize];
         let cohesion_force = row.effective_mass * problem.law.capture_speed() / time_step_secs;
-        let opens = BondOpening::of(problem, number, &motion, shocks, *bond, numbers);
+        let opens = BondOpening::of(problem, number, &motion, shocks);
         let opening_speed = opens.opening_speed();
         let before = if bond.alive { cohesion_force * bond.stretch } else { 0.0 };
         if opens.is_closed || row.shifted_impulse > 0.0 {
@@ -178,16 +174,6 @@ fn update_bonds<K: Kinematics>(
     energies
 }
 
-/// Takes a prepared problem through its shocks.
-pub(super) fn pass_shocks<M: Model>(
-    stage: &mut Stage<'_, M>,
-    remembered: &mut RangeMemory,
-    settings: &Settings,
-) -> Option<StepResult> {
-    let numbers = StepNumbers::of(stage.world(), settings);
-    shocks::pass::<M>(stage, &mut remembered.shocks, numbers, &settings.solver)
-}
-
 /// What the bounds of a step hang on.
 struct BondLimits<'a> {
     /// One a contact.
@@ -197,11 +183,11 @@ struct BondLimits<'a> {
 }
 
 impl BondLimits<'_> {
-    /// Whether bonds are about to break in a step that has been solved, at whose beginning the fastest grain or
+    /// True where bonds are about to break in a step that has been solved, at whose beginning the fastest grain or
     /// wall had that speed (m/s).
     fn is_restless<M: Model>(
         &self,
-        problem: &StepProblem<M::Kinematics>,
+        problem: &StepProblem<M>,
         fastest: f64,
         lowered: &mut Vec<(usize, f64)>,
     ) -> bool {
@@ -213,8 +199,8 @@ impl BondLimits<'_> {
         !lowered.is_empty()
     }
 
-    /// Whether nothing moved when the step began, and no pair moves apart or along in it.
-    fn stands<K: Kinematics>(&self, problem: &StepProblem<K>, fastest: f64) -> bool {
+    /// True where nothing moved when the step began, and no pair moves apart or along in it.
+    fn stands<M: Model>(&self, problem: &StepProblem<M>, fastest: f64) -> bool {
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;
         let mut speed = fastest;
@@ -228,7 +214,7 @@ impl BondLimits<'_> {
     /// step, were they of `strength` times their own.
     fn lowered<M: Model>(
         &self,
-        problem: &StepProblem<M::Kinematics>,
+        problem: &StepProblem<M>,
         strength: f64,
         lowered: &mut Vec<(usize, f64)>,
     ) {
@@ -243,7 +229,7 @@ impl BondLimits<'_> {
                 return;
             }
             let bond = self.bonds[problem.rows.contacts[number] as usize];
-            let opens = BondOpening::of(problem, number, &motion, self.shocks, bond, self.numbers);
+            let opens = BondOpening::of(problem, number, &motion, self.shocks);
             let stretch = if opens.is_closed { 0.0 } else { bond.stretch };
             let left = (debonding_distance - stretch).max(0.0);
             let opening = Opening { left, speed: opens.speed, load: opens.load };
@@ -257,7 +243,7 @@ impl BondLimits<'_> {
 }
 
 /// Lowers the bounds of bonds that do not live to the end of the step.
-fn shorten<K: Kinematics>(problem: &mut StepProblem<K>, lowered: &[(usize, f64)]) {
+fn shorten<M: Model>(problem: &mut StepProblem<M>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
         let before = std::mem::replace(&mut problem.rows.captures[number], bound);
         let row = problem.rows.get_mut(number);

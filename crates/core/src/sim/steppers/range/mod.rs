@@ -24,34 +24,17 @@ use crate::contact::{LookAhead, Numbering, Other};
 use crate::error::Error;
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
-use crate::sim::steppers::range::bonds::{pass_shocks, solve_range};
-use crate::sim::steppers::{MeanPair, StepperInfo};
+use crate::sim::steppers::range::bonds::solve_range;
+use crate::sim::steppers::{StepperInfo, fracture_work_of};
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
-use crate::solver::{Approach, Kinematics, Model, SolveReport};
+use crate::solver::{Approach, Model, SolveReport};
 use crate::world::{FrictionCone, Parameters, World};
 
-/// The row of the registry.
 pub(super) const INFO: StepperInfo = StepperInfo {
     solves: "each step's problem under Signorini's law with bonds of finite range and Coulomb's law",
     source: "bonds that cost the work C₀δc; shocks apart from loads",
-    settings: &[
-        "bond",
-        "dt",
-        "tilt",
-        "rho",
-        "mu",
-        "cone",
-        "restitution-threshold",
-        "debonding-distance",
-        "solver",
-        "ordering",
-        "stop",
-        "tolerance",
-        "max-sweeps",
-        "warm-start",
-        "fallback",
-        "islands",
-    ],
+    settings: "bond dt tilt rho mu cone restitution-threshold debonding-distance solver \
+        ordering stop tolerance max-sweeps warm-start fallback islands",
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
     // In the compressive cone the sweep needs the capture speed, which differs between contacts.
     check: |parameters| match parameters.cone {
@@ -61,7 +44,7 @@ pub(super) const INFO: StepperInfo = StepperInfo {
     takes_drives: true,
     fracture_work: |world, physics, parameters| {
         let distance = parameters.debonding_distance * world.mean_diameter;
-        MeanPair::of(world).fracture_work(physics, parameters, |force| force * distance)
+        fracture_work_of(world, physics, parameters, |force| force * distance)
     },
     ..StepperInfo::WHOLE
 };
@@ -99,9 +82,9 @@ fn travel(world: &World, fastest: f64, time_step_secs: f64) -> f64 {
 /// How a step is cut.
 struct StepCut {
     substeps: u32,
-    /// Whether bonded pairs circle so fast that it cannot be taken as a whole.
+    /// True where bonded pairs circle so fast that it cannot be taken as a whole.
     circling: bool,
-    /// Whether it is tried as a whole first.
+    /// True where it is tried as a whole first.
     whole_first: bool,
     /// The longest step (s) in whose substeps a break is seen, where this one is longer.
     longest_step_secs: Option<f64>,
@@ -173,7 +156,7 @@ pub(super) fn set_up<M: Model>(
     let first = settings.over(settings.parameters.time_step_secs / f64::from(substeps));
     let first = if whole_first { *settings } else { first };
     prepare(stage, &first);
-    pass_shocks(stage, memory, &first);
+    shocks::pass(stage, &mut memory.shocks, &first);
 }
 
 /// Detects the contacts and sets up the problem of a step. A gap must not close by more than itself;
@@ -203,7 +186,7 @@ fn try_step<M: Model>(
 }
 
 /// The numbers of a step that its shocks and bonds hang on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepNumbers {
     pub parameters: Parameters,
     pub time_step_secs: f64,
@@ -242,12 +225,7 @@ pub(super) fn separate<M: Model>(state: &mut State) {
     let State { world, contacts, candidates, .. } = state;
     let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
     for _ in 0..PASSES {
-        let found = if M::Kinematics::AXES == 1 {
-            contacts.separate::<1>(world, candidates, allowed)
-        } else {
-            contacts.separate::<2>(world, candidates, allowed)
-        };
-        if !found {
+        if !contacts.separate(world, candidates, allowed, M::AXES) {
             break;
         }
     }
@@ -257,7 +235,7 @@ pub(super) fn separate<M: Model>(state: &mut State) {
 /// smaller: steps are cut in vain.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
-/// Whether a bonded pair circles so fast that a step of that length would take the turn of its normal for a shock.
+/// True where a bonded pair circles so fast that a step of that length would take the turn of its normal for a shock.
 /// `pull` is C₀/m_ij, m/s², and `distance` δ_c, m.
 ///
 /// Bonded pairs that circle each other.

@@ -29,7 +29,6 @@ pub(super) const PAIRS: usize = 3;
 pub(super) trait Shape {
     /// The first and the end of the slacks that it has.
     const FIRST: usize;
-    /// See [`Shape::FIRST`].
     const END: usize;
     /// True where the two slacks of friction stand for the impulses.
     const CONE: bool;
@@ -80,7 +79,6 @@ impl Shape for Leaning {
     const COMPLIANCE: f64 = 1e-8;
 }
 
-/// A contact's state.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PathContact {
     /// (σ, λ), m/s.
@@ -101,7 +99,6 @@ pub(super) struct PathContact {
     pub mobility: [f64; PAIRS],
 }
 
-/// A step of a contact's state.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PathStep {
     pub impulse: [f64; 2],

@@ -38,14 +38,12 @@ use self::contact::{
 };
 use self::proximal::ProximalContact;
 use self::system::StepMatrix;
-use super::newton::{self, NewtonMemory};
-use super::nsgs::{solve_models, sweep_of_model};
+use super::nsgs::{settles_in, solve_models};
 use super::stopping::SolveReport;
 use crate::contact::law;
-use crate::solver::kinematics::Kinematics;
+use crate::solver::kinematics::Model;
 use crate::solver::linear::ContactGraph;
 use crate::solver::method::Method;
-use crate::solver::model::Model;
 use crate::solver::problem::{StepProblem, natural_map};
 use crate::solver::settings::{FrictionModel, SolverSettings};
 use crate::world::FrictionCone;
@@ -83,8 +81,6 @@ pub(crate) struct InteriorMemory {
     three: PathWorkspace<3>,
     /// (σ, λ_t) of the rows of a problem that was not solved under Coulomb's law.
     unsolved: Vec<[f64; 2]>,
-    /// Of Newton's method, which goes on where a path leads nowhere.
-    newton: NewtonMemory,
 }
 
 /// What is kept where a body has `D` degrees of freedom.
@@ -111,29 +107,31 @@ struct PathWorkspace<const D: usize> {
     stopped: Vec<bool>,
 }
 
-/// Solves a prepared problem under the model of friction that it was prepared for.
+/// Solves a prepared problem under the model of friction that it was prepared for. Where the path of Coulomb's law leads
+/// nowhere, `go_on` takes over.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
     settings: &SolverSettings,
+    mut go_on: impl FnMut(&mut StepProblem<M>, &SolverSettings) -> SolveReport,
 ) -> SolveReport {
-    solve_models::<M>(problem, settings, |problem| match problem.friction.model {
+    solve_models(problem, settings, |problem| match problem.friction.model {
         _ if !M::FRICTION => convex::<M, HalfLine>(problem, memory, settings),
         FrictionModel::Tresca => convex::<M, Strip>(problem, memory, settings),
         FrictionModel::Associated | FrictionModel::Desaxce => {
             convex::<M, Cone>(problem, memory, settings)
         }
-        FrictionModel::Coulomb => coulomb::<M>(problem, memory, settings),
+        FrictionModel::Coulomb => coulomb(problem, memory, settings, &mut go_on),
     })
 }
 
 fn convex<M: Model, S: Shape>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
     let InteriorMemory { one, two, three, .. } = memory;
-    match M::Kinematics::DEGREES {
+    match M::DEGREES {
         1 => InteriorPoint::<M, S, 1>::new(problem, settings, one).solve_convex(),
         2 => InteriorPoint::<M, S, 2>::new(problem, settings, two).solve_convex(),
         _ => InteriorPoint::<M, S, 3>::new(problem, settings, three).solve_convex(),
@@ -145,7 +143,7 @@ fn convex<M: Model, S: Shape>(
 ///
 /// The bounds are nearer to Coulomb's than those of the step before, on which `tresca` stands.
 pub(in crate::solver) fn fall_back<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
     report: SolveReport,
 ) -> SolveReport {
@@ -165,15 +163,16 @@ pub(in crate::solver) fn fall_back<M: Model>(
     SolveReport { converged: false, stalled: report.stalled, fell_back, ..instead.after(report) }
 }
 
-/// Follows the path of Coulomb's law as far as it leads, and has Newton's method go on from there. The
+/// Follows the path of Coulomb's law as far as it leads, and has another method go on from there. The
 /// compressive cone has a corner at σ = c, which no path goes round.
 fn coulomb<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
     settings: &SolverSettings,
+    go_on: impl FnOnce(&mut StepProblem<M>, &SolverSettings) -> SolveReport,
 ) -> SolveReport {
-    let InteriorMemory { two, three, newton, .. } = memory;
-    let report = match M::Kinematics::DEGREES {
+    let InteriorMemory { two, three, .. } = memory;
+    let report = match M::DEGREES {
         _ if problem.law.cone() == FrictionCone::Compressive => SolveReport::default(),
         2 => InteriorPoint::<M, Leaning, 2>::new(problem, settings, two).follow_path(),
         _ => InteriorPoint::<M, Leaning, 3>::new(problem, settings, three).follow_path(),
@@ -183,12 +182,11 @@ fn coulomb<M: Model>(
         return report;
     }
     let rest = SolverSettings { max_sweeps: left, ..*settings };
-    newton::solve::<M>(problem, newton, &rest).after(report)
+    go_on(problem, &rest).after(report)
 }
 
-/// One solve.
 struct InteriorPoint<'a, M: Model, S, const D: usize> {
-    problem: &'a mut StepProblem<M::Kinematics>,
+    problem: &'a mut StepProblem<M>,
     settings: &'a SolverSettings,
     workspace: &'a mut PathWorkspace<D>,
     numbers: ContactNumbers,
@@ -202,13 +200,13 @@ struct InteriorPoint<'a, M: Model, S, const D: usize> {
 
 impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
     fn new(
-        problem: &'a mut StepProblem<M::Kinematics>,
+        problem: &'a mut StepProblem<M>,
         settings: &'a SolverSettings,
         workspace: &'a mut PathWorkspace<D>,
     ) -> Self {
         let numbers = ContactNumbers {
             slope: if S::CONE || S::LEANS { problem.law.friction } else { 0.0 },
-            tangential_compliance: M::Kinematics::TANGENTIAL_COMPLIANCE,
+            tangential_compliance: M::TANGENTIAL_COMPLIANCE,
         };
         Self {
             problem,
@@ -222,16 +220,10 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Sweeps up to so many times; whether the stopping test is met.
+    /// Sweeps up to so many times. True where the stopping test is met.
     fn settles_in(&mut self, sweeps: u32) -> bool {
-        for _ in 0..sweeps.min(self.settings.max_sweeps - self.report.sweeps) {
-            self.report.sweeps += 1;
-            if sweep_of_model::<M>(self.problem, self.settings, false) {
-                self.report.converged = true;
-                break;
-            }
-        }
-        self.report.converged
+        let sweeps = sweeps.min(self.settings.max_sweeps - self.report.sweeps);
+        settles_in(self.problem, self.settings, sweeps, &mut self.report)
     }
 
     /// Takes a step along the path; the share of it that was taken, and the natural map where it leads.
@@ -239,7 +231,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         let share = self.newton_step();
         self.report.factorisations += 1;
         self.take_impulses();
-        let left = natural_map::<M>(self.problem);
+        let left = natural_map(self.problem);
         if left < self.best && self.is_bounded() {
             self.keep(left);
         }
@@ -275,7 +267,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
             largest = largest.max(row.shifted_impulse + closing).max(tangential.abs());
         });
         self.largest_impulse = LARGEST_IMPULSE * largest;
-        self.keep(natural_map::<M>(self.problem));
+        self.keep(natural_map(self.problem));
     }
 
     /// True where the impulses are of a size that a solution may have. On a path that leads nowhere they grow, and
@@ -296,7 +288,6 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.problem.rows.read_impulses(&mut self.workspace.best);
     }
 
-    /// Goes back to what was kept.
     fn go_back(&mut self) {
         self.problem.write_impulses(self.workspace.best.iter().copied());
     }
@@ -307,7 +298,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         let opening_lags = problem.friction.model != FrictionModel::Tresca && S::CONE;
         let contacts = &mut workspace.contacts;
         contacts.clear();
-        let compliance = 1.0 / M::Kinematics::TANGENTIAL_COMPLIANCE;
+        let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
         let (mut squares, mut number) = (0.0, 0);
         problem.for_each_velocity(&problem.bodies.now, |row, [normal, tangential]| {
             let lagged = problem.friction.now.get(number).copied().unwrap_or(0.0);

@@ -13,8 +13,8 @@
 use super::contact::{PAIRS, PathContact, PathStep, Shape};
 use super::system::{for_each_change, push_all};
 use super::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
+use crate::solver::kinematics::Model;
 use crate::solver::methods::stopping::SolveReport;
-use crate::solver::model::Model;
 
 /// Least and largest share of the present mean product that a step aims at.
 const AIMS: [f64; 2] = [1e-6, 1.0];
@@ -24,7 +24,6 @@ const OFF_BORDER: f64 = 0.999;
 const MOST_SECOND_ORDER: f64 = 1e3;
 /// Further corrections of a step that is shorter than [`LONG_ENOUGH`].
 const CORRECTIONS: u32 = 3;
-/// See [`CORRECTIONS`].
 const LONG_ENOUGH: f64 = 0.98;
 /// Products beyond these shares of the aim are corrected.
 const NEAR_AIM: [f64; 2] = [0.1, 10.0];
@@ -51,7 +50,6 @@ const SWEEPS_BETWEEN: u32 = 30;
 const FOLDED_PATIENCE: u32 = 8;
 /// So many steps in a row that are shorter than [`SHORT_STEP`] end a start, too.
 const SHORT_STEPS: u32 = 3;
-/// See [`SHORT_STEPS`].
 const SHORT_STEP: f64 = 0.05;
 /// Of a step shorter than this, the contacts that stop it are made soft.
 const LONG_STEP: f64 = 0.3;
@@ -167,11 +165,11 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         vector.resize(problem.bodies.now.len(), [0.0; D]);
         let loads = contacts.iter().zip(&*targets);
         let loads = loads.map(|(contact, targets)| contact.load::<S>(*numbers, targets));
-        push_all::<M, D>(problem, elimination, loads, vector);
+        push_all(problem, elimination, loads, vector);
         system.solve::<S>(elimination, vector);
         step.clear();
         let mut share: f64 = 1.0;
-        for_each_change::<M, D>(problem, elimination, vector, |number, change| {
+        for_each_change(problem, elimination, vector, |number, change| {
             let contact = &contacts[number];
             let direction = contact.direction::<S>(*numbers, &targets[number], change);
             share = share.min(contact.longest::<S>(&direction));

@@ -20,17 +20,15 @@
 //! rounding would eat what a small ε magnifies.
 
 use super::contact::{ContactNumbers, Shape};
-use super::system::{for_each_change, push_all};
+use super::system::{for_each_change, inertias, push_all};
 use super::{InteriorPoint, PathWorkspace};
 use crate::contact::law;
-use crate::solver::kinematics::Kinematics;
+use crate::solver::kinematics::Model;
 use crate::solver::linear::Block;
-use crate::solver::model::Model;
 use crate::solver::problem::natural_map;
 
 /// ε of a solve from far away, and of one that ends what the interior point has begun.
 const FAR: f64 = 0.1;
-/// See [`FAR`].
 const CLOSE: f64 = 1e-5;
 /// ε is no smaller: rounding would eat more than is gained.
 const LEAST: f64 = 1e-10;
@@ -47,7 +45,6 @@ const TRIALS: u32 = 40;
 /// F′ is 0 below this share of what it is where the line begins.
 const ROOT: f64 = 1e-9;
 
-/// A contact on its way.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ProximalContact {
     /// p, m/s.
@@ -202,7 +199,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         momenta.clear();
         momenta.resize(problem.bodies.now.len(), [0.0; D]);
         let impulses = near.iter().map(|contact| contact.impulse);
-        push_all::<M, D>(problem, &graph.elimination, impulses, momenta);
+        push_all(problem, &graph.elimination, impulses, momenta);
     }
 
     /// Gives the rows impulses, and the bodies the velocities that these make.
@@ -217,7 +214,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         self.take_near(|contact| {
             contact.allowed::<S>(numbers, contact.trial(numbers, compliance, 0.0))
         });
-        natural_map::<M>(self.problem)
+        natural_map(self.problem)
     }
 
     /// Puts −∇F in the place of a right-hand side; its square in the metric of M, J.
@@ -230,11 +227,11 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let impulses = near
             .iter()
             .map(|contact| contact.allowed::<S>(numbers, contact.trial(numbers, compliance, 0.0)));
-        push_all::<M, D>(problem, elimination, impulses, vector);
+        push_all(problem, elimination, impulses, vector);
         let mut squared = 0.0;
-        for (&body, momenta) in elimination.body_at.iter().zip(&*vector) {
-            for (momentum, inertia) in momenta.iter().zip(M::Kinematics::INERTIA_OVER_MASS) {
-                squared += momentum * momentum / (inertia * problem.bodies.masses[body as usize]);
+        for (inertia, momenta) in inertias::<M, D>(problem, elimination).zip(&*vector) {
+            for (momentum, inertia) in momenta.iter().zip(inertia) {
+                squared += momentum * momentum / inertia;
             }
         }
         squared
@@ -251,19 +248,16 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         });
         system.assemble::<M, S>(problem, graph, answers);
         system.solve::<S>(elimination, vector);
-        for_each_change::<M, D>(problem, elimination, vector, |number, change| {
+        for_each_change(problem, elimination, vector, |number, change| {
             near[number].change = change;
         });
         let share = self.least_on_line(compliance);
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
-        for (&body, (momenta, change)) in
-            graph.elimination.body_at.iter().zip(momenta.iter_mut().zip(&*vector))
-        {
-            let mass = problem.bodies.masses[body as usize];
+        let all = inertias::<M, D>(problem, &graph.elimination).zip(momenta).zip(vector);
+        for ((inertia, momenta), change) in all {
             for axis in 0..D {
-                let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
-                momenta[axis] += share * inertia * change[axis];
+                momenta[axis] += share * inertia[axis] * change[axis];
             }
         }
         for contact in near {
@@ -278,13 +272,10 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;
         let (mut of_masses, mut at_start) = (0.0, 0.0);
-        for (&body, (momenta, change)) in
-            graph.elimination.body_at.iter().zip(momenta.iter().zip(vector))
-        {
-            let mass = problem.bodies.masses[body as usize];
+        let all = inertias::<M, D>(problem, &graph.elimination).zip(momenta).zip(vector);
+        for ((inertia, momenta), change) in all {
             for axis in 0..D {
-                let inertia = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
-                of_masses += inertia * change[axis] * change[axis];
+                of_masses += inertia[axis] * change[axis] * change[axis];
                 at_start += momenta[axis] * change[axis];
             }
         }

@@ -1,9 +1,10 @@
 //! The linear system of a Newton step: M + Hᵀ m S⁻¹ H, symmetric but for Coulomb's law.
 
 use super::contact::Shape;
-use crate::solver::kinematics::Kinematics;
-use crate::solver::linear::{Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix};
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
+use crate::solver::linear::{
+    Block, BlockMatrix, ContactGraph, Elimination, SymmetricBlockMatrix, inertia,
+};
 use crate::solver::problem::{Row, StepProblem};
 
 /// The matrix, then its factors.
@@ -18,22 +19,19 @@ impl<const D: usize> StepMatrix<D> {
     /// Sets the matrix up for the S⁻¹ of each contact, and factorises it.
     pub(super) fn assemble<M: Model, S: Shape>(
         &mut self,
-        problem: &StepProblem<M::Kinematics>,
+        problem: &StepProblem<M>,
         graph: &ContactGraph,
         mut answers: impl Iterator<Item = Block<2>>,
     ) {
         let elimination = &graph.elimination;
+        let masses = &problem.bodies.masses;
         if S::LEANS {
-            self.unsymmetric.clear(elimination);
+            self.unsymmetric.start::<M>(elimination, masses);
         } else {
             self.symmetric.clear(elimination);
-        }
-        for (body, &mass) in problem.bodies.masses.iter().enumerate() {
-            let mut block = [[0.0; D]; D];
-            for (axis, row) in block.iter_mut().enumerate() {
-                row[axis] = mass * M::Kinematics::INERTIA_OVER_MASS[axis];
+            for (&place, &mass) in elimination.place_of.iter().zip(masses) {
+                self.symmetric.add_to_diagonal(place, &inertia::<M, D>(mass));
             }
-            self.add_to_diagonal::<S>(elimination.place_of[body], &block);
         }
         for (row, answer) in problem.rows.fixed.iter().zip(&mut answers) {
             let [on_i, _] = gradients::<M, D>(row);
@@ -87,15 +85,15 @@ impl<const D: usize> StepMatrix<D> {
 
 /// How the velocities of i, then of j, enter v_n and v_t of a row.
 #[inline(always)]
-pub(super) fn gradients<M: Model, const D: usize>(row: &Row<M::Kinematics>) -> [[[f64; D]; 2]; 2] {
+pub(super) fn gradients<M: Model, const D: usize>(row: &Row<M>) -> [[[f64; D]; 2]; 2] {
     let part = |vector: [f64; 3]| std::array::from_fn(|axis| vector[axis]);
-    M::Kinematics::gradients(row.normal).map(|of_body| of_body.map(part))
+    M::gradients(row.normal).map(|of_body| of_body.map(part))
 }
 
 /// Adds Hᵀ m p to `momenta` (by place), of (σ, λ) in m/s by row; kg m/s.
 #[inline(always)]
 pub(super) fn push_all<M: Model, const D: usize>(
-    problem: &StepProblem<M::Kinematics>,
+    problem: &StepProblem<M>,
     elimination: &Elimination,
     impulses: impl Iterator<Item = [f64; 2]>,
     momenta: &mut [[f64; D]],
@@ -115,7 +113,7 @@ pub(super) fn push_all<M: Model, const D: usize>(
 /// Visits the rows, by their numbers, with the change of (v_n, v_t) that goes with a change of velocities (by place).
 #[inline(always)]
 pub(super) fn for_each_change<M: Model, const D: usize>(
-    problem: &StepProblem<M::Kinematics>,
+    problem: &StepProblem<M>,
     elimination: &Elimination,
     changes: &[[f64; D]],
     mut visit: impl FnMut(usize, [f64; 2]),
@@ -143,6 +141,15 @@ fn add_push<const D: usize>(to: &mut [f64; D], on: &[[f64; D]; 2], impulse: [f64
 #[inline(always)]
 fn relative<const D: usize>(velocity: &[f64; D], on: &[[f64; D]; 2]) -> [f64; 2] {
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
+}
+
+/// By place: the inertias of the bodies, kg.
+pub(super) fn inertias<M: Model, const D: usize>(
+    problem: &StepProblem<M>,
+    elimination: &Elimination,
+) -> impl Iterator<Item = [f64; D]> {
+    let masses = elimination.body_at.iter().map(|&body| problem.bodies.masses[body as usize]);
+    masses.map(|mass| std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis]))
 }
 
 /// m S⁻¹, kg.

@@ -1,65 +1,23 @@
 //! Random contact problems that have a solution: proximal multipliers, which end a solve or stand in for the path, find
 //! the velocities that the path leads to.
 
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
-
 use super::*;
 use crate::contact::ContactLaw;
-use crate::solver::problem::{FixedRow, PairRow, Row};
-use crate::solver::{Line, Plane, SpinningPlane, StepModel, StopTest};
+use crate::solver::methods::random_problem::random_problem;
+use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane, StopTest};
 
 const FRICTION: f64 = 0.6;
 
-/// Contacts of bodies of different masses. Nothing has to move for them (what is added to v_n is positive), so that
-/// there is a solution.
-fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M::Kinematics> {
-    let (bodies, contacts) = (40, 90);
-    let mut random = Pcg64::seed_from_u64(seed);
+/// Nothing has to move for its contacts, so that there is a solution.
+fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
     let law = ContactLaw::new(FRICTION, 0.1, FrictionCone::Shifted);
-    let mut problem = StepProblem::<M::Kinematics> { law, ..StepProblem::default() };
-    problem.bodies.mean_mass = 1.0;
+    let mut problem = random_problem::<M>(seed, law, 40, 90, 6, 0.0..0.3);
     problem.friction.model = model;
-    problem.rows.contacts.extend(0..contacts);
-    for _ in 0..bodies {
-        problem.bodies.masses.push(random.random_range(0.2..5.0));
-        let speeds = [(); 3].map(|()| random.random_range(-1.0..1.0));
-        problem.bodies.free.push(M::Kinematics::from_coordinates(speeds));
-    }
-    problem.bodies.before = problem.bodies.free.clone();
-    for contact in 0..contacts {
-        let i = random.random_range(0..bodies);
-        let j = (i + random.random_range(1..6)) % bodies;
-        let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
-        let normal = match M::Kinematics::AXES {
-            1 => [angle.cos().signum(), 0.0],
-            _ => [angle.cos(), angle.sin()],
-        };
-        let (of_i, of_j) = (problem.bodies.masses[i], problem.bodies.masses[j]);
-        let is_fixed = contact % 6 == 0;
-        let share = if is_fixed { 1.0 } else { of_j / (of_i + of_j) };
-        // Drawn before the row's own numbers.
-        let surface_speed = if is_fixed { random.random_range(-0.1..0.1) } else { 0.0 };
-        let row = Row {
-            i: i as u32,
-            j: j as u32,
-            normal: M::Kinematics::normal(normal),
-            restitution_velocity: random.random_range(0.0..0.3),
-            shifted_impulse: random.random_range(0.0..1.0),
-            tangential_impulse: 0.0,
-            effective_mass: of_i * share,
-        };
-        if is_fixed {
-            problem.rows.fixed.push(FixedRow { row, surface_speed });
-        } else {
-            problem.rows.pairs.push(PairRow { row, share });
-        }
-        problem.friction.now.push(match model {
-            FrictionModel::Tresca => random.random_range(0.0..0.2),
-            _ => 0.0,
-        });
-    }
-    problem.form_velocities();
+    let bound = |number: usize| match model {
+        FrictionModel::Tresca => 0.2 * (0.618 * number as f64).fract(),
+        _ => 0.0,
+    };
+    problem.friction.now.extend((0..problem.rows.len()).map(bound));
     problem
 }
 
@@ -84,9 +42,8 @@ fn both_ways<M: Model, S: Shape, const D: usize>(
     assert!(solver.best > 0.1, "seed {seed}, {model}: it is far");
     assert!(solver.solve_from_far(), "seed {seed}, {model}: {}", solver.best);
     let factorisations = solver.report.factorisations;
-    let velocities = |problem: &StepProblem<M::Kinematics>| {
-        problem.bodies.now.iter().map(M::Kinematics::coordinates::<f64>).collect()
-    };
+    let velocities =
+        |problem: &StepProblem<M>| problem.bodies.now.iter().map(M::coordinates::<f64>).collect();
     ([velocities(&by_path), velocities(&from_far)], factorisations)
 }
 
@@ -105,39 +62,35 @@ fn proximal_multipliers_agree<M: Model, S: Shape, const D: usize>(model: Frictio
 
 #[test]
 fn proximal_multipliers_find_the_velocities_that_the_path_leads_to() {
-    type Turning = StepModel<SpinningPlane, true>;
-    type Unturning = StepModel<Plane, true>;
-    proximal_multipliers_agree::<Turning, Strip, 3>(FrictionModel::Tresca);
-    proximal_multipliers_agree::<Unturning, Strip, 2>(FrictionModel::Tresca);
-    proximal_multipliers_agree::<Turning, Cone, 3>(FrictionModel::Associated);
-    proximal_multipliers_agree::<Unturning, Cone, 2>(FrictionModel::Associated);
+    proximal_multipliers_agree::<SpinningPlane, Strip, 3>(FrictionModel::Tresca);
+    proximal_multipliers_agree::<Plane, Strip, 2>(FrictionModel::Tresca);
+    proximal_multipliers_agree::<SpinningPlane, Cone, 3>(FrictionModel::Associated);
+    proximal_multipliers_agree::<Plane, Cone, 2>(FrictionModel::Associated);
 }
 
 #[test]
 fn they_do_without_friction() {
-    type Smooth = StepModel<SpinningPlane, false>;
-    type OnALine = StepModel<Line, false>;
-    proximal_multipliers_agree::<Smooth, HalfLine, 3>(FrictionModel::Coulomb);
-    proximal_multipliers_agree::<OnALine, HalfLine, 1>(FrictionModel::Coulomb);
+    proximal_multipliers_agree::<SmoothPlane, HalfLine, 2>(FrictionModel::Coulomb);
+    proximal_multipliers_agree::<Line, HalfLine, 1>(FrictionModel::Coulomb);
 }
 
 #[test]
 fn what_the_path_leaves_is_polished_in_a_few_factorisations() {
-    type Turning = StepModel<SpinningPlane, true>;
     let loose = SolverSettings { stop: StopTest::Residual, tolerance: 1e-5, ..Default::default() };
     let tight = SolverSettings { tolerance: 1e-10, ..loose };
     let (mut polished, mut factorisations) = (0, 0);
     for seed in 0..40 {
-        let mut problem = problem::<Turning>(seed, FrictionModel::Tresca);
+        let mut problem = problem::<SpinningPlane>(seed, FrictionModel::Tresca);
         let mut workspace = PathWorkspace::<3>::default();
-        let path = InteriorPoint::<Turning, Strip, 3>::new(&mut problem, &loose, &mut workspace);
+        let path =
+            InteriorPoint::<SpinningPlane, Strip, 3>::new(&mut problem, &loose, &mut workspace);
         assert!(path.solve_convex().converged);
         let mut solver =
-            InteriorPoint::<Turning, Strip, 3>::new(&mut problem, &tight, &mut workspace);
+            InteriorPoint::<SpinningPlane, Strip, 3>::new(&mut problem, &tight, &mut workspace);
         solver.begin();
         solver.take_impulses();
         assert!(
-            natural_map::<Turning>(solver.problem) > tight.tolerance,
+            natural_map::<SpinningPlane>(solver.problem) > tight.tolerance,
             "seed {seed}: it is loose"
         );
         polished += u32::from(solver.polish());

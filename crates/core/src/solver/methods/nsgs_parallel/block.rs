@@ -7,9 +7,8 @@
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x4};
 
 use crate::contact::{ContactLaw, Lanes};
-use crate::solver::kinematics::Kinematics;
-use crate::solver::methods::sweep::{ImpulseChange, Local, ModelBody, squared_impulse};
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
+use crate::solver::methods::sweep::{ImpulseChange, Local, squared_impulse};
 use crate::solver::problem::{Row, errors, project_by_coulomb};
 
 /// Contacts in a block: the numbers in a register of AVX2. Wider blocks would leave more lanes idle.
@@ -23,15 +22,15 @@ pub(super) struct BodySlot([f64; LANES]);
 
 impl BodySlot {
     /// The slot of a body.
-    pub(super) fn of<K: Kinematics>(body: &K::Body<f64>) -> Self {
-        let [x, y, spin] = K::coordinates(body);
+    pub(super) fn of<M: Model>(body: &M::Body<f64>) -> Self {
+        let [x, y, spin] = M::coordinates(body);
         Self([x, y, spin, 0.0])
     }
 
     /// Gives a body its velocity.
-    pub(super) fn store<K: Kinematics>(&self, body: &mut K::Body<f64>) {
+    pub(super) fn store<M: Model>(&self, body: &mut M::Body<f64>) {
         let [x, y, spin, _] = self.0;
-        K::set(body, [x, y, spin]);
+        M::set(body, [x, y, spin]);
     }
 }
 
@@ -53,8 +52,8 @@ pub(super) struct ContactBlock {
 impl ContactBlock {
     /// The block of up to four rows, each with the slots of its grains and its share or surface speed. Idle lanes
     /// have the first slot.
-    pub(super) fn of<'a, K: Kinematics>(
-        rows: impl Iterator<Item = (&'a Row<K>, [u32; 2], f64)>,
+    pub(super) fn of<'a, M: Model>(
+        rows: impl Iterator<Item = (&'a Row<M>, [u32; 2], f64)>,
     ) -> Self {
         let mut block = Self {
             i: [0; LANES],
@@ -69,7 +68,7 @@ impl ContactBlock {
         for (lane, (row, slots, share_or_speed)) in rows.enumerate() {
             [block.i[lane], block.j[lane]] = slots;
             block.share_or_speed[lane] = share_or_speed;
-            [block.normal[0][lane], block.normal[1][lane]] = K::components(row.normal);
+            [block.normal[0][lane], block.normal[1][lane]] = M::components(row.normal);
             block.shifted_impulse[lane] = row.shifted_impulse;
             block.tangential_impulse[lane] = row.tangential_impulse;
             block.restitution_velocity[lane] = row.restitution_velocity;
@@ -79,10 +78,7 @@ impl ContactBlock {
     }
 
     /// Gives its rows their impulses.
-    pub(super) fn store<'a, M: Model>(
-        &self,
-        rows: impl Iterator<Item = &'a mut Row<M::Kinematics>>,
-    ) {
+    pub(super) fn store<'a, M: Model>(&self, rows: impl Iterator<Item = &'a mut Row<M>>) {
         for (lane, row) in rows.enumerate() {
             row.shifted_impulse = self.shifted_impulse[lane];
             if M::FRICTION {
@@ -102,10 +98,10 @@ impl ContactBlock {
     }
 
     #[inline(always)]
-    fn local<K: Kinematics, S: Simd>(&self, simd: S) -> Local<K, f64x4<S>> {
+    fn local<M: Model, S: Simd>(&self, simd: S) -> Local<M, f64x4<S>> {
         let [x, y] = self.normal;
         Local {
-            normal: K::normal([f64x4::simd_from(simd, x), f64x4::simd_from(simd, y)]),
+            normal: M::normal([f64x4::simd_from(simd, x), f64x4::simd_from(simd, y)]),
             restitution_velocity: f64x4::simd_from(simd, self.restitution_velocity),
             effective_mass: f64x4::simd_from(simd, self.effective_mass),
         }
@@ -131,10 +127,10 @@ fn gather<S: Simd, M: Model>(
     simd: S,
     slots: &[BodySlot],
     indices: [u32; LANES],
-) -> ModelBody<M, f64x4<S>> {
+) -> M::Body<f64x4<S>> {
     let bodies = indices.map(|index| f64x4::simd_from(simd, slots[index as usize].0));
     let [x, y, spin, _] = transposed(bodies);
-    M::Kinematics::from_coordinates([x, y, spin])
+    M::from_coordinates([x, y, spin])
 }
 
 /// Columns for rows and rows for columns. Slots are read and written whole, in one access each: single numbers
@@ -151,9 +147,9 @@ fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
 fn scatter<S: Simd, M: Model>(
     slots: &mut [BodySlot],
     indices: [u32; LANES],
-    bodies: &ModelBody<M, f64x4<S>>,
+    bodies: &M::Body<f64x4<S>>,
 ) {
-    let [x, y, spin] = M::Kinematics::coordinates(bodies);
+    let [x, y, spin] = M::coordinates(bodies);
     let bodies = transposed([x, y, spin, spin.same(0.0)]);
     for (index, body) in indices.into_iter().zip(bodies) {
         slots[index as usize] = BodySlot(body.to_array());
@@ -180,22 +176,22 @@ pub(super) fn solve_blocks<S: Simd, M: Model, const MEASURE: bool>(
     let (fixed, pairs) = blocks.all.split_at_mut(blocks.fixed);
     let project = |trial| project_by_coulomb::<M, f64x4<S>>(law, trial);
     for block in fixed {
-        let local = block.local::<M::Kinematics, S>(simd);
+        let local = block.local::<M, S>(simd);
         let surface_speed = f64x4::simd_from(simd, block.share_or_speed);
         let mut impulse = block.impulse(simd);
         let mut i = gather::<S, M>(simd, slots, block.i);
-        local.solve_fixed::<M, MEASURE>(surface_speed, &mut impulse, &mut i, &mut change, project);
+        local.solve_fixed::<MEASURE>(surface_speed, &mut impulse, &mut i, &mut change, project);
         scatter::<S, M>(slots, block.i, &i);
         block.set_impulse::<S, M>(impulse);
     }
     for block in pairs {
-        let local = block.local::<M::Kinematics, S>(simd);
+        let local = block.local::<M, S>(simd);
         let share = f64x4::simd_from(simd, block.share_or_speed);
         let mut impulse = block.impulse(simd);
         let mut i = gather::<S, M>(simd, slots, block.i);
         let mut j = gather::<S, M>(simd, slots, block.j);
         let both = [&mut i, &mut j];
-        local.solve_pair::<M, MEASURE>(share, &mut impulse, both, &mut change, project);
+        local.solve_pair::<MEASURE>(share, &mut impulse, both, &mut change, project);
         scatter::<S, M>(slots, block.i, &i);
         scatter::<S, M>(slots, block.j, &j);
         block.set_impulse::<S, M>(impulse);
@@ -214,13 +210,13 @@ pub(super) fn squared_error<S: Simd, M: Model>(
 ) -> f64 {
     let mut sum_of_lanes = f64x4::splat(simd, 0.0);
     for (at, block) in blocks.all.iter().enumerate() {
-        let local = block.local::<M::Kinematics, S>(simd);
+        let local = block.local::<M, S>(simd);
         let i = gather::<S, M>(simd, slots, block.i);
         let velocity = if at < blocks.fixed {
             local.velocity(f64x4::simd_from(simd, block.share_or_speed), &i)
         } else {
             let j = gather::<S, M>(simd, slots, block.j);
-            M::Kinematics::relative_velocity(local.normal, &i, &j)
+            M::relative_velocity(local.normal, &i, &j)
         };
         let impulse = block.impulse(simd);
         let [normal, tangential] =

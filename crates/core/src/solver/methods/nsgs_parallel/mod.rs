@@ -19,8 +19,7 @@ use super::nsgs;
 use super::stopping::{SolveReport, is_settled, is_tested, sweep_until_settled};
 use super::sweep::ImpulseChange;
 use crate::contact::ContactLaw;
-use crate::solver::kinematics::Kinematics;
-use crate::solver::model::Model;
+use crate::solver::kinematics::Model;
 use crate::solver::problem::{ContactRows, Row, StepProblem, residual_of, squared_residual_scale};
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::threads;
@@ -46,16 +45,14 @@ impl BlockMemory {
         add_up: impl Fn(Blocks<'_>, &mut [BodySlot]) -> f64 + Sync,
     ) -> f64 {
         let Self { layout, sums, .. } = self;
-        let TileLayout { tiles, blocks, slots, fixed_between, .. } = layout;
-        let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
-        for_each_tile(threads, tiles, in_tiles, slots, sums, &add_up);
-        sums.iter().sum::<f64>() + add_up(Blocks { all: between, fixed: *fixed_between }, slots)
+        let between = layout.visit(threads, sums, add_up);
+        sums.iter().sum::<f64>() + between
     }
 }
 
 /// Solves a prepared problem by sweeps.
 pub(super) fn solve<M: Model>(
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut BlockMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
@@ -65,13 +62,13 @@ pub(super) fn solve<M: Model>(
 /// Solves with the vector instructions of a level.
 fn solve_at<M: Model>(
     level: Level,
-    problem: &mut StepProblem<M::Kinematics>,
+    problem: &mut StepProblem<M>,
     memory: &mut BlockMemory,
     settings: &SolverSettings,
 ) -> SolveReport {
     match Tiled::<M>::new(level, problem, memory) {
         Some(mut tiled) => tiled.run(settings),
-        None => nsgs::solve::<M>(problem, settings),
+        None => nsgs::solve(problem, settings),
     }
 }
 
@@ -80,10 +77,10 @@ fn solve_at<M: Model>(
 /// While it lives, impulses of rows are those of the blocks, and velocities those of the slots.
 struct Tiled<'a, M: Model> {
     level: Level,
-    /// Whether there are several tiles, threads for them, and enough for these to do.
+    /// True where there are several tiles, threads for them, and enough for these to do.
     threads: bool,
     law: ContactLaw,
-    problem: &'a mut StepProblem<M::Kinematics>,
+    problem: &'a mut StepProblem<M>,
     memory: &'a mut BlockMemory,
     squared_scale: Option<f64>,
 }
@@ -92,7 +89,7 @@ impl<'a, M: Model> Tiled<'a, M> {
     /// Nothing where the problem is not such a one.
     fn new(
         level: Level,
-        problem: &'a mut StepProblem<M::Kinematics>,
+        problem: &'a mut StepProblem<M>,
         memory: &'a mut BlockMemory,
     ) -> Option<Self> {
         memory.layout.fill(problem)?;
@@ -131,26 +128,23 @@ impl<'a, M: Model> Tiled<'a, M> {
         let Self { level, threads, law, memory, .. } = self;
         let (level, law) = (*level, &*law);
         let BlockMemory { layout, changes, .. } = &mut **memory;
-        let TileLayout { tiles, blocks, slots, fixed_between, .. } = layout;
-        let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
         let solve = |blocks: Blocks<'_>, slots: &mut [BodySlot]| dispatch!(level, simd => solve_blocks::<_, M, MEASURE>(simd, law, blocks, slots));
-        for_each_tile(*threads, tiles, in_tiles, slots, changes, &solve);
+        let between = layout.visit(*threads, changes, solve);
         let mut change = ImpulseChange::default();
-        changes.iter().for_each(|&of_tile| change.add_all(of_tile));
-        change.add_all(solve(Blocks { all: between, fixed: *fixed_between }, slots));
+        changes.iter().chain([&between]).for_each(|&part| change.add_all(part));
         change
     }
 
     /// The common residual.
     fn residual(&mut self) -> f64 {
         let squared_scale =
-            *self.squared_scale.get_or_insert_with(|| squared_residual_scale::<M>(self.problem));
+            *self.squared_scale.get_or_insert_with(|| squared_residual_scale(self.problem));
         let squared_error = self.squared_error();
         if squared_scale == 0.0 {
             // What is rounding alone is told by the rows.
             self.store();
         }
-        residual_of::<M>(self.problem, [squared_error, squared_scale])
+        residual_of(self.problem, [squared_error, squared_scale])
     }
 
     fn squared_error(&mut self) -> f64 {
@@ -278,8 +272,22 @@ struct TileLayout {
 }
 
 impl TileLayout {
+    /// Visits the blocks of all tiles with their slots, on several threads where these are wanted, and then those between
+    /// tiles; gives what comes of these.
+    fn visit<T: Send>(
+        &mut self,
+        threads: bool,
+        results: &mut [T],
+        visit: impl Fn(Blocks<'_>, &mut [BodySlot]) -> T + Sync,
+    ) -> T {
+        let Self { tiles, blocks, slots, fixed_between, .. } = self;
+        let (in_tiles, between) = blocks.split_at_mut(blocks_of(tiles));
+        for_each_tile(threads, tiles, in_tiles, slots, results, &visit);
+        visit(Blocks { all: between, fixed: *fixed_between }, slots)
+    }
+
     /// Lays out a problem. Nothing where its grains do not all exist, or a colour or two tiles share one.
-    fn fill<K: Kinematics>(&mut self, problem: &StepProblem<K>) -> Option<()> {
+    fn fill<M: Model>(&mut self, problem: &StepProblem<M>) -> Option<()> {
         self.tiles.clear();
         self.blocks.clear();
         self.places.clear();
@@ -306,16 +314,16 @@ impl TileLayout {
         self.fixed_between = self.add_all(problem, BlockPlace { tile: 0, first_slot: 0 }, tiles)?;
         self.slots.clear();
         self.slots.extend(self.grains.iter().map(|&grain| {
-            problem.bodies.now.get(grain as usize).map_or_else(BodySlot::default, BodySlot::of::<K>)
+            problem.bodies.now.get(grain as usize).map_or_else(BodySlot::default, BodySlot::of::<M>)
         }));
         Some(())
     }
 
     /// Adds the blocks of a tile, or those between tiles behind the last, and tells how many are of contacts
     /// with fixed bodies.
-    fn add_all<K: Kinematics>(
+    fn add_all<M: Model>(
         &mut self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         place: BlockPlace,
         tile: usize,
     ) -> Option<usize> {
@@ -337,9 +345,9 @@ impl TileLayout {
     }
 
     /// Adds the blocks of a colour, whose rows, with share or surface speed, are numbered from `first`.
-    fn add<'a, K: Kinematics>(
+    fn add<'a, M: Model>(
         &mut self,
-        rows: impl ExactSizeIterator<Item = (&'a Row<K>, f64)> + Clone,
+        rows: impl ExactSizeIterator<Item = (&'a Row<M>, f64)> + Clone,
         first: usize,
         BlockPlace { tile, first_slot }: BlockPlace,
         are_pairs: bool,
@@ -375,7 +383,7 @@ impl TileLayout {
     }
 
     /// Gives rows and bodies what became of them.
-    fn store<M: Model>(&self, problem: &mut StepProblem<M::Kinematics>) {
+    fn store<M: Model>(&self, problem: &mut StepProblem<M>) {
         let ContactRows { fixed, pairs, .. } = &mut problem.rows;
         for (block, place) in self.blocks.iter().zip(&self.places) {
             let [start, end] = [place.start as usize, place.end as usize];
@@ -389,7 +397,7 @@ impl TileLayout {
         }
         for (slot, &grain) in self.slots.iter().zip(&self.grains) {
             if let Some(body) = problem.bodies.now.get_mut(grain as usize) {
-                slot.store::<M::Kinematics>(body);
+                slot.store::<M>(body);
             }
         }
     }

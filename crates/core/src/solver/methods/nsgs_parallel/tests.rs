@@ -1,71 +1,34 @@
 //! Random contact problems: whatever the vector registers and the threads, the bits are those of
 //! the same contacts one after the other.
 
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
 use rayon::ThreadPoolBuilder;
 
 use super::*;
 use crate::contact::levels;
-use crate::solver::problem::{FixedRow, PairRow, residual};
-use crate::solver::{Line, Plane, SpinningPlane, StepModel};
+use crate::solver::methods::random_problem::random_problem;
+use crate::solver::problem::residual;
+use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane};
 use crate::world::FrictionCone::{self, Compressive, Shifted};
 
-/// Contacts between bodies whose numbers are near to each other, every eighth against a fixed one, by tiles and
-/// colours.
+/// Contacts between bodies whose numbers are near to each other, by tiles and colours.
 fn problem<M: Model>(
     seed: u64,
     bodies: usize,
     contacts: u32,
     cone: FrictionCone,
-) -> StepProblem<M::Kinematics> {
-    let mut random = Pcg64::seed_from_u64(seed);
-    let law = ContactLaw::new(0.5, 0.3, cone);
-    let mut problem = StepProblem::<M::Kinematics> { law, ..StepProblem::default() };
-    problem.bodies.mean_mass = 1.0;
-    problem.bodies.masses.resize(bodies, 1.0);
-    problem.rows.contacts.extend(0..contacts);
-    for _ in 0..bodies {
-        let speeds = [(); 3].map(|()| random.random_range(-1.0..1.0));
-        problem.bodies.free.push(M::Kinematics::from_coordinates(speeds));
-    }
-    problem.bodies.before = problem.bodies.free.clone();
-    for contact in 0..contacts {
-        let i = random.random_range(0..bodies);
-        let j = (i + random.random_range(1..bodies.min(64))) % bodies;
-        let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
-        let normal = [if angle < 3.0 { 1.0 } else { -1.0 }, 0.0];
-        let share_or_speed = random.random_range(0.1..0.9);
-        let row = Row {
-            i: i as u32,
-            j: j as u32,
-            normal: M::Kinematics::normal(match M::Kinematics::AXES {
-                1 => normal,
-                _ => [angle.cos(), angle.sin()],
-            }),
-            restitution_velocity: random.random_range(-0.5..0.5),
-            shifted_impulse: random.random_range(0.0..1.0),
-            tangential_impulse: if M::FRICTION { random.random_range(-0.1..0.1) } else { 0.0 },
-            effective_mass: random.random_range(0.5..2.0),
-        };
-        let rows = &mut problem.rows;
-        match contact % 8 {
-            0 => rows.fixed.push(FixedRow { row, surface_speed: share_or_speed }),
-            _ => rows.pairs.push(PairRow { row, share: share_or_speed }),
-        }
-    }
+) -> StepProblem<M> {
+    let (law, reach) = (ContactLaw::new(0.5, 0.3, cone), bodies.min(64));
+    let mut problem = random_problem::<M>(seed, law, bodies, contacts, reach, -0.5..0.5);
     problem.sort_by_colours();
     problem.form_velocities();
     problem
 }
 
-type Full = StepModel<SpinningPlane, true>;
-
 /// Every bit that a solve leaves: impulses, then velocities.
-fn bits<K: Kinematics>(problem: &StepProblem<K>) -> Vec<u64> {
+fn bits<M: Model>(problem: &StepProblem<M>) -> Vec<u64> {
     let impulses =
         problem.rows().flat_map(|(_, row)| [row.shifted_impulse, row.tangential_impulse]);
-    let velocities = problem.bodies.now.iter().flat_map(K::coordinates::<f64>);
+    let velocities = problem.bodies.now.iter().flat_map(M::coordinates::<f64>);
     impulses.chain(velocities).map(f64::to_bits).collect()
 }
 
@@ -78,7 +41,7 @@ fn sweeps(max_sweeps: u32) -> SolverSettings {
 #[test]
 fn the_sum_of_squared_impulses_is_that_of_the_rows_with_a_capture_speed_each() {
     for captures in [false, true] {
-        let mut problem = problem::<Full>(3, 40, 203, Shifted);
+        let mut problem = problem::<SpinningPlane>(3, 40, 203, Shifted);
         if captures {
             problem.rows.captures = (0..203).map(|row| 1e-3 * f64::from(row)).collect();
         }
@@ -88,7 +51,7 @@ fn the_sum_of_squared_impulses_is_that_of_the_rows_with_a_capture_speed_each() {
         };
         let expected: f64 = problem.rows().map(square).sum();
         let mut memory = BlockMemory::default();
-        let tiled = Tiled::<Full>::new(Level::new(), &mut problem, &mut memory);
+        let tiled = Tiled::<SpinningPlane>::new(Level::new(), &mut problem, &mut memory);
         let found = tiled.expect("colours").squared_impulses();
         assert!((found / expected - 1.0).abs() < 1e-14, "{found} for {expected}");
     }
@@ -99,8 +62,8 @@ fn residual_is_that_of_the_rows<M: Model>(cone: FrictionCone) {
     for (bodies, contacts) in [(40, 203), (4000, 8000)] {
         for level in levels() {
             let mut problem = problem::<M>(4, bodies, contacts, cone);
-            nsgs::solve::<M>(&mut problem, &sweeps(3));
-            let expected = residual::<M>(&problem);
+            nsgs::solve(&mut problem, &sweeps(3));
+            let expected = residual(&problem);
             let mut memory = BlockMemory::default();
             let mut tiled = Tiled::<M>::new(level, &mut problem, &mut memory).expect("colours");
             let found = tiled.residual();
@@ -112,15 +75,15 @@ fn residual_is_that_of_the_rows<M: Model>(cone: FrictionCone) {
 
 #[test]
 fn the_residual_in_blocks_is_that_of_the_rows() {
-    residual_is_that_of_the_rows::<StepModel<Line, false>>(Shifted);
-    residual_is_that_of_the_rows::<StepModel<Plane, true>>(Compressive);
-    residual_is_that_of_the_rows::<StepModel<SpinningPlane, true>>(Shifted);
+    residual_is_that_of_the_rows::<Line>(Shifted);
+    residual_is_that_of_the_rows::<Plane>(Compressive);
+    residual_is_that_of_the_rows::<SpinningPlane>(Shifted);
 }
 
 #[test]
 fn where_nothing_would_move_the_residual_is_none_or_infinite() {
     for (error, expected) in [(0.0, 0.0), (0.1, f64::INFINITY)] {
-        let mut problem = problem::<Full>(5, 40, 60, Shifted);
+        let mut problem = problem::<SpinningPlane>(5, 40, 60, Shifted);
         problem.law = ContactLaw::new(0.5, 0.0, Shifted);
         problem.bodies.free.iter_mut().for_each(|body| *body = Default::default());
         for row in problem.rows.iter_mut() {
@@ -129,9 +92,9 @@ fn where_nothing_would_move_the_residual_is_none_or_infinite() {
         }
         problem.rows.fixed.iter_mut().for_each(|row| row.surface_speed = 0.0);
         problem.form_velocities();
-        assert_eq!(residual::<Full>(&problem), expected);
+        assert_eq!(residual::<SpinningPlane>(&problem), expected);
         let mut memory = BlockMemory::default();
-        let tiled = Tiled::<Full>::new(Level::new(), &mut problem, &mut memory);
+        let tiled = Tiled::<SpinningPlane>::new(Level::new(), &mut problem, &mut memory);
         assert_eq!(tiled.expect("colours").residual(), expected);
     }
 }
@@ -143,7 +106,7 @@ fn same_bits_at_all_levels<M: Model>(cone: FrictionCone) {
         let start = problem::<M>(seed, 40, 1 + 3 * seed as u32, cone);
         let settings = sweeps(1 + seed as u32 % 30);
         let mut expected = start.clone();
-        nsgs::solve::<M>(&mut expected, &settings);
+        nsgs::solve(&mut expected, &settings);
         for level in levels() {
             let (mut solved, mut memory) = (start.clone(), BlockMemory::default());
             let report = solve_at::<M>(level, &mut solved, &mut memory, &settings);
@@ -160,19 +123,19 @@ fn same_bits_at_all_levels<M: Model>(cone: FrictionCone) {
 
 #[test]
 fn contacts_side_by_side_give_the_bits_of_one_after_the_other() {
-    same_bits_at_all_levels::<StepModel<Line, false>>(Shifted);
-    same_bits_at_all_levels::<StepModel<Plane, false>>(Shifted);
-    same_bits_at_all_levels::<StepModel<Plane, true>>(Shifted);
-    same_bits_at_all_levels::<StepModel<Plane, true>>(Compressive);
-    same_bits_at_all_levels::<StepModel<SpinningPlane, true>>(Shifted);
-    same_bits_at_all_levels::<StepModel<SpinningPlane, true>>(Compressive);
+    same_bits_at_all_levels::<Line>(Shifted);
+    same_bits_at_all_levels::<SmoothPlane>(Shifted);
+    same_bits_at_all_levels::<Plane>(Shifted);
+    same_bits_at_all_levels::<Plane>(Compressive);
+    same_bits_at_all_levels::<SpinningPlane>(Shifted);
+    same_bits_at_all_levels::<SpinningPlane>(Compressive);
 }
 
 #[test]
 fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
-    let start = problem::<Full>(1, 40_960, 80_000, Shifted);
+    let start = problem::<SpinningPlane>(1, 40_960, 80_000, Shifted);
     let mut one_by_one = start.clone();
-    let expected = [(); 8].map(|()| nsgs::sweep::<Full, true>(&mut one_by_one));
+    let expected = [(); 8].map(|()| nsgs::sweep::<SpinningPlane, true>(&mut one_by_one));
     let (mut sums, mut residuals) = (Vec::new(), Vec::new());
     for several in [1, 2, 4] {
         let pool = ThreadPoolBuilder::new().num_threads(several).build().expect("threads");
@@ -181,7 +144,7 @@ fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
             let mut memory = BlockMemory::default();
             let (changes, residual) = pool.install(|| {
                 threads::share(|| {
-                    let tiled = Tiled::<Full>::new(level, &mut problem, &mut memory);
+                    let tiled = Tiled::<SpinningPlane>::new(level, &mut problem, &mut memory);
                     let mut tiled = tiled.expect("colours");
                     assert_eq!(tiled.threads, several > 1, "there are several tiles");
                     let changes = [(); 8].map(|()| tiled.sweep::<true>());
@@ -210,27 +173,27 @@ fn what_a_sweep_changed_is_one_sum_on_any_registers_and_threads() {
 
 #[test]
 fn rows_whose_colours_share_a_grain_are_swept_as_they_come() {
-    let mut start = problem::<Full>(2, 40, 200, Shifted);
+    let mut start = problem::<SpinningPlane>(2, 40, 200, Shifted);
     let second = start.order.groups[1].colour_ends[0];
     start.rows.pairs[second] = start.rows.pairs[second - 1];
     start.rows.pairs.swap(0, second);
     let (mut expected, mut solved) = (start.clone(), start);
-    nsgs::solve::<Full>(&mut expected, &sweeps(5));
-    solve::<Full>(&mut solved, &mut BlockMemory::default(), &sweeps(5));
+    nsgs::solve::<SpinningPlane>(&mut expected, &sweeps(5));
+    solve::<SpinningPlane>(&mut solved, &mut BlockMemory::default(), &sweeps(5));
     assert!(bits(&solved) == bits(&expected));
 }
 
 #[test]
 fn tiles_that_share_a_grain_are_swept_as_they_come() {
-    let mut start = problem::<Full>(6, 4000, 8000, Shifted);
+    let mut start = problem::<SpinningPlane>(6, 4000, 8000, Shifted);
     let ends = &start.order.groups[1];
     let of_second = ends.colours_of(1).next().expect("a colour").start;
     // The first contact of the second tile gets a grain of the first.
     start.rows.pairs[of_second].i = start.rows.pairs[0].i;
     let (mut expected, mut solved) = (start.clone(), start);
-    nsgs::solve::<Full>(&mut expected, &sweeps(5));
+    nsgs::solve::<SpinningPlane>(&mut expected, &sweeps(5));
     let mut memory = BlockMemory::default();
-    assert!(Tiled::<Full>::new(Level::new(), &mut solved.clone(), &mut memory).is_none());
-    solve::<Full>(&mut solved, &mut memory, &sweeps(5));
+    assert!(Tiled::<SpinningPlane>::new(Level::new(), &mut solved.clone(), &mut memory).is_none());
+    solve::<SpinningPlane>(&mut solved, &mut memory, &sweeps(5));
     assert!(bits(&solved) == bits(&expected));
 }

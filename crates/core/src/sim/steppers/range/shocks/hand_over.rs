@@ -3,8 +3,9 @@
 use glam::DVec2;
 
 use super::{NextImpact, ShockInputs, ShockPair, Shocks, Touch, grains};
+use crate::contact::Candidates;
 use crate::sim::steppers::range::StepNumbers;
-use crate::solver::{Kinematics, StepProblem};
+use crate::solver::{Model, StepProblem};
 use crate::world::World;
 
 /// A bond that a shock closed.
@@ -33,25 +34,25 @@ impl Shocks {
     ///
     /// **Gaps below the touch are none** after a shock as before it. Slacks of the size of rounding between
     /// grains that touch make a contact open or shut by less than a step is solved to.
-    pub(super) fn hand_over<K: Kinematics>(
+    pub(super) fn hand_over<M: Model>(
         &mut self,
-        problem: &mut StepProblem<K>,
-        inputs: &ShockInputs<'_>,
+        problem: &mut StepProblem<M>,
+        world: &World,
+        candidates: &Candidates,
     ) {
         let mut moved = false;
         for (index, body) in self.bodies.iter().enumerate().filter(|(_, body)| body.struck_in_step)
         {
             moved = true;
-            let before = K::coordinates(&problem.bodies.before[index]);
+            let before = M::coordinates(&problem.bodies.before[index]);
             let free = std::array::from_fn(|axis| before[axis] + body.gain[axis]);
-            K::set(&mut problem.bodies.free[index], free);
+            M::set(&mut problem.bodies.free[index], free);
         }
         for number in 0..self.pairs.len() {
-            let Some((allowed, normal)) = self.closing_left(problem, inputs, number) else {
-                continue;
-            };
+            let at = ShockInputs { problem, world, candidates };
+            let Some((allowed, normal)) = self.closing_left(&at, number) else { continue };
             moved = true;
-            let capture = self.capture_left(problem, inputs, number);
+            let capture = self.capture_left(problem, number);
             let wall_speed = match normal {
                 Some(normal) => problem.turn_row(number, normal),
                 None => problem.wall_speed(number),
@@ -70,13 +71,13 @@ impl Shocks {
 
     /// How fast a contact may close after the shocks, m/s, relative to a wall that moves, and along which normal
     /// if that is another one; nothing where all is as it was.
-    fn closing_left<K: Kinematics>(
+    fn closing_left<M: Model>(
         &self,
-        problem: &StepProblem<K>,
-        inputs: &ShockInputs<'_>,
+        at: &ShockInputs<'_, M>,
         number: usize,
     ) -> Option<(f64, Option<DVec2>)> {
-        let StepNumbers { time_step_secs: secs, touch, .. } = inputs.numbers;
+        let problem = at.problem;
+        let StepNumbers { time_step_secs: secs, touch, .. } = self.numbers;
         let pair = self.pairs[number];
         let (i, j) = grains(problem, number);
         let rest_of_way =
@@ -89,12 +90,12 @@ impl Shocks {
         }
         let mut normal = None;
         if pair.next == NextImpact::Never && pair.speed + allowed < 0.0 {
-            let is_in_touch = self.is_in_touch(problem, number, inputs);
-            if let Some((at_end, gap)) = self.approach(problem, number, inputs, secs)
+            let is_in_touch = self.is_in_touch(at, number);
+            if let Some((at_end, gap)) = self.approach(at, number, secs)
                 && (!is_in_touch || gap > touch)
             {
                 normal = Some(at_end);
-                let velocity = self.course(problem, number, secs).velocity_at(secs);
+                let velocity = self.course(problem, number).velocity_at(secs);
                 allowed = gap.max(0.0) / secs - at_end.dot(velocity);
             } else if pair.speed > 0.0 {
                 allowed = -pair.speed;
@@ -107,36 +108,24 @@ impl Shocks {
 
     /// The capture speeds, m/s, that a row was prepared with and that a pair has for what is left of the step
     /// after it has closed its bond; nothing where it has not.
-    fn capture_left<K: Kinematics>(
-        &self,
-        problem: &StepProblem<K>,
-        inputs: &ShockInputs<'_>,
-        number: usize,
-    ) -> Option<[f64; 2]> {
+    fn capture_left<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> Option<[f64; 2]> {
         let before = *problem.rows.captures.get(number)?;
-        let is_bonded = inputs.is_bonded(problem, number);
-        let ClosedBond { part, .. } =
-            self.closed(number, is_bonded, inputs.numbers.time_step_secs)?;
+        let ClosedBond { part, .. } = self.closed(number)?;
         Some([before, part * problem.law.capture_speed()])
     }
 
     /// What a shock has left of the step to the bond of a row, if it closed that: a pair that touches and is
     /// bonded has it as before.
-    pub(in super::super) fn closed(
-        &self,
-        number: usize,
-        is_bonded: bool,
-        time_step_secs: f64,
-    ) -> Option<ClosedBond> {
+    pub(in super::super) fn closed(&self, number: usize) -> Option<ClosedBond> {
         let pair = self.pairs.get(number)?;
-        let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !is_bonded);
+        let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !pair.is_bonded);
         closes.then(|| ClosedBond {
-            part: 1.0 - pair.struck_at / time_step_secs,
+            part: 1.0 - pair.struck_at / self.numbers.time_step_secs,
             gained: pair.gained,
         })
     }
 
-    /// Whether what the step does to a row acts in what a meeting has left of it: a pair that met at t and was
+    /// True where what the step does to a row acts in what a meeting has left of it: a pair that met at t and was
     /// not struck since has no gap at t, so that at the end it has (Δt − t) v^n, and −½a(Δt − t)² where it falls.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
@@ -145,7 +134,7 @@ impl Shocks {
 
     /// Takes note of a solved step: its impulse λ on a pair that met at t moves grains for the time that was left
     /// alone, and not by Δt·λ.
-    pub(in super::super) fn finish<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+    pub(in super::super) fn finish<M: Model>(&mut self, problem: &StepProblem<M>) {
         for (number, row) in problem.rows() {
             let (i, j) = grains(problem, number);
             if !self.acts_late(number, i, j) {

@@ -58,9 +58,11 @@ pub(super) use hand_over::ClosedBond;
 use glam::DVec2;
 
 use crate::contact::{Candidates, Contact, ContactList};
+use crate::sim::settings::Settings;
+use crate::sim::state::State;
 use crate::sim::steppers::range::StepNumbers;
 use crate::sim::stepping::{Stage, StepResult};
-use crate::solver::{Kinematics, Model, SolverSettings, StepProblem, for_each_row};
+use crate::solver::{Model, StepProblem, for_each_row};
 use crate::world::World;
 
 /// Passes at the most; what then still closes is stopped by the step. Smaller: where many grains meet in a
@@ -86,36 +88,40 @@ const NEVER: f64 = f64::INFINITY;
 pub(super) fn pass<M: Model>(
     stage: &mut Stage<'_, M>,
     shocks: &mut Shocks,
-    numbers: StepNumbers,
-    settings: &SolverSettings,
+    settings: &Settings,
 ) -> Option<StepResult> {
+    shocks.numbers = StepNumbers::of(stage.world(), settings);
+    let settings = &settings.solver;
     let Stage { state, problem, part, memory } = stage;
-    let (world, candidates, contacts) = (&state.world, &state.candidates, &state.contacts);
-    let inputs = ShockInputs { world, candidates, contacts, numbers };
-    shocks.begin(problem, &inputs, settings.tolerance);
+    let State { world, candidates, contacts, .. } = &**state;
+    shocks.begin(problem, contacts, settings.tolerance);
     let mut result: Option<StepResult> = None;
     for _ in 0..MOST_PASSES {
-        let first_secs = shocks.find_next(problem, &inputs);
+        let first_secs = shocks.find_next(&ShockInputs { problem, world, candidates });
         if first_secs == NEVER {
             break;
         }
-        shocks.choose(problem, first_secs, numbers);
-        shocks.refine(problem, &inputs);
+        shocks.choose(problem, first_secs);
+        shocks.refine(&ShockInputs { problem, world, candidates });
         let all = result.get_or_insert_with(StepResult::nothing_yet);
         for alone in [true, false] {
-            if shocks.set_up(problem, part, &inputs, alone) {
+            if shocks.set_up(problem, part, alone) {
                 shocks.solve::<M>(problem, part, memory, settings, alone, all);
             }
         }
         shocks.move_on(problem);
     }
-    shocks.hand_over(problem, &inputs);
+    shocks.hand_over(problem, world, candidates);
     result
 }
 
 /// A pair on its way through the shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockPair {
+    contact: Contact,
+    is_bonded: bool,
+    /// How far its bond is open, m.
+    stretch: f64,
     /// n, from j to i: at the beginning of the step, or where it last met.
     normal: DVec2,
     /// The gap along n at the beginning of the step, m; of one that has met, such that it closed then.
@@ -187,7 +193,7 @@ struct ShockBody {
     struck_in_pass: bool,
     /// What gravity gives it in the step, m/s.
     gain: [f64; 3],
-    /// Whether it rests against something or is bonded, and so does not fall freely.
+    /// True where it rests against something or is bonded, and so does not fall freely.
     is_supported: bool,
     /// What the step's last velocity tells too little of its way, m: −½aΔt² of one that falls freely, and
     /// −Σ tλ of the impulses that the step has for pairs that met.
@@ -201,6 +207,7 @@ struct ShockBody {
 /// What is known of shocks. Memory is kept from one step to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shocks {
+    numbers: StepNumbers,
     pairs: Vec<ShockPair>,
     bodies: Vec<ShockBody>,
     /// λ_n·m_ij from which on a contact that touches is struck, N·s.
@@ -210,40 +217,21 @@ pub(super) struct Shocks {
 }
 
 /// Where shocks happen.
-struct ShockInputs<'a> {
+struct ShockInputs<'a, M: Model> {
+    problem: &'a StepProblem<M>,
     world: &'a World,
     candidates: &'a Candidates,
-    contacts: &'a ContactList,
-    numbers: StepNumbers,
-}
-
-impl ShockInputs<'_> {
-    /// The contact behind a row.
-    fn contact<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> &Contact {
-        &self.contacts.contacts()[problem.rows.contacts[number] as usize]
-    }
-
-    /// Whether its pair is bonded.
-    fn is_bonded<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> bool {
-        self.contacts.is_in_touch(problem.rows.contacts[number] as usize)
-    }
-
-    /// How far its bond is open, m.
-    fn stretch<K: Kinematics>(&self, problem: &StepProblem<K>, number: usize) -> f64 {
-        let bond = self.contacts.bonds()[problem.rows.contacts[number] as usize];
-        if bond.alive { bond.stretch } else { 0.0 }
-    }
 }
 
 /// The grains of a row by its number: i, and j unless that is fixed.
-fn grains<K: Kinematics>(problem: &StepProblem<K>, number: usize) -> (usize, Option<usize>) {
+fn grains<M: Model>(problem: &StepProblem<M>, number: usize) -> (usize, Option<usize>) {
     let row = problem.rows.get(number);
     let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
 /// ‖m_n (v_n^free + what the law adds)‖ of a problem, N·s, which its residual is measured by.
-fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
+fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {
         let free = row.effective_mass * (motion.free[0] + row.restitution_velocity);
@@ -253,15 +241,15 @@ fn scale<K: Kinematics>(problem: &StepProblem<K>) -> f64 {
 }
 
 /// Along x and y.
-fn along_axes<K: Kinematics>(body: &K::Body<f64>) -> DVec2 {
-    let [x, y, _] = K::coordinates(body);
-    if K::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
+fn along_axes<M: Model>(body: &M::Body<f64>) -> DVec2 {
+    let [x, y, _] = M::coordinates(body);
+    if M::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
 }
 
 impl ShockBody {
     /// One of which nothing has happened yet, as it begins and as gravity alone would leave it.
-    fn untouched<K: Kinematics>(before: &K::Body<f64>, free: &K::Body<f64>) -> Self {
-        let [before, free] = [before, free].map(K::coordinates);
+    fn untouched<M: Model>(before: &M::Body<f64>, free: &M::Body<f64>) -> Self {
+        let [before, free] = [before, free].map(M::coordinates);
         Self {
             offset: [0.0; 3],
             shift: DVec2::ZERO,
@@ -279,35 +267,38 @@ impl ShockBody {
 }
 
 impl Shocks {
-    /// Nothing has happened yet.
-    fn begin<K: Kinematics>(
+    fn begin<M: Model>(
         &mut self,
-        problem: &StepProblem<K>,
-        inputs: &ShockInputs<'_>,
+        problem: &StepProblem<M>,
+        contacts: &ContactList,
         tolerance: f64,
     ) {
-        let Self { pairs, bodies, .. } = self;
+        let Self { pairs, bodies, numbers, .. } = self;
         bodies.clear();
         let ends = problem.bodies.before.iter().zip(&problem.bodies.free);
-        bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<K>(before, free)));
+        bodies.extend(ends.map(|(before, free)| ShockBody::untouched::<M>(before, free)));
         pairs.clear();
         let is_cohesive = problem.law.capture_speed() > 0.0;
         for_each_row(problem, |number, _, motion| {
-            let Contact { normal, gap, .. } = *inputs.contact(problem, number);
-            let touches = gap <= inputs.numbers.touch;
+            let index = problem.rows.contacts[number] as usize;
+            let contact = contacts.contacts()[index];
+            let (is_bonded, bond) = (contacts.is_in_touch(index), contacts.bonds()[index]);
+            let touches = contact.gap <= numbers.touch;
             let speed = motion.before[0] - problem.wall_speed(number);
             let (i, j) = grains(problem, number);
             for grain in std::iter::once(i).chain(j) {
                 let [x, y, _] = bodies[grain].gain;
                 let rests = touches && speed.abs() <= RESTS_BELOW * x.hypot(y);
-                bodies[grain].is_supported |=
-                    rests || is_cohesive && inputs.is_bonded(problem, number);
+                bodies[grain].is_supported |= rests || is_cohesive && is_bonded;
             }
             // The step proper stops what comes to a wall that gives way (see the module).
             let touches = touches && !problem.gives_way(number);
             pairs.push(ShockPair {
-                normal,
-                gap,
+                contact,
+                is_bonded,
+                stretch: if bond.alive { bond.stretch } else { 0.0 },
+                normal: contact.normal,
+                gap: contact.gap,
                 shift: 0.0,
                 speed,
                 acceleration: 0.0,
@@ -320,8 +311,8 @@ impl Shocks {
             });
         });
         for body in bodies.iter_mut().filter(|body| !body.is_supported) {
-            let fallen = along_axes::<K>(&K::from_coordinates(body.gain));
-            body.rest_of_way = -0.5 * inputs.numbers.time_step_secs * fallen;
+            let fallen = along_axes::<M>(&M::from_coordinates(body.gain));
+            body.rest_of_way = -0.5 * numbers.time_step_secs * fallen;
         }
         self.least = tolerance * scale(problem);
         self.fastest = 0.0;

@@ -8,24 +8,19 @@ use super::{
 };
 use crate::contact::RelativeMotion;
 use crate::sim::steppers::range::StepNumbers;
-use crate::solver::{Kinematics, StepProblem};
+use crate::solver::{Model, StepProblem};
 
 impl Shocks {
     /// Tells of each pair when it is struck next, and gives the first of these moments, s.
-    pub(super) fn find_next<K: Kinematics>(
-        &mut self,
-        problem: &StepProblem<K>,
-        inputs: &ShockInputs<'_>,
-    ) -> f64 {
+    pub(super) fn find_next<M: Model>(&mut self, at: &ShockInputs<'_, M>) -> f64 {
         let mut first = NEVER;
         for number in 0..self.pairs.len() {
-            if problem.gives_way(number) {
+            if at.problem.gives_way(number) {
                 continue;
             }
             if self.pairs[number].next == NextImpact::Unknown {
-                self.pairs[number].acceleration =
-                    self.acceleration(problem, number, inputs.numbers);
-                self.pairs[number].next = self.next_of(problem, number, inputs);
+                self.pairs[number].acceleration = self.acceleration(at.problem, number);
+                self.pairs[number].next = self.next_of(at, number);
             }
             first = first.min(self.pairs[number].next.secs());
         }
@@ -33,43 +28,39 @@ impl Shocks {
     }
 
     /// a_n, m/s², of a grain that falls on what is fixed and has not met it yet.
-    fn acceleration<K: Kinematics>(
-        &self,
-        problem: &StepProblem<K>,
-        number: usize,
-        numbers: StepNumbers,
-    ) -> f64 {
+    fn acceleration<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> f64 {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
         if j.is_some() || self.bodies[i].is_supported || pair.touch == Touch::Met {
             return 0.0;
         }
-        pair.normal.dot(self.fall::<K>(i)) / numbers.time_step_secs
+        pair.normal.dot(self.fall::<M>(i)) / self.numbers.time_step_secs
     }
 
     /// What gravity gives a grain in the step, m/s.
-    fn fall<K: Kinematics>(&self, grain: usize) -> DVec2 {
-        along_axes::<K>(&K::from_coordinates(self.bodies[grain].gain))
+    fn fall<M: Model>(&self, grain: usize) -> DVec2 {
+        along_axes::<M>(&M::from_coordinates(self.bodies[grain].gain))
     }
 
     /// How the grain of a row goes relative to the other body.
-    pub(super) fn course<K: Kinematics>(
+    pub(super) fn course<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        problem: &StepProblem<M>,
         number: usize,
-        time_step_secs: f64,
     ) -> RelativeMotion {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
         let offset =
-            |grain: usize| along_axes::<K>(&K::from_coordinates(self.bodies[grain].offset));
-        let velocity = |grain: usize| along_axes::<K>(&problem.bodies.before[grain]);
-        let falls = pair.acceleration != 0.0;
-        let acceleration = if falls { self.fall::<K>(i) / time_step_secs } else { DVec2::ZERO };
+            |grain: usize| along_axes::<M>(&M::from_coordinates(self.bodies[grain].offset));
+        let velocity = |grain: usize| along_axes::<M>(&problem.bodies.before[grain]);
+        let acceleration = match pair.acceleration {
+            0.0 => DVec2::ZERO,
+            _ => self.fall::<M>(i) / self.numbers.time_step_secs,
+        };
         let of_other = match j {
             None => (DVec2::ZERO, problem.shape_velocity(number, pair.normal)),
             Some(j) => {
-                let slide = K::slide(problem.rows.get(number).normal);
+                let slide = M::slide(problem.rows.get(number).normal);
                 (offset(j), velocity(j) + slide * DVec2::X)
             }
         };
@@ -82,100 +73,75 @@ impl Shocks {
         j.map_or(0.0, |j| self.bodies[j].since).max(self.bodies[i].since)
     }
 
-    /// Whether a pair touches when its grains were struck last. Where they were struck by others since it met,
+    /// True where a pair touches when its grains were struck last. Where they were struck by others since it met,
     /// its normal is another one.
-    pub(super) fn is_in_touch<K: Kinematics>(
-        &self,
-        problem: &StepProblem<K>,
-        number: usize,
-        inputs: &ShockInputs<'_>,
-    ) -> bool {
+    pub(super) fn is_in_touch<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> bool {
         let pair = &self.pairs[number];
-        let (i, j) = grains(problem, number);
-        let (from, touch) = (self.since(i, j), inputs.numbers.touch);
+        let (i, j) = grains(at.problem, number);
+        let (from, touch) = (self.since(i, j), self.numbers.touch);
         if pair.touch == Touch::Apart || pair.gap_at(from) > touch {
             return false;
         }
-        let end = (from > pair.struck_at).then(|| self.approach(problem, number, inputs, from));
+        let end = (from > pair.struck_at).then(|| self.approach(at, number, from));
         end.flatten().is_none_or(|(_, gap)| gap <= touch)
     }
 
     /// Normal and gap of a pair at a moment, s.
-    pub(super) fn approach<K: Kinematics>(
+    pub(super) fn approach<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        at: &ShockInputs<'_, M>,
         number: usize,
-        inputs: &ShockInputs<'_>,
         secs: f64,
     ) -> Option<(DVec2, f64)> {
-        let contact = inputs.contact(problem, number);
-        let course = self.course(problem, number, inputs.numbers.time_step_secs);
-        let (world, candidates) = (inputs.world, inputs.candidates);
-        match K::AXES {
-            1 => course.approach::<1>(world, candidates, contact, secs),
-            _ => course.approach::<2>(world, candidates, contact, secs),
-        }
+        let contact = &self.pairs[number].contact;
+        self.course(at.problem, number).approach(at.world, at.candidates, contact, secs, M::AXES)
     }
 
     /// When a pair is struck next.
-    fn next_of<K: Kinematics>(
-        &self,
-        problem: &StepProblem<K>,
-        number: usize,
-        inputs: &ShockInputs<'_>,
-    ) -> NextImpact {
+    fn next_of<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> NextImpact {
         let pair = &self.pairs[number];
-        let (i, j) = grains(problem, number);
+        let (i, j) = grains(at.problem, number);
         let from = self.since(i, j);
-        if self.is_in_touch(problem, number, inputs) {
+        if self.is_in_touch(at, number) {
             let was_struck = |grain: usize| self.bodies[grain].struck_in_step;
             let again = was_struck(i) || j.is_some_and(was_struck);
             let again = if again { LEAST_AGAIN * self.fastest } else { 0.0 };
-            let momentum = -pair.speed * problem.rows.get(number).effective_mass;
+            let momentum = -pair.speed * at.problem.rows.get(number).effective_mass;
             let closes = -pair.speed > again && momentum > self.least;
             return if closes { NextImpact::Closes(from) } else { NextImpact::Never };
         }
         // The gap is no smaller than its tangents say.
-        let [begin, end] = [from, inputs.numbers.time_step_secs].map(|secs| pair.gap_at(secs));
+        let [begin, end] = [from, self.numbers.time_step_secs].map(|secs| pair.gap_at(secs));
         if begin > 0.0 && end > 0.0 && pair.acceleration <= 0.0 {
             return NextImpact::Never;
         }
-        self.meeting(problem, number, inputs, from).unwrap_or(NextImpact::Never)
+        self.meeting(at, number, from).unwrap_or(NextImpact::Never)
     }
 
     /// When a pair meets from a moment (s) on.
-    fn meeting<K: Kinematics>(
+    fn meeting<M: Model>(
         &self,
-        problem: &StepProblem<K>,
+        at: &ShockInputs<'_, M>,
         number: usize,
-        inputs: &ShockInputs<'_>,
         from: f64,
     ) -> Option<NextImpact> {
-        let contact = inputs.contact(problem, number);
-        let end = inputs.numbers.time_step_secs;
-        let course = self.course(problem, number, end);
-        let (world, candidates) = (inputs.world, inputs.candidates);
-        let meeting = match K::AXES {
-            1 => course.time_of_impact::<1>(world, candidates, contact, [from, end]),
-            _ => course.time_of_impact::<2>(world, candidates, contact, [from, end]),
-        };
-        meeting.map(|(secs, normal)| NextImpact::Meets { secs, normal })
+        let ShockInputs { problem, world, candidates } = at;
+        let (contact, times) = (&self.pairs[number].contact, [from, self.numbers.time_step_secs]);
+        let course = self.course(problem, number);
+        let (secs, normal) = course.time_of_impact(world, candidates, contact, times, M::AXES)?;
+        Some(NextImpact::Meets { secs, normal })
     }
 
     /// Looks for the very moment at which a pair closes that touches but for a last gap, and is struck alone.
-    pub(super) fn refine<K: Kinematics>(
-        &mut self,
-        problem: &StepProblem<K>,
-        inputs: &ShockInputs<'_>,
-    ) {
-        for (number, row) in problem.rows() {
+    pub(super) fn refine<M: Model>(&mut self, at: &ShockInputs<'_, M>) {
+        for (number, row) in at.problem.rows() {
             let root = self.root(row.i as usize);
             let pair = &self.pairs[number];
             let NextImpact::Closes(from) = pair.next else { continue };
             if pair.role != Role::Struck || self.bodies[root].cluster.1 > 1 {
                 continue;
             }
-            if let Some(next) = self.meeting(problem, number, inputs, from) {
+            if let Some(next) = self.meeting(at, number, from) {
                 self.pairs[number].next = next;
                 self.bodies[root].cluster.0 = next.secs();
             }
@@ -184,12 +150,8 @@ impl Shocks {
 
     /// Chooses what is struck in this pass, `first` being the earliest moment, s: pairs that are the next of
     /// both their grains, and what touches then and is joined to them.
-    pub(super) fn choose<K: Kinematics>(
-        &mut self,
-        problem: &StepProblem<K>,
-        first: f64,
-        StepNumbers { time_step_secs, touch, .. }: StepNumbers,
-    ) {
+    pub(super) fn choose<M: Model>(&mut self, problem: &StepProblem<M>, first: f64) {
+        let StepNumbers { time_step_secs, touch, .. } = self.numbers;
         for (index, body) in self.bodies.iter_mut().enumerate() {
             body.next = NEVER;
             body.root = index as u32;

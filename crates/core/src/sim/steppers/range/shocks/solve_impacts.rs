@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use super::{NEVER, NextImpact, Role, ShockInputs, Shocks, Touch, along_axes, grains, scale};
+use super::{NEVER, NextImpact, Role, Shocks, Touch, along_axes, grains, scale};
 use crate::sim::stepping::StepResult;
 use crate::solver::{
-    Kinematics, Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem,
-    StopTest, measure, solve, sweep,
+    Measures, Memory, Method, Model, SolveReport, SolverSettings, StepProblem, StopTest, measure,
+    solve, sweep,
 };
 
 /// Rows from which on shocks are solved no more tightly than the step.
@@ -20,8 +20,8 @@ const LOOSEST: f64 = 1e-3;
 
 /// Solves shocks that share grains, as tightly as a step is solved in which contacts may err by `least` (N·s).
 fn solve_together<M: Model>(
-    part: &mut StepProblem<M::Kinematics>,
-    memory: &mut Memory<M::Kinematics>,
+    part: &mut StepProblem<M>,
+    memory: &mut Memory<M>,
     settings: &SolverSettings,
     least: f64,
 ) -> SolveReport {
@@ -31,7 +31,7 @@ fn solve_together<M: Model>(
             StopTest::Residual => settings.tolerance.min(TIGHTLY.tolerance),
             StopTest::RelativeChange | StopTest::ImpulsePerMass => TIGHTLY.tolerance,
         };
-        earlier = solve::<M>(part, memory, &SolverSettings { tolerance, ..TIGHTLY });
+        earlier = solve(part, memory, &SolverSettings { tolerance, ..TIGHTLY });
         if earlier.converged {
             return earlier;
         }
@@ -41,17 +41,16 @@ fn solve_together<M: Model>(
         StopTest::Residual => settings.tolerance.max(of_step),
         StopTest::RelativeChange | StopTest::ImpulsePerMass => settings.tolerance,
     };
-    solve::<M>(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
+    solve(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
 }
 
 impl Shocks {
     /// Puts what is struck in this pass into `part`: either pairs that are struck alone, or all others.
-    /// Whether there are any.
-    pub(super) fn set_up<K: Kinematics>(
+    /// True where there are any.
+    pub(super) fn set_up<M: Model>(
         &mut self,
-        problem: &mut StepProblem<K>,
-        part: &mut StepProblem<K>,
-        inputs: &ShockInputs<'_>,
+        problem: &mut StepProblem<M>,
+        part: &mut StepProblem<M>,
         alone: bool,
     ) -> bool {
         part.rows.clear();
@@ -61,7 +60,7 @@ impl Shocks {
             if self.pairs[number].role == Role::Apart || moment == NEVER || (rows == 1) != alone {
                 continue;
             }
-            let restitution_velocity = self.strike_row(problem, inputs, number);
+            let restitution_velocity = self.strike_row(problem, number);
             part.rows.push_copy(&problem.rows, number, |row| {
                 row.restitution_velocity = restitution_velocity;
                 (row.shifted_impulse, row.tangential_impulse) = (0.0, 0.0);
@@ -83,13 +82,8 @@ impl Shocks {
     }
 
     /// What a shock adds to v_n of a row in its law, m/s. From now on the row is along the normal of a meeting.
-    fn strike_row<K: Kinematics>(
-        &mut self,
-        problem: &mut StepProblem<K>,
-        inputs: &ShockInputs<'_>,
-        number: usize,
-    ) -> f64 {
-        let numbers = inputs.numbers;
+    fn strike_row<M: Model>(&mut self, problem: &mut StepProblem<M>, number: usize) -> f64 {
+        let numbers = self.numbers;
         let mut wall_speed = problem.wall_speed(number);
         let (i, j) = grains(problem, number);
         let pair = &mut self.pairs[number];
@@ -98,8 +92,8 @@ impl Shocks {
             wall_speed = problem.turn_row(number, normal);
             let (row, before) = (problem.rows.get(number), &problem.bodies.before);
             let [speed, _] = j.map_or_else(
-                || K::velocity(row.normal, &before[i]),
-                |j| K::relative_velocity(row.normal, &before[i], &before[j]),
+                || M::velocity(row.normal, &before[i]),
+                |j| M::relative_velocity(row.normal, &before[i], &before[j]),
             );
             pair.speed = speed - wall_speed;
             pair.normal = normal;
@@ -107,7 +101,7 @@ impl Shocks {
             (pair.gap, pair.shift) = (0.0, 0.0);
             pair.gap = -pair.gap_at(secs);
             pair.touch = Touch::Met;
-            let stored = inputs.stretch(problem, number) * problem.law.capture_speed();
+            let stored = pair.stretch * problem.law.capture_speed();
             let squared = (pair.speed + gained).powi(2) + 2.0 * stored / numbers.time_step_secs;
             closing = -squared.sqrt();
         }
@@ -124,9 +118,9 @@ impl Shocks {
     /// Solves what was set up and takes it over; what is struck alone by one sweep, which is exact.
     pub(super) fn solve<M: Model>(
         &mut self,
-        problem: &mut StepProblem<M::Kinematics>,
-        part: &mut StepProblem<M::Kinematics>,
-        memory: &mut Memory<M::Kinematics>,
+        problem: &mut StepProblem<M>,
+        part: &mut StepProblem<M>,
+        memory: &mut Memory<M>,
         settings: &SolverSettings,
         alone: bool,
         result: &mut StepResult,
@@ -137,9 +131,10 @@ impl Shocks {
         } else {
             solve_together::<M>(part, memory, settings, self.least)
         };
-        let measures = measure::<M>(part);
+        let measures = measure(part);
         let Measures { residual, normal_work, mut tangential_work, border_work, .. } = measures;
-        let [wall_work, of_surfaces] = problem.surface_works_in(part);
+        let [wall_work, of_surfaces] =
+            problem.surface_works_of(part, |number| part.rows.contacts[number] as usize);
         tangential_work += of_surfaces;
         // Against the scale of the step, as all of it is.
         let residual = residual * (settings.tolerance * scale(part) / self.least).min(1.0);
@@ -169,24 +164,23 @@ impl Shocks {
             if moment == NEVER || (rows == 1) != alone {
                 continue;
             }
-            let [before, after] =
-                [&problem.bodies.before[grain], after].map(M::Kinematics::coordinates);
+            let [before, after] = [&problem.bodies.before[grain], after].map(M::coordinates);
             if before == after {
                 continue;
             }
             let shift = std::array::from_fn(|axis| -moment * (after[axis] - before[axis]));
             let body = &mut self.bodies[grain];
             body.offset = std::array::from_fn(|axis| body.offset[axis] + shift[axis]);
-            body.shift = along_axes::<M::Kinematics>(&M::Kinematics::from_coordinates(shift));
+            body.shift = along_axes::<M>(&M::from_coordinates(shift));
             body.since = body.since.max(moment);
             body.struck_in_step = true;
             body.struck_in_pass = true;
-            M::Kinematics::set(&mut problem.bodies.before[grain], after);
+            M::set(&mut problem.bodies.before[grain], after);
         }
     }
 
     /// Tells the pairs of grains that were struck where these are now, and how fast they come.
-    pub(super) fn move_on<K: Kinematics>(&mut self, problem: &StepProblem<K>) {
+    pub(super) fn move_on<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies = &self.bodies;
         let shift = |grain: usize| {
             if bodies[grain].struck_in_pass { bodies[grain].shift } else { DVec2::ZERO }
@@ -199,8 +193,8 @@ impl Shocks {
             }
             let before = &problem.bodies.before;
             let [speed, _] = j.map_or_else(
-                || K::velocity(row.normal, &before[i]),
-                |j| K::relative_velocity(row.normal, &before[i], &before[j]),
+                || M::velocity(row.normal, &before[i]),
+                |j| M::relative_velocity(row.normal, &before[i], &before[j]),
             );
             let pair = &mut self.pairs[number];
             pair.speed = speed - problem.wall_speed(number);

@@ -1,0 +1,225 @@
+//! Columns of Parquet files, whoever wrote them.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{ByteArray, DataType};
+use parquet::errors::{ParquetError, Result as ParquetResult};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+
+use crate::data::table::{Table, Values};
+use crate::error::{Error, Result};
+
+/// What a file must be, for messages.
+const FORM: &str = "a Parquet file whose columns are flat, not compressed or by snappy";
+/// Rows of the largest file that is read; more are a file that is damaged, or of another trade.
+const MOST_ROWS: i64 = 1 << 28;
+/// Rows that are decoded at once.
+const ROWS_AT_ONCE: usize = 1 << 16;
+
+/// A Parquet file that is there to be read.
+pub(in crate::data) struct ParquetFile {
+    pub path: PathBuf,
+    reader: SerializedFileReader<File>,
+}
+
+/// A column as a file has it.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::data) enum Decoded {
+    /// Numbers, whole or not; none where there is none.
+    Numbers(Vec<Option<f64>>),
+    /// Whole numbers.
+    Whole(Vec<Option<i64>>),
+    /// True or false.
+    Flags(Vec<Option<bool>>),
+    /// Words.
+    Words(Vec<Option<String>>),
+}
+
+impl ParquetFile {
+    /// Opens a file.
+    pub(in crate::data) fn open(path: &Path) -> Result<Self> {
+        let file = File::open(path).map_err(|error| Error::unread(path, error, FORM))?;
+        let reader = SerializedFileReader::new(file)
+            .map_err(|error| Error::unread(path, said(&error), FORM))?;
+        let rows = reader.metadata().file_metadata().num_rows();
+        if !(0..=MOST_ROWS).contains(&rows) {
+            let reason = format!("has {rows} rows, but must have no more than {MOST_ROWS}");
+            return Err(Error::file(path, reason));
+        }
+        Ok(Self { path: path.to_owned(), reader })
+    }
+
+    /// Number of its rows.
+    pub(in crate::data) fn rows(&self) -> usize {
+        // Within bounds, since it was opened.
+        self.reader.metadata().file_metadata().num_rows() as usize
+    }
+
+    /// The names of its columns.
+    pub(in crate::data) fn names(&self) -> Vec<String> {
+        let columns = self.reader.metadata().file_metadata().schema_descr().columns();
+        columns.iter().map(|column| column.path().string()).collect()
+    }
+
+    /// The column of that name.
+    pub(in crate::data) fn column(&self, name: &str) -> Result<Option<Decoded>> {
+        let Some(index) = self.names().iter().position(|there| there == name) else {
+            return Ok(None);
+        };
+        let refuse = |error: ParquetError| {
+            Error::unread(&self.path, format!("column {name}: {}", said(&error)), FORM)
+        };
+        let mut decoded: Option<Decoded> = None;
+        for group in 0..self.reader.num_row_groups() {
+            let rows = self.reader.get_row_group(group).map_err(refuse)?;
+            let count = rows.metadata().num_rows().clamp(0, MOST_ROWS) as usize;
+            let reader = rows.get_column_reader(index).map_err(refuse)?;
+            let more = decode(reader, count).map_err(refuse)?;
+            decoded = Some(match decoded {
+                None => more,
+                Some(first) => first.followed_by(more),
+            });
+        }
+        let decoded = decoded.unwrap_or(Decoded::Numbers(Vec::new()));
+        let (there, rows) = (decoded.len(), self.rows());
+        if there != rows {
+            let reason = format!("column {name} has {there} rows, but must have {rows}");
+            return Err(Error::file(&self.path, reason));
+        }
+        Ok(Some(decoded))
+    }
+
+    /// Reads the rows into a table that has none, which has all the columns of the file.
+    pub(in crate::data) fn read_into(&self, table: &mut Table) -> Result<()> {
+        for column in &mut table.columns {
+            let refuse = || {
+                let reason = format!(
+                    "has no column {} as this version writes it, but must be a part of a recording \
+                     of this version",
+                    column.name
+                );
+                Error::file(&self.path, reason)
+            };
+            let decoded = self.column(column.name)?.ok_or_else(refuse)?;
+            column.values = decoded.into_values(&column.values).ok_or_else(refuse)?;
+        }
+        Ok(())
+    }
+}
+
+/// What the crate says, in fewer words where they only repeat what kind of error it is.
+fn said(error: &ParquetError) -> String {
+    match error {
+        ParquetError::General(said) | ParquetError::NYI(said) | ParquetError::EOF(said) => {
+            said.clone()
+        }
+        other => other.to_string(),
+    }
+}
+
+impl Decoded {
+    fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.len(),
+            Self::Whole(values) => values.len(),
+            Self::Flags(values) => values.len(),
+            Self::Words(values) => values.len(),
+        }
+    }
+
+    fn followed_by(self, more: Self) -> Self {
+        match (self, more) {
+            (Self::Numbers(mut all), Self::Numbers(more)) => {
+                all.extend(more);
+                Self::Numbers(all)
+            }
+            (Self::Whole(mut all), Self::Whole(more)) => {
+                all.extend(more);
+                Self::Whole(all)
+            }
+            (Self::Flags(mut all), Self::Flags(more)) => {
+                all.extend(more);
+                Self::Flags(all)
+            }
+            (Self::Words(mut all), Self::Words(more)) => {
+                all.extend(more);
+                Self::Words(all)
+            }
+            // The schema is one of all groups.
+            (first, _) => first,
+        }
+    }
+
+    /// As values of the kind that `like` has; none where they are of another.
+    fn into_values(self, like: &Values) -> Option<Values> {
+        match (self, like) {
+            (Self::Numbers(values), Values::Numbers(_)) => {
+                values.into_iter().collect::<Option<_>>().map(Values::Numbers)
+            }
+            (Self::Numbers(values), Values::SomeNumbers(_)) => Some(Values::SomeNumbers(values)),
+            (Self::Whole(values), Values::Counts(_)) => {
+                let count = |value: Option<i64>| u64::try_from(value?).ok();
+                values.into_iter().map(count).collect::<Option<_>>().map(Values::Counts)
+            }
+            (Self::Flags(values), Values::Flags(_)) => Some(Values::Flags(values)),
+            (Self::Words(values), Values::Words { words, .. }) => {
+                let mut words = words.clone();
+                let mut code = |word: Option<String>| {
+                    let word = word?;
+                    let known = words.iter().position(|known| *known == word);
+                    Some(known.unwrap_or_else(|| {
+                        words.push(word);
+                        words.len() - 1
+                    }) as u32)
+                };
+                let codes = values.into_iter().map(&mut code).collect::<Option<_>>()?;
+                Some(Values::Words { words, codes })
+            }
+            _ => None,
+        }
+    }
+}
+
+fn decode(reader: ColumnReader, rows: usize) -> ParquetResult<Decoded> {
+    let word = |bytes: ByteArray| String::from_utf8_lossy(bytes.data()).into_owned();
+    Ok(match reader {
+        ColumnReader::BoolColumnReader(reader) => Decoded::Flags(all(reader, rows, |it| it)?),
+        ColumnReader::Int32ColumnReader(reader) => Decoded::Whole(all(reader, rows, i64::from)?),
+        ColumnReader::Int64ColumnReader(reader) => Decoded::Whole(all(reader, rows, |it| it)?),
+        ColumnReader::FloatColumnReader(reader) => Decoded::Numbers(all(reader, rows, f64::from)?),
+        ColumnReader::DoubleColumnReader(reader) => Decoded::Numbers(all(reader, rows, |it| it)?),
+        ColumnReader::ByteArrayColumnReader(reader) => Decoded::Words(all(reader, rows, word)?),
+        ColumnReader::Int96ColumnReader(_) | ColumnReader::FixedLenByteArrayColumnReader(_) => {
+            return Err(ParquetError::General("holds neither numbers nor words".into()));
+        }
+    })
+}
+
+/// The values of so many rows.
+fn all<T: DataType, Value>(
+    mut reader: ColumnReaderImpl<T>,
+    rows: usize,
+    of: impl Fn(T::T) -> Value,
+) -> ParquetResult<Vec<Option<Value>>> {
+    let (mut decoded, mut levels, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    while decoded.len() < rows {
+        levels.clear();
+        values.clear();
+        let at_once = ROWS_AT_ONCE.min(rows - decoded.len());
+        let (records, _, _) = reader.read_records(at_once, Some(&mut levels), None, &mut values)?;
+        if records == 0 {
+            let reason = format!("has {} of {rows} rows", decoded.len());
+            return Err(ParquetError::General(reason));
+        }
+        let mut values = values.drain(..).map(&of);
+        if levels.is_empty() {
+            decoded.extend(values.map(Some));
+        } else {
+            decoded
+                .extend(levels.iter().map(|&level| if level > 0 { values.next() } else { None }));
+        }
+    }
+    Ok(decoded)
+}

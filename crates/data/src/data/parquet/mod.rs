@@ -1,0 +1,278 @@
+//! Recordings as Parquet: a folder a table, of files that are whole.
+
+mod decode;
+
+pub(super) use decode::{Decoded, ParquetFile};
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use parquet::basic::{Compression, ConvertedType, Encoding, LogicalType, Repetition, Type as Kind};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::Result as ParquetResult;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPropertiesBuilder};
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::{ColumnPath, Type};
+
+use super::columns::empty_tables_of_frames;
+use super::format::{Format, Frame, RunFacts};
+use super::recording_folder::{make_folder, numbered_parts, path_of_part, remove};
+use super::table::{Column, Table, Values};
+use crate::error::{Error, Result};
+use crate::output::PendingFile;
+use crate::sim::Observables;
+
+/// A part ends with the frame with which it comes to this size before compression, bytes. Larger: each
+/// frame of a small scene costs more, since the last part is written anew with it. Smaller: more files.
+const SIZE_OF_PART: usize = 256 << 10;
+/// Key of the metadata that tells units and meanings of the columns, as JSON.
+const COLUMNS_KEY: &str = "columns";
+/// A column with fewer changes from row to row than this part of its rows is written as a list of what it
+/// has and places in it, which then take nearly nothing.
+const FEW_CHANGES: usize = 8;
+
+/// Writes Parquet.
+pub(super) struct Parquet {
+    of_frames: Vec<GrowingParts>,
+    steps: GrowingParts,
+}
+
+impl Parquet {
+    /// Starts, or goes on with what is there.
+    pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
+        let start = |table| GrowingParts::start(folder, facts, table);
+        let of_frames = empty_tables_of_frames().into_iter().map(start).collect::<Result<_>>()?;
+        Ok(Self { of_frames, steps: start(Table::of_steps(&[]))? })
+    }
+}
+
+impl Format for Parquet {
+    fn add(&mut self, frame: &Frame) -> Result<()> {
+        let mut tables = self.of_frames.iter_mut().zip(frame.tables());
+        tables.try_for_each(|(parts, table)| parts.add(table))
+    }
+
+    fn add_steps(&mut self, rows: &[Observables]) -> Result<()> {
+        self.steps.add(&Table::of_steps(rows))
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        let mut tables = self.of_frames.iter_mut().chain([&mut self.steps]);
+        tables.try_for_each(GrowingParts::flush)
+    }
+
+    fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()> {
+        self.of_frames.iter_mut().try_for_each(|parts| parts.roll_back(last_frame))?;
+        self.steps.roll_back(Some(step))
+    }
+}
+
+/// A table in parts. The last is written anew with each frame until it is large enough, so that a reader
+/// finds whole files at any time.
+struct GrowingParts {
+    folder: PathBuf,
+    encoder: Encoder,
+    /// Number of the part that grows.
+    number: u64,
+    /// Its rows.
+    rows: Table,
+    /// Whether it has rows that are not in its file.
+    has_news: bool,
+    /// Whether there is a file: a table has one, even without rows, so that readers find its columns.
+    has_file: bool,
+}
+
+impl GrowingParts {
+    /// Starts with no part. `rows` has none.
+    fn start(folder: &Path, facts: &RunFacts, rows: Table) -> Result<Self> {
+        let folder = folder.join(rows.name);
+        make_folder(&folder)?;
+        let encoder = Encoder::new(facts, &rows).map_err(|error| Error::file(&folder, error))?;
+        Ok(Self { folder, encoder, number: 0, rows, has_news: false, has_file: false })
+    }
+
+    /// Adds rows, which are not parted.
+    fn add(&mut self, rows: &Table) -> Result<()> {
+        self.rows.append(rows);
+        self.has_news |= !rows.is_empty();
+        if self.rows.size() < SIZE_OF_PART { Ok(()) } else { self.end_part() }
+    }
+
+    fn end_part(&mut self) -> Result<()> {
+        self.flush()?;
+        self.number += 1;
+        self.rows.truncate(0);
+        Ok(())
+    }
+
+    /// Writes the part that grows.
+    ///
+    /// # Errors
+    /// Names the file and what the system says; what was there before stays.
+    fn flush(&mut self) -> Result<()> {
+        if !self.has_news && self.has_file {
+            return Ok(());
+        }
+        let path = path_of_part(&self.folder, self.number);
+        let bytes = self.encoder.encode(&self.rows).map_err(|error| Error::file(&path, error))?;
+        let mut file = PendingFile::start(&path)?;
+        file.write(&bytes)?;
+        // A run does not wait for the disk.
+        file.finish(false)?;
+        (self.has_news, self.has_file) = (false, true);
+        Ok(())
+    }
+
+    /// Drops the rows after a step, or all.
+    fn roll_back(&mut self, step: Option<u64>) -> Result<()> {
+        self.rows.truncate(0);
+        (self.number, self.has_news, self.has_file) = (0, false, false);
+        // From the last on, so that what is left is whole whenever this is stopped.
+        for (number, path) in numbered_parts(&self.folder)?.into_iter().rev() {
+            let mut rows = self.rows.clone();
+            ParquetFile::open(&path)?.read_into(&mut rows)?;
+            if rows.steps().first().is_none_or(|&first| Some(first) > step) {
+                remove(&path)?;
+                continue;
+            }
+            let all = rows.len();
+            rows.keep_until(step);
+            (self.number, self.has_file) = (number, true);
+            self.has_news = rows.len() < all;
+            self.rows = rows;
+            self.flush()?;
+            if self.rows.size() >= SIZE_OF_PART {
+                self.end_part()?;
+            }
+            return Ok(());
+        }
+        Ok(())
+    }
+}
+
+/// Writes tables of the same columns.
+struct Encoder {
+    schema: Arc<Type>,
+    metadata: Vec<KeyValue>,
+}
+
+impl Encoder {
+    /// For tables with the columns of `table`.
+    fn new(facts: &RunFacts, table: &Table) -> ParquetResult<Self> {
+        let fields = table.columns.iter().map(|column| field(column).map(Arc::new));
+        let fields = fields.collect::<ParquetResult<_>>()?;
+        let schema = Type::group_type_builder(table.name).with_fields(fields).build()?;
+        let columns = table.columns.iter().map(|Column { name, unit, about, .. }| {
+            ((*name).to_owned(), serde_json::json!({ "unit": unit, "about": about }))
+        });
+        let columns = serde_json::Value::Object(columns.collect()).to_string();
+        let facts = facts.facts.iter().cloned().chain([(COLUMNS_KEY.to_owned(), columns)]);
+        let metadata = facts.map(|(name, said)| KeyValue::new(name, said)).collect();
+        Ok(Self { schema: Arc::new(schema), metadata })
+    }
+
+    /// The bytes of a file.
+    fn encode(&self, table: &Table) -> ParquetResult<Vec<u8>> {
+        let properties = WriterProperties::builder()
+            .set_created_by(concat!("slump ", env!("CARGO_PKG_VERSION")).to_owned())
+            .set_key_value_metadata(Some(self.metadata.clone()))
+            .set_compression(Compression::SNAPPY)
+            .set_dictionary_enabled(false)
+            .set_statistics_enabled(EnabledStatistics::Chunk)
+            // A file is one group of rows, read as a whole.
+            .set_offset_index_disabled(true);
+        let properties = table.columns.iter().fold(properties, packed);
+        let mut bytes = Vec::with_capacity(table.size() + self.size_of_metadata());
+        let schema = Arc::clone(&self.schema);
+        let mut file = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties.build()))?;
+        let mut rows = file.next_row_group()?;
+        for column in &table.columns {
+            // There are as many as in the schema, which was made of the same columns.
+            let Some(mut writer) = rows.next_column()? else { break };
+            write(&mut writer, &column.values)?;
+            writer.close()?;
+        }
+        rows.close()?;
+        file.close()?;
+        Ok(bytes)
+    }
+
+    fn size_of_metadata(&self) -> usize {
+        let length = |it: &KeyValue| it.key.len() + it.value.as_ref().map_or(0, String::len);
+        self.metadata.iter().map(length).sum()
+    }
+}
+
+fn field(column: &Column) -> ParquetResult<Type> {
+    let (kind, repetition) = match column.values {
+        Values::Numbers(_) => (Kind::DOUBLE, Repetition::REQUIRED),
+        Values::SomeNumbers(_) => (Kind::DOUBLE, Repetition::OPTIONAL),
+        Values::Counts(_) => (Kind::INT64, Repetition::REQUIRED),
+        Values::Flags(_) => (Kind::BOOLEAN, Repetition::OPTIONAL),
+        Values::Words { .. } => (Kind::BYTE_ARRAY, Repetition::REQUIRED),
+    };
+    let field = Type::primitive_type_builder(column.name, kind).with_repetition(repetition);
+    let field = match column.values {
+        Values::Words { .. } => field
+            .with_logical_type(Some(LogicalType::String))
+            .with_converted_type(ConvertedType::UTF8),
+        _ => field,
+    };
+    field.build()
+}
+
+/// Says how a column is packed.
+fn packed(properties: WriterPropertiesBuilder, column: &Column) -> WriterPropertiesBuilder {
+    let path = ColumnPath::from(column.name);
+    let few_changes = match &column.values {
+        Values::Numbers(values) => {
+            let changes = values.windows(2).filter(|two| two[0].to_bits() != two[1].to_bits());
+            FEW_CHANGES * changes.count() < values.len()
+        }
+        Values::SomeNumbers(_) | Values::Flags(_) => false,
+        Values::Counts(_) => {
+            return properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED);
+        }
+        // The first and the last word by the alphabet tell readers nothing, and comparing all words took
+        // a sixth of the time that a frame takes.
+        Values::Words { .. } => {
+            let without = EnabledStatistics::None;
+            return properties
+                .set_column_statistics_enabled(path.clone(), without)
+                .set_column_dictionary_enabled(path, true);
+        }
+    };
+    properties.set_column_dictionary_enabled(path, few_changes)
+}
+
+fn write(writer: &mut SerializedColumnWriter<'_>, values: &Values) -> ParquetResult<()> {
+    match values {
+        Values::Numbers(values) => writer.typed::<DoubleType>().write_batch(values, None, None)?,
+        Values::SomeNumbers(values) => {
+            let there: Vec<f64> = values.iter().copied().flatten().collect();
+            writer.typed::<DoubleType>().write_batch(&there, Some(&levels(values)), None)?
+        }
+        Values::Counts(values) => {
+            let values: Vec<i64> = values.iter().map(|&value| value as i64).collect();
+            writer.typed::<Int64Type>().write_batch(&values, None, None)?
+        }
+        Values::Flags(values) => {
+            let there: Vec<bool> = values.iter().copied().flatten().collect();
+            writer.typed::<BoolType>().write_batch(&there, Some(&levels(values)), None)?
+        }
+        Values::Words { words, codes } => {
+            let words: Vec<ByteArray> =
+                words.iter().map(|word| ByteArray::from(word.as_str())).collect();
+            let values: Vec<ByteArray> =
+                codes.iter().map(|&code| words[code as usize].clone()).collect();
+            writer.typed::<ByteArrayType>().write_batch(&values, None, None)?
+        }
+    };
+    Ok(())
+}
+
+/// Which rows have a value.
+fn levels<T>(values: &[Option<T>]) -> Vec<i16> {
+    values.iter().map(|value| i16::from(value.is_some())).collect()
+}

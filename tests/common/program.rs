@@ -1,0 +1,126 @@
+//! The program from outside: how it is started, and what it says and leaves.
+
+#![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
+
+pub use std::path::{Path, PathBuf};
+pub use std::process::{Child, Command, Output, Stdio};
+pub use std::time::{Duration, Instant};
+
+pub use serde_json::Value;
+pub use tempfile::TempDir;
+
+/// Longer than anything that is waited for takes on a busy machine.
+pub const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The program that was built with these tests, or that which `SLUMP_PROGRAM` names: one with fewer features is tested
+/// without another build of all tests. `line` has its first arguments, with blanks between them.
+pub fn slump(line: &str) -> Command {
+    let built = || assert_cmd::cargo::cargo_bin!("slump").to_path_buf();
+    let mut command =
+        Command::new(std::env::var_os("SLUMP_PROGRAM").map_or_else(built, PathBuf::from));
+    command.args(line.split_whitespace());
+    command
+}
+
+pub fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+pub fn text(path: &Path) -> &str {
+    path.to_str().expect("UTF-8")
+}
+
+pub fn bytes(path: impl AsRef<Path>) -> Vec<u8> {
+    let path = path.as_ref();
+    std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+pub fn read(path: impl AsRef<Path>) -> String {
+    String::from_utf8(bytes(path)).expect("UTF-8")
+}
+
+pub fn write(path: impl AsRef<Path>, content: impl AsRef<[u8]>) {
+    let path = path.as_ref();
+    std::fs::write(path, content).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+}
+
+pub fn json(path: impl AsRef<Path>) -> Value {
+    serde_json::from_slice(&bytes(path)).expect("JSON")
+}
+
+pub fn manifest(folder: &Path) -> Value {
+    json(folder.join("manifest.json"))
+}
+
+pub fn names_in(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.expect("an entry").file_name();
+    let mut names: Vec<_> = entries.map(|it| name(it).to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+pub fn said(output: &Output) -> String {
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!said.contains("panicked"), "{said}");
+    said
+}
+
+pub fn run(command: &mut Command) -> Output {
+    command.output().expect("the program starts")
+}
+
+#[track_caller]
+pub fn succeed(command: &mut Command) -> String {
+    let output = run(command);
+    let said = said(&output);
+    assert!(output.status.success(), "{command:?}: {said}");
+    said
+}
+
+/// Runs a program that is to end with code 2, and gives what it says on stderr.
+#[track_caller]
+pub fn failure(command: &mut Command) -> String {
+    let output = run(command);
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{command:?}: {said}");
+    said
+}
+
+/// Runs a program that is to refuse in one sentence, and gives that.
+#[track_caller]
+pub fn sentence(command: &mut Command) -> String {
+    let said = failure(command);
+    assert_eq!(said.trim_end().lines().count(), 1, "{command:?}: more than a sentence: {said}");
+    said.trim_end().to_owned()
+}
+
+pub fn wait_for(what: &str, mut is_there: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_there() {
+        assert!(begun.elapsed() < PATIENCE, "{what} did not come");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Sends a signal to a program, or to a group of programs where the number is below 0.
+pub fn send(signal: &str, process: i64) {
+    let id = process.to_string();
+    assert!(Command::new("kill").args(["-s", signal, "--", &id]).status().expect("kill").success());
+}
+
+/// Waits until a program has ended, and gives its code.
+pub fn ended(child: &mut Child) -> Option<i32> {
+    let mut status = None;
+    wait_for("the end", || {
+        status = child.try_wait().expect("a child");
+        status.is_some()
+    });
+    status.and_then(|status| status.code())
+}
+
+/// Kills a program as a loss of power would end it.
+pub fn kill(child: &mut Child) {
+    child.kill().expect("kill -9");
+    child.wait().expect("it ended");
+}

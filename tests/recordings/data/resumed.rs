@@ -1,0 +1,209 @@
+//! Recordings that go on, and what several want of one folder.
+
+use std::collections::BTreeMap;
+
+use slump::data::{RunFacts, Times};
+
+use super::*;
+
+/// All files of a recording, but for the manifest.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for name in names_in(folder) {
+        let path = folder.join(&name);
+        if path.is_dir() {
+            all.extend(files(&path).into_iter().map(|(file, it)| (format!("{name}/{file}"), it)));
+        } else {
+            all.insert(name, bytes(&path));
+        }
+    }
+    all
+}
+
+#[track_caller]
+fn assert_same_files(found: &Path, expected: &Path, what: &str) {
+    let (found, expected) = (files(found), files(expected));
+    assert_eq!(
+        found.keys().collect::<Vec<_>>(),
+        expected.keys().collect::<Vec<_>>(),
+        "the files, {what}"
+    );
+    for (name, bytes) in &expected {
+        assert!(found[name] == *bytes, "{name} differs, {what}");
+    }
+}
+
+#[test]
+fn what_goes_on_is_what_was_never_stopped() {
+    let formats = [FormatName::Parquet, FormatName::Csv];
+    let pile = scene("pile");
+    let folder = folder();
+    let expected = folder.path().join("whole");
+    recorded(&expected, &formats, &pile, 120, 2);
+    // Before the first frame, within the first part, at a frame, between two, and at the end.
+    for stopped_at in [0, 1, 9, 40, 77, 120] {
+        let path = folder.path().join(format!("from-{stopped_at}"));
+        let mut simulation = pile.simulation().expect("a scene");
+        let mut recording = start(&path, &formats, &pile);
+        record(&mut recording, &mut simulation, stopped_at, 2);
+        let saved = simulation.clone();
+        // The run goes on for a while, and is stopped after its checkpoint.
+        record(&mut recording, &mut simulation, 120 - stopped_at, 2);
+        drop(recording);
+        let mut simulation = saved;
+        let about = slump::config::scene_facts(&pile).expect("facts");
+        let mut recording =
+            Recording::go_on(&path, &formats, &about, stopped_at).expect("it goes on");
+        assert_eq!(recording.frames(), stopped_at / 2);
+        record(&mut recording, &mut simulation, 120 - stopped_at, 2);
+        recording.finish().expect("a recording");
+        assert_same_files(&path, &expected, &format!("from step {stopped_at}"));
+    }
+}
+
+#[test]
+fn what_a_kill_tore_is_mended_when_it_goes_on() {
+    let formats = [FormatName::Parquet, FormatName::Csv];
+    let pile = scene("pile");
+    let folder = folder();
+    let (expected, torn) = (folder.path().join("whole"), folder.path().join("torn"));
+    recorded(&expected, &formats, &pile, 40, 2);
+    recorded(&torn, &formats, &pile, 30, 2);
+    // Half rows, and a frame that the index does not know.
+    let cut = |file: &str, by: u64| {
+        let file = std::fs::OpenOptions::new().write(true).open(torn.join(file)).expect("a file");
+        file.set_len(file.metadata().expect("a length").len() - by).expect("cut");
+    };
+    cut("csv/grains.csv", 7);
+    cut("frames.csv", 2);
+    let mut simulation = pile.simulation().expect("a scene");
+    simulation.take_steps(25).expect("a finite state");
+    let about = slump::config::scene_facts(&pile).expect("facts");
+    let mut recording = Recording::go_on(&torn, &formats, &about, 25).expect("it goes on");
+    record(&mut recording, &mut simulation, 15, 2);
+    recording.finish().expect("a recording");
+    assert_same_files(&torn, &expected, "mended");
+}
+
+#[test]
+fn frames_that_are_there_are_not_made_again() {
+    let pile = scene("pile");
+    let folder = folder();
+    let about = RunFacts::default();
+    let formats = [FormatName::Csv];
+    let mut simulation = pile.simulation().expect("a scene");
+    let recording = Recording::start(folder.path(), &formats, &about, false);
+    let recording = recording.expect("a recording");
+    let mut recording = recording.at(Times::Every(0.002), &simulation);
+    recording.add_if_due(&simulation).expect("a frame");
+    for _ in 0..7 {
+        simulation.step().expect("a finite state");
+        recording.add_if_due(&simulation).expect("a frame");
+    }
+    assert_eq!(recording.frames(), 4);
+    recording.finish().expect("a recording");
+    let recording = Recording::go_on(folder.path(), &formats, &about, 7).expect("it goes on");
+    let mut recording = recording.at(Times::Every(0.002), &simulation);
+    // As a run that goes on asks before its first step.
+    recording.add_if_due(&simulation).expect("a frame");
+    assert_eq!(recording.frames(), 4);
+    simulation.step().expect("a finite state");
+    recording.add_if_due(&simulation).expect("a frame");
+    assert_eq!(recording.frames(), 5);
+    recording.finish().expect("a recording");
+    let index = read(folder.path().join("frames.csv"));
+    let rows: Vec<_> = index.lines().skip_while(|line| !line.starts_with("step")).collect();
+    assert_eq!(rows.len(), 6);
+    assert!(rows[5].starts_with("8,") && rows[5].ends_with(",4"), "{rows:?}");
+}
+
+#[test]
+fn one_recording_at_a_time_in_a_folder() {
+    let folder = folder();
+    let pile = scene("pile");
+    let about = RunFacts::default();
+    let first = start(folder.path(), &[FormatName::Csv], &pile);
+    for overwrite in [false, true] {
+        let second = Recording::start(folder.path(), &[FormatName::Csv], &about, overwrite);
+        let said = second.err().expect("a refusal").to_string();
+        assert!(said.contains("is being written by another run"), "{said}");
+    }
+    let second = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 0);
+    assert!(second.is_err_and(|error| error.to_string().contains("another run")));
+    first.finish().expect("a recording");
+    let second = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
+    second.expect("the folder is free").finish().expect("a recording");
+}
+
+#[test]
+fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
+    let folder = folder();
+    let pile = scene("pile");
+    let about = RunFacts::default();
+    recorded(folder.path(), FormatName::ALL, &pile, 8, 2);
+    write(folder.path().join("note.txt"), "mine");
+    write(folder.path().join("grains/note.parquet"), "mine");
+    let before = files(folder.path());
+    let again = Recording::start(folder.path(), &[FormatName::Csv], &about, false);
+    let said = again.err().expect("a refusal").to_string();
+    assert!(said.starts_with("data is ") && said.contains("--overwrite"), "{said}");
+    assert_eq!(files(folder.path()), before);
+    // Without its manifest it still is one.
+    std::fs::remove_file(folder.path().join("data.json")).expect("gone");
+    std::fs::remove_file(folder.path().join("frames.csv")).expect("gone");
+    assert!(Recording::start(folder.path(), &[FormatName::Csv], &about, false).is_err());
+
+    let again = Recording::start(folder.path(), &[FormatName::Csv], &about, true);
+    again.expect("an empty folder").finish().expect("a recording");
+    let mut left = files(folder.path());
+    for table in ["contacts", "grains", "histograms", "measures", "steps"] {
+        let text = left.remove(&format!("csv/{table}.csv")).expect("a table");
+        let rows = text.split(|&byte| byte == b'\n').filter(|line| !line.starts_with(b"#"));
+        assert_eq!(rows.count(), 2, "the names of its columns alone");
+    }
+    assert!(left.keys().eq(["data.json", "grains/note.parquet", "note.txt"]), "{:?}", left.keys());
+}
+
+#[test]
+fn a_recording_goes_on_in_its_own_formats_alone() {
+    let folder = folder();
+    recorded(folder.path(), &[FormatName::Csv], &scene("pile"), 8, 2);
+    let about = RunFacts::default();
+    let other = Recording::go_on(folder.path(), &[FormatName::Parquet], &about, 4);
+    let said = other.err().expect("a refusal").to_string();
+    assert!(said.starts_with("data-format is parquet, but must be as "), "{said}");
+    // What is no table of this version is not gone on with, nor touched.
+    let table = folder.path().join("csv/contacts.csv");
+    let text = read(&table).replace("normal_force", "force");
+    write(&table, &text);
+    let changed = Recording::go_on(folder.path(), &[FormatName::Csv], &about, 4);
+    let said = changed.err().expect("a refusal").to_string();
+    assert!(said.contains("contacts.csv: line ") && said.contains("normal_force"), "{said}");
+    assert_eq!(read(&table), text);
+}
+
+#[test]
+fn what_cannot_be_written_ends_the_recording_with_a_sentence_and_leaves_what_was() {
+    let folder = folder();
+    let pile = scene("pile");
+    let mut recording = start(folder.path(), &[FormatName::Parquet, FormatName::Csv], &pile);
+    let mut simulation = pile.simulation().expect("a scene");
+    record(&mut recording, &mut simulation, 4, 2);
+    recording.flush().expect("written");
+    let before = files(folder.path());
+    let moved = folder.path().join("gone");
+    std::fs::rename(folder.path().join("grains"), &moved).expect("moved");
+    let told = (0..50).find_map(|_| {
+        let observables = *simulation.step().expect("a finite state");
+        let added = recording.add_step(&observables);
+        let added = added.and_then(|()| recording.add(simulation.moment()));
+        added.and_then(|()| recording.flush()).err()
+    });
+    let said = told.expect("an error").to_string();
+    assert!(said.contains("part-00000.parquet: cannot be written"), "{said}");
+    recording.finish().expect("it is told once");
+    std::fs::rename(&moved, folder.path().join("grains")).expect("moved back");
+    let after = files(folder.path());
+    assert_eq!(after["frames.csv"], before["frames.csv"], "the frame is in not every format");
+    assert_eq!(after["grains/part-00000.parquet"], before["grains/part-00000.parquet"]);
+}
