@@ -1,6 +1,8 @@
 // One colour over the whole viewport: a triangle that reaches beyond all four corners.
 
-@group(0) @binding(0) var<uniform> colour: vec4<f32>;
+override red: f32;
+override green: f32;
+override blue: f32;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
@@ -10,5 +12,5 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
 
 @fragment
 fn fragment() -> @location(0) vec4<f32> {
-    return colour;
+    return vec4<f32>(red, green, blue, 1.0);
 }

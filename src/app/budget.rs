@@ -2,7 +2,7 @@
 
 use crate::config::Config;
 use crate::scene::Scene;
-use crate::sim::{Observables, Settings, Stepper, Surroundings};
+use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{Fallback, FrictionModel, Method, SolverChanges, SolverSettings};
 use crate::study::PILE_SOLVER;
 use crate::world::{FrictionCone, Periodic};
@@ -13,13 +13,11 @@ const MOST_SOLVED_GRAINS: usize = 2_000;
 /// A way to solve steps that has a name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Budget {
-    /// On its button.
     pub name: &'static str,
     /// What it costs, in time and in accuracy.
     pub hint: &'static str,
-    /// What it is.
     pub settings: SolverSettings,
-    /// Whether another method would not keep what its name says.
+    /// True where another method would not keep what its name says.
     pub is_of_its_method: bool,
 }
 
@@ -35,7 +33,7 @@ impl Budget {
         self.settings
     }
 
-    /// Whether it keeps what its name says there.
+    /// True where it keeps what its name says there.
     pub(super) fn is_to_be_had(&self, surroundings: &Surroundings) -> bool {
         !self.is_of_its_method || self.among(surroundings).method == self.settings.method
     }
@@ -89,29 +87,6 @@ pub(super) const CERTIFIED: Budget = Budget {
 
 /// All of them.
 pub(super) const BUDGETS: [Budget; 4] = [FAST, TRUSTED, FIGURES, CERTIFIED];
-
-/// What is offered where the sweeps of a step of a large pile leave it unsolved, with the time that it takes here, told
-/// by that of forty sweeps: 25 times these at 2,000 grains that begin to slump, 51 times at 10,000 (`RESULTS.md`, steps
-/// by size); where they are at rest it is less, and a dense pile of 10,000 has taken twice as long.
-pub(super) fn offer(
-    solver: &SolverSettings,
-    grains: usize,
-    last: &Observables,
-    step_ms: f64,
-) -> Option<String> {
-    let is_swept = matches!(solver.method, Method::Nsgs | Method::NsgsParallel);
-    let is_left_so = last.sweeps > 0 && !last.converged && last.fell_back != Some(true);
-    if grains <= MOST_SOLVED_GRAINS || !is_swept || !is_left_so || step_ms <= 0.0 {
-        return None;
-    }
-    let growth = (51.0f64 / 25.0).ln() / 5f64.ln();
-    let forty = step_ms * 40.0 / f64::from(last.sweeps);
-    let secs = 1e-3 * forty * 25.0 * (grains as f64 / 2_000.0).powf(growth);
-    let Observables { sweeps, residual, .. } = last;
-    Some(format!(
-        "{sweeps} sweeps leave a residual of {residual:.0e}. Certified solves each step, in some {secs:.2} s."
-    ))
-}
 
 /// What a pile of that many grains begins with.
 pub(super) fn for_grains(grains: usize) -> Budget {
@@ -180,32 +155,23 @@ mod tests {
         assert!(TRUSTED.settings.falls_back(), "by its method");
     }
 
+    fn surroundings(name: &str) -> std::sync::Arc<Surroundings> {
+        let scene = built_in(name).expect("a scene").simulation().expect("a sound scene");
+        scene.snapshot().surroundings
+    }
+
     #[test]
-    fn what_is_certain_is_offered_to_large_piles_that_are_swept() {
-        let pile = built_in("pile").expect("a scene").simulation().expect("a sound scene");
-        let left =
-            Observables { sweeps: 40, converged: false, residual: 0.14, ..*pile.observables() };
-        let said = offer(&FAST.settings, 10_000, &left, 10.0).expect("an offer");
-        assert!(said.contains("residual of 1e-1") && said.contains("some 0.51 s"), "{said}");
-        assert_eq!(offer(&FAST.settings, 2_000, &left, 10.0), None, "small");
-        let solved = Observables { converged: true, ..left };
-        assert_eq!(offer(&FAST.settings, 10_000, &solved, 10.0), None, "solved");
-        assert_eq!(offer(&CERTIFIED.settings, 10_000, &left, 10.0), None, "taken");
-        let [shear, pile] = ["shear", "pile"].map(|name| {
-            let scene = built_in(name).expect("a scene").simulation().expect("a sound scene");
-            CERTIFIED.is_to_be_had(&scene.snapshot().surroundings)
-        });
-        assert!(pile && !shear, "a force drives a wall there");
+    fn what_is_certain_is_to_be_had_where_no_force_drives_a_wall() {
+        assert!(CERTIFIED.is_to_be_had(&surroundings("pile")));
+        assert!(!CERTIFIED.is_to_be_had(&surroundings("shear")));
     }
 
     #[test]
     fn every_effort_is_taken_by_every_scene() {
-        let plain = built_in("pile").expect("a scene").simulation().expect("a sound scene");
-        assert_eq!(FAST.among(&plain.snapshot().surroundings), FAST.settings);
-        let mut scenes: Vec<_> = crate::scene::SCENES
-            .iter()
-            .map(|scene| built_in(scene.name).expect("a scene"))
-            .collect();
+        assert_eq!(FAST.among(&surroundings("pile")), FAST.settings);
+        let scenes = crate::scene::SCENES.iter();
+        let mut scenes: Vec<_> =
+            scenes.map(|scene| built_in(scene.name).expect("a scene")).collect();
         let mut unforced = built_in("shear").expect("a scene");
         let drives = unforced.motions.iter_mut().filter_map(|motion| motion.drive.as_mut());
         let forces = drives.map(|drive| (drive.force, drive.pressure) = (Some(0.0), None));

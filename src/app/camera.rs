@@ -19,12 +19,8 @@ pub struct SceneCamera {
 
 impl Default for SceneCamera {
     fn default() -> Self {
-        Self {
-            framed: true,
-            centre: DVec2::ZERO,
-            metres_per_point: 1.0,
-            framed_metres_per_point: 1.0,
-        }
+        let (centre, metres_per_point) = (DVec2::ZERO, 1.0);
+        Self { framed: true, centre, metres_per_point, framed_metres_per_point: 1.0 }
     }
 }
 
@@ -71,16 +67,6 @@ impl SceneCamera {
             DVec2::new(f64::from(width - style.legend_width(width, height)), f64::from(height));
         let metres_per_pixel = self.metres_per_point * (window_points / scene).max_element();
         Camera { centre: self.centre, metres_per_pixel }
-    }
-
-    /// What is in the middle, m.
-    pub fn centre(&self) -> DVec2 {
-        self.centre
-    }
-
-    /// Has a place (m) in the middle, at the present scale.
-    pub(crate) fn look_at(&mut self, place: DVec2) {
-        (self.framed, self.centre) = (false, place);
     }
 
     /// Moves the scene with the mouse; y down, points.

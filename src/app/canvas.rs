@@ -13,9 +13,7 @@ use crate::render::gpu::{FORMAT, OffscreenTarget};
 
 /// Draws user interfaces into targets of one format.
 pub(super) struct Screen {
-    /// The device.
     pub device: wgpu::Device,
-    /// Its queue.
     pub queue: wgpu::Queue,
     renderer: Renderer,
 }
@@ -28,43 +26,31 @@ impl Screen {
         format: wgpu::TextureFormat,
     ) -> Self {
         // Nothing here has gradients that would show steps.
-        let mut renderer = Renderer::new(
-            device,
-            format,
-            RendererOptions { dithering: false, ..RendererOptions::default() },
-        );
+        let options = RendererOptions { dithering: false, ..RendererOptions::default() };
+        let mut renderer = Renderer::new(device, format, options);
         renderer.callback_resources.insert(TargetFormat(format));
         Self { device: device.clone(), queue: queue.clone(), renderer }
     }
 
-    /// Sends new and changed textures to the device: before the pass that needs them.
-    pub(super) fn update_textures(&mut self, delta: &TexturesDelta) {
-        for (id, changes) in &delta.set {
-            for change in changes {
-                self.renderer.update_texture(&self.device, &self.queue, *id, change);
-            }
-        }
-    }
-
-    /// Frees textures: after the pass that needed them last.
-    pub(super) fn free_textures(&mut self, delta: &TexturesDelta) {
-        for id in &delta.free {
-            self.renderer.free_texture(id);
-        }
-    }
-
-    /// Records the pass. Returns what is to be submitted before it.
-    pub(super) fn paint(
+    /// Draws what a pass of egui put out on `size` pixels of a target, and takes its textures; `then` records what follows the drawing.
+    pub(super) fn draw(
         &mut self,
-        encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,
         size: [u32; 2],
         pixels_per_point: f32,
         primitives: &[ClippedPrimitive],
-    ) -> Vec<wgpu::CommandBuffer> {
+        textures: &mut TexturesDelta,
+        then: impl FnOnce(&mut wgpu::CommandEncoder),
+    ) {
+        let Self { device, queue, renderer } = self;
+        for (id, changes) in &textures.set {
+            for change in changes {
+                renderer.update_texture(device, queue, *id, change);
+            }
+        }
         let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
-        let commands =
-            self.renderer.update_buffers(&self.device, &self.queue, encoder, primitives, &screen);
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let extra = renderer.update_buffers(device, queue, &mut encoder, primitives, &screen);
         let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("window"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -78,10 +64,20 @@ impl Screen {
             })],
             ..wgpu::RenderPassDescriptor::default()
         });
-        self.renderer.render(&mut pass.forget_lifetime(), primitives, &screen);
-        commands
+        renderer.render(&mut pass.forget_lifetime(), primitives, &screen);
+        then(&mut encoder);
+        queue.submit(extra.into_iter().chain([encoder.finish()]));
+        for id in &textures.free {
+            renderer.free_texture(id);
+        }
+        textures.clear();
     }
 }
+
+/// Pixels of a picture a point: words stay readable in print.
+const PIXELS_PER_POINT: f32 = 2.0;
+/// Passes until the axes have settled to the width of their labels.
+const PASSES: usize = 4;
 
 /// A graphics device without a window.
 pub struct Canvas {
@@ -136,22 +132,14 @@ impl Canvas {
             screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, points)),
             ..egui::RawInput::default()
         };
-        let output = context.run_ui(input, contents);
+        let mut output = context.run_ui(input, contents);
         let primitives = context.tessellate(output.shapes, output.pixels_per_point);
-        self.screen.update_textures(&output.textures_delta);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let extra = self.screen.paint(
-            &mut encoder,
-            &target.view,
-            size,
-            output.pixels_per_point,
-            &primitives,
-        );
-        if read {
-            target.record_copy(&mut encoder);
-        }
-        gpu.queue.submit(extra.into_iter().chain([encoder.finish()]));
-        self.screen.free_textures(&output.textures_delta);
+        let (ppp, textures) = (output.pixels_per_point, &mut output.textures_delta);
+        self.screen.draw(&target.view, size, ppp, &primitives, textures, |encoder| {
+            if read {
+                target.record_copy(encoder);
+            }
+        });
         let image = if read {
             Some(target.read(gpu)?)
         } else {
@@ -163,18 +151,8 @@ impl Canvas {
         gpu.check()?;
         Ok(image)
     }
-}
 
-/// Pixels of a picture a point: words stay readable in print.
-const PIXELS_PER_POINT: f32 = 2.0;
-/// Passes until the axes have settled to the width of their labels.
-const PASSES: usize = 4;
-
-impl Canvas {
     /// Draws a picture of plots, with light ink on a `dark` ground.
-    ///
-    /// # Errors
-    /// What the device reports.
     pub(super) fn print(
         &mut self,
         data: &PlotData,
@@ -189,7 +167,15 @@ impl Canvas {
             fill(ui, ui.max_rect(), ground);
             let frame = egui::Frame::new().inner_margin(12.0);
             egui::CentralPanel::default_margins().frame(frame).show(ui, |ui| {
-                legend(ui, data);
+                // What the colours mean, where there is more than one.
+                if data.worlds.len() > 1 {
+                    ui.horizontal_wrapped(|ui| {
+                        for WorldCurve { name, colour, .. } in &data.worlds {
+                            ui.label(egui::RichText::new("■").color(*colour));
+                            ui.label(name);
+                        }
+                    });
+                }
                 draw(ui, data);
             });
         };
@@ -199,17 +185,4 @@ impl Canvas {
         }
         Ok(image.unwrap_or_default())
     }
-}
-
-/// What the colours mean, where there is more than one.
-fn legend(ui: &mut egui::Ui, data: &PlotData) {
-    if data.worlds.len() < 2 {
-        return;
-    }
-    ui.horizontal_wrapped(|ui| {
-        for WorldCurve { name, colour, .. } in &data.worlds {
-            ui.label(egui::RichText::new("■").color(*colour));
-            ui.label(name);
-        }
-    });
 }

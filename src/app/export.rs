@@ -1,8 +1,8 @@
 //! Writing files on a thread of its own, so that the window never waits for one.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::Receiver;
+use std::sync::{Arc, PoisonError};
 
 use image::RgbaImage;
 
@@ -10,6 +10,7 @@ use super::canvas::Canvas;
 use super::opening::TakenRun;
 use super::setting_control::written;
 use super::state::AppState;
+use super::work::{Work, received};
 use crate::config::SavedState;
 use crate::error::{Error, Result};
 use crate::live::Curve;
@@ -20,7 +21,6 @@ use crate::world::Parameters;
 
 /// A world of a picture.
 pub(crate) struct PicturedWorld {
-    /// The moment.
     pub snapshot: Arc<Snapshot>,
     /// What tells it from the others.
     pub title: String,
@@ -30,25 +30,18 @@ pub(crate) struct PicturedWorld {
 
 /// A picture of the worlds, as they are seen side by side.
 pub(crate) struct ScenePicture {
-    /// The worlds.
     pub worlds: Vec<PicturedWorld>,
     /// How many stand in a row.
     pub columns: usize,
-    /// How they are drawn.
     pub style: Style,
     /// What of one is seen.
     pub camera: Camera,
-    /// Pixels of the whole.
     pub size: [u32; 2],
-    /// What the file says of itself.
     pub texts: Texts,
 }
 
 impl ScenePicture {
     /// Draws it.
-    ///
-    /// # Errors
-    /// Where the renderer cannot draw so large a picture, or fails.
     pub(super) fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
         let Self { worlds, columns, style, camera, size, .. } = self;
         if let [PicturedWorld { snapshot, .. }] = &worlds[..] {
@@ -89,9 +82,6 @@ pub(crate) struct Printers {
 
 impl Printers {
     /// Draws scenes.
-    ///
-    /// # Errors
-    /// Where the system has no device that draws.
     pub(super) fn renderer(&mut self) -> Result<&mut Renderer> {
         match &mut self.renderer {
             Some(renderer) => Ok(renderer),
@@ -100,9 +90,6 @@ impl Printers {
     }
 
     /// Draws plots.
-    ///
-    /// # Errors
-    /// Where the system has no device that draws.
     pub(super) fn canvas(&mut self) -> Result<&mut Canvas> {
         match &mut self.canvas {
             Some(canvas) => Ok(canvas),
@@ -111,64 +98,19 @@ impl Printers {
     }
 }
 
-/// Writes a file into a folder and says which.
-type WriteJob = Box<dyn FnOnce(&Path, &mut Printers) -> Result<PathBuf> + Send>;
-
-/// Hands files to the thread that writes them, which starts with the first one.
-#[derive(Default)]
-pub(crate) struct Exporter {
-    thread: Option<(Sender<Order>, Receiver<Result<PathBuf>>)>,
-    pending: usize,
-}
-
-struct Order {
-    job: WriteJob,
-    folder: PathBuf,
-    context: egui::Context,
-}
-
-impl Exporter {
-    /// Whether a file is being written.
-    pub(crate) fn is_busy(&self) -> bool {
-        self.pending > 0
-    }
-
-    /// What became of the last file, once.
-    pub(crate) fn take_outcome(&mut self) -> Option<Result<PathBuf>> {
-        let (_, outcomes) = self.thread.as_ref()?;
-        let outcome = outcomes.try_recv().ok()?;
-        self.pending = self.pending.saturating_sub(1);
-        Some(outcome)
-    }
-}
-
 impl AppState {
-    /// Has a file written into the folder of the preferences, after those that are being written.
+    /// Has a file written into the folder of the preferences, after those that are being written. The job says which.
     pub(super) fn export(
         &mut self,
         context: &egui::Context,
         job: impl FnOnce(&Path, &mut Printers) -> Result<PathBuf> + Send + 'static,
     ) {
-        let Exporter { thread, pending } = &mut self.exports.files;
-        let (orders, _) = thread.get_or_insert_with(|| {
-            let (orders, inbox) = channel();
-            let (outbox, outcomes) = channel();
-            std::thread::spawn(move || work(&inbox, &outbox));
-            (orders, outcomes)
-        });
-        let (folder, context) = (self.preferences.folder.clone(), context.clone());
-        *pending += usize::from(orders.send(Order { job: Box::new(job), folder, context }).is_ok());
-    }
-}
-
-fn work(inbox: &Receiver<Order>, outbox: &Sender<Result<PathBuf>>) {
-    let mut printers = Printers::default();
-    while let Ok(Order { job, folder, context }) = inbox.recv() {
-        let outcome = check_writable("folder", &folder).and_then(|()| job(&folder, &mut printers));
-        if outbox.send(outcome).is_err() {
-            return;
-        }
-        context.request_repaint();
+        let (folder, printers) = (self.preferences.folder.clone(), self.exports.printers.clone());
+        self.exports.files.push_back(Work::start(context, move |_| {
+            let mut printers = printers.lock().unwrap_or_else(PoisonError::into_inner);
+            check_writable("folder", &folder)?;
+            job(&folder, &mut printers)
+        }));
     }
 }
 
@@ -181,12 +123,9 @@ pub(super) fn write_table(path: &Path, curves: &[Curve], texts: &Texts) -> Resul
 
 /// Writes a run that is on its way, by the moment that it has when it is handed out: it may go on meanwhile.
 pub(super) fn write_state(folder: &Path, run: &Receiver<TakenRun>) -> Result<PathBuf> {
-    let run = run.recv();
-    let TakenRun { opened, world } =
-        run.map_err(|_| Error::value("run", "closed", "open when its state is saved"))?;
+    let TakenRun { opened, world } = received(run)?;
     if world.failure.is_some() {
-        let allowed = "an earlier one: drag the timeline back";
-        return Err(Error::value("state", "no longer finite", allowed));
+        return Err(not_finite());
     }
     let settings = [*world.simulation.settings()];
     let stem = stem(&opened.scene.name, &settings, world.simulation.time_secs());
@@ -195,29 +134,33 @@ pub(super) fn write_state(folder: &Path, run: &Receiver<TakenRun>) -> Result<Pat
     Ok(path)
 }
 
-/// All rows of all curves, each with the number of its world in front.
-fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
-    let refuse = |error: csv::Error| Error::file(path, error);
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    let has_more = curves.iter().flat_map(Curve::rows).any(Observables::has_further_columns);
-    let cells = |row: Observables| if has_more { row.with_further_columns() } else { row };
-    let names = column_names(cells(Observables::default())).map_err(refuse)?;
-    writer.write_record(std::iter::once("world").chain(names.iter())).map_err(refuse)?;
-    for (world, curve) in curves.iter().enumerate() {
-        for row in curve.rows() {
-            writer.serialize((world + 1, cells(*row))).map_err(refuse)?;
-        }
-    }
-    let bytes = writer.into_inner().map_err(|error| Error::file(path, error.error()))?;
-    write_file(path, &bytes)
+/// Why a run that has failed is not saved.
+pub(super) fn not_finite() -> Error {
+    Error::value("state", "no longer finite", "an earlier one: drag the timeline back")
 }
 
-/// What a table of observables calls its columns.
-fn column_names(row: Observables) -> std::result::Result<csv::StringRecord, csv::Error> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    table.serialize(row)?;
-    let bytes = table.into_inner().map_err(|error| csv::Error::from(error.into_error()))?;
-    csv::Reader::from_reader(bytes.as_slice()).headers().cloned()
+/// All rows of all curves, each with the number of its world in front.
+fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
+    let has_more = curves.iter().flat_map(Curve::rows).any(Observables::has_further_columns);
+    let cells = |row: Observables| if has_more { row.with_further_columns() } else { row };
+    let table =
+        |rows: &mut dyn Iterator<Item = Observables>| -> std::result::Result<_, csv::Error> {
+            let mut table = csv::Writer::from_writer(Vec::new());
+            for row in rows {
+                table.serialize(cells(row))?;
+            }
+            let bytes = table.into_inner().map_err(|error| error.into_error())?;
+            Ok(String::from_utf8_lossy(&bytes).into_owned())
+        };
+    let refuse = |error| Error::file(path, error);
+    let names = table(&mut std::iter::once(Observables::default())).map_err(refuse)?;
+    let mut text = format!("world,{}\n", names.lines().next().unwrap_or_default());
+    for (world, curve) in curves.iter().enumerate() {
+        for row in table(&mut curve.rows().copied()).map_err(refuse)?.lines().skip(1) {
+            text += &format!("{},{row}\n", world + 1);
+        }
+    }
+    write_file(path, text.as_bytes())
 }
 
 /// `stem.ending` in `folder`, numbered where there is such a file already.

@@ -10,7 +10,7 @@ use glam::DVec2;
 
 use super::budget;
 use super::export::STATE_ENDING;
-use super::session::{SESSION_ENDING, Session};
+use super::session::{Arrangement, SESSION_ENDING, open_session};
 use super::sharing::RunLink;
 use super::state::AppState;
 use super::tour::Station;
@@ -24,10 +24,18 @@ use crate::world::{Boundary, Disc, Gravity};
 /// What a run began with.
 #[derive(Debug)]
 pub(crate) struct Opened {
-    /// Its scene.
     pub scene: Scene,
     /// What opens that scene again.
     pub config: Config,
+    /// How the window was arranged, where it is of a session.
+    pub arrangement: Option<Arrangement>,
+}
+
+impl Opened {
+    /// Of no session.
+    pub(super) fn new(scene: Scene, config: Config) -> Self {
+        Self { scene, config, arrangement: None }
+    }
 }
 
 /// What was opened last. It is noted where a start is made and looked up where a run is taken down, both on
@@ -49,16 +57,14 @@ impl LastOpened {
 
 /// A run that is to be written down.
 pub(crate) struct TakenRun {
-    /// What it began with.
     pub opened: Arc<Opened>,
-    /// What it has come to.
     pub world: WorldHistory,
 }
 
 /// Height of the walls that are drawn around a pile, in its own heights.
 const WALL_HEIGHTS: f64 = 1.1;
 
-/// Hears how far a start has come; false where it is given up.
+/// Hears how far a start has come. False where it is given up.
 type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
 
 impl AppState {
@@ -69,7 +75,7 @@ impl AppState {
         self.open(move |tell| {
             let mut scene = settled(&config, tell)?;
             budget::complete(&mut scene, &config.solver);
-            Ok((start(&scene)?, Opened { scene, config }))
+            Ok((start(&scene)?, Opened::new(scene, config)))
         });
     }
 
@@ -80,7 +86,7 @@ impl AppState {
             let mut scene = config.without_settling()?;
             budget::complete(&mut scene, &config.solver);
             let worlds = (station.worlds)(scene.settings());
-            Ok((LiveStart { worlds, ..start(&scene)? }, Opened { scene, config }))
+            Ok((LiveStart { worlds, ..start(&scene)? }, Opened::new(scene, config)))
         });
     }
 
@@ -94,24 +100,17 @@ impl AppState {
             let start = start(&scene)?;
             let plans = link.plans(&scene.settings());
             let history = RunHistory::computed(&start.simulation, start.tally, &plans, tell)?;
-            Ok((LiveStart { history: Some(history), ..start }, Opened { scene, config }))
+            Ok((LiveStart { history: Some(history), ..start }, Opened::new(scene, config)))
         });
     }
 
     /// Opens a session, with its window as it was arranged.
     pub(super) fn load_session(
         &mut self,
-        session: impl FnOnce() -> Result<Session> + Send + 'static,
+        session: impl FnOnce() -> Result<(LiveStart, Opened)> + Send + 'static,
     ) {
         self.leave_tour();
-        let (window, arriving) = channel();
-        self.opening.arriving = Some(arriving);
-        self.open(move |_| {
-            let (start, opened, arrangement) = session()?.into_parts()?;
-            // Whoever waits for it has gone where another file is opened already.
-            let _ = window.send(arrangement);
-            Ok((start, opened))
-        });
+        self.open(move |_| session());
     }
 
     /// Opens a saved run, to go on with it.
@@ -125,7 +124,7 @@ impl AppState {
         self.exports.data.saved_run = path.display().to_string();
         let path = path.to_owned();
         if path.extension().is_some_and(|ending| ending == SESSION_ENDING) {
-            return self.load_session(move || Session::open(&path));
+            return self.load_session(move || open_session(&path));
         }
         self.leave_tour();
         self.open(move |_| Ok(start_of_run(SavedState::open(&path)?)));
@@ -144,13 +143,8 @@ impl AppState {
         })));
     }
 
-    /// Asks for the run of the selected world.
-    pub(crate) fn take_run(&mut self) -> Receiver<TakenRun> {
-        self.take_run_of(self.selected)
-    }
-
     /// Asks for a world's run. It comes between two steps; nothing comes where that world is gone.
-    pub(crate) fn take_run_of(&mut self, world: usize) -> Receiver<TakenRun> {
+    pub(crate) fn take_run(&mut self, world: usize) -> Receiver<TakenRun> {
         let (sender, receiver) = channel();
         let last = self.opening.last.clone();
         let hand_on = move |world| {
@@ -175,7 +169,7 @@ fn start_of_run(state: SavedState) -> (LiveStart, Opened) {
     let SavedState { scene, simulation, tally, .. } = state;
     let start = start_with(&scene, simulation, tally, Vec::new());
     let config = Config::of_scene(&scene.name);
-    (start, Opened { scene, config })
+    (start, Opened::new(scene, config))
 }
 
 fn start(scene: &Scene) -> Result<LiveStart> {
@@ -202,17 +196,18 @@ fn start_with(
     }
 }
 
-/// Whether grains lie on level ground that stays, and may spread: of others Δy_G, which goes by heights above y = 0,
+/// True where grains lie on level ground that stays, and may spread: of others Δy_G, which goes by heights above y = 0,
 /// says nothing. Nor does it of what hangs from a disc that is fixed.
 fn slumps(scene: &Scene) -> bool {
-    let is_down = |gravity: &Gravity| matches!(gravity, Gravity::Uniform { acceleration } if acceleration.x == 0.0 && acceleration.y < 0.0);
+    let is_down =
+        matches!(&scene.gravity, Gravity::Uniform { acceleration: g } if g.x == 0.0 && g.y < 0.0);
     let is_level = |boundary: &Boundary| matches!(boundary, Boundary::HalfSpace { normal, .. } if normal.x == 0.0 && normal.y > 0.0);
     let lowest_of_grains = scene.grains.iter().map(|grain| grain.position.y).reduce(f64::min);
     let lies_on = |disc: &Disc| lowest_of_grains.is_some_and(|lowest| disc.position.y < lowest);
     let has_ground = !scene.boundaries.is_empty() || scene.fixed_discs.iter().any(lies_on);
     scene.physics.axes == 2
         && has_ground
-        && is_down(&scene.gravity)
+        && is_down
         && scene.gravity_turn.is_none()
         && scene.motions.is_empty()
         && scene.boundaries.iter().all(is_level)
@@ -246,14 +241,13 @@ pub(super) struct SettlingProgress {
     begun: Instant,
     looked: Option<Instant>,
     preview: Option<Preview>,
-    landed: usize,
     part: f64,
 }
 
 impl SettlingProgress {
     /// One that begins now.
     pub(super) fn new() -> Self {
-        Self { begun: Instant::now(), looked: None, preview: None, landed: 0, part: 0.0 }
+        Self { begun: Instant::now(), looked: None, preview: None, part: 0.0 }
     }
 
     /// Takes in how far it has come.
@@ -261,25 +255,19 @@ impl SettlingProgress {
         if self.looked.is_none_or(|at| at.elapsed() >= INTERVAL) {
             self.looked = Some(Instant::now());
             let snapshot = settling.simulation.snapshot();
-            // One that bounces off has landed all the same.
-            self.landed = self.landed.max(landed(&snapshot));
             let view = view_of(&snapshot);
             self.preview = Some(Preview { snapshot: Arc::new(snapshot), view });
         }
         self.part = self.part.max(settled_part(settling));
         let grains = settling.simulation.world().grains.len();
         let text = if settling.rains {
-            format!("Raining a new pile: {} of {grains} grains have landed", self.landed)
+            format!("Raining a new pile of {grains}")
         } else {
             let fastest = settling.speed_over_rest;
             format!("A new pile of {grains} comes to rest: fastest grain {fastest:.0} × rest")
         };
-        let left = self.left(self.begun.elapsed().as_secs_f64());
-        LoadingProgress {
-            part: self.part as f32,
-            text: text + &left,
-            preview: self.preview.clone(),
-        }
+        let text = text + &self.left(self.begun.elapsed().as_secs_f64());
+        LoadingProgress { part: self.part as f32, text, preview: self.preview.clone() }
     }
 
     /// How long it may take, where that can be told, after so many seconds.
@@ -306,33 +294,6 @@ pub(super) fn settled_part(settling: &Settling) -> f64 {
     0.5 * rained * (1.0 + slowed.clamp(0.0, 1.0))
 }
 
-/// How many grains touch what is below all of them, or others that do.
-fn landed(snapshot: &Snapshot) -> usize {
-    let count = snapshot.grains.len();
-    let is_below = |way: DVec2| way.y < -0.5 * way.length();
-    let mut partners = vec![Vec::new(); count];
-    let mut next = Vec::new();
-    for contact in &snapshot.contacts {
-        let grain = contact.grain as usize;
-        match contact.other_grain {
-            Some(other) => {
-                partners[grain].push(other as usize);
-                partners[other as usize].push(grain);
-            }
-            // Walls stand beside grains, not below them.
-            None if is_below(contact.to - contact.from) => next.push(grain),
-            None => {}
-        }
-    }
-    let mut has_landed = vec![false; count];
-    while let Some(grain) = next.pop() {
-        if !std::mem::replace(&mut has_landed[grain], true) {
-            next.extend(&partners[grain]);
-        }
-    }
-    has_landed.into_iter().filter(|&it| it).count()
-}
-
 /// Where grains are, with the box and the base below: it shrinks as they come down.
 fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
     let diameter = snapshot.surroundings.mean_diameter;
@@ -349,37 +310,31 @@ pub(super) fn take_dropped_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
     let Some(file) = dropped else { return };
     let path = file.path();
-    match dropped_file(path) {
-        Some(DroppedFile::Scene(config)) => state.load(*config),
-        Some(DroppedFile::SavedRun) => state.load_saved(path),
-        None => {
-            let name = path.display();
-            state.warn(format!(
-                "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING}) nor a session (.{SESSION_ENDING})"
-            ));
-        }
+    if is_saved_run(path) {
+        state.load_saved(path);
+    } else if let Some(config) = dropped_scene(path) {
+        state.load(config);
+    } else {
+        let name = path.display();
+        state.warn(format!(
+            "{name} is neither a scene (.toml) nor a list of discs (.csv) nor a saved run (.{STATE_ENDING}) nor a session (.{SESSION_ENDING})"
+        ));
     }
 }
 
-/// What a dropped file asks for.
-#[derive(Debug, PartialEq)]
-enum DroppedFile {
-    /// A start.
-    Scene(Box<Config>),
-    /// To go on with what is in the file, a saved run or a session.
-    SavedRun,
+/// True for the name of a saved run or a session.
+pub(super) fn is_saved_run(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == STATE_ENDING || ending == SESSION_ENDING)
 }
 
-/// What a dropped file asks for, by its ending.
-fn dropped_file(path: &Path) -> Option<DroppedFile> {
-    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-    match ending.as_str() {
-        "toml" => path.to_str().map(|path| DroppedFile::Scene(Box::new(Config::of_scene(path)))),
+/// What opens a file that is a scene or a list of discs by its name.
+fn dropped_scene(path: &Path) -> Option<Config> {
+    match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+        "toml" => path.to_str().map(Config::of_scene),
         "csv" => {
             let source = SceneSource { initial: Some(path.to_owned()), ..SceneSource::default() };
-            Some(DroppedFile::Scene(Box::new(Config { source, ..Config::default() })))
+            Some(Config { source, ..Config::default() })
         }
-        STATE_ENDING | SESSION_ENDING => Some(DroppedFile::SavedRun),
         _ => None,
     }
 }
@@ -404,10 +359,10 @@ mod tests {
     }
 
     #[test]
-    fn grains_land_one_after_another_and_the_part_never_falls() {
+    fn a_pile_in_the_making_is_seen_and_its_part_never_falls() {
         let pile = NewPile { grains: 40, box_width_in_diameters: 8.0, ..NewPile::default() };
         let mut making = SettlingProgress::new();
-        let (mut parts, mut landed, mut tops) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut parts, mut tops) = (Vec::new(), Vec::new());
         let mut diameter = 0.0;
         settle(&pile, |settling| {
             // As if each look were the first for a while.
@@ -416,20 +371,14 @@ mod tests {
             let preview = told.preview.expect("something to see");
             assert_eq!(preview.snapshot.grains.len(), 40);
             parts.push(told.part);
-            landed.push(making.landed);
             tops.push(preview.view[1].y);
             diameter = preview.snapshot.surroundings.mean_diameter;
-            if settling.rains {
-                let said = format!("{} of 40 grains have landed", making.landed);
-                assert!(told.text.contains(&said), "{}", told.text);
-            }
+            let said = if settling.rains { "Raining a new pile of 40" } else { "A new pile of 40" };
+            assert!(told.text.starts_with(said), "{}", told.text);
             true
         })
         .expect("a pile");
         assert!(parts.is_sorted() && parts[0] < 0.1 && parts[parts.len() - 1] > 0.9, "{parts:?}");
-        assert!(landed[0] < 10 && landed.contains(&40) && landed.is_sorted(), "{landed:?}");
-        let some = landed.iter().filter(|&&count| (10..40).contains(&count)).count();
-        assert!(some > 5, "they fall one after another: {landed:?}");
         // Five rows of eight lie in the box, uneven by a grain or so; the view ends a diameter above the highest.
         let rows = 40.0 / 8.0;
         let top = tops[tops.len() - 1] / diameter;
@@ -449,13 +398,11 @@ mod tests {
 
     #[test]
     fn endings_tell_scenes_from_discs_and_saved_runs() {
-        let config = |path: &str| match dropped_file(path.as_ref()) {
-            Some(DroppedFile::Scene(config)) => config.source,
-            other => panic!("{path} is {other:?}"),
-        };
+        let config = |path: &str| dropped_scene(path.as_ref()).expect(path).source;
         assert_eq!(config("a/Box.TOML").scene.as_deref(), Some("a/Box.TOML"));
         assert_eq!(config("a/pile.csv").initial.as_deref(), Some("a/pile.csv".as_ref()));
-        assert_eq!(dropped_file("a/checkpoint.slump".as_ref()), Some(DroppedFile::SavedRun));
-        assert_eq!(dropped_file("a/pile.png".as_ref()), None);
+        assert!(is_saved_run("a/checkpoint.slump".as_ref()));
+        assert!(!is_saved_run("a/pile.png".as_ref()));
+        assert_eq!(dropped_scene("a/pile.png".as_ref()), None);
     }
 }

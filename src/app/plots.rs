@@ -30,8 +30,8 @@ const BUCKETS: usize = 300;
 const BESIDE: [LineStyle; 2] =
     [LineStyle::Dashed { length: 6.0 }, LineStyle::Dotted { spacing: 4.0 }];
 
-/// A plot of a panel, which stands still under the mouse.
-pub(super) fn still_plot<'a>(
+/// A plot with the look of all of them. The wheel does not zoom it.
+pub(super) fn bare_plot<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
     height: f32,
@@ -39,22 +39,36 @@ pub(super) fn still_plot<'a>(
     Plot::new(id)
         .height(height)
         .allow_scroll(false)
-        .allow_drag(false)
-        .allow_zoom(false)
+        // egui would fill it pixel by pixel (see `fill`).
         .show_background(false)
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
+}
+
+/// A plot with an axis along x in that unit; `log` says which axes are logarithmic.
+pub(super) fn plot_with_axes<'a>(
+    ui: &Ui,
+    id: impl std::hash::Hash + std::fmt::Debug,
+    height: f32,
+    log: [bool; 2],
+    x_unit: &'static str,
+) -> Plot<'a> {
+    let y_hints = AxisHints::new_y().min_thickness(34.0);
+    bare_plot(ui, id, height)
+        // Half of the last label lies right of the plot.
+        .width(ui.available_width() - 10.0)
+        .x_grid_spacer(move |grid| round_marks(grid, log[0]))
+        .y_grid_spacer(move |grid| round_marks(grid, log[1]))
+        .custom_x_axes(vec![axis(AxisHints::new_x(), log[0], x_unit)])
+        .custom_y_axes(vec![axis(y_hints, log[1], "")])
 }
 
 /// Everything that plots are drawn from.
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {
-    /// The worlds.
     pub worlds: Vec<WorldCurve>,
     /// Rows of the run before, behind the others.
     pub ghosts: Vec<Curve>,
-    /// The plots.
     pub quantities: Vec<&'static Quantity<Observables>>,
-    /// What is plotted against what besides.
     pub chosen: ChosenPlot,
     /// The moment that is shown, s.
     pub now_secs: f64,
@@ -66,8 +80,10 @@ pub(crate) struct PlotData {
 pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     // Plots that left room would shrink their panel, frame by frame.
     ui.set_min_size(ui.available_size());
-    let title = data.chosen.title().filter(|_| data.chosen.on);
-    let count = data.quantities.len() + usize::from(title.is_some());
+    let has_chosen = data.chosen.on && data.chosen.title().is_some();
+    let mut all: Vec<Option<_>> = data.quantities.iter().copied().map(Some).collect();
+    all.extend(has_chosen.then_some(None));
+    let count = all.len();
     if count == 0 || data.worlds.is_empty() {
         ui.weak("Choose what to plot.");
         return None;
@@ -84,20 +100,14 @@ pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
         (ui.available_height() - spacing.y * (rows - 1) as f32) / rows as f32,
     );
     let mut clicked = None;
-    let mut all: Vec<Option<_>> = data.quantities.iter().map(Some).collect();
-    all.extend(title.is_some().then_some(None));
     for row in all.chunks(columns) {
         ui.horizontal(|ui| {
             for cell in row {
                 ui.allocate_ui(size, |ui| {
                     ui.set_min_width(size.x);
-                    ui.vertical(|ui| match (cell, &title) {
-                        (Some(quantity), _) => clicked = clicked.or(plot(ui, data, quantity)),
-                        (None, Some(title)) => {
-                            ui.add(Label::new(RichText::new(title).small()).truncate());
-                            data.chosen.draw(ui, &data.worlds, data.now_secs);
-                        }
-                        (None, None) => {}
+                    ui.vertical(|ui| match cell {
+                        Some(quantity) => clicked = clicked.or(plot(ui, data, quantity)),
+                        None => data.chosen.draw(ui, &data.worlds, data.now_secs),
                     });
                 });
             }
@@ -112,30 +122,19 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     let log = quantity.logarithmic;
     let group = egui::Id::unique("time");
     let [least, most] = least_span(data, quantity, factor);
-    let response = Plot::new(("plot", quantity.name))
-        .height((ui.available_height() - 2.0).max(40.0))
-        // Half of the last label lies right of the plot.
-        .width(ui.available_width() - 10.0)
+    let height = (ui.available_height() - 2.0).max(40.0);
+    let response = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " s")
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
-        .allow_scroll(false)
         .allow_zoom([true, false])
-        // egui would fill it pixel by pixel (see `fill`).
-        .show_background(false)
-        .show_grid([true, true])
-        .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
         .include_x(0.0)
         .include_x(data.until_secs)
         .include_y(least)
         .include_y(most)
-        .x_grid_spacer(|grid| round_marks(grid, false))
-        .y_grid_spacer(move |grid| round_marks(grid, log))
-        .custom_x_axes(vec![axis(AxisHints::new_x(), false, " s")])
-        .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log, "")])
         .label_formatter(move |position| hover_text(position, log))
         .show(ui, |plot| {
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
-            let scaled = |value: f64| if log { value.log10() } else { value };
+            let scaled = |value: f64| scaled(value, log);
             for ghost in &data.ghosts {
                 let values = points(ghost, |row| scaled((quantity.value)(row)) / factor);
                 let grey = Color32::from_gray(128).gamma_multiply(0.6);
@@ -181,10 +180,9 @@ fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) ->
     let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
     let rows = data.worlds.iter().flat_map(|world| world.curve.rows());
     let values = rows.map(|row| scaled(value(row))).filter(|value| value.is_finite());
-    let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    });
-    let [low, high] = if ends[0] > ends[1] { [0.0, 0.0] } else { ends };
+    let ends = values.map(|value| [value, value]);
+    let ends = ends.reduce(|ends, [value, _]| [ends[0].min(value), ends[1].max(value)]);
+    let [low, high] = ends.unwrap_or_default();
     let most = low.abs().max(high.abs());
     let least = if quantity.logarithmic { 1.0 } else { LEAST_SPAN * most };
     let room = (0.5 * (least - (high - low))).max(0.0);
@@ -244,36 +242,35 @@ fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'
 }
 
 fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
-    let (name, at) = match position {
-        HoverPosition::NearDataPoint { plot_name, position, .. } => (*plot_name, position),
-        HoverPosition::Elsewhere { .. } => return None,
+    let HoverPosition::NearDataPoint { plot_name: name, position: at, .. } = position else {
+        return None;
     };
     let value = if log { format!("{:.1e}", 10f64.powf(at.y)) } else { format!("{:.4}", at.y) };
     Some(format!("{name}\n{:.4} s\n{value}", at.x))
+}
+
+/// The logarithm of a value along a logarithmic axis.
+fn scaled(value: f64, log: bool) -> f64 {
+    if log { value.log10() } else { value }
 }
 
 /// The curve, or, of a long one, the least and the largest value of every interval.
 fn points(curve: &Curve, value: impl Fn(&Observables) -> f64) -> PlotPoints<'static> {
     let points = curve.rows().map(|row| [row.time_secs, value(row)]);
     // A state that no step has led to has no residual, and its logarithm is no number.
-    let mut points_there = points.filter(|point| point.iter().all(|number| number.is_finite()));
+    let is_finite = |point: &[f64; 2]| point.iter().all(|number| number.is_finite());
+    let points: Vec<[f64; 2]> = points.filter(is_finite).collect();
     if curve.len() <= 2 * BUCKETS {
-        return points_there.collect();
+        return points.into();
     }
-    let per_bucket = curve.len().div_ceil(BUCKETS);
-    let mut points = Vec::with_capacity(2 * BUCKETS + 2);
-    loop {
-        let bucket: Vec<[f64; 2]> = points_there.by_ref().take(per_bucket).collect();
-        let extremes = [f64::lt as fn(&f64, &f64) -> bool, f64::gt].map(|beats| {
-            bucket
-                .iter()
-                .copied()
-                .reduce(|best, next| if beats(&next[1], &best[1]) { next } else { best })
-        });
-        let [Some(low), Some(high)] = extremes else { break };
-        points.extend(if low[0] <= high[0] { [low, high] } else { [high, low] });
-    }
-    points.into()
+    let extremes = points.chunks(curve.len().div_ceil(BUCKETS)).flat_map(|bucket| {
+        let by_value = |one: &&[f64; 2], other: &&[f64; 2]| one[1].total_cmp(&other[1]);
+        let ends = [bucket.iter().min_by(by_value), bucket.iter().max_by(by_value)];
+        let mut ends = ends.map(|end| *end.unwrap_or(&bucket[0]));
+        ends.sort_by(|one, other| one[0].total_cmp(&other[0]));
+        ends
+    });
+    extremes.collect()
 }
 
 /// What is plotted of a world.
@@ -281,9 +278,7 @@ fn points(curve: &Curve, value: impl Fn(&Observables) -> f64) -> PlotPoints<'sta
 pub(crate) struct WorldCurve {
     /// What tells it from the others.
     pub name: String,
-    /// Its colour.
     pub colour: Color32,
-    /// Its rows.
     pub curve: Curve,
     /// What other piles slump with its settings.
     pub others: Option<Arc<Band>>,
@@ -296,11 +291,11 @@ const MOST_POINTS: usize = 2_000;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ChosenPlot {
-    /// Whether it shows.
+    /// True while it shows.
     pub on: bool,
     /// Names of the quantities along the axes, as tables call them: x and y.
     pub axes: [String; 2],
-    /// Whether equal distances along an axis are equal factors.
+    /// True where equal distances along an axis are equal factors.
     pub logarithmic: [bool; 2],
 }
 
@@ -345,42 +340,32 @@ impl ChosenPlot {
         let [Some(x), Some(y)] = self.axes.each_ref().map(|name| Observed::named(name)) else {
             return Vec::new();
         };
+        let scaled = |axis: usize, value: f64| scaled(value, self.logarithmic[axis]);
         let place = |row: &Observables| {
-            let place = [self.scaled(0, x.of(row)?), self.scaled(1, y.of(row)?)];
+            let place = [scaled(0, x.of(row)?), scaled(1, y.of(row)?)];
             place.iter().all(|at| at.is_finite()).then_some(place)
         };
         rows.filter_map(place).collect()
     }
 
-    fn scaled(&self, axis: usize, value: f64) -> f64 {
-        if self.logarithmic[axis] { value.log10() } else { value }
-    }
-
     /// Draws it; the moment that is shown has a dot.
     pub(super) fn draw(&self, ui: &mut Ui, worlds: &[WorldCurve], now_secs: f64) {
-        let [log_x, log_y] = self.logarithmic;
-        Plot::new(("chosen", &self.axes, self.logarithmic))
-            .height((ui.available_height() - 2.0).max(40.0))
-            .width(ui.available_width() - 10.0)
-            .allow_scroll(false)
-            .show_background(false)
-            .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
-            .x_grid_spacer(move |grid| round_marks(grid, log_x))
-            .y_grid_spacer(move |grid| round_marks(grid, log_y))
-            .custom_x_axes(vec![axis(AxisHints::new_x(), log_x, "")])
-            .custom_y_axes(vec![axis(AxisHints::new_y().min_thickness(34.0), log_y, "")])
-            .show(ui, |plot| {
-                for WorldCurve { name, colour, curve, .. } in worlds {
-                    let stride = curve.len().div_ceil(MOST_POINTS).max(1);
-                    let points = self.points(curve.rows().step_by(stride));
-                    plot.line(Line::new(name.clone(), points).color(*colour).width(1.4));
-                    let until_now = |row: &&Observables| row.time_secs <= now_secs;
-                    let now = curve.rows().take_while(until_now).last();
-                    let place = self.points(now.into_iter());
-                    let dot = Points::new(name.clone(), PlotPoints::from(place));
-                    plot.points(dot.shape(MarkerShape::Circle).radius(4.0).color(*colour));
-                }
-            });
+        let title = RichText::new(self.title().unwrap_or_default()).small();
+        ui.add(Label::new(title).truncate());
+        let id = ("chosen", &self.axes, self.logarithmic);
+        let height = (ui.available_height() - 2.0).max(40.0);
+        plot_with_axes(ui, id, height, self.logarithmic, "").show(ui, |plot| {
+            for WorldCurve { name, colour, curve, .. } in worlds {
+                let stride = curve.len().div_ceil(MOST_POINTS).max(1);
+                let points = self.points(curve.rows().step_by(stride));
+                plot.line(Line::new(name.clone(), points).color(*colour).width(1.4));
+                let until_now = |row: &&Observables| row.time_secs <= now_secs;
+                let now = curve.rows().take_while(until_now).last();
+                let place = self.points(now.into_iter());
+                let dot = Points::new(name.clone(), PlotPoints::from(place));
+                plot.points(dot.shape(MarkerShape::Circle).radius(4.0).color(*colour));
+            }
+        });
     }
 }
 

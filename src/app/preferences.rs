@@ -3,7 +3,7 @@
 //! A file that cannot be read, be it of another version, counts as none: nobody should have to
 //! repair it. What cannot be written is not kept, and nothing else is lost.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
@@ -26,14 +26,14 @@ pub struct Preferences {
     pub theme: egui::ThemePreference,
     /// How the scene is drawn; its theme follows the window's.
     pub style: Style,
-    /// Whether the sidebar is open.
+    /// True while the sidebar is open.
     pub sidebar: bool,
-    /// Whether the run before shows behind the present one.
+    /// True where the run before shows behind the present one.
     pub ghost: bool,
-    /// Whether idle cores compute the mean over other piles.
+    /// True where idle cores compute the mean over other piles.
     #[serde(rename = "other_piles")]
     pub ensemble: bool,
-    /// Whether the plots are open.
+    /// True while the plots are open.
     pub plots: bool,
     /// The quantities that are plotted, by their names.
     pub quantities: Vec<String>,
@@ -41,7 +41,7 @@ pub struct Preferences {
     pub chosen_plot: ChosenPlot,
     /// The histogram that shows, by its name in files.
     pub histogram: String,
-    /// Whether an arrow says where gravity points.
+    /// True where an arrow always says where gravity points.
     pub gravity: bool,
     /// Size of the window, points; none before the first.
     pub window_points: Option<[f64; 2]>,
@@ -97,9 +97,6 @@ impl Default for Preferences {
 
 impl Preferences {
     /// Takes over what the command line says of pictures.
-    ///
-    /// # Errors
-    /// Where the size of a picture is none, or a scale.
     pub(crate) fn follow(&mut self, pictures: &HeadlessOptions) -> Result<()> {
         if pictures.size.is_some() {
             let size = pictures.size()?;
@@ -132,13 +129,18 @@ impl Preferences {
 }
 
 /// What is kept.
-#[derive(Clone, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub(super) struct StoredWindow {
-    /// The user's choices.
+pub(crate) struct StoredWindow {
     pub preferences: Preferences,
-    /// Which panels are open, and how large.
     pub layout: egui::Memory,
+}
+
+impl StoredWindow {
+    /// As it is at present.
+    pub(super) fn of(preferences: &Preferences, context: &egui::Context) -> Self {
+        Self { preferences: preferences.clone(), layout: context.memory(Clone::clone) }
+    }
 }
 
 /// The program's folder in the one of the user that a variable of the environment names, or that lies in their home.
@@ -200,24 +202,18 @@ impl Keeper {
     pub(super) fn keep(&mut self, preferences: &Preferences, context: &egui::Context) {
         self.looked = Instant::now();
         self.kept.clone_from(preferences);
-        let layout = context.memory(Clone::clone);
-        let Ok(text) = ron::to_string(&StoredWindow { preferences: preferences.clone(), layout })
-        else {
-            return;
-        };
-        if text != self.text {
-            save(&text);
+        let stored = StoredWindow::of(preferences, context);
+        let Ok(text) = ron::to_string(&stored) else { return };
+        if let Some(path) = path().filter(|_| text != self.text) {
+            let _ = path.parent().map(std::fs::create_dir_all);
+            replace_file(&path, &text);
             self.text = text;
         }
     }
 }
 
-fn save(text: &str) {
-    let Some(path) = path() else { return };
-    if let Some(folder) = path.parent() {
-        let _ = std::fs::create_dir_all(folder);
-    }
-    // Written beside and moved, so that a crash leaves the old file or the new one.
+/// Writes a file beside and moves it, so that a crash leaves the old one or the new one, and a reader sees a whole one.
+pub(super) fn replace_file(path: &Path, text: &str) {
     let fresh = path.with_extension("new");
     if std::fs::write(&fresh, text).is_ok() {
         let _ = std::fs::rename(fresh, path);

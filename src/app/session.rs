@@ -10,12 +10,12 @@ use std::sync::mpsc::channel;
 use serde::{Deserialize, Serialize};
 
 use super::camera::SceneCamera;
-use super::export::{free_path, write_state};
+use super::export::{free_path, not_finite, write_state};
 use super::opening::Opened;
 use super::panels::see::file_stem;
 use super::preferences::{Preferences, StoredWindow};
 use super::state::AppState;
-use crate::config::Config;
+use super::work::received;
 use crate::error::{Error, Result};
 use crate::live::{Command, LiveStart};
 use crate::output::{Seal, write_file};
@@ -34,22 +34,18 @@ const SEAL: Seal = Seal {
 pub(crate) const SESSION_ENDING: &str = "session";
 
 /// How a window is arranged.
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Arrangement {
-    /// Choices, and where panels are.
     pub stored: StoredWindow,
-    /// Whether the tour is being taken.
     pub touring: bool,
-    /// The world that the controls are about.
     pub selected: usize,
-    /// What of the scene shows.
     pub camera: SceneCamera,
 }
 
 /// What is in a file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Session {
+struct Session {
     start: LiveStart,
     scene: Scene,
     /// What opens the scene again, as JSON.
@@ -58,56 +54,34 @@ pub(crate) struct Session {
     window: String,
 }
 
-impl Session {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// Where it cannot be read, is damaged or of another version, or is no such file.
-    pub(crate) fn open(path: &Path) -> Result<Self> {
-        let session: Self = SEAL.open(path)?;
-        let is_sound = session.start.history.as_ref().is_some_and(|history| history.is_sound());
-        if is_sound && session.parts().is_some() {
-            return Ok(session);
+/// Reads a file: the start, and what it is of with how the window was arranged.
+pub(super) fn open_session(path: &Path) -> Result<(LiveStart, Opened)> {
+    let Session { start, scene, config, window } = SEAL.open(path)?;
+    let is_sound = start.history.as_ref().is_some_and(|history| history.is_sound());
+    match (serde_json::from_str(&config), ron::from_str(&window)) {
+        (Ok(config), Ok(arrangement)) if is_sound => {
+            Ok((start, Opened { scene, config, arrangement: Some(arrangement) }))
         }
-        Err(Error::file(path, format!("holds no whole session, but must be {}", SEAL.form)))
+        _ => Err(Error::file(path, format!("holds no whole session, but must be {}", SEAL.form))),
     }
+}
 
-    /// What is text in it.
-    fn parts(&self) -> Option<(Config, Arrangement)> {
-        Some((serde_json::from_str(&self.config).ok()?, ron::from_str(&self.window).ok()?))
+/// Writes a file.
+fn save(start: LiveStart, opened: &Opened, window: String, path: &Path) -> Result<()> {
+    if start.history.as_ref().is_some_and(|history| history.failure().is_some()) {
+        return Err(not_finite());
     }
-
-    /// Writes a file.
-    ///
-    /// # Errors
-    /// Names the file and what the system says, or why the run cannot be saved.
-    fn save(start: LiveStart, opened: &Opened, window: String, path: &Path) -> Result<()> {
-        if start.history.as_ref().is_some_and(|history| history.failure().is_some()) {
-            let allowed = "an earlier one: drag the timeline back";
-            return Err(Error::value("state", "no longer finite", allowed));
-        }
-        let Opened { scene, config } = opened;
-        let refuse = |error| Error::value("scene", &scene.name, format!("written ({error})"));
-        let config = serde_json::to_string(config).map_err(refuse)?;
-        let session = Self { start, scene: scene.clone(), config, window };
-        write_file(path, &SEAL.written(&session)?)
-    }
-
-    /// The start, what it is of, and how the window was arranged.
-    ///
-    /// # Errors
-    /// Where what is text in it is none.
-    pub(super) fn into_parts(self) -> Result<(LiveStart, Opened, Arrangement)> {
-        let refuse = || Error::value("session", "damaged", SEAL.form);
-        let (config, arrangement) = self.parts().ok_or_else(refuse)?;
-        Ok((self.start, Opened { scene: self.scene, config }, arrangement))
-    }
+    let Opened { scene, config, .. } = opened;
+    let refuse = |error| Error::value("scene", &scene.name, format!("written ({error})"));
+    let config = serde_json::to_string(config).map_err(refuse)?;
+    let session = Session { start, scene: scene.clone(), config, window };
+    write_file(path, &SEAL.written(&session)?)
 }
 
 impl AppState {
     /// Saves the moment that the selected world has come to.
     pub(crate) fn save_state(&mut self, context: &egui::Context) {
-        let run = self.take_run();
+        let run = self.take_run(self.selected);
         self.export(context, move |folder, _| write_state(folder, &run));
     }
 
@@ -116,16 +90,9 @@ impl AppState {
         if self.frame.worlds.is_empty() {
             return;
         }
-        let preferences = self.preferences.clone();
-        let stored = StoredWindow { preferences, layout: context.memory(Clone::clone) };
+        let stored = StoredWindow::of(&self.preferences, context);
         let Self { touring, selected, camera, .. } = *self;
-        let window = match ron::to_string(&Arrangement { stored, touring, selected, camera }) {
-            Ok(window) => window,
-            Err(error) => {
-                let allowed = format!("written ({error})");
-                return self.warn(Error::value("window", "arranged so", allowed).to_string());
-            }
-        };
+        let arrangement = Arrangement { stored, touring, selected, camera };
         let (sender, run) = channel();
         let last = self.opening.last.clone();
         let hand_on = move |start: LiveStart| {
@@ -138,11 +105,11 @@ impl AppState {
         let stem = file_stem(self);
         self.export(context, move |folder, _| {
             let path = free_path(folder, &stem, SESSION_ENDING);
-            let run = run.recv();
-            let (start, opened) =
-                run.map_err(|_| Error::value("run", "closed", "open when its session is saved"))?;
-            Session::save(start, &opened, window, &path)?;
-            Ok(path)
+            let refuse =
+                |error| Error::value("window", "arranged so", format!("written ({error})"));
+            let window = ron::to_string(&arrangement).map_err(refuse)?;
+            let (start, opened) = received(&run)?;
+            save(start, &opened, window, &path).map(|()| path)
         });
     }
 

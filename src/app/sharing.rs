@@ -9,22 +9,21 @@
 //! world with the step that it has come to; what follows is the next world. What is left out is as the scene
 //! says, or as before.
 
-use std::sync::mpsc::{Receiver, TryRecvError};
-
 use egui::Context;
 
 use super::opening::TakenRun;
-use super::state::AppState;
+use super::state::{AppState, Notice};
+use super::work::{Work, received};
 use crate::config::{
     Config, Provenance, SceneSource, asked_time_secs, joined, words_of, words_up_to,
 };
 use crate::error::{Error, Result};
-use crate::live::{ControlsChange, WorldHistory, WorldPlan};
+use crate::live::WorldPlan;
 use crate::output::Texts;
 use crate::sim::Settings;
 
 /// What is said of a run that no command line makes.
-const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \
+pub(super) const CHANGED: &str = "settings changed, or a hand changed something, on the way: the command line and the settings are those \
                        of the moment that is shown, and make another run";
 
 impl AppState {
@@ -44,13 +43,13 @@ impl AppState {
         Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
     }
 
-    /// What a file says of itself that shows these worlds; of a moment, or of all their steps.
-    pub(crate) fn texts_of(&self, worlds: &[usize], is_of_a_moment: bool) -> Texts {
-        if let [world] = *worlds {
-            return self.texts_of_world(world, is_of_a_moment);
+    /// What a file says of itself that shows all worlds; of a moment, or of all their steps.
+    pub(crate) fn texts(&self, is_of_a_moment: bool) -> Texts {
+        if !self.compares() {
+            return self.texts_of_world(0, is_of_a_moment);
         }
         let mut texts = Texts::default();
-        for &world in worlds {
+        for world in 0..self.frame.worlds.len() {
             for (keyword, text) in self.texts_of_world(world, is_of_a_moment).iter().skip(1) {
                 texts.add(format!("World {}: {keyword}", world + 1), text);
             }
@@ -76,10 +75,10 @@ impl AppState {
         if !shown.is_even {
             texts.add("Changes", CHANGED);
         }
-        if shown.recorded_from_secs > 0.0 {
-            let from_secs = shown.recorded_from_secs;
-            texts
-                .add("Begun", format!("from a saved run at t = {from_secs} s, not from the start"));
+        let from_secs = shown.recorded_from_secs;
+        if from_secs > 0.0 {
+            let said = format!("from a saved run at t = {from_secs} s, not from the start");
+            texts.add("Begun", said);
         }
         texts
     }
@@ -96,7 +95,6 @@ const MOST_SHOWN: usize = 60;
 /// A run, by what was asked of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunLink {
-    /// Where the scene comes from.
     pub source: SceneSource,
     worlds: Vec<LinkedWorld>,
 }
@@ -109,14 +107,6 @@ struct LinkedWorld {
     steps: u64,
 }
 
-/// Worlds whose runs are on their way, to be made a link of.
-pub(super) struct PendingLink {
-    /// Where they come.
-    pub waiting: Vec<Receiver<TakenRun>>,
-    /// Those that have come, in that order.
-    pub come: Vec<TakenRun>,
-}
-
 /// Words of a command line as parts of a link.
 fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String]) {
     for pair in words.chunks_exact(2) {
@@ -124,17 +114,16 @@ fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String])
     }
 }
 
-/// The link of a run that began with what `config` asks for, by what its worlds have come to. Grains that the
-/// mouse has pulled are not in it.
-///
-/// # Errors
-/// Where the run went on from a file, or its scene is no longer there.
-pub(crate) fn link_of(config: &Config, worlds: &[WorldHistory]) -> Result<String> {
-    let unchanged = Config { source: config.source.clone(), ..Config::default() };
+/// The link of worlds, and true where a hand pulled or changed something in any of them, which it does not tell.
+/// Refused where the run went on from a file, or its scene is no longer there.
+fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
+    let source = runs.first().map(|run| run.opened.config.source.clone()).unwrap_or_default();
+    let unchanged = Config { source, ..Config::default() };
     let base = unchanged.without_settling()?.settings();
     let mut query = form_urlencoded::Serializer::new(HEAD.to_owned());
     append(&mut query, &unchanged.words(&base)?);
-    for world in worlds {
+    let mut is_by_hand = false;
+    for TakenRun { world, .. } in runs {
         if world.record.start().observables().step > 0 {
             let allowed = "one that began with a scene; a saved session tells of this one";
             return Err(Error::value("run", "one that goes on from a saved run", allowed));
@@ -142,9 +131,10 @@ pub(crate) fn link_of(config: &Config, worlds: &[WorldHistory]) -> Result<String
         let now = &world.simulation;
         let steps = now.observables().step;
         let mut before = base;
-        let made = world.record.changes(0, now.time_secs());
-        let made = made
-            .map(|ControlsChange { after_step, controls, .. }| (*after_step, controls.settings));
+        let made: Vec<_> = world.record.changes(0, now.time_secs()).collect();
+        is_by_hand |= made.iter().any(|change| change.controls.pull.is_some());
+        is_by_hand |= !world.record.edits().is_empty();
+        let made = made.iter().map(|change| (change.after_step, change.controls.settings));
         for (after, settings) in made.chain([(steps, *now.settings())]) {
             let words = words_of(&settings, Some(&before));
             if after > 0 && !words.is_empty() {
@@ -155,14 +145,11 @@ pub(crate) fn link_of(config: &Config, worlds: &[WorldHistory]) -> Result<String
         }
         query.append_pair("to", &steps.to_string());
     }
-    Ok(query.finish())
+    Ok((query.finish(), is_by_hand))
 }
 
 impl RunLink {
     /// Reads a link.
-    ///
-    /// # Errors
-    /// Says what of it is none.
     pub(crate) fn read(text: &str) -> Result<Self> {
         let text = text.trim();
         let refuse = || Error::value("link", shortened(text), FORM);
@@ -214,9 +201,6 @@ impl RunLink {
     }
 
     /// Checks what can be checked before a pile is made.
-    ///
-    /// # Errors
-    /// Names the first setting that is refused, or says that the scene is not there.
     pub(crate) fn check(&self) -> Result<()> {
         let base = self.config().without_settling()?.settings();
         let mut settings = self.plans(&base).into_iter().flat_map(|plan| {
@@ -249,65 +233,35 @@ fn shortened(text: &str) -> String {
     shown
 }
 
-/// What is said of a link that does not say all.
+/// What is said of a link that says all.
+const COPIED: &str = "The link is copied: paste it into a window, or give it to slump --open.";
+/// What is said of one that does not.
 const PULLED: &str = "The link is copied; something was pulled by hand, added or removed, or a wall drawn, which it does not \
                       tell: it makes another run, and a session this one.";
 
 impl AppState {
-    /// Has the link of the present moment of all worlds copied.
-    pub fn copy_link(&mut self) {
+    /// Has the link of the present moment of all worlds made.
+    pub fn copy_link(&mut self, context: &Context) {
         let worlds = 0..self.frame.worlds.len();
-        let waiting = worlds.map(|world| self.take_run_of(world));
-        self.exports.link = Some(PendingLink { waiting: waiting.collect(), come: Vec::new() });
+        let runs: Vec<_> = worlds.map(|world| self.take_run(world)).collect();
+        self.exports.link = Some(Work::start(context, move |_| {
+            link_of(&runs.iter().map(received).collect::<Result<Vec<_>>>()?)
+        }));
     }
 
-    /// Copies the link once all worlds have come.
+    /// Copies the link once it is made.
     pub(super) fn follow_link(&mut self, context: &Context) {
-        let Some(linking) = &mut self.exports.link else { return };
-        while let Some(next) = linking.waiting.get(linking.come.len()) {
-            match next.try_recv() {
-                Ok(run) => linking.come.push(run),
-                Err(TryRecvError::Empty) => return,
-                Err(TryRecvError::Disconnected) => break,
-            }
-        }
-        let runs = std::mem::take(&mut linking.come);
+        let Some(outcome) = self.exports.link.as_ref().and_then(Work::outcome) else { return };
         self.exports.link = None;
-        match linked(runs) {
+        match outcome {
             Ok((text, is_pulled)) => {
                 context.copy_text(text);
-                if is_pulled {
-                    self.warn(PULLED);
-                } else {
-                    self.tell(
-                        "The link is copied: paste it into a window, or give it to slump --open.",
-                    );
-                }
+                let said = if is_pulled { PULLED } else { COPIED };
+                self.say(Notice::new(said, is_pulled));
             }
             Err(error) => self.warn(error.to_string()),
         }
     }
-
-    /// Opens what a link tells of.
-    ///
-    /// # Errors
-    /// Where it is none.
-    pub fn open_link(&mut self, text: &str) -> Result<()> {
-        let link = RunLink::read(text)?;
-        self.load_link(link);
-        Ok(())
-    }
-}
-
-/// The link of worlds, and whether a hand has pulled in any of them.
-fn linked(runs: Vec<TakenRun>) -> Result<(String, bool)> {
-    let config = runs.first().map(|run| run.opened.config.clone()).unwrap_or_default();
-    let worlds: Vec<WorldHistory> = runs.into_iter().map(|run| run.world).collect();
-    let is_pulled = worlds.iter().any(|world| {
-        let mut made = world.record.changes(0, world.simulation.time_secs());
-        made.any(|change| change.controls.pull.is_some()) || !world.record.edits().is_empty()
-    });
-    Ok((link_of(&config, &worlds)?, is_pulled))
 }
 
 #[cfg(test)]

@@ -1,27 +1,27 @@
 //! Everything that the user interface reads and changes. Knows neither window nor GPU.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-use std::sync::mpsc::Receiver;
+use std::collections::{BTreeMap, VecDeque};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-use egui::Rect;
+use egui::{Color32, Rect, Ui};
 
 use super::camera::SceneCamera;
 use super::data_export::DataPanel;
 use super::ensemble::Ensemble;
-use super::export::{Exporter, STATE_ENDING};
+use super::export::Printers;
 use super::film::FilmFormat;
-use super::opening::LastOpened;
+use super::opening::{LastOpened, is_saved_run};
 use super::painting::LegendCache;
 use super::panels::distributions::Distributions;
 use super::panels::speed::StepRace;
 use super::panels::{Grabbing, GrainRef};
 use super::preferences::Preferences;
-use super::session::{Arrangement, SESSION_ENDING};
-use super::sharing::PendingLink;
+use super::theme;
 use super::work::Work;
 use crate::config::Config;
+use crate::error::Result;
 use crate::live::{Command, Controls, Live, LiveFrame, WorldFrame};
 use crate::sim::Settings;
 
@@ -37,7 +37,6 @@ pub struct AppState {
     pub(crate) selected: usize,
     /// What was loaded last.
     pub(crate) config: Config,
-    /// What is being opened, and what was.
     pub(super) opening: OpeningState,
     /// What outlives the window.
     pub preferences: Preferences,
@@ -45,30 +44,23 @@ pub struct AppState {
     pub camera: SceneCamera,
     /// What the mouse has chosen and holds.
     pub mouse: Grabbing,
-    /// Whether the tour is being taken.
+    /// True while the tour is being taken.
     pub touring: bool,
-    /// What shows beside the run.
     pub(crate) shown: Shown,
-    /// What is being written.
     pub(crate) exports: Exports,
     /// What the present settings make of other piles.
     pub ensemble: Ensemble,
-    /// How forces and the like are distributed.
     pub(crate) distributions: Distributions,
-    /// How methods solve the step that was shown.
     pub(crate) race: Option<StepRace>,
     /// Where controls lie, points: for tests that drive the window from outside.
     pub controls: BTreeMap<String, Rect>,
 }
 
-/// What is being opened, and what was.
+/// What is being opened, and what was opened last.
 #[derive(Default)]
 pub(super) struct OpeningState {
-    /// What was opened last.
     pub last: LastOpened,
-    /// The window of a session that is being opened, …
-    pub arriving: Option<Receiver<Arrangement>>,
-    /// … and how its panels lay.
+    /// How the panels of a session that is being opened lay.
     pub layout: Option<egui::Memory>,
     seen_loads: u64,
     seen_refusal: Option<Arc<str>>,
@@ -79,7 +71,6 @@ pub(super) struct OpeningState {
 pub(crate) struct Shown {
     /// The panel that is to be opened, where a station asks for one.
     pub panel: Option<&'static str>,
-    /// Whether the help overlay shows.
     pub help: bool,
     /// Set where the window is to open its graphics device anew.
     pub restart_graphics: bool,
@@ -90,14 +81,21 @@ pub(crate) struct Shown {
 /// What is being written. None of it keeps the window waiting.
 #[derive(Default)]
 pub(crate) struct Exports {
-    /// Writes files one after another.
-    pub files: Exporter,
-    /// What is being done about data and saved runs.
+    /// Files that are written, one after another.
+    pub files: VecDeque<Work<PathBuf>>,
+    pub printers: Arc<Mutex<Printers>>,
     pub data: DataPanel,
-    /// The video or the animation that is being made.
-    pub film: Option<(FilmFormat, Work)>,
-    /// A link that is to be copied.
-    pub(super) link: Option<PendingLink>,
+    pub film: Option<(FilmFormat, Work<String>)>,
+    /// A link that is to be copied, and whether something was changed by hand that it does not tell.
+    pub link: Option<Work<(String, bool)>>,
+}
+
+impl Drop for Exports {
+    fn drop(&mut self) {
+        self.files.iter_mut().for_each(Work::end);
+        self.film.iter_mut().for_each(|(_, work)| work.end());
+        self.data.export.iter_mut().for_each(Work::end);
+    }
 }
 
 impl AppState {
@@ -108,7 +106,7 @@ impl AppState {
         state
     }
 
-    /// The same, with nothing that is loaded.
+    /// The same, with nothing loaded.
     pub(crate) fn idle(live: Live, preferences: Preferences) -> Self {
         let mut state = Self {
             live,
@@ -134,10 +132,10 @@ impl AppState {
         state
     }
 
-    /// Whether a file or a recording is being written.
+    /// True while a file or a recording is being written.
     pub fn is_writing(&self) -> bool {
         let Exports { files, data, film, .. } = &self.exports;
-        files.is_busy() || data.export.is_some() || film.is_some()
+        !files.is_empty() || data.export.is_some() || film.is_some()
     }
 
     /// Fetches the newest frame. What the controls show follows it, unless a change is on its way.
@@ -161,8 +159,12 @@ impl AppState {
         }
         let worlds = self.frame.worlds.len();
         self.selected = self.selected.min(worlds.saturating_sub(1));
-        self.mouse.pinned = self.mouse.pinned.filter(|pinned| self.exists(*pinned));
-        self.mouse.grabbed = self.mouse.grabbed.filter(|grabbed| self.exists(*grabbed));
+        let exists = |&GrainRef { world, grain }: &GrainRef| {
+            let world = self.frame.worlds.get(world);
+            world.is_some_and(|world| grain < world.snapshot.grains.len())
+        };
+        self.mouse.pinned = self.mouse.pinned.filter(exists);
+        self.mouse.grabbed = self.mouse.grabbed.filter(exists);
         self.note_exports();
     }
 
@@ -178,44 +180,34 @@ impl AppState {
         self.race = None;
         if let Some(opened) = self.opening.last.get() {
             self.config.clone_from(&opened.config);
-        }
-        let arriving = self.opening.arriving.as_ref();
-        if let Some(arrangement) = arriving.and_then(|window| window.try_recv().ok()) {
-            self.arrange(arrangement);
-        }
-    }
-
-    fn note_exports(&mut self) {
-        match self.exports.files.take_outcome() {
-            Some(Ok(path)) => {
-                // Where the program was started is not where its user looks.
-                let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
-                self.tell(format!("Saved {}", whole.display()));
-                // A run that was just saved is the one that is likely to be opened.
-                let is = |ending: &str| path.extension().is_some_and(|found| found == ending);
-                if is(STATE_ENDING) || is(SESSION_ENDING) {
-                    self.exports.data.saved_run = path.display().to_string();
-                }
+            if let Some(arrangement) = opened.arrangement.clone() {
+                self.arrange(arrangement);
             }
-            Some(Err(error)) => self.warn(error.to_string()),
-            None => {}
-        }
-        let film = self.exports.film.as_ref().and_then(|(_, work)| work.take_outcome());
-        if let Some((text, failure)) = film {
-            self.exports.film = None;
-            self.say(text, failure);
-        }
-        let data = self.exports.data.export.as_ref().and_then(Work::take_outcome);
-        if let Some((text, failure)) = data {
-            self.exports.data.export = None;
-            self.exports.data.told = Some((text.clone(), failure));
-            self.say(text, failure);
         }
     }
 
-    fn exists(&self, grain: GrainRef) -> bool {
-        let world = self.frame.worlds.get(grain.world);
-        world.is_some_and(|world| grain.grain < world.snapshot.grains.len())
+    /// Says what became of exports that have ended.
+    fn note_exports(&mut self) {
+        if let Some(outcome) = self.exports.files.front().and_then(Work::outcome) {
+            self.exports.files.pop_front();
+            // A run that was just saved is the one that is likely to be opened.
+            if let Some(path) = outcome.as_ref().ok().filter(|path| is_saved_run(path)) {
+                self.exports.data.saved_run = path.display().to_string();
+            }
+            // Where the program was started is not where its user looks.
+            let whole = |path: PathBuf| std::path::absolute(&path).unwrap_or(path);
+            self.say(Notice::of(outcome.map(|path| format!("Saved {}", whole(path).display()))));
+        }
+        if let Some(outcome) = self.exports.film.as_ref().and_then(|(_, work)| work.outcome()) {
+            self.exports.film = None;
+            self.say(Notice::of(outcome));
+        }
+        if let Some(outcome) = self.exports.data.export.as_ref().and_then(Work::outcome) {
+            self.exports.data.export = None;
+            let notice = Notice::of(outcome);
+            self.exports.data.told = Some(notice.clone());
+            self.say(notice);
+        }
     }
 
     /// The world that the controls are about, once there is one.
@@ -223,12 +215,12 @@ impl AppState {
         self.frame.worlds.get(self.selected)
     }
 
-    /// Whether what is open is a heap, of which slump tells.
+    /// True where what is open is a heap, of which slump tells.
     pub(crate) fn slumps(&self) -> bool {
         self.frame.start.as_ref().is_some_and(|start| start.slumps)
     }
 
-    /// Whether worlds are compared.
+    /// True while worlds are compared.
     pub(crate) fn compares(&self) -> bool {
         self.frame.worlds.len() > 1
     }
@@ -241,44 +233,28 @@ impl AppState {
         }
     }
 
-    /// Says something in the status bar for a while.
+    /// Says in the status bar for a while what went wrong.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
-        self.say(text.into(), true);
+        self.say(Notice::new(text, true));
     }
 
-    /// The same of what went well.
-    pub(crate) fn tell(&mut self, text: impl Into<String>) {
-        self.say(text.into(), false);
-    }
-
-    fn say(&mut self, text: String, failure: bool) {
-        self.shown.notice = Some(Notice::new(text, failure));
+    /// Says something in the status bar for a while.
+    pub(super) fn say(&mut self, notice: Notice) {
+        self.shown.notice = Some(notice);
     }
 
     /// What the status bar has to say, and for how long yet, s.
     pub fn notice(&self) -> Option<(&Notice, f32)> {
         let notice = self.shown.notice.as_ref()?;
-        Some((notice, notice.left_secs()?))
-    }
-
-    /// Forgets what lives in an egui context: it is about to be replaced.
-    pub(crate) fn forget_context(&mut self) {
-        self.shown.legend.forget();
-        self.ensemble.stop();
+        let left_secs = NOTICE_SECS - notice.since.elapsed().as_secs_f32();
+        (left_secs > 0.0).then_some((notice, left_secs))
     }
 
     /// Notes where a control lies.
     pub(crate) fn note_control(&mut self, name: &str, rect: Rect) {
-        match self.controls.get_mut(name) {
-            Some(place) => *place = rect,
-            None => {
-                self.controls.insert(name.to_owned(), rect);
-            }
-        }
+        self.controls.insert(name.to_owned(), rect);
     }
-}
 
-impl AppState {
     /// Releases, plays or pauses.
     pub(crate) fn toggle_play(&mut self) {
         let command = if self.frame.playing { Command::Pause } else { Command::Play };
@@ -296,18 +272,6 @@ impl AppState {
         let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
         self.live.send(Command::Seek(time_secs.max(0.0)));
     }
-
-    /// Back to the start, with the present settings.
-    pub(crate) fn reset(&mut self) {
-        self.live.send(Command::Reset);
-    }
-
-    /// Back to the run that the present one has taken the place of last.
-    pub(crate) fn undo(&mut self) {
-        if let Some(last) = self.frame.past.last() {
-            self.live.send(Command::Return(last.number));
-        }
-    }
 }
 
 /// How long a notice stays, s.
@@ -318,20 +282,25 @@ const NOTICE_SECS: f32 = 8.0;
 pub struct Notice {
     /// The sentence.
     pub text: String,
-    /// Whether it tells of a failure.
-    pub(crate) failure: bool,
+    failure: bool,
     since: Instant,
 }
 
 impl Notice {
     /// One that begins now.
-    pub(super) fn new(text: String, failure: bool) -> Self {
-        Self { text, failure, since: Instant::now() }
+    pub(super) fn new(text: impl Into<String>, failure: bool) -> Self {
+        Self { text: text.into(), failure, since: Instant::now() }
     }
 
-    /// For how long it stays yet, s.
-    pub(super) fn left_secs(&self) -> Option<f32> {
-        let left = NOTICE_SECS - self.since.elapsed().as_secs_f32();
-        (left > 0.0).then_some(left)
+    /// Of what became of something, which begins now.
+    fn of(outcome: Result<String>) -> Self {
+        let failure = outcome.is_err();
+        Self::new(outcome.unwrap_or_else(|error| error.to_string()), failure)
+    }
+
+    /// Its colour.
+    pub(super) fn colour(&self, ui: &Ui) -> Color32 {
+        let dark = ui.visuals().dark_mode;
+        if self.failure { theme::warning(dark) } else { theme::good(dark) }
     }
 }

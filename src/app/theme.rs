@@ -139,11 +139,6 @@ mod tests {
         (one.max(other) + 0.05) / (one.min(other) + 0.05)
     }
 
-    /// A colour that may let the ground through.
-    fn over(colour: Color32, ground: Color32) -> Color32 {
-        ground.blend(colour)
-    }
-
     #[test]
     fn contrast_is_that_of_the_guidelines() {
         assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
@@ -162,7 +157,7 @@ mod tests {
             let dark = theme == egui::Theme::Dark;
             let visuals = context.style_of(theme).visuals.clone();
             let panel = visuals.panel_fill;
-            let selection = over(visuals.selection.bg_fill, panel);
+            let selection = panel.blend(visuals.selection.bg_fill);
             let mut pairs = vec![
                 ("on the accent", on_accent(dark), accent(dark)),
                 ("selected", visuals.selection.stroke.color, selection),
@@ -180,11 +175,11 @@ mod tests {
             }
             let widgets = &visuals.widgets;
             for widget in [&widgets.inactive, &widgets.hovered, &widgets.active, &widgets.open] {
-                let ground = over(widget.weak_bg_fill, panel);
+                let ground = panel.blend(widget.weak_bg_fill);
                 pairs.push(("button", widget.fg_stroke.color, ground));
             }
             for (what, words, ground) in pairs {
-                let contrast = contrast(over(words, ground), ground);
+                let contrast = contrast(ground.blend(words), ground);
                 assert!(contrast >= LEAST, "{theme:?}, {what}: {contrast:.2}");
             }
         }

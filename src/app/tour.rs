@@ -53,6 +53,11 @@ fn sweeps(base: Settings, count: u32) -> Settings {
     Settings { solver, ..base }
 }
 
+fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
+    settings.parameters.cone = cone;
+    settings
+}
+
 /// All of them, in their order.
 pub const STATIONS: [Station; 9] = [
     Station {
@@ -107,12 +112,9 @@ pub const STATIONS: [Station; 9] = [
                 μ max(N, 0): there the strong pile slumps. The paper can be read both ways.",
         worlds: |base| {
             let base = base.with_bond(100.0).over(1e-4);
-            let in_cone = |cone| {
-                let mut settings = base;
-                settings.parameters.cone = cone;
-                settings
-            };
-            [FrictionCone::Shifted, FrictionCone::Compressive].map(in_cone).into()
+            [FrictionCone::Shifted, FrictionCone::Compressive]
+                .map(|cone| in_cone(base, cone))
+                .into()
         },
         panel: Some("physics"),
         ..PILE
@@ -155,7 +157,7 @@ pub const STATIONS: [Station; 9] = [
 pub struct Tour {
     /// The station, from 0.
     pub at: usize,
-    /// Whether a window that is told nothing else opens there.
+    /// True while a window that is told nothing else opens there.
     pub on: bool,
     /// What was chosen before the tour, which comes back after it.
     pub(super) before: Option<Choices>,
@@ -200,13 +202,11 @@ impl Preferences {
     pub(in crate::app) fn visit(&mut self, at: usize) -> &'static Station {
         let at = at.min(STATIONS.len() - 1);
         let station = &STATIONS[at];
+        let plots = station.plots.iter().map(|name| (*name).to_owned()).collect();
         let choices = Choices {
-            quantities: std::mem::replace(
-                &mut self.quantities,
-                station.plots.iter().map(|name| (*name).to_owned()).collect(),
-            ),
+            quantities: std::mem::replace(&mut self.quantities, plots),
             speed: std::mem::replace(&mut self.speed, station.speed),
-            full_speed: std::mem::replace(&mut self.full_speed, false),
+            full_speed: std::mem::take(&mut self.full_speed),
         };
         let before = self.tour.before.take().unwrap_or(choices);
         self.tour = Tour { at, on: true, before: Some(before) };
@@ -232,19 +232,16 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         ui.label(RichText::new(count).color(accent));
         ui.label(RichText::new(*title).heading());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let leave = ui.button("Leave").on_hover_text(
-                "End the tour; the worlds stay. It goes on here when it is taken up again.",
-            );
+            let hint = "End the tour; the worlds stay. It goes on here when it is taken up again.";
+            let leave = ui.button("Leave").on_hover_text(hint);
             state.note_control("leave tour", leave.rect);
             if leave.clicked() {
-                state.leave_tour();
-                return;
+                return state.leave_tour();
             }
-            let last = at + 1 == STATIONS.len();
-            let next =
-                Button::new(RichText::new("Next ▶").color(theme::on_accent(dark))).fill(accent);
-            let next = ui.add_enabled(!last, next).on_hover_text("The next station");
+            let next = RichText::new("Next ▶").color(theme::on_accent(dark));
+            let next = ui.add_enabled(at + 1 < STATIONS.len(), Button::new(next).fill(accent));
             state.note_control("next station", next.rect);
+            let next = next.on_hover_text("The next station");
             if next.clicked() {
                 state.visit(at + 1);
             }
@@ -252,8 +249,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
             if back.on_hover_text("The station before").clicked() {
                 state.visit(at.saturating_sub(1));
             }
-            let again = ui.button("Again").on_hover_text("This station as it was at first");
-            if again.clicked() {
+            if ui.button("Again").on_hover_text("This station as it was at first").clicked() {
                 state.visit(at);
             }
         });
@@ -266,9 +262,9 @@ pub(crate) fn resume_button(ui: &mut Ui, state: &mut AppState) {
     let at = state.preferences.tour.at.min(STATIONS.len() - 1);
     let text = format!("Tour: {} of {}", at + 1, STATIONS.len());
     let button = ui.button(RichText::new(text).small());
-    let response = button.on_hover_text(format!("Take up the tour: {}", STATIONS[at].title));
-    state.note_control("tour", response.rect);
-    if response.clicked() {
+    state.note_control("tour", button.rect);
+    let hint = format!("Take up the tour: {}", STATIONS[at].title);
+    if button.on_hover_text(hint).clicked() {
         state.visit(at);
     }
 }

@@ -1,16 +1,18 @@
 //! The layout of the window as a function of the state alone, and the keys that act wherever the mouse is.
 
 use egui::{
-    CentralPanel, CollapsingHeader, Context, Event, Frame, Key, KeyboardShortcut, Margin,
-    Modifiers, Panel, RichText, ScrollArea, Ui,
+    CentralPanel, CollapsingHeader, Context, Event, Frame, Key, Margin, Modifiers, Panel, RichText,
+    ScrollArea, Ui,
 };
 
 use super::painting::fill;
-use super::panels::{SECTIONS, Section, help, plots, scene, see, status, transport};
-use super::sharing::LINK_START;
+use super::panels::{SECTIONS, help, plots, scene, see, status, transport};
+use super::sharing::{LINK_START, RunLink};
 use super::state::AppState;
+use super::work::progress_bar;
 use super::{budget, opening, tour};
 use crate::config::Config;
+use crate::live::Command;
 
 /// Width of the sidebar, points.
 const SIDEBAR: f32 = 296.0;
@@ -81,65 +83,61 @@ fn sidebar_contents(ui: &mut Ui, state: &mut AppState) {
     }
     let asked = state.shown.panel.take();
     ui.add_space(2.0);
-    for Section { id, title, open, show } in SECTIONS {
-        let Some(title) = title(state) else { continue };
+    for section in SECTIONS {
+        let Some(heading) = section.heading(state) else { continue };
         ui.separator();
-        let shown = CollapsingHeader::new(RichText::new(title).heading())
-            .id_salt(id)
-            .default_open(*open)
-            .open((asked == Some(*id)).then_some(true))
-            .show_unindented(ui, |ui| show(ui, state));
-        state.note_control(id, shown.header_response.rect);
+        let shown = CollapsingHeader::new(RichText::new(heading).heading())
+            .id_salt(section.id)
+            .default_open(section.open)
+            .open((asked == Some(section.id)).then_some(true))
+            .show_unindented(ui, |ui| (section.show)(ui, state));
+        state.note_control(section.id, shown.header_response.rect);
     }
 }
 
-/// What the middle says while there is nothing to see yet.
-fn waiting(ui: &mut Ui, state: &AppState) {
-    let Some(progress) = &state.frame.loading else { return };
-    egui::Area::new(egui::Id::unique("loading"))
-        .anchor(egui::Align2::CENTER_TOP, [0.0, 40.0])
-        .interactable(false)
-        .show(ui.ctx(), |ui| {
-            Frame::popup(ui.style()).show(ui, |ui| {
-                ui.horizontal(|ui| {
-                    ui.spinner();
-                    let text = if progress.text.is_empty() { "Loading" } else { &progress.text };
-                    ui.label(text);
-                });
+/// What the middle says while a start is made, and the button that gives it up.
+fn waiting(ui: &mut Ui, state: &mut AppState) {
+    let Some(progress) = state.frame.loading.clone() else { return };
+    let area = egui::Area::new(egui::Id::unique("loading"));
+    area.anchor(egui::Align2::CENTER_TOP, [0.0, 40.0]).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            ui.set_max_width(360.0);
+            ui.label(if progress.text.is_empty() { "Loading" } else { &progress.text });
+            ui.horizontal(|ui| {
+                if ui.button("Cancel").clicked() {
+                    state.live.send(Command::CancelLoading);
+                }
+                progress_bar(ui, "Loading", progress.part);
             });
         });
+    });
 }
 
 /// Acts on the keys of this frame.
 fn act_on_keys(context: &Context, state: &mut AppState) {
-    let escape = context.input(|input| input.key_pressed(Key::Escape));
-    if escape {
-        state.shown.help = false;
-    }
+    state.shown.help &= !context.input(|input| input.key_pressed(Key::Escape));
     // A focused field or slider has a use of its own for letters and arrows.
     if context.egui_wants_keyboard_input() {
         return;
     }
-    let restart = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::G);
-    state.shown.restart_graphics |= context.input_mut(|input| input.consume_shortcut(&restart));
-    let quit = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
-    if context.input_mut(|input| input.consume_shortcut(&quit)) {
+    let pressed = |modifiers, key| context.input_mut(|input| input.consume_key(modifiers, key));
+    state.shown.restart_graphics |= pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::G);
+    if pressed(Modifiers::COMMAND, Key::Q) {
         context.send_viewport_cmd(egui::ViewportCommand::Close);
     }
-    let undo = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
-    if context.input_mut(|input| input.consume_shortcut(&undo)) {
-        state.undo();
+    if pressed(Modifiers::COMMAND, Key::Z)
+        && let Some(last) = state.frame.past.last()
+    {
+        state.live.send(Command::Return(last.number));
     }
-    let save = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
-    if context.input_mut(|input| input.consume_shortcut(&save)) {
+    if pressed(Modifiers::COMMAND, Key::S) {
         state.save_session(context);
     }
     take_link(context, state);
-    let pressed = |key: Key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-    // While a start is made there is nothing to play; what was there waits for how that ends.
-    let is_ready = state.frame.loading.is_none();
+    let pressed = |key| pressed(Modifiers::NONE, key);
     let asked = [Key::Space, Key::ArrowRight, Key::ArrowLeft, Key::R].map(pressed);
-    if let (true, [space, right, left, reset]) = (is_ready, asked) {
+    // While a start is made there is nothing to play; what was there waits for how that ends.
+    if let (None, [space, right, left, reset]) = (&state.frame.loading, asked) {
         if space {
             state.toggle_play();
         }
@@ -150,7 +148,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
             state.step_back();
         }
         if reset {
-            state.reset();
+            state.live.send(Command::Reset);
         }
     }
     if pressed(Key::F) {
@@ -166,15 +164,16 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
 
 /// Opens a link that is pasted where no field takes it.
 fn take_link(context: &Context, state: &mut AppState) {
+    let is_link = |text: &str| text.trim_start().starts_with(LINK_START);
     let pasted = context.input(|input| {
         input.events.iter().rev().find_map(|event| match event {
-            Event::Paste(text) => Some(text.clone()),
+            Event::Paste(text) if is_link(text) => Some(text.clone()),
             _ => None,
         })
     });
-    if let Some(text) = pasted.filter(|text| text.trim_start().starts_with(LINK_START))
-        && let Err(refusal) = state.open_link(&text)
-    {
-        state.warn(refusal.to_string());
+    match pasted.map(|text| RunLink::read(&text)) {
+        Some(Ok(link)) => state.load_link(link),
+        Some(Err(refusal)) => state.warn(refusal.to_string()),
+        None => {}
     }
 }

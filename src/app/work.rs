@@ -9,24 +9,22 @@ use std::time::{Duration, Instant};
 
 use egui::Ui;
 
-use super::opening::TakenRun;
 use crate::error::{Error, Result};
 
 /// Least time between two looks at what the window says, and between two frames that show how far it is.
 const INTERVAL: Duration = Duration::from_millis(50);
-/// What has been done, in parts of this.
-const WHOLE: f64 = 1000.0;
 
 /// Work that is going on.
-pub(crate) struct Work {
+pub(crate) struct Work<T> {
     shared: Arc<WorkState>,
-    outcome: Receiver<Result<String>>,
+    outcome: Receiver<Result<T>>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// What window and thread tell each other.
 #[derive(Default)]
 struct WorkState {
+    /// The part that is done, 0 … 1, as the bits of an f32.
     done: AtomicU32,
     is_cancelled: AtomicBool,
 }
@@ -38,11 +36,11 @@ pub(crate) struct Reporter {
     shown: std::cell::Cell<Instant>,
 }
 
-impl Work {
-    /// Starts it. What it returns is said in the window.
+impl<T: Send + 'static> Work<T> {
+    /// Starts it.
     pub(crate) fn start(
         context: &egui::Context,
-        work: impl FnOnce(&Reporter) -> Result<String> + Send + 'static,
+        work: impl FnOnce(&Reporter) -> Result<T> + Send + 'static,
     ) -> Self {
         let shared = Arc::new(WorkState::default());
         let (outbox, outcome) = channel();
@@ -56,15 +54,18 @@ impl Work {
         });
         Self { shared, outcome, thread: Some(thread) }
     }
+}
 
-    /// How far it has come, 0 … 1.
-    fn part(&self) -> f32 {
-        self.shared.done.load(Ordering::Relaxed) as f32 / WHOLE as f32
-    }
-
+impl<T> Work<T> {
     /// Ends it where it next looks.
     fn cancel(&self) {
         self.shared.is_cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Ends it and waits until it has: files are closed before the process may end.
+    pub(super) fn end(&mut self) {
+        self.cancel();
+        let _ = self.thread.take().map(JoinHandle::join);
     }
 
     /// Shows how far it is by that `name`, and the button that stops it.
@@ -75,39 +76,40 @@ impl Work {
                 if ui.button(stop).on_hover_text(hint).clicked() {
                     self.cancel();
                 }
-                let bar = ui.add(egui::ProgressBar::new(self.part()).desired_height(14.0));
-                bar.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name)
-                });
+                let done = f32::from_bits(self.shared.done.load(Ordering::Relaxed));
+                progress_bar(ui, name, done);
             });
         });
     }
 
-    /// What became of it, and whether it failed, once it has ended.
-    pub(crate) fn take_outcome(&self) -> Option<(String, bool)> {
+    /// What became of it, once it has ended.
+    pub(crate) fn outcome(&self) -> Option<Result<T>> {
         match self.outcome.try_recv() {
-            Ok(Ok(told)) => Some((told, false)),
-            Ok(Err(error)) => Some((error.to_string(), true)),
+            Ok(outcome) => Some(outcome),
             Err(TryRecvError::Empty) => None,
             Err(TryRecvError::Disconnected) => {
-                Some(("the export ended before it was done".to_owned(), true))
+                Some(Err(Error::value("work", "ended by a fault", "ended when it is done")))
             }
         }
     }
 }
 
-impl Drop for Work {
+impl<T> Drop for Work<T> {
     fn drop(&mut self) {
-        // Files are closed before the process may end.
         self.cancel();
-        let _ = self.thread.take().map(JoinHandle::join);
     }
+}
+
+/// A bar that shows which part of something is done.
+pub(super) fn progress_bar(ui: &mut Ui, name: &str, part: f32) {
+    let bar = ui.add(egui::ProgressBar::new(part).desired_height(14.0));
+    bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name));
 }
 
 impl Reporter {
     /// Says which part is done, and asks whether to go on.
     pub(crate) fn tell(&self, part: f64) -> ControlFlow<()> {
-        self.shared.done.store((WHOLE * part.clamp(0.0, 1.0)) as u32, Ordering::Relaxed);
+        self.shared.done.store((part as f32).clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
         if self.shown.get().elapsed() >= INTERVAL {
             self.shown.set(Instant::now());
             self.context.request_repaint();
@@ -115,22 +117,28 @@ impl Reporter {
         if self.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Whether it is to end.
-    pub(crate) fn is_cancelled(&self) -> bool {
+    fn is_cancelled(&self) -> bool {
         self.shared.is_cancelled.load(Ordering::Relaxed)
     }
 
-    /// The run, once the solver's thread has handed it out; nothing where the work is given up before.
-    pub(crate) fn wait_for(&self, run: &Receiver<TakenRun>) -> Result<Option<TakenRun>> {
+    /// A run, once the solver's thread has handed it out; nothing where the work is given up before.
+    pub(crate) fn wait_for<R>(&self, run: &Receiver<R>) -> Result<Option<R>> {
         while !self.is_cancelled() {
             match run.recv_timeout(INTERVAL) {
                 Ok(run) => return Ok(Some(run)),
                 Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => {
-                    return Err(Error::value("run", "closed", "open when it is exported"));
-                }
+                Err(RecvTimeoutError::Disconnected) => return Err(closed()),
             }
         }
         Ok(None)
     }
+}
+
+/// A run, once the solver's thread has handed it out.
+pub(super) fn received<R>(run: &Receiver<R>) -> Result<R> {
+    run.recv().map_err(|_| closed())
+}
+
+fn closed() -> Error {
+    Error::value("run", "closed", "open until it is written")
 }

@@ -97,7 +97,8 @@ fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
     again.seek(again.state().frame.recorded_secs());
     assert_eq!(again.bits(), now, "and its way");
     // A link says that it does not tell of it.
-    robot.state_mut().copy_link();
+    let context = robot.harness.ctx.clone();
+    robot.state_mut().copy_link(&context);
     robot.until("the link", |state| {
         state.notice().is_some_and(|(notice, _)| notice.text.starts_with("The link is copied"))
     });

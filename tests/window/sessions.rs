@@ -104,7 +104,8 @@ fn a_file_that_is_no_whole_session_is_refused_in_a_sentence() {
 }
 
 fn copied(robot: &mut Robot) -> String {
-    robot.state_mut().copy_link();
+    let context = robot.harness.ctx.clone();
+    robot.state_mut().copy_link(&context);
     for _ in 0..200 {
         robot.harness.step();
         for command in &robot.harness.output().platform_output.commands {

@@ -7,8 +7,6 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
-
 mod pool;
 mod runs;
 
@@ -27,9 +25,6 @@ const RULE: &str = "Idle cores run piles that differ from this one in their seed
                     begin anew; a run whose settings changed on the way, or that was pulled by hand, has no others: \
                     reset it. The seed of the shipped pile, which was chosen, is never among them.";
 
-/// A run that stands still for longer is not computed for.
-const PATIENCE: Duration = Duration::from_secs(30);
-
 /// The other piles of what is open.
 #[derive(Default)]
 pub struct Ensemble {
@@ -40,8 +35,6 @@ pub struct Ensemble {
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
     worlds: Vec<Option<Settings>>,
-    /// The number of the last frame: where there is a new one, someone is looking.
-    frame: u64,
 }
 
 impl Ensemble {
@@ -63,7 +56,7 @@ impl Ensemble {
         self.worlds.clear();
     }
 
-    /// Whether what is open has others, and there are cores to compute them.
+    /// True where what is open has others, and there are cores to compute them.
     pub(super) fn is_possible(&self) -> bool {
         self.folder.is_some() && idle_cores() > 0 && !self.piles.is_empty()
     }
@@ -85,57 +78,44 @@ impl Ensemble {
     pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         self.pool.as_ref()?.summary(world)
     }
-
-    /// Looks up the others of what is open.
-    fn look_up(&mut self, opened: Option<Arc<Opened>>) {
-        let address = |opened: &Option<Arc<Opened>>| opened.as_ref().map(Arc::as_ptr);
-        if address(&self.opened) != address(&opened) {
-            self.stop();
-            self.piles = opened.as_ref().map_or_else(Vec::new, |opened| others_of(opened));
-            self.opened = opened;
-        }
-    }
-
-    /// Has them follow the worlds, those without settings left out, of the frame of that number.
-    fn follow(&mut self, context: &egui::Context, worlds: Vec<Option<Settings>>, frame: u64) {
-        let (Some(opened), Some(folder), true) = (&self.opened, &self.folder, self.is_possible())
-        else {
-            return;
-        };
-        let start = || WorkerPool::start(folder, context, opened, &self.piles);
-        let pool = self.pool.get_or_insert_with(start);
-        if self.worlds == worlds && self.frame == frame {
-            return;
-        }
-        pool.follow(&worlds);
-        pool.keep_awake(PATIENCE);
-        (self.worlds, self.frame) = (worlds, frame);
-    }
 }
 
 impl AppState {
     /// Has the other piles follow the worlds that there are.
     pub(crate) fn follow_ensemble(&mut self, context: &egui::Context) {
-        self.ensemble.look_up(self.opening.last.get());
+        let (ensemble, opened) = (&mut self.ensemble, self.opening.last.get());
+        let address = |opened: &Option<Arc<Opened>>| opened.as_ref().map(Arc::as_ptr);
+        if address(&ensemble.opened) != address(&opened) {
+            ensemble.stop();
+            ensemble.piles = opened.as_ref().map_or_else(Vec::new, |opened| others_of(opened));
+            ensemble.opened = opened;
+        }
         if !self.preferences.ensemble {
-            self.ensemble.stop();
+            return ensemble.stop();
+        }
+        if !ensemble.is_possible() {
             return;
         }
-        let worlds = self.frame.worlds.iter().map(|world| {
+        let Ensemble { folder: Some(folder), opened: Some(opened), piles, pool, worlds } = ensemble
+        else {
+            return;
+        };
+        let all = self.frame.worlds.iter().map(|world| {
             let is_from_the_start = world.recorded_from_secs == 0.0;
             (world.is_even && is_from_the_start).then_some(world.controls.settings)
         });
-        let worlds = worlds.collect();
-        self.ensemble.follow(context, worlds, self.frame.number);
+        let all: Vec<_> = all.collect();
+        let pool = pool.get_or_insert_with(|| WorkerPool::start(folder, context, opened, piles));
+        if *worlds != all {
+            pool.follow(all.clone());
+            *worlds = all;
+        }
     }
 
     /// How other piles come about, and which they are.
     pub(crate) fn about_ensemble(&self) -> String {
-        let Some(EnsembleSummary { seeds, settling, failed, .. }) =
-            self.ensemble.summary(self.selected)
-        else {
-            return RULE.into();
-        };
+        let Some(summary) = self.ensemble.summary(self.selected) else { return RULE.into() };
+        let EnsembleSummary { seeds, settling, failed, .. } = summary;
         let all: Vec<String> = seeds.iter().map(u64::to_string).collect();
         let mut text = format!("{RULE}\nSeeds {}.", all.join(", "));
         if let Some((number, part)) = settling {
@@ -166,7 +146,8 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     let of = if count < planned { format!("{count} of {planned}") } else { count.to_string() };
     match (mean, summary.settling) {
         (Some((mean, half)), _) if half.is_finite() => {
-            let decimals = decimals(half);
+            // They show half an interval to two digits, or to one where that is below 0.001.
+            let decimals = if half >= 0.1 { 2 } else { 3 };
             format!("other piles {mean:.decimals$} ± {half:.decimals$} (n = {of})")
         }
         (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
@@ -178,20 +159,14 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     }
 }
 
-/// Decimals that show half an interval to two digits, or to one where that is below 0.001.
-fn decimals(half: f64) -> usize {
-    if half >= 0.1 { 2 } else { 3 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn told(slumps: &[f64], settling: Option<(usize, f32)>) -> EnsembleSummary {
-        let run = |&slump: &f64| Arc::new(vec![[0.0, 0.0], [1.0, slump]]);
-        let runs: Vec<_> = slumps.iter().map(run).collect();
+        let runs: Vec<_> = slumps.iter().map(|&slump| vec![[0.0, 0.0], [1.0, slump]]).collect();
         EnsembleSummary {
-            band: Arc::new(Band::of(&runs)),
+            band: Arc::new(Band::of(&runs.iter().collect::<Vec<_>>())),
             seeds: vec![1, 2, 3],
             failed: 0,
             settling,

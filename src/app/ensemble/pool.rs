@@ -36,35 +36,22 @@ fn give_way() {
     }
 }
 
-/// How far something has come.
-enum JobState<T> {
-    Waiting,
-    /// Whoever does it has this number, and has come so far, 0 … 1.
-    Underway(u64, f32),
-    Done(T),
+/// What a thread does with a pile, by the pile's place among the others.
+#[derive(Clone, Copy, PartialEq)]
+enum Job {
+    /// Let it settle.
+    Settle(usize),
+    /// Run it with the settings of a world.
+    Run(usize, Settings),
+}
+
+/// How far a job has come.
+enum JobState {
+    /// A part, 0 … 1.
+    Underway(f32),
+    Settled(Vec<Grain>),
+    Ran(SlumpSeries),
     Failed,
-}
-
-impl<T> JobState<T> {
-    fn is_of(&self, ticket: u64) -> bool {
-        matches!(self, Self::Underway(own, _) if *own == ticket)
-    }
-
-    fn done(&self) -> Option<&T> {
-        if let Self::Done(result) = self { Some(result) } else { None }
-    }
-
-    fn end(&mut self, result: Option<T>) {
-        *self = result.map_or(Self::Failed, Self::Done);
-    }
-}
-
-/// The runs of one world's settings.
-struct EnsembleWorld {
-    /// None where the world has no others.
-    settings: Option<Settings>,
-    runs: Vec<JobState<Arc<SlumpSeries>>>,
-    band: Arc<Band>,
 }
 
 /// What is said of the other piles of a world.
@@ -72,138 +59,78 @@ struct EnsembleWorld {
 pub(crate) struct EnsembleSummary {
     /// Of those that have come to their end.
     pub band: Arc<Band>,
-    /// The seeds of all of them.
     pub seeds: Vec<u64>,
-    /// How many of them failed.
     pub failed: usize,
     /// The pile that settles at present, from 1, and how far it has come, 0 … 1.
     pub settling: Option<(usize, f32)>,
 }
 
-/// All that is to be done for what is open.
+/// What is to be done, and what was begun.
+#[derive(Default)]
 struct Jobs {
-    opened: Arc<Opened>,
-    piles: Vec<(NewPile, JobState<Vec<Grain>>)>,
-    worlds: Vec<EnsembleWorld>,
-    /// Counts what was begun.
-    tickets: u64,
-    /// Until when there is work to be done: what stands still for long is not computed for.
-    awake_until: Instant,
+    /// None where a world has no others.
+    worlds: Vec<Option<Settings>>,
+    begun: Vec<(Job, JobState)>,
+    /// Of runs that have come to their end, by their settings.
+    bands: Vec<(Settings, Arc<Band>)>,
     is_over: bool,
 }
 
-/// What one thread is to do next.
-enum Job {
-    /// Let a pile settle.
-    Settle(NewPile),
-    /// Run one with the settings of a world.
-    Run { opened: Arc<Opened>, pile: NewPile, grains: Vec<Grain>, settings: Settings },
-}
-
 impl Jobs {
-    /// Has worlds with these settings. What was computed for others is forgotten.
-    fn follow(&mut self, worlds: &[Option<Settings>]) {
-        let mut before = std::mem::take(&mut self.worlds);
-        for &settings in worlds {
-            let same = before.iter().position(|world| world.settings == settings);
-            let fresh = || EnsembleWorld {
-                settings,
-                runs: self.piles.iter().map(|_| JobState::Waiting).collect(),
-                band: Arc::default(),
-            };
-            self.worlds.push(same.map_or_else(fresh, |index| before.swap_remove(index)));
-        }
+    fn state(&self, job: Job) -> Option<&JobState> {
+        self.begun.iter().find(|(begun, _)| *begun == job).map(|(_, state)| state)
     }
 
-    /// What is to be done next: pile by pile, each for all worlds, so that all have as many.
-    fn next(&mut self) -> Option<(Job, u64)> {
-        if self.worlds.iter().all(|world| world.settings.is_none()) {
+    fn is_under_way(&self, job: Job) -> bool {
+        !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
+    }
+
+    /// Begins what is to be done next: pile by pile, each for all worlds, so that all have as many. With it come
+    /// the grains that are to run.
+    fn next(&mut self, piles: usize) -> Option<(Job, Vec<Grain>)> {
+        let settings: Vec<Settings> = self.worlds.iter().copied().flatten().collect();
+        if settings.is_empty() {
             return None;
         }
-        let ticket = self.tickets + 1;
-        let job = self.piles.iter_mut().enumerate().find_map(|(index, (pile, state))| {
-            if matches!(state, JobState::Waiting) {
-                *state = JobState::Underway(ticket, 0.0);
-                return Some(Job::Settle(pile.clone()));
+        let next = (0..piles).find_map(|pile| match self.state(Job::Settle(pile)) {
+            None => Some((Job::Settle(pile), Vec::new())),
+            Some(JobState::Settled(grains)) => {
+                let mut runs = settings.iter().map(|&settings| Job::Run(pile, settings));
+                runs.find(|&run| self.state(run).is_none()).map(|run| (run, grains.clone()))
             }
-            let grains = state.done()?;
-            self.worlds.iter_mut().find_map(|EnsembleWorld { settings, runs, .. }| {
-                let settings = (*settings)?;
-                if !matches!(runs[index], JobState::Waiting) {
-                    return None;
-                }
-                runs[index] = JobState::Underway(ticket, 0.0);
-                let (opened, pile) = (Arc::clone(&self.opened), pile.clone());
-                Some(Job::Run { opened, pile, grains: grains.clone(), settings })
-            })
+            Some(_) => None,
         })?;
-        self.tickets = ticket;
-        Some((job, ticket))
+        self.begun.push((next.0, JobState::Underway(0.0)));
+        Some(next)
     }
 
-    fn pile_of(&mut self, ticket: u64) -> Option<usize> {
-        self.piles.iter().position(|(_, state)| state.is_of(ticket))
-    }
-
-    /// Whether somebody still wants what has that number.
-    fn is_wanted(&self, ticket: u64) -> bool {
-        let mut runs = self.worlds.iter().flat_map(|world| &world.runs);
-        !self.is_over
-            && (self.piles.iter().any(|(_, state)| state.is_of(ticket))
-                || runs.any(|run| run.is_of(ticket)))
-    }
-
-    /// Notes how far a pile has come.
-    fn note_part(&mut self, ticket: u64, now: f32) {
-        for (_, state) in &mut self.piles {
-            if let JobState::Underway(own, part) = state
-                && *own == ticket
-            {
-                *part = part.max(now);
-            }
+    /// Notes how far a job has come, where it is still wanted.
+    fn note(&mut self, job: Job, state: JobState) {
+        if !self.is_under_way(job) {
+            return;
         }
-    }
-
-    /// Notes that a pile has settled, or that it cannot.
-    fn note_pile(&mut self, ticket: u64, grains: Option<Vec<Grain>>) {
-        let Some(index) = self.pile_of(ticket) else { return };
-        if grains.is_none() {
-            self.worlds.iter_mut().for_each(|world| world.runs[index] = JobState::Failed);
+        let is_run = matches!(state, JobState::Ran(_));
+        if let Some(begun) = self.begun.iter_mut().find(|(begun, _)| *begun == job) {
+            begun.1 = state;
         }
-        self.piles[index].1.end(grains);
-    }
-
-    /// Notes that a run has come to its end, or that it cannot.
-    fn note_run(&mut self, ticket: u64, series: Option<SlumpSeries>) {
-        for world in &mut self.worlds {
-            if let Some(run) = world.runs.iter_mut().find(|run| run.is_of(ticket)) {
-                run.end(series.map(Arc::new));
-                let done: Vec<_> = world.runs.iter().filter_map(JobState::done).cloned().collect();
-                world.band = Arc::new(Band::of(&done));
-                return;
-            }
-        }
-    }
-
-    /// What is said of a world's others; nothing where it has none.
-    fn summary(&self, world: usize) -> Option<EnsembleSummary> {
-        let EnsembleWorld { settings, runs, band } = self.worlds.get(world)?;
-        (*settings)?;
-        let mut states = self.piles.iter().map(|(_, state)| state).enumerate();
-        Some(EnsembleSummary {
-            band: Arc::clone(band),
-            seeds: self.piles.iter().map(|(pile, _)| pile.seed).collect(),
-            failed: runs.iter().filter(|run| matches!(run, JobState::Failed)).count(),
-            settling: states.find_map(|(index, state)| match state {
-                JobState::Underway(_, part) => Some((index + 1, *part)),
+        if let Job::Run(_, settings) = job
+            && is_run
+        {
+            let done = self.begun.iter().filter_map(|(job, state)| match (job, state) {
+                (Job::Run(_, own), JobState::Ran(series)) if *own == settings => Some(series),
                 _ => None,
-            }),
-        })
+            });
+            let band = Arc::new(Band::of(&done.collect::<Vec<_>>()));
+            self.bands.retain(|(own, _)| *own != settings);
+            self.bands.push((settings, band));
+        }
     }
 }
 
 /// What the threads and the window share.
 struct PoolState {
+    opened: Arc<Opened>,
+    piles: Vec<NewPile>,
     folder: PathBuf,
     context: egui::Context,
     jobs: Mutex<Jobs>,
@@ -226,18 +153,12 @@ impl WorkerPool {
         opened: &Arc<Opened>,
         piles: &[NewPile],
     ) -> Self {
-        let jobs = Jobs {
-            opened: Arc::clone(opened),
-            piles: piles.iter().map(|pile| (pile.clone(), JobState::Waiting)).collect(),
-            worlds: Vec::new(),
-            tickets: 0,
-            awake_until: Instant::now(),
-            is_over: false,
-        };
         let state = Arc::new(PoolState {
+            opened: Arc::clone(opened),
+            piles: piles.to_vec(),
             folder: folder.to_owned(),
             context: context.clone(),
-            jobs: Mutex::new(jobs),
+            jobs: Mutex::default(),
             news: Condvar::new(),
         });
         // A pool of one thread each: what a method does in parallel stays on it, below all others.
@@ -253,20 +174,37 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Has worlds with these settings.
-    pub(super) fn follow(&self, worlds: &[Option<Settings>]) {
-        self.state.lock().follow(worlds);
-    }
-
-    /// What is said of the others of a world.
-    pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
-        self.state.lock().summary(world)
-    }
-
-    /// Has the threads work for that long, unless they are told so again.
-    pub(super) fn keep_awake(&self, duration: Duration) {
-        self.state.lock().awake_until = Instant::now() + duration;
+    /// Has worlds with these settings. What was computed for others is forgotten.
+    pub(super) fn follow(&self, worlds: Vec<Option<Settings>>) {
+        let mut jobs = self.state.lock();
+        let is_wanted = |settings: &Settings| worlds.contains(&Some(*settings));
+        jobs.begun.retain(|(job, _)| match job {
+            Job::Settle(_) => true,
+            Job::Run(_, settings) => is_wanted(settings),
+        });
+        jobs.bands.retain(|(settings, _)| is_wanted(settings));
+        jobs.worlds = worlds;
         self.state.news.notify_all();
+    }
+
+    /// What is said of the others of a world; nothing where it has none.
+    pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
+        let (jobs, piles) = (self.state.lock(), &self.state.piles);
+        let settings = (*jobs.worlds.get(world)?)?;
+        let has_failed = |job| matches!(jobs.state(job), Some(JobState::Failed));
+        let failed =
+            |&pile: &usize| has_failed(Job::Settle(pile)) || has_failed(Job::Run(pile, settings));
+        let settling = |pile| match jobs.state(Job::Settle(pile)) {
+            Some(JobState::Underway(part)) => Some((pile + 1, *part)),
+            _ => None,
+        };
+        let band = jobs.bands.iter().find(|(own, _)| *own == settings);
+        Some(EnsembleSummary {
+            band: band.map(|(_, band)| Arc::clone(band)).unwrap_or_default(),
+            seeds: piles.iter().map(|pile| pile.seed).collect(),
+            failed: (0..piles.len()).filter(failed).count(),
+            settling: (0..piles.len()).find_map(settling),
+        })
     }
 
     /// Number of threads.
@@ -287,65 +225,51 @@ impl PoolState {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn wait<'a>(&self, jobs: MutexGuard<'a, Jobs>) -> MutexGuard<'a, Jobs> {
-        self.news.wait(jobs).unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// What a thread does until all is over.
     fn work(&self) {
-        while let Some((job, ticket)) = self.next() {
-            match job {
+        while let Some((job, grains)) = self.next() {
+            let came_to = match job {
                 Job::Settle(pile) => {
-                    let settled = self.settle(&pile, ticket);
-                    self.lock().note_pile(ticket, settled.ok());
+                    let settled = self.settle(job, &self.piles[pile]);
+                    Some(settled.map_or(JobState::Failed, JobState::Settled))
                 }
-                Job::Run { opened, pile, grains, settings } => {
-                    let scene = scene_of(&opened, &pile, grains, &settings);
-                    let ran = scene.and_then(|scene| slump(&scene, || self.goes_on(ticket)));
-                    if let Some(series) = ran.transpose() {
-                        self.lock().note_run(ticket, series.ok());
-                    }
+                Job::Run(pile, settings) => {
+                    let scene = scene_of(&self.opened, &self.piles[pile], grains, &settings);
+                    let goes_on = || self.lock().is_under_way(job);
+                    let ran = scene.and_then(|scene| slump(&scene, goes_on));
+                    ran.map_or(Some(JobState::Failed), |series| series.map(JobState::Ran))
                 }
-            }
+            };
+            // A run that was given up may have been begun by another thread since.
+            came_to.into_iter().for_each(|state| self.lock().note(job, state));
+            self.news.notify_all();
             self.context.request_repaint();
         }
     }
 
     /// The next job, once there is one; nothing where all is over.
-    fn next(&self) -> Option<(Job, u64)> {
+    fn next(&self) -> Option<(Job, Vec<Grain>)> {
         let mut jobs = self.lock();
         while !jobs.is_over {
-            let is_awake = Instant::now() < jobs.awake_until;
-            if let Some(next) = is_awake.then(|| jobs.next()).flatten() {
+            if let Some(next) = jobs.next(self.piles.len()) {
                 return Some(next);
             }
-            jobs = self.wait(jobs);
+            jobs = self.news.wait(jobs).unwrap_or_else(PoisonError::into_inner);
         }
         None
     }
 
-    /// Whether a job is still wanted. Waits where nothing is to be done for the time being.
-    fn goes_on(&self, ticket: u64) -> bool {
-        let mut jobs = self.lock();
-        while jobs.is_wanted(ticket) {
-            if Instant::now() < jobs.awake_until {
-                return true;
-            }
-            jobs = self.wait(jobs);
-        }
-        false
-    }
-
-    fn settle(&self, pile: &NewPile, ticket: u64) -> Result<Vec<Grain>> {
+    fn settle(&self, job: Job, pile: &NewPile) -> Result<Vec<Grain>> {
         check_writable("cache folder", &self.folder)?;
         let mut told: Option<Instant> = None;
         settled_pile(&self.folder, pile, |settling: Settling| {
             if told.is_none_or(|at| at.elapsed() >= PROGRESS_INTERVAL) {
                 told = Some(Instant::now());
-                self.lock().note_part(ticket, settled_part(&settling) as f32);
+                let part = settled_part(&settling) as f32;
+                self.lock().note(job, JobState::Underway(part));
                 self.context.request_repaint();
             }
-            self.goes_on(ticket)
+            self.lock().is_under_way(job)
         })
     }
 }

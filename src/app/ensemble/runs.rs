@@ -1,7 +1,6 @@
 //! Which piles are the others of one that is open, how one of them runs, and the mean of those that have run.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use crate::app::opening::Opened;
 use crate::config::Config;
@@ -17,21 +16,18 @@ pub(super) type SlumpSeries = Vec<[f64; 2]>;
 /// Mean slump of some runs and its 95 % interval by Student's distribution, at the times that all of them have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Band {
-    /// Simulated times, s.
     pub times_secs: Vec<f64>,
-    /// Means.
     pub means: Vec<f64>,
     /// Lower ends of the intervals; −∞ for one run.
     pub lows: Vec<f64>,
     /// Upper ends of the intervals; ∞ for one run.
     pub highs: Vec<f64>,
-    /// Number of runs.
     pub count: usize,
 }
 
 impl Band {
     /// Of runs with the same settings, which have the same times.
-    pub(super) fn of(runs: &[Arc<SlumpSeries>]) -> Self {
+    pub(super) fn of(runs: &[&SlumpSeries]) -> Self {
         let mut band = Self { count: runs.len(), ..Self::default() };
         let shared = runs.iter().map(|run| run.len()).min().unwrap_or(0);
         for index in 0..shared {
@@ -58,9 +54,6 @@ impl Band {
 /// Points of a run at the most, but for its end.
 const MOST_POINTS: u64 = 400;
 /// The slump of a scene from its start to its end; nothing where `goes_on`, which is asked after each step, says no.
-///
-/// # Errors
-/// Where the scene is not sound, or its state is no longer finite.
 pub(super) fn slump(
     scene: &Scene,
     mut goes_on: impl FnMut() -> bool,
@@ -102,7 +95,7 @@ pub(super) fn others_of(opened: &Opened) -> Vec<NewPile> {
 
 /// What the grains of a scene were made of.
 fn pile_of(opened: &Opened) -> Option<NewPile> {
-    let Opened { config, scene } = opened;
+    let Opened { config, scene, .. } = opened;
     if config.source.initial.is_some() {
         return None;
     }
@@ -118,9 +111,6 @@ fn pile_of(opened: &Opened) -> Option<NewPile> {
 }
 
 /// The scene that is open, with other grains and these settings.
-///
-/// # Errors
-/// Where its file is no longer there.
 pub(super) fn scene_of(
     opened: &Opened,
     pile: &NewPile,
@@ -142,15 +132,13 @@ pub(super) fn scene_of(
 mod tests {
     use super::*;
 
-    fn run(slumps: [f64; 3]) -> Arc<SlumpSeries> {
-        Arc::new(
-            [0.0, 0.5, 1.0].into_iter().zip(slumps).map(|(time, slump)| [time, slump]).collect(),
-        )
+    fn run(slumps: [f64; 3]) -> SlumpSeries {
+        [0.0, 0.5, 1.0].into_iter().zip(slumps).map(|(time, slump)| [time, slump]).collect()
     }
 
     #[test]
     fn means_and_intervals_are_those_of_student() {
-        let band = Band::of(&[run([0.0, 1.0, 2.0]), run([0.0, 2.0, 4.0]), run([0.0, 3.0, 9.0])]);
+        let band = Band::of(&[&run([0.0, 1.0, 2.0]), &run([0.0, 2.0, 4.0]), &run([0.0, 3.0, 9.0])]);
         assert_eq!((band.count, &band.means), (3, &vec![0.0, 2.0, 5.0]));
         // Tables: t(0.975; 2) = 4.302653; the standard error of 1, 2, 3 is 1/√3.
         let half = band.highs[1] - band.means[1];
@@ -163,13 +151,13 @@ mod tests {
 
     #[test]
     fn one_run_has_no_interval_and_none_nothing() {
-        let band = Band::of(&[run([0.0, 1.0, 2.0])]);
+        let band = Band::of(&[&run([0.0, 1.0, 2.0])]);
         assert_eq!(band.at(0.5), Some((1.0, f64::INFINITY)));
         assert_eq!(Band::of(&[]).at(0.0), None);
     }
 
     fn opened(config: Config) -> Opened {
-        Opened { scene: config.without_settling().unwrap(), config }
+        Opened::new(config.without_settling().unwrap(), config)
     }
 
     fn seeds(config: Config) -> Vec<u64> {

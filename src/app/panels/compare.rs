@@ -4,7 +4,7 @@ use egui::{Button, RichText, Ui};
 
 use super::physics::PAPER_TIME_STEPS;
 use crate::app::budget::FIGURES;
-use crate::app::setting_control::{method_box, written};
+use crate::app::setting_control::written;
 use crate::app::state::AppState;
 use crate::app::theme;
 use crate::live::{Command, Controls};
@@ -17,7 +17,6 @@ use crate::world::FrictionCone;
 /// Most worlds side by side.
 pub(crate) const MOST_WORLDS: usize = 6;
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     ui.label(
         RichText::new("Worlds from one initial state, kept at the same simulated time.")
@@ -25,44 +24,30 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
             .weak(),
     );
     presets(ui, state);
-    if !state.compares() {
+    let before: Vec<_> = state.wanted.iter().map(|wanted| wanted.settings).collect();
+    if before.is_empty() {
         return;
     }
-    let mut removed = None;
-    for index in 0..state.wanted.len() {
-        if row(ui, state, index) {
-            removed = Some(index);
-        }
-    }
+    let (mut all, compares) = (before.clone(), state.compares());
+    let rows = (0..all.len()).filter(|_| compares).map(|index| row(ui, state, index));
+    let rows: Vec<_> = rows.collect();
     ui.horizontal(|ui| {
-        let room = state.wanted.len() < MOST_WORLDS;
-        if ui
-            .add_enabled(room, Button::new("Add"))
-            .on_hover_text("One more like the selected one.")
-            .clicked()
-        {
-            let mut all = variants(state);
+        let add = ui.add_enabled(all.len() < MOST_WORLDS, Button::new("Add"));
+        if add.on_hover_text("One more like the selected one.").clicked() {
             all.push(all[state.selected]);
-            state.live.send(Command::Compare(all));
         }
-        if ui
-            .button("One world")
-            .on_hover_text("Go on with the selected world alone, from the start.")
-            .clicked()
-        {
-            let one = variants(state)[state.selected];
-            state.live.send(Command::Compare(vec![one]));
+        let hint = "Go on with the selected world alone, from the start.";
+        if compares && ui.button("One world").on_hover_text(hint).clicked() {
+            all = vec![all[state.selected]];
         }
     });
-    if let Some(index) = removed {
-        let mut all = variants(state);
+    let removed = rows.into_iter().position(|is_removed| is_removed);
+    if let Some(index) = removed.filter(|&index| index < all.len()) {
         all.remove(index);
+    }
+    if all != before {
         state.live.send(Command::Compare(all));
     }
-}
-
-fn variants(state: &AppState) -> Vec<Settings> {
-    state.wanted.iter().map(|wanted| wanted.settings).collect()
 }
 
 /// Worlds that one click sets side by side.
@@ -152,15 +137,10 @@ fn presets(ui: &mut Ui, state: &mut AppState) {
                 state.live.send(Command::Compare(worlds(base)));
             }
         }
-        if !state.compares()
-            && ui.button("Two alike").on_hover_text("Two worlds, to be told apart.").clicked()
-        {
-            state.live.send(Command::Compare(vec![base, base]));
-        }
     });
 }
 
-/// One world's row. Whether it is to be removed.
+/// One world's row. True where it is to be removed.
 fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {
@@ -180,18 +160,6 @@ fn row(ui: &mut Ui, state: &mut AppState, index: usize) -> bool {
             });
         });
     });
-    let before = state.wanted[index].settings;
-    if METHODS.len() > 1 && before.stepper.uses_method() && state.selected == index {
-        let mut settings = before;
-        ui.horizontal(|ui| {
-            ui.add_space(18.0);
-            ui.label("Method").on_hover_text("How the impulses of a step are found.");
-            method_box(ui, ("method of world", index), &mut settings.solver);
-        });
-        if settings != before {
-            state.change(index, settings);
-        }
-    }
     removed
 }
 

@@ -2,15 +2,14 @@
 
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 
-use crate::app::data_export::DataOrder;
+use crate::app::data_export::{DataChoices, DataOrder};
 use crate::app::state::AppState;
-use crate::app::theme;
-use crate::data::{FormatName, check_format};
+use crate::app::work::{Reporter, Work};
+use crate::data::{DataSettings, FormatName, check_format};
 
 /// Shortest and longest simulated time between two frames, s.
 const EVERY: [f64; 2] = [1e-9, 1e9];
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     super::see::folder(ui, state);
     let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
@@ -18,10 +17,8 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     ui.separator();
     ui.add_enabled_ui(is_ready && state.exports.data.export.is_none(), |ui| order(ui, state));
     export(ui, state, is_ready);
-    if let Some((told, is_failure)) = &state.exports.data.told {
-        let dark = ui.visuals().dark_mode;
-        let colour = if *is_failure { theme::warning(dark) } else { theme::good(dark) };
-        ui.label(RichText::new(told).small().color(colour));
+    if let Some(told) = &state.exports.data.told {
+        ui.label(RichText::new(&told.text).small().color(told.colour(ui)));
     }
 }
 
@@ -79,17 +76,19 @@ fn order(ui: &mut Ui, state: &mut AppState) {
     egui::Grid::new("formats").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         for (index, &format) in FormatName::ALL.iter().enumerate() {
             let (name, hint) = words(format);
-            let mut is_wanted = choices.has(format);
+            let was_wanted = choices.formats.contains(&format);
+            let mut is_wanted = was_wanted;
             let is_built = check_format(format);
             let check = egui::Checkbox::new(&mut is_wanted, name);
             // What this build has not may still be taken away.
-            let is_enabled = is_built.is_ok() || choices.has(format);
+            let is_enabled = is_built.is_ok() || was_wanted;
             let mut shown = ui.add_enabled(is_enabled, check).on_hover_text(hint);
             if let Err(refusal) = is_built {
                 shown = shown.on_disabled_hover_text(refusal.to_string());
             }
             if shown.changed() {
-                choices.set(format, is_wanted);
+                choices.formats.retain(|other| *other != format);
+                choices.formats.extend(is_wanted.then_some(format));
             }
             if index % 2 == 1 {
                 ui.end_row();
@@ -102,11 +101,7 @@ fn order(ui: &mut Ui, state: &mut AppState) {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.checkbox(&mut state.exports.data.overwrite, "Overwrite")
                 .on_hover_text("Remove an earlier recording that is there, as --overwrite does.");
-            let mut folder = choices.folder.display().to_string();
-            let edit = TextEdit::singleline(&mut folder).desired_width(f32::INFINITY);
-            if ui.add(edit).labelled_by(label.id).changed() {
-                choices.folder = folder.into();
-            }
+            super::see::path_field(ui, &mut choices.folder, label.id);
         });
     });
 }
@@ -154,14 +149,9 @@ fn stretch(ui: &mut Ui, state: &mut AppState) {
 
 /// The button that starts an export, or how far it is.
 fn export(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
-    let Some(export) = &state.exports.data.export else {
-        start(ui, state, is_ready);
-        return;
-    };
-    export.show(ui, "Exporting data", "Stop export", "Frames that are written stay.");
-}
-
-fn start(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
+    if let Some(export) = &state.exports.data.export {
+        return export.show(ui, "Exporting data", "Stop export", "Frames that are written stay.");
+    }
     let has_format = !state.preferences.data.formats.is_empty();
     let button = ui.add_enabled(is_ready && has_format, Button::new("Export data"));
     state.note_control("Export data", button.rect);
@@ -171,13 +161,16 @@ fn start(ui: &mut Ui, state: &mut AppState, is_ready: bool) {
     if !button.clicked() {
         return;
     }
+    let DataChoices { folder, every_secs, each_step, formats } = state.preferences.data.clone();
+    let every_secs = (!each_step).then_some(every_secs);
     let order = DataOrder {
-        folder: state.preferences.folder.join(&state.preferences.data.folder),
+        folder: state.preferences.folder.join(folder),
         overwrite: std::mem::take(&mut state.exports.data.overwrite),
-        settings: state.preferences.data.settings(),
+        settings: DataSettings { folder: None, every_secs, formats },
         stretch: state.exports.data.stretch,
     };
-    let run = state.take_run();
+    let run = state.take_run(state.selected);
+    let write = move |reporter: &Reporter| order.write(&run, reporter);
     state.exports.data.told = None;
-    state.exports.data.export = Some(order.start(ui.ctx(), run));
+    state.exports.data.export = Some(Work::start(ui.ctx(), write));
 }

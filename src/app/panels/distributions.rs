@@ -1,16 +1,15 @@
 //! Panel: how forces, directions, contacts and overlaps are distributed at the moment that is shown, counted on a thread
 //! of its own.
 
-use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 use egui::{RichText, Ui};
 use egui_plot::{Bar, BarChart};
 
-use crate::app::opening::TakenRun;
-use crate::app::plots::still_plot;
+use crate::app::plots::bare_plot;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::app::work::{Work, received};
 use crate::granular::{Histogram, histograms};
 
 /// Least time between two moments that are counted.
@@ -24,7 +23,7 @@ pub(crate) struct Distributions {
     /// World and step that they are of, or are being counted of.
     of: Option<(usize, u64)>,
     asked: Option<Instant>,
-    coming: Option<Receiver<Vec<Histogram>>>,
+    coming: Option<Work<Vec<Histogram>>>,
 }
 
 /// Height of the plot, points.
@@ -37,7 +36,6 @@ const ALL: [(&str, &str, &str); 4] = [
     ("overlap", "overlaps", "log₁₀ of the overlap in mean diameters"),
 ];
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     count(ui, state);
     ui.horizontal_wrapped(|ui| {
@@ -58,9 +56,13 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let about = ALL.iter().find(|(known, ..)| *known == name).map_or("", |(.., about)| about);
     let colour = theme::world_colour(state.selected, ui.visuals().dark_mode);
     let bars = bars(histogram);
-    still_plot(ui, ("histogram", name), HEIGHT).include_y(1.0).show(ui, |plot| {
-        plot.bar_chart(BarChart::new(name, bars).color(colour));
-    });
+    bare_plot(ui, ("histogram", name), HEIGHT)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .include_y(1.0)
+        .show(ui, |plot| {
+            plot.bar_chart(BarChart::new(name, bars).color(colour));
+        });
     let total: u64 = histogram.counts.iter().sum();
     let text = format!("{about}: {total} in all. Outer bars hold what lies beyond.");
     ui.label(RichText::new(text).small().weak());
@@ -71,50 +73,36 @@ fn count(ui: &Ui, state: &mut AppState) {
     let Some(world) = state.world() else { return };
     let of = Some((state.selected, world.snapshot.observables.step));
     let counted = &mut state.distributions;
-    if let Some(histograms) = counted.coming.as_ref().and_then(|coming| coming.try_recv().ok()) {
-        (counted.histograms, counted.coming) = (histograms, None);
+    if let Some(outcome) = counted.coming.as_ref().and_then(Work::outcome) {
+        (counted.histograms, counted.coming) = (outcome.unwrap_or_default(), None);
     }
     let has_rested = counted.asked.is_none_or(|at| at.elapsed() >= INTERVAL);
     let is_due = counted.coming.is_none() && has_rested && counted.of != of;
     if is_due && !state.frame.seeking {
-        let (run, context) = (state.take_run(), ui.ctx().clone());
-        let (sender, coming) = channel();
-        std::thread::spawn(move || {
-            if let Ok(TakenRun { world, .. }) = run.recv() {
-                // The panel may have been closed.
-                let _ = sender.send(histograms(&world.simulation.moment()));
-                context.request_repaint();
-            }
-        });
+        let run = state.take_run(state.selected);
+        let count = move |_: &_| Ok(histograms(&received(&run)?.world.simulation.moment()));
         let counted = &mut state.distributions;
-        (counted.of, counted.asked, counted.coming) = (of, Some(Instant::now()), Some(coming));
+        counted.coming = Some(Work::start(ui.ctx(), count));
+        (counted.of, counted.asked) = (of, Some(Instant::now()));
     } else if state.frame.playing || state.distributions.coming.is_some() {
         ui.ctx().request_repaint_after_secs(0.1);
     }
 }
 
-/// A bar a bin. Where the first edge is 0 and the others rise by factors, the axis is logarithmic; what is below
-/// its first decade is left out, which is where nothing can be told from rounding.
+/// A bar a bin. Overlaps have a logarithmic axis. A bin that is open at an end is as wide as the first that is not.
 fn bars(histogram: &Histogram) -> Vec<Bar> {
     let Histogram { edges, counts, quantity, .. } = histogram;
     let is_log = *quantity == "overlap";
-    let place = |edge: f64| if is_log { edge.log10() } else { edge };
-    let ends: Vec<f64> = edges.iter().map(|&edge| place(edge)).collect();
-    let finite: Vec<f64> = ends.iter().copied().filter(|end| end.is_finite()).collect();
-    let usual = match finite[..] {
-        [first, second, ..] => second - first,
-        _ => 1.0,
-    };
-    let bars = ends.windows(2).zip(counts).map(|(pair, &count)| {
-        let (low, high) = match (pair[0].is_finite(), pair[1].is_finite()) {
-            (true, true) => (pair[0], pair[1]),
-            (true, false) => (pair[0], pair[0] + usual),
-            (false, true) => (pair[1] - usual, pair[1]),
-            (false, false) => (0.0, usual),
-        };
+    let ends: Vec<f64> =
+        edges.iter().map(|&edge| if is_log { edge.log10() } else { edge }).collect();
+    let mut finite = ends.windows(2).filter(|pair| pair.iter().all(|end| end.is_finite()));
+    let usual = finite.next().map_or(1.0, |pair| pair[1] - pair[0]);
+    let bar = |(pair, &count): (&[f64], &u64)| {
+        let low = if pair[0].is_finite() { pair[0] } else { pair[1] - usual };
+        let high = if pair[1].is_finite() { pair[1] } else { low + usual };
         Bar::new(0.5 * (low + high), count as f64).width(0.92 * (high - low))
-    });
-    bars.collect()
+    };
+    ends.windows(2).zip(counts).map(bar).collect()
 }
 
 #[cfg(test)]

@@ -11,6 +11,11 @@ use crate::render::Camera;
 use crate::sim::{Edit, GrainView, NEW_GRAIN_DIAMETERS, Pull, place_of};
 use crate::world::{Boundary, Disc, Edge};
 
+/// How near to a wall the mouse holds it, points.
+const REACH: f32 = 8.0;
+/// What is said where a wall is drawn while time stands still.
+const STANDS_STILL: &str = "Walls go while time passes: let it (space), and draw on.";
+
 /// A grain of one of the worlds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GrainRef {
@@ -25,11 +30,8 @@ pub struct GrainRef {
 pub struct Grabbing {
     /// The grain whose contacts are listed.
     pub pinned: Option<GrainRef>,
-    /// Whether the view goes with it.
-    pub(crate) follows: bool,
     /// The grain at the end of the mouse's spring.
     pub grabbed: Option<GrainRef>,
-    /// The wall that the mouse draws.
     pub(crate) grip: Option<Grip>,
 }
 
@@ -56,7 +58,7 @@ pub(super) struct WorldCell<'a> {
 }
 
 impl WorldCell<'_> {
-    pub(super) fn to_world(&self, at: Pos2) -> DVec2 {
+    fn to_world(&self, at: Pos2) -> DVec2 {
         let offset = (at - self.cell.center()) * self.pixels_per_point as f32;
         self.camera.unproject(DVec2::new(f64::from(offset.x), -f64::from(offset.y)))
     }
@@ -66,7 +68,17 @@ impl WorldCell<'_> {
         self.cell.center() + egui::vec2(x, -y) / self.pixels_per_point as f32
     }
 
-    pub(super) fn grain_at(&self, at: Pos2) -> Option<GrainRef> {
+    /// A length (m) in points.
+    pub(super) fn points(&self, metres: f64) -> f32 {
+        self.camera.pixels(metres) / self.pixels_per_point as f32
+    }
+
+    /// A length (points) in metres.
+    fn metres(&self, points: f32) -> f64 {
+        f64::from(points) * self.pixels_per_point * self.camera.metres_per_pixel
+    }
+
+    fn grain_at(&self, at: Pos2) -> Option<GrainRef> {
         let point = self.to_world(at);
         let inside = |grain: &GrainView| grain.position.distance(point) <= grain.radius;
         let grain = self.frame.snapshot.grains.iter().rposition(inside)?;
@@ -78,11 +90,11 @@ impl WorldCell<'_> {
         let painter = ui.painter().with_clip_rect(self.cell);
         let accent = theme::accent(ui.visuals().dark_mode);
         let ring = |grain: &GrainView, width: f32, colour: Color32| {
-            let radius = self.camera.pixels(grain.radius) / self.pixels_per_point as f32;
+            let stroke = Stroke::new(width, colour);
             painter.circle_stroke(
                 self.to_screen(grain.position),
-                radius,
-                Stroke::new(width, colour),
+                self.points(grain.radius),
+                stroke,
             );
         };
         let grains = &self.frame.snapshot.grains;
@@ -114,14 +126,7 @@ impl WorldCell<'_> {
                 .on_hover_ui_at_pointer(|ui| super::grain::describe(ui, self.frame, hovered.grain));
         }
     }
-}
 
-/// How near to a wall the mouse holds it, points.
-const REACH: f32 = 8.0;
-/// What is said where a wall is drawn while time stands still.
-const STANDS_STILL: &str = "Walls go while time passes: let it (space), and draw on.";
-
-impl WorldCell<'_> {
     /// Has the mouse act.
     pub(super) fn mouse(&self, ui: &Ui, state: &mut AppState, response: &Response) {
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
@@ -194,8 +199,7 @@ impl WorldCell<'_> {
             return state.warn(STANDS_STILL);
         }
         let to = goal(boundary, self.to_world(at) - grip.from_place);
-        let half_a_point = 0.5 * self.pixels_per_point * self.camera.metres_per_pixel;
-        if grip.sent.is_none_or(|sent| sent.distance(to) > half_a_point) {
+        if grip.sent.is_none_or(|sent| sent.distance(to) > self.metres(0.5)) {
             grip.sent = Some(to);
             state.mouse.grip = Some(grip);
             let edit = Edit::Draw { boundary: grip.boundary as u32, to };
@@ -234,19 +238,17 @@ impl WorldCell<'_> {
         let point = self.to_world(at);
         let boundaries = self.frame.snapshot.surroundings.boundaries.iter();
         let distances = boundaries.map(|boundary| distance(boundary, point)).enumerate();
-        let reach = f64::from(REACH) * self.pixels_per_point * self.camera.metres_per_pixel;
-        let near = distances.filter(|(_, distance)| *distance <= reach);
+        let near = distances.filter(|(_, distance)| *distance <= self.metres(REACH));
         near.min_by(|one, other| one.1.total_cmp(&other.1)).map(|(index, _)| index)
     }
 
     /// With Shift held: what a click would put in or take out, and the wall that a drag would draw.
-    pub(super) fn marks_of_hand(&self, ui: &Ui, state: &AppState, at: Pos2) {
+    fn marks_of_hand(&self, ui: &Ui, state: &AppState, at: Pos2) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let dark = ui.visuals().dark_mode;
-        let radius = |metres: f64| self.camera.pixels(metres) / self.pixels_per_point as f32;
         if let Some(found) = self.grain_at(at) {
             let grain = &self.frame.snapshot.grains[found.grain];
-            let (middle, arm) = (self.to_screen(grain.position), 0.6 * radius(grain.radius));
+            let (middle, arm) = (self.to_screen(grain.position), 0.6 * self.points(grain.radius));
             let stroke = Stroke::new(2.0, theme::warning(dark));
             for side in [-1.0, 1.0] {
                 let end = egui::vec2(arm, side * arm);
@@ -255,17 +257,15 @@ impl WorldCell<'_> {
             return;
         }
         let stroke = Stroke::new(1.5, theme::accent(dark));
+        let boundaries = &self.frame.snapshot.surroundings.boundaries;
         let held = state.mouse.grip.map(|grip| grip.boundary).or_else(|| self.boundary_at(at));
-        if let Some(boundary) =
-            held.and_then(|it| self.frame.snapshot.surroundings.boundaries.get(it))
-        {
+        if let Some(boundary) = held.and_then(|it| boundaries.get(it)) {
             for edge in boundary.edges() {
                 let ends = match edge {
                     Edge::Wall(ends) | Edge::Side(ends) => ends.map(|end| self.to_screen(end)),
                     Edge::Endless { point, normal } => {
                         let along = normal.normalize_or_zero().perp();
-                        let reach = f64::from(self.cell.width() + self.cell.height());
-                        let reach = reach * self.pixels_per_point * self.camera.metres_per_pixel;
+                        let reach = self.metres(self.cell.width() + self.cell.height());
                         let foot = point + along * along.dot(self.to_world(at) - point);
                         [foot - reach * along, foot + reach * along].map(|end| self.to_screen(end))
                     }
@@ -274,7 +274,7 @@ impl WorldCell<'_> {
             }
         } else {
             let disc = self.new_grain(state, at);
-            painter.circle_stroke(at, radius(disc.radius), stroke);
+            painter.circle_stroke(at, self.points(disc.radius), stroke);
         }
     }
 }
@@ -306,7 +306,6 @@ fn distance(boundary: &Boundary, point: DVec2) -> f64 {
     boundary.edges().iter().map(of_edge).fold(f64::INFINITY, f64::min)
 }
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     ui.label(
         RichText::new(

@@ -7,11 +7,6 @@ use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
 
-/// Its heading, where a grain is pinned.
-pub(super) fn title(state: &AppState) -> Option<String> {
-    state.mouse.pinned.map(|_| "Grain".into())
-}
-
 /// Shows the panel; nothing without a pinned grain.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let Some(pinned) = state.mouse.pinned else { return };
@@ -19,13 +14,9 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     describe(ui, world, pinned.grain);
     ui.add_space(4.0);
     contacts(ui, world, pinned.grain);
-    ui.horizontal(|ui| {
-        ui.checkbox(&mut state.mouse.follows, "Follow")
-            .on_hover_text("The view goes with the grain.");
-        if ui.button("Unpin").clicked() {
-            state.mouse.pinned = None;
-        }
-    });
+    if ui.button("Unpin").clicked() {
+        state.mouse.pinned = None;
+    }
 }
 
 /// The state of a grain, as a small table.
@@ -56,55 +47,46 @@ pub(crate) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
 /// The grains that a grain is in contact with.
 pub(super) fn partners(snapshot: &Snapshot, index: usize) -> impl Iterator<Item = usize> {
     let number = index as u32;
-    snapshot.contacts.iter().filter_map(move |contact| {
-        let other = contact.other_grain?;
-        match (contact.grain == number, other == number) {
-            (true, _) => Some(other as usize),
-            (_, true) => Some(contact.grain as usize),
-            _ => None,
-        }
+    snapshot.contacts.iter().filter_map(move |contact| match contact.other_grain? {
+        other if contact.grain == number => Some(other as usize),
+        other if other == number => Some(contact.grain as usize),
+        _ => None,
     })
 }
 
 fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {
     let diameter = world.snapshot.surroundings.mean_diameter;
     let number = index as u32;
-    let touching = world
-        .snapshot
-        .contacts
-        .iter()
-        .filter(|contact| contact.grain == number || contact.other_grain == Some(number));
-    ScrollArea::vertical().max_height(170.0).id_salt("contacts").show(ui, |ui| {
-        egui::Grid::new("contacts").num_columns(4).striped(true).spacing([10.0, 2.0]).show(
-            ui,
-            |ui| {
-                for name in ["with", "N", "T", "gap/d"] {
-                    ui.label(RichText::new(name).weak());
-                }
-                ui.end_row();
-                for contact in touching {
-                    let other = if contact.grain == number {
-                        contact.other_grain.map_or("fixed".to_owned(), |other| other.to_string())
-                    } else {
-                        contact.grain.to_string()
-                    };
-                    for value in [
-                        other,
-                        si(contact.normal_force, "N"),
-                        si(contact.tangential_force, "N"),
-                        format!("{:.1e}", contact.gap / diameter),
-                    ] {
-                        ui.label(RichText::new(value).monospace());
-                    }
-                    ui.end_row();
-                }
-            },
-        );
-    });
+    let grid = egui::Grid::new("contacts").num_columns(4).striped(true).spacing([10.0, 2.0]);
+    let rows = |ui: &mut Ui| {
+        for name in ["with", "N", "T", "gap/d"] {
+            ui.label(RichText::new(name).weak());
+        }
+        ui.end_row();
+        for contact in &world.snapshot.contacts {
+            let with = match contact.other_grain {
+                _ if contact.grain != number && contact.other_grain != Some(number) => continue,
+                Some(other) if contact.grain == number => other.to_string(),
+                Some(_) => contact.grain.to_string(),
+                None => "fixed".to_owned(),
+            };
+            for value in [
+                with,
+                si(contact.normal_force, "N"),
+                si(contact.tangential_force, "N"),
+                format!("{:.1e}", contact.gap / diameter),
+            ] {
+                ui.label(RichText::new(value).monospace());
+            }
+            ui.end_row();
+        }
+    };
+    let area = ScrollArea::vertical().max_height(170.0).id_salt("contacts");
+    area.show(ui, |ui| grid.show(ui, rows));
 }
 
 /// A number with four digits and a prefixed unit.
-fn si(value: f64, unit: &str) -> String {
+pub(super) fn si(value: f64, unit: &str) -> String {
     let (prefix, factor) = si_prefix(value);
     let number = value / factor;
     let decimals = match number.abs() {

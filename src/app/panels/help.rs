@@ -2,9 +2,9 @@
 
 use egui::{Align2, RichText, Ui};
 
-use crate::app::state::{AppState, Shown};
+use crate::app::state::AppState;
 
-const KEYS: [(&str, &str); 12] = [
+const KEYS: [(&str, &str); 13] = [
     ("space", "release, pause, play on"),
     ("→  ←", "one step on, one step back"),
     ("R", "reset to the start, with the present settings; the run is kept"),
@@ -16,6 +16,7 @@ const KEYS: [(&str, &str); 12] = [
     ("H", "this help"),
     ("Tab", "next control"),
     ("Ctrl +  −", "larger and smaller window contents"),
+    ("Ctrl Shift G", "open the graphics device anew; the run goes on"),
     ("Ctrl Q", "close the window"),
 ];
 
@@ -39,21 +40,20 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     if !state.shown.help {
         return;
     }
-    let Shown { help, restart_graphics: restart, .. } = &mut state.shown;
     egui::Window::new("Help")
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .collapsible(false)
         .resizable(false)
-        .open(help)
+        .open(&mut state.shown.help)
         .show(ui.ctx(), |ui| {
             ui.set_max_width(440.0);
             // On a low window the end is within reach, too.
             let room = ui.ctx().content_rect().height() - FRAME;
-            egui::ScrollArea::vertical().max_height(room).show(ui, |ui| contents(ui, restart));
+            egui::ScrollArea::vertical().max_height(room).show(ui, contents);
         });
 }
 
-fn contents(ui: &mut Ui, restart_graphics: &mut bool) {
+fn contents(ui: &mut Ui) {
     ui.label(
         "A pile of cohesive grains, computed by Contact Dynamics. The time step Δt is no mere \
                  matter of accuracy: cohesion cancels an opening speed of Bond·g·Δt in every step, \
@@ -73,14 +73,4 @@ fn contents(ui: &mut Ui, restart_graphics: &mut bool) {
         ui.add_space(6.0);
     }
     ui.label("Double-click a slider to reset it. Type any value into its field. Drop a scene (TOML), discs (CSV), a saved run (.slump) or a session on the window to open them.");
-    ui.add_space(6.0);
-    ui.horizontal(|ui| {
-        let restart = ui.button("Restart graphics");
-        if restart
-            .on_hover_text("Open the graphics device anew; the run goes on (Ctrl Shift G).")
-            .clicked()
-        {
-            *restart_graphics = true;
-        }
-    });
 }

@@ -28,53 +28,45 @@ pub use grabbing::{Grabbing, GrainRef};
 pub(super) struct Section {
     /// By which scripts that drive the window find it, and the window's memory of the layout.
     pub id: &'static str,
-    /// Its heading; nothing where it is not there.
-    pub title: fn(&AppState) -> Option<String>,
-    /// Whether it is open at first.
+    title: &'static str,
+    /// True where it is open at first.
     pub open: bool,
-    /// What is in it.
     pub show: fn(&mut Ui, &mut AppState),
 }
 
 /// The sidebar, from top to bottom.
-pub(super) const SECTIONS: &[Section] = &[
-    Section {
-        id: "physics",
-        title: |state| Some(of_one_world("Physics", state)),
-        open: true,
-        show: physics::show,
-    },
-    Section { id: "grain", title: grain::title, open: true, show: grain::show },
-    Section { id: "run", title: |_| Some("Run".into()), open: true, show: run::show },
-    Section { id: "hand", title: |_| Some("By hand".into()), open: false, show: grabbing::show },
-    Section { id: "see", title: |_| Some("See".into()), open: false, show: see::show },
-    Section {
-        id: "spread",
-        title: |_| Some("Distributions".into()),
-        open: false,
-        show: distributions::show,
-    },
-    Section {
-        id: "data",
-        title: |state| Some(of_one_world("Data", state)),
-        open: false,
-        show: data::show,
-    },
-    Section { id: "compare", title: |_| Some("Compare".into()), open: false, show: compare::show },
-    Section { id: "solver", title: |_| Some("Solver".into()), open: false, show: solver::show },
-    Section {
-        id: "speed",
-        title: |_| Some("Speed and accuracy".into()),
-        open: false,
-        show: speed::show,
-    },
+pub(super) const SECTIONS: [Section; 10] = [
+    section("physics", "Physics", true, physics::show),
+    section("grain", "Grain", true, grain::show),
+    section("run", "Run", true, run::show),
+    section("hand", "By hand", false, grabbing::show),
+    section("see", "See", false, see::show),
+    section("spread", "Distributions", false, distributions::show),
+    section("data", "Data", false, data::show),
+    section("compare", "Compare", false, compare::show),
+    section("solver", "Solver", false, solver::show),
+    section("speed", "Speed and accuracy", false, speed::show),
 ];
 
-/// The title of a panel that is about the selected world.
-fn of_one_world(title: &str, state: &AppState) -> String {
-    match state.compares() {
-        // A name would make the panel as wide as it is long.
-        true => format!("{title} of world {}", state.selected + 1),
-        false => title.into(),
+const fn section(
+    id: &'static str,
+    title: &'static str,
+    open: bool,
+    show: fn(&mut Ui, &mut AppState),
+) -> Section {
+    Section { id, title, open, show }
+}
+
+impl Section {
+    /// Its heading; nothing where it is not there.
+    pub(super) fn heading(&self, state: &AppState) -> Option<String> {
+        match self.id {
+            "grain" if state.mouse.pinned.is_none() => None,
+            // A name would make the panel as wide as it is long.
+            "physics" | "data" if state.compares() => {
+                Some(format!("{} of world {}", self.title, state.selected + 1))
+            }
+            _ => Some(self.title.to_owned()),
+        }
     }
 }

@@ -3,18 +3,17 @@
 use egui::{RichText, Ui};
 use glam::DVec2;
 
+use super::grain::si;
 use crate::app::state::AppState;
 use crate::app::{setting_control, theme};
 use crate::contact::range::escape_speed;
-use crate::render::numbers::si_prefix;
-use crate::setting::{About, Group, Needs};
+use crate::setting::{Group, Needs};
 use crate::sim::{Settings, Stepper};
-use crate::world::{Parameters, Physics};
+use crate::world::Parameters;
 
 /// The paper's time steps, s.
 pub(crate) const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let index = state.selected;
     let (Some(wanted), Some(start)) = (state.wanted.get(index), state.frame.start.clone()) else {
@@ -22,40 +21,33 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     };
     let before = wanted.settings;
     let mut settings = before;
-    let mut places = Vec::new();
     stepper_switch(ui, &mut settings);
     let gravity = state.world().and_then(|world| world.gravity);
-    let gravity = gravity.filter(|_| start.physics().axes == 2);
-    let has_direction = gravity.is_some_and(|gravity| gravity != DVec2::ZERO);
     let physics = start.physics();
-    let is_shown = |about: &&About| is_shown(about, &before, physics, has_direction);
-    let shown = Parameters::ABOUT.iter().filter(is_shown);
-    for about in shown {
-        let rect = setting_control::show(ui, about, &mut settings, start.settings());
-        places.extend(about.control.map(|control| control.symbol).zip(rect));
+    let has_direction = physics.axes == 2 && gravity.is_some_and(|gravity| gravity != DVec2::ZERO);
+    for about in Parameters::ABOUT {
+        let has = match about.needs {
+            Needs::Nothing => true,
+            Needs::Friction => physics.friction,
+            Needs::Cohesion => physics.cohesion,
+            Needs::Direction => has_direction,
+        };
+        let Some(control) = about.control.filter(|_| has && before.stepper.reads(about.name))
+        else {
+            continue;
+        };
+        if let Some(rect) = setting_control::show(ui, about, &mut settings, start.settings()) {
+            state.note_control(control.symbol, rect);
+        }
         if about.name == "dt" {
             time_step_buttons(ui, &mut settings.parameters.time_step_secs);
         }
         ui.add_space(2.0);
     }
-    for (name, rect) in places {
-        state.note_control(name, rect);
-    }
     if settings != before {
         state.change(index, settings);
     }
     derived(ui, state, &settings);
-}
-
-/// Whether a parameter means anything to the stepper and the scene.
-fn is_shown(about: &About, settings: &Settings, physics: Physics, has_direction: bool) -> bool {
-    let has = match about.needs {
-        Needs::Nothing => true,
-        Needs::Friction => physics.friction,
-        Needs::Cohesion => physics.cohesion,
-        Needs::Direction => has_direction,
-    };
-    has && about.control.is_some() && settings.stepper.reads(about.name)
 }
 
 /// The ways to step; remedies that the chosen one does not take are left out.
@@ -67,12 +59,12 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
         ui.spacing_mut().button_padding.x = 5.0;
         for &stepper in Stepper::ALL {
             let info = stepper.info();
-            let refused = (info.check)(&settings.parameters).err();
+            let refused = (info.check)(&settings.parameters).err().map(|why| why.to_string());
             let hint = format!("{}. Solves {} ({}).", stepper.hint(), info.solves, info.source);
             ui.add_enabled_ui(refused.is_none(), |ui| {
                 ui.selectable_value(&mut settings.stepper, stepper, stepper.name())
                     .on_hover_text(hint)
-                    .on_disabled_hover_text(refused.map_or(String::new(), |why| why.to_string()));
+                    .on_disabled_hover_text(refused.unwrap_or_default());
             });
         }
     });
@@ -104,44 +96,42 @@ fn derived(ui: &mut Ui, state: &AppState, settings: &Settings) {
     let Some(world) = state.world() else { return };
     let surroundings = &world.snapshot.surroundings;
     let (diameter, g) = (surroundings.mean_diameter, surroundings.gravity_magnitude);
-    let speed = parameters.capture_speed(g);
-    let (prefix, factor) = si_prefix(speed);
     let accent = theme::accent(ui.visuals().dark_mode);
     egui::Grid::new("derived").num_columns(2).spacing([8.0, 3.0]).show(ui, |ui| {
-        ui.label(RichText::new("cohesive time Bond·Δt/√(d/g)").weak())
-            .on_hover_text("What the time step does to cohesion, in one number (paper §3.3).");
-        let time = parameters.cohesive_time(diameter, g);
-        ui.label(RichText::new(format!("{time:.3}")).color(accent));
-        ui.end_row();
-        ui.label(RichText::new("capture speed Bond·g·Δt").weak())
-            .on_hover_text("The opening speed that one step of cohesion cancels (paper eq. 9).");
-        ui.label(RichText::new(format!("{:.3} {prefix}m/s", speed / factor)).color(accent));
-        ui.end_row();
+        let mut row = |name: &str, hint: &str, value: String| {
+            ui.label(RichText::new(name).weak()).on_hover_text(hint);
+            ui.label(RichText::new(value).color(accent));
+            ui.end_row();
+        };
+        row(
+            "cohesive time Bond·Δt/√(d/g)",
+            "What the time step does to cohesion, in one number (paper §3.3).",
+            format!("{:.3}", parameters.cohesive_time(diameter, g)),
+        );
+        row(
+            "capture speed Bond·g·Δt",
+            "The opening speed that one step of cohesion cancels (paper eq. 9).",
+            si(parameters.capture_speed(g), "m/s"),
+        );
         if settings.stepper.reads("debonding-distance") {
             let distance = parameters.debonding_distance * diameter;
-            ui.label(RichText::new("escape speed √(2C₀δc/m_ij)").weak())
-                .on_hover_text("A pair that is thrown apart faster parts, at every time step.");
-            let escape = escape_speed(parameters.bond, g, distance);
-            let (prefix, factor) = si_prefix(escape);
-            ui.label(RichText::new(format!("{:.3} {prefix}m/s", escape / factor)).color(accent));
-            ui.end_row();
+            row(
+                "escape speed √(2C₀δc/m_ij)",
+                "A pair that is thrown apart faster parts, at every time step.",
+                si(escape_speed(parameters.bond, g, distance), "m/s"),
+            );
         }
         if let Some(secs) = world.contact_time_secs {
-            ui.label(RichText::new("contact time t_c").weak())
-                .on_hover_text("How long two grains of the mean mass push each other that meet.");
-            let (prefix, factor) = si_prefix(secs);
-            ui.label(RichText::new(format!("{:.3} {prefix}s", secs / factor)).color(accent));
-            ui.end_row();
+            let hint = "How long two grains of the mean mass push each other that meet.";
+            row("contact time t_c", hint, si(secs, "s"));
         }
         if let Some(work) = world.fracture_work {
-            ui.label(RichText::new("work of fracture").weak()).on_hover_text(
-                "What it takes to break the bond of two grains of the mean mass m slowly: C₀δc under range, \
-                 C₀²/2k under dem. m·g·d lifts one of them by a diameter.",
+            row(
+                "work of fracture",
+                "What it takes to break the bond of two grains of the mean mass m slowly: C₀δc under range, C₀²/2k \
+                 under dem. m·g·d lifts one of them by a diameter.",
+                format!("{} = {:.1e} m g d", si(work.joules, "J"), work.over_mgd),
             );
-            let (prefix, factor) = si_prefix(work.joules);
-            let text = format!("{:.2} {prefix}J = {:.1e} m g d", work.joules / factor, work.over_mgd);
-            ui.label(RichText::new(text).color(accent));
-            ui.end_row();
         }
     });
 }

@@ -10,7 +10,6 @@ use crate::live::Command;
 use crate::sim::{Observables, QUANTITIES, Quantity};
 use crate::study::png::write_png;
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     header(ui, state);
     let data = data(ui, state);
@@ -47,7 +46,7 @@ fn is_shown(state: &AppState, quantity: &Quantity<Observables>) -> bool {
         && state.preferences.quantities.iter().any(|name| name == quantity.name)
 }
 
-/// Whether a quantity says anything of what is open.
+/// True where a quantity says anything of what is open.
 fn means_something(state: &AppState, quantity: &Quantity<Observables>) -> bool {
     quantity.name != "slump" || state.slumps()
 }
@@ -86,19 +85,17 @@ fn switches(ui: &mut Ui, state: &mut AppState) {
             chosen.extend(shown.then(|| quantity.name.to_owned()));
         }
     }
-    let chosen = &mut state.preferences.chosen_plot;
-    ui.toggle_value(&mut chosen.on, "y over x")
+    ui.toggle_value(&mut state.preferences.chosen_plot.on, "y over x")
         .on_hover_text("Any quantity that steps measure against any other.");
 }
 
 /// From the right: what saves the plots, how they were thinned, and in the room that is left the other piles.
 fn files(ui: &mut Ui, state: &mut AppState) {
     let stem = format!("{}-curves", super::see::file_stem(state));
-    let all: Vec<usize> = (0..state.frame.worlds.len()).collect();
     if ui.button("PNG").on_hover_text("Save the plots as a picture.").clicked() {
         let data = data(ui, state);
         let size = state.preferences.picture_size;
-        let (dark, texts) = (ui.visuals().dark_mode, state.texts_of(&all, false));
+        let (dark, texts) = (ui.visuals().dark_mode, state.texts(false));
         let stem = stem.clone();
         state.export(ui.ctx(), move |folder, printers| {
             let path = free_path(folder, &stem, "png");
@@ -110,17 +107,16 @@ fn files(ui: &mut Ui, state: &mut AppState) {
     if ui.button("CSV").on_hover_text(hint).clicked() {
         let worlds = state.frame.worlds.iter();
         let curves: Vec<_> = worlds.map(|world| world.curve.clone()).collect();
-        let texts = state.texts_of(&all, false);
+        let texts = state.texts(false);
         state.export(ui.ctx(), move |folder, _| {
             let path = free_path(folder, &stem, "csv");
             write_table(&path, &curves, &texts)?;
             Ok(path)
         });
     }
-    if state.frame.worlds.iter().any(|world| world.curve.stride() > 1) {
-        let stride = state.frame.worlds.iter().map(|world| world.curve.stride()).max();
-        let text = format!("every {}th step", stride.unwrap_or(1));
-        ui.label(RichText::new(text).small().weak());
+    let strides = state.frame.worlds.iter().map(|world| world.curve.stride());
+    if let Some(stride) = strides.max().filter(|&stride| stride > 1) {
+        ui.label(RichText::new(format!("one step in {stride}")).small().weak());
     }
     ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| others(ui, state));
 }
@@ -131,11 +127,9 @@ fn others(ui: &mut Ui, state: &mut AppState) {
         return;
     }
     ui.separator();
-    let mut shown = state.preferences.ensemble;
     let hint = state.about_ensemble();
-    let switch = ui.toggle_value(&mut shown, "other piles").on_hover_text(&hint);
-    state.note_control("other piles", switch.rect);
-    state.preferences.ensemble = shown;
+    let switch = ui.toggle_value(&mut state.preferences.ensemble, "other piles");
+    state.note_control("other piles", switch.on_hover_text(&hint).rect);
     let said = state.said_of_ensemble(state.selected);
     if let (Some(said), Some(world)) = (said, state.world()) {
         let text = format!("Δy {:.3}; {said}", world.snapshot.observables.slump);

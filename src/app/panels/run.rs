@@ -1,13 +1,13 @@
 //! Panel: which scene, how many grains, how fast; and the runs before.
 
-use egui::{Align, Button, Color32, ComboBox, Rect, RichText, Slider, Stroke, Ui};
-use glam::DVec2;
+use egui::{Align, Button, ComboBox, RichText, Slider, Ui};
 
 use super::compare::title_among;
+use crate::app::budget;
+use crate::app::sharing::CHANGED;
 use crate::app::state::AppState;
-use crate::app::{budget, theme};
 use crate::config::{Config, SceneSource};
-use crate::live::{Command, Controls, PastRun, PastWorld};
+use crate::live::{Command, Controls, PastRun};
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
 use crate::solver::SolverChanges;
 
@@ -35,29 +35,6 @@ const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     ),
 ];
 
-/// What is said of a command line that does not say all.
-const CHANGED: &str = "The command line is copied; settings changed, or a hand changed something, on the way, which it does \
-                       not tell: it makes another run.";
-
-/// What is typed for a new pile.
-#[derive(Clone, PartialEq)]
-struct TypedPile {
-    grains: usize,
-    seed: u64,
-    box_width_in_diameters: f64,
-    deposition: Deposition,
-}
-
-impl TypedPile {
-    /// Gives the box the width in which so many grains make a pile as steep as the paper's.
-    fn keep_shape(&mut self) {
-        let paper = NewPile::default();
-        let scale = (self.grains as f64 / paper.grains as f64).sqrt();
-        self.box_width_in_diameters = (paper.box_width_in_diameters * scale).round();
-    }
-}
-
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     scene_box(ui, state);
     if state.config.source.scene.as_deref().unwrap_or(Config::DEFAULT_SCENE)
@@ -65,7 +42,6 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     {
         new_pile(ui, state);
     }
-    loading(ui, state);
     speed(ui, state);
     earlier_runs(ui, state);
     command_line(ui, state);
@@ -83,7 +59,7 @@ fn command_line(ui: &mut Ui, state: &mut AppState) {
         {
             ui.ctx().copy_text(line);
             if state.world().is_some_and(|world| !world.is_even) {
-                state.warn(CHANGED);
+                state.warn(format!("The command line is copied; {CHANGED}."));
             }
         }
         let copy = ui.button("Copy link").on_hover_text(
@@ -91,7 +67,7 @@ fn command_line(ui: &mut Ui, state: &mut AppState) {
              moment. Paste it into a window (Ctrl V), or give it to slump --open.",
         );
         if copy.clicked() {
-            state.copy_link();
+            state.copy_link(ui.ctx());
         }
     });
 }
@@ -118,28 +94,28 @@ fn scene_box(ui: &mut Ui, state: &mut AppState) {
             shown.response.labelled_by(label.id);
         });
     });
-    let info = SCENES.iter().find(|info| info.name == current);
-    if let Some(info) = info {
+    if let Some(info) = SCENES.iter().find(|info| info.name == current) {
         ui.label(RichText::new(info.summary).small().weak());
     }
 }
 
+/// What is typed for a new pile.
 fn new_pile(ui: &mut Ui, state: &mut AppState) {
-    let NewPile { grains, seed, box_width_in_diameters, deposition } =
-        state.config.source.new_pile();
     let id = egui::Id::unique("new pile");
-    let drafted = ui.data(|data| data.get_temp(id));
-    let mut draft =
-        drafted.unwrap_or(TypedPile { grains, seed, box_width_in_diameters, deposition });
+    let typed = ui.data(|data| data.get_temp::<NewPile>(id));
+    let mut pile = typed.unwrap_or_else(|| state.config.source.new_pile());
     ui.horizontal(|ui| {
         let label = ui.label("Grains");
-        let grains = egui::DragValue::new(&mut draft.grains).range(1..=MOST_GRAINS).speed(2.0);
+        let grains = egui::DragValue::new(&mut pile.grains).range(1..=MOST_GRAINS).speed(2.0);
         let grains = ui.add(grains).labelled_by(label.id);
         if grains.on_hover_text("Number of grains of a new pile.").changed() {
-            draft.keep_shape();
+            // In a box of this width so many grains make a pile as steep as the paper's.
+            let paper = NewPile::default();
+            let scale = (pile.grains as f64 / paper.grains as f64).sqrt();
+            pile.box_width_in_diameters = (paper.box_width_in_diameters * scale).round();
         }
         let label = ui.label("Box");
-        let width = egui::DragValue::new(&mut draft.box_width_in_diameters);
+        let width = egui::DragValue::new(&mut pile.box_width_in_diameters);
         ui.add(width.range(3.0..=1e4).max_decimals(1).suffix(" d").speed(0.5))
             .labelled_by(label.id)
             .on_hover_text(
@@ -148,22 +124,22 @@ fn new_pile(ui: &mut Ui, state: &mut AppState) {
     });
     ui.horizontal(|ui| {
         let label = ui.label("Seed");
-        ui.add(egui::DragValue::new(&mut draft.seed).speed(0.1))
+        ui.add(egui::DragValue::new(&mut pile.seed).speed(0.1))
             .labelled_by(label.id)
             .on_hover_text("Another seed is another pile of the same kind.");
         for (way, name, hint) in DEPOSITIONS {
-            ui.selectable_value(&mut draft.deposition, way, name).on_hover_text(hint);
+            ui.selectable_value(&mut pile.deposition, way, name).on_hover_text(hint);
         }
         let fresh = ui.button("New pile").on_hover_text("Make it, and let it come to rest.");
         if fresh.clicked() {
-            let config = pile_like_this(state, draft.clone());
+            let config = pile_like_this(state, &pile);
             state.load(config);
         }
     });
-    if draft.grains >= LARGE {
-        ui.label(RichText::new(cost(draft.grains)).small().weak());
+    if pile.grains >= LARGE {
+        ui.label(RichText::new(cost(pile.grains)).small().weak());
     }
-    ui.data_mut(|data| data.insert_temp(id, draft));
+    ui.data_mut(|data| data.insert_temp(id, pile));
 }
 
 /// What a large pile costs before it can be released, and how it is stepped then.
@@ -179,8 +155,8 @@ fn cost(grains: usize) -> String {
 }
 
 /// A new pile with the numbers that the controls show.
-fn pile_like_this(state: &AppState, draft: TypedPile) -> Config {
-    let TypedPile { grains, seed, box_width_in_diameters, deposition } = draft;
+fn pile_like_this(state: &AppState, pile: &NewPile) -> Config {
+    let &NewPile { grains, seed, box_width_in_diameters, deposition } = pile;
     let source = SceneSource {
         scene: Some(Config::DEFAULT_SCENE.to_owned()),
         grains: Some(grains),
@@ -200,20 +176,6 @@ fn pile_like_this(state: &AppState, draft: TypedPile) -> Config {
     Config { solver, ..config }
 }
 
-fn loading(ui: &mut Ui, state: &mut AppState) {
-    let Some(progress) = state.frame.loading.clone() else { return };
-    ui.horizontal(|ui| {
-        if ui.button("Cancel").clicked() {
-            state.live.send(Command::CancelLoading);
-        }
-        let bar = ui.add(egui::ProgressBar::new(progress.part).desired_height(14.0));
-        bar.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, "Loading")
-        });
-    });
-    ui.label(RichText::new(progress.text).small().weak());
-}
-
 fn speed(ui: &mut Ui, state: &mut AppState) {
     let before = (state.preferences.speed, state.preferences.full_speed);
     ui.horizontal(|ui| {
@@ -222,10 +184,8 @@ fn speed(ui: &mut Ui, state: &mut AppState) {
             let full = ui.toggle_value(&mut state.preferences.full_speed, "max");
             let full = full.on_hover_text("As fast as the machine computes.");
             state.note_control("max", full.rect);
-            let text = match state.preferences.full_speed {
-                true => "      ".to_owned(),
-                false => format!("{:.2}×", state.preferences.speed),
-            };
+            let speed = format!("{:.2}×", state.preferences.speed);
+            let text = if state.preferences.full_speed { "      " } else { &speed };
             ui.label(RichText::new(text).monospace());
             ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(40.0);
             let slider = Slider::new(&mut state.preferences.speed, SPEEDS[0]..=SPEEDS[1])
@@ -238,22 +198,10 @@ fn speed(ui: &mut Ui, state: &mut AppState) {
             }
         });
     });
-    // A run that has just begun has no speed yet.
-    if state.frame.playing && state.frame.steps_per_sec > 0.0 {
-        let factor = state.frame.real_time_factor;
-        let behind = !state.preferences.full_speed && factor < 0.8 * state.preferences.speed;
-        let dark = ui.visuals().dark_mode;
-        let mut text = RichText::new(format!("running at {factor:.3} × real time")).small();
-        text = if behind { text.color(theme::warning(dark)) } else { text.weak() };
-        ui.label(text);
-    }
     if before != (state.preferences.speed, state.preferences.full_speed) {
         state.live.send(Command::SetPace(state.preferences.pace()));
     }
 }
-
-/// Grains of a ghost at the most: more outlines would hide what is in front.
-const MOST_OUTLINES: usize = 3_000;
 
 /// Width of the fields of names, points.
 const NAME_WIDTH: f32 = 84.0;
@@ -283,22 +231,17 @@ fn earlier_runs(ui: &mut Ui, state: &mut AppState) {
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 name_field(ui, state, Some(run.number), &run.name);
-                return_button(ui, state, run);
+                let title = title(run);
+                let name = if run.name.is_empty() { &title } else { &run.name };
+                let text = format!("↶ {name}, {:.3} s", run.recorded_secs);
+                let back = ui.add(Button::new(RichText::new(text).size(11.5)).truncate());
+                let hint =
+                    format!("Back to it (the last: Ctrl Z): {title}, {:.3} s", run.recorded_secs);
+                if back.on_hover_text(hint).clicked() {
+                    state.live.send(Command::Return(run.number));
+                }
             });
         });
-    }
-}
-
-fn return_button(ui: &mut Ui, state: &mut AppState, run: &PastRun) {
-    let about = format!("↶ {}, {:.3} s", title(run), run.recorded_secs);
-    let text = match &*run.name {
-        "" => about.clone(),
-        name => format!("↶ {name}, {:.3} s", run.recorded_secs),
-    };
-    let button = Button::new(RichText::new(text).size(11.5)).truncate();
-    let response = ui.add(button);
-    if response.on_hover_text(format!("Back to it (the last: Ctrl Z): {about}")).clicked() {
-        state.live.send(Command::Return(run.number));
     }
 }
 
@@ -314,14 +257,11 @@ fn name_field(ui: &mut Ui, state: &mut AppState, number: Option<u64>, given: &st
     if response.changed() {
         state.live.send(Command::Name(number, text.clone()));
     }
-    let has_focus = response.has_focus();
-    ui.data_mut(|data| {
-        if has_focus {
-            data.insert_temp(id, text);
-        } else {
-            data.remove::<String>(id);
-        }
-    });
+    if response.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, text));
+    } else {
+        ui.data_mut(|data| data.remove::<String>(id));
+    }
     response.on_hover_text("What to call it; sessions keep the name.");
 }
 
@@ -339,24 +279,4 @@ fn title(run: &PastRun) -> String {
 /// The run that shows as a ghost.
 pub(super) fn ghost(state: &AppState) -> Option<&PastRun> {
     state.frame.past.last().filter(|_| state.preferences.ghost)
-}
-
-/// Draws the outlines of a world's ghost, by what takes a place (m) to one of the screen, and a length (m) to points.
-pub(super) fn paint_ghost(
-    ui: &Ui,
-    world: &PastWorld,
-    cell: Rect,
-    to_screen: impl Fn(DVec2) -> egui::Pos2,
-    points_per_metre: f64,
-) {
-    let grains = &world.snapshot.grains;
-    if grains.len() > MOST_OUTLINES {
-        return;
-    }
-    let painter = ui.painter().with_clip_rect(cell);
-    let stroke = Stroke::new(1.0, Color32::from_gray(128).gamma_multiply(0.55));
-    for grain in grains {
-        let radius = (grain.radius * points_per_metre) as f32;
-        painter.circle_stroke(to_screen(grain.position), radius, stroke);
-    }
 }

@@ -1,9 +1,9 @@
 //! The middle of the window: the worlds and what the mouse does to them, or a new pile in the making.
 
-use egui::{Align2, FontId, Rect, Sense, Stroke, Ui, Vec2};
+use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, Vec2};
 use glam::DVec2;
 
-use super::grabbing::{GrainRef, WorldCell};
+use super::grabbing::WorldCell;
 use super::run;
 use crate::app::painting::{fill, scene_callback};
 use crate::app::state::AppState;
@@ -15,13 +15,15 @@ use crate::render::{
 
 /// Height of a compared world's title, points.
 const TITLE_HEIGHT: f32 = 22.0;
+/// Grains of a ghost at the most: more outlines would hide what is in front.
+const MOST_OUTLINES: usize = 3_000;
 /// Space between compared worlds, points.
 const GAP: f32 = 6.0;
 
 /// Shows all worlds in the space that is left.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let area = ui.available_rect_before_wrap();
-    let response = ui.allocate_rect(area, Sense::hover());
+    ui.allocate_rect(area, Sense::hover());
     let dark = ui.visuals().dark_mode;
     let style = shared_style(state, dark);
     let palette = style.theme.palette();
@@ -51,7 +53,6 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
         let legend = Legend::of(&world.snapshot, &style, &camera, style.text_px(width, height));
         state.shown.legend.paint(ui, legend_area, legend, pixels(legend_area));
     }
-    drop(response);
 }
 
 /// The style of the preferences in the window's theme, with one range for all worlds.
@@ -84,10 +85,7 @@ pub(super) fn columns(count: usize) -> usize {
 
 /// The rectangles of `count` worlds: rows of up to three.
 fn cells(area: Rect, count: usize) -> Vec<Rect> {
-    if count <= 1 {
-        return vec![area];
-    }
-    let columns = columns(count);
+    let columns = columns(count).max(1);
     let rows = count.div_ceil(columns);
     let across = (area.width() - GAP * (columns - 1) as f32) / columns as f32;
     let down = (area.height() - GAP * (rows - 1) as f32) / rows as f32;
@@ -114,7 +112,6 @@ fn world(
 ) {
     let pixels_per_point = f64::from(ui.ctx().pixels_per_point());
     let camera = state.camera.camera(view(state), style, size, pixels_per_point);
-    follow(state, index);
     let response = ui.interact(cell, ui.scope_id().with(("world", index)), Sense::click_and_drag());
     let frame = state.frame.worlds[index].clone();
     let place = WorldCell { index, cell, camera, pixels_per_point, frame: &frame };
@@ -134,15 +131,6 @@ fn world(
     }
 }
 
-/// Has the view go with the pinned grain, where that is asked for.
-fn follow(state: &mut AppState, world: usize) {
-    let pinned = state.mouse.pinned.filter(|pinned| state.mouse.follows && pinned.world == world);
-    if let Some(GrainRef { world, grain }) = pinned {
-        let place = state.frame.worlds[world].snapshot.grains[grain].position;
-        state.camera.look_at(place);
-    }
-}
-
 impl WorldCell<'_> {
     /// The same world of the run before, where that had one.
     fn ghost(&self, ui: &Ui, state: &AppState) {
@@ -151,30 +139,38 @@ impl WorldCell<'_> {
             return;
         }
         let Some(world) = run.worlds.get(self.index) else { return };
-        let metre = self.to_screen(DVec2::X) - self.to_screen(DVec2::ZERO);
-        let to_screen = |position| self.to_screen(position);
-        run::paint_ghost(ui, world, self.cell, to_screen, f64::from(metre.x));
+        let grains = &world.snapshot.grains;
+        if grains.len() > MOST_OUTLINES {
+            return;
+        }
+        let painter = ui.painter().with_clip_rect(self.cell);
+        let stroke = Stroke::new(1.0, Color32::from_gray(128).gamma_multiply(0.55));
+        for grain in grains {
+            painter.circle_stroke(
+                self.to_screen(grain.position),
+                self.points(grain.radius),
+                stroke,
+            );
+        }
     }
 
     /// Title and label of the scale bar.
     fn words(&self, ui: &Ui, state: &AppState, style: &Style, size: [u32; 2]) {
         let painter = ui.painter().with_clip_rect(self.cell);
-        let palette = style.theme.palette();
-        let dark = ui.visuals().dark_mode;
+        let ink = theme::color32(style.theme.palette().ink);
         if style.scale_bar {
             let bar = ScaleBar::new(style, &self.camera, size[0], size[1]);
             let scale = self.pixels_per_point as f32;
             let offset = egui::vec2(bar.end[0] + 0.5 * bar.text_px, -bar.end[1]) / scale;
             let font = FontId::proportional(bar.text_px / scale);
             let at = self.cell.center() + offset;
-            painter.text(at, Align2::LEFT_CENTER, bar.label, font, theme::color32(palette.ink));
+            painter.text(at, Align2::LEFT_CENTER, bar.label, font, ink);
         }
         if state.compares() {
-            let colour = theme::world_colour(self.index, dark);
+            let colour = theme::world_colour(self.index, ui.visuals().dark_mode);
             let at = self.cell.min + egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
             painter.circle_filled(at + egui::vec2(4.0, 0.0), 4.5, colour);
             let title = super::compare::numbered(state, self.index);
-            let ink = theme::color32(palette.ink);
             let font = FontId::proportional(13.0);
             painter.text(at + egui::vec2(14.0, 0.0), Align2::LEFT_CENTER, title, font, ink);
             if let Some(others) = state.others_in_short(self.index) {
@@ -185,33 +181,30 @@ impl WorldCell<'_> {
             let slump = super::compare::slump(state, self.index);
             let at = self.cell.right_bottom() - egui::vec2(8.0, 0.5 * TITLE_HEIGHT);
             painter.text(at, Align2::RIGHT_CENTER, slump, FontId::monospace(12.0), ink);
-            let selected = self.index == state.selected;
-            let stroke = if selected {
-                Stroke::new(2.0, colour)
-            } else {
-                Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color)
+            let stroke = match self.index == state.selected {
+                true => Stroke::new(2.0, colour),
+                false => Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color),
             };
             painter.rect_stroke(self.cell, 0.0, stroke, egui::StrokeKind::Inside);
         }
     }
 }
 
-/// Shows it in place of the worlds, in so many pixels. Whether there is anything to see.
-fn show_making(
-    ui: &Ui,
-    state: &mut AppState,
-    area: Rect,
-    style: &Style,
-    [width, height]: [u32; 2],
-) -> bool {
+/// Shows it in place of the worlds, in so many pixels. True where there is anything to see.
+fn show_making(ui: &Ui, state: &mut AppState, area: Rect, style: &Style, size: [u32; 2]) -> bool {
     let preview = state.frame.loading.as_ref().and_then(|it| it.preview.clone());
     let Some(preview) = preview else { return false };
     let [lower, upper] = preview.view;
     // Forces and velocities are those of the run alone, and the scale changes as grains come down.
-    let style = Style { show_forces: false, show_velocities: false, ..style.clone() };
-    let style = Style { legend: false, scale_bar: false, ..style };
-    let camera = style.camera(lower, upper, width, height);
-    let picture = scene_picture(&preview.snapshot, &style, &camera, width, height);
+    let style = Style {
+        show_forces: false,
+        show_velocities: false,
+        legend: false,
+        scale_bar: false,
+        ..style.clone()
+    };
+    let camera = style.camera(lower, upper, size[0], size[1]);
+    let picture = scene_picture(&preview.snapshot, &style, &camera, size[0], size[1]);
     ui.painter().with_clip_rect(area).add(scene_callback(0, area, picture));
     state.note_control("pile in the making", area);
     true
@@ -226,14 +219,11 @@ const STRAIGHT: f64 = 1e-9;
 
 /// Draws the arrow of a world, where it is asked for, or gravity is not straight down.
 fn paint_gravity(ui: &Ui, state: &AppState, world: usize, cell: Rect) {
-    let gravity = state.frame.worlds.get(world).and_then(|world| world.gravity);
-    let Some(gravity) = gravity.filter(|&gravity| state.preferences.gravity || is_tilted(gravity))
-    else {
-        return;
+    let shows = |gravity: &DVec2| {
+        *gravity != DVec2::ZERO && (state.preferences.gravity || is_tilted(*gravity))
     };
-    if gravity == DVec2::ZERO {
-        return;
-    }
+    let gravity = state.frame.worlds.get(world).and_then(|world| world.gravity);
+    let Some(gravity) = gravity.filter(shows) else { return };
     let along = gravity.normalize();
     let along = Vec2::new(along.x as f32, -along.y as f32);
     let middle = cell.right_top() + Vec2::new(-MARGIN, MARGIN);

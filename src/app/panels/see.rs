@@ -1,5 +1,7 @@
 //! Panel: how the scene is drawn, and pictures and films of it.
 
+use std::path::PathBuf;
+
 use egui::{ComboBox, RichText, ThemePreference, Ui};
 use glam::DVec2;
 
@@ -7,9 +9,8 @@ use super::scene::{columns, shared_style, view};
 use crate::app::export::{PicturedWorld, ScenePicture, free_path, stem};
 use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::state::AppState;
-use crate::app::theme;
-use crate::error::Result;
-use crate::film::{VIDEO_RATES_HZ, check_ffmpeg};
+use crate::app::work::Work;
+use crate::film::{Animation, VIDEO_RATES_HZ, check_ffmpeg};
 use crate::render::{ColourBy, Style, panel_size};
 use crate::study::png::write_png;
 
@@ -22,21 +23,17 @@ const COLOURS: [(ColourBy, &str); 5] = [
     (ColourBy::Coordination, "contacts"),
 ];
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let style = &mut state.preferences.style;
     ui.horizontal(|ui| {
         let label = ui.label("Colour by");
-        let name =
-            COLOURS.iter().find(|(by, _)| *by == style.colour_by).map_or("", |(_, name)| name);
-        let shown = ComboBox::from_id_salt("colour by").width(130.0).selected_text(name).show_ui(
-            ui,
-            |ui| {
-                for (by, name) in COLOURS {
-                    ui.selectable_value(&mut style.colour_by, by, name);
-                }
-            },
-        );
+        let name = COLOURS.iter().find(|(by, _)| *by == style.colour_by).map_or("", |it| it.1);
+        let list = ComboBox::from_id_salt("colour by").width(130.0).selected_text(name);
+        let shown = list.show_ui(ui, |ui| {
+            for (by, name) in COLOURS {
+                ui.selectable_value(&mut style.colour_by, by, name);
+            }
+        });
         shown.response.labelled_by(label.id);
     });
     egui::Grid::new("see").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
@@ -85,17 +82,11 @@ fn pictures(ui: &mut Ui, state: &mut AppState) {
         ui.label(RichText::new("px").weak());
         let save = ui.button("Save PNG").on_hover_text("What is seen here, with all worlds that are compared (S). The file says which command makes it.");
         if save.clicked() {
-            super::see::save_picture(ui.ctx(), state);
+            save_picture(ui.ctx(), state);
         }
     });
     films(ui, state);
     folder(ui, state);
-    if state.is_writing() && state.exports.film.is_none() {
-        ui.horizontal(|ui| {
-            ui.spinner();
-            ui.label(RichText::new("saving").color(theme::accent(ui.visuals().dark_mode)));
-        });
-    }
 }
 
 /// The record as a video or an animation.
@@ -117,51 +108,44 @@ fn films(ui: &mut Ui, state: &mut AppState) {
         ui.add(speed.speed(0.01).max_decimals(6)).labelled_by(label.id);
     });
     ui.horizontal(|ui| {
-        save_video(ui, state);
-        let hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and larger files.";
-        if save_button(ui, state, "Save GIF", Ok(())).on_hover_text(hint).clicked() {
-            super::see::save_film(ui.ctx(), state, FilmFormat::Gif);
+        let video_hint = "What was recorded of all worlds, or the stretch that Data names, as MP4. The run may go on meanwhile.";
+        let gif_hint = "The same as a GIF, which slides and pages show everywhere: 256 colours a picture, and larger files.";
+        for (format, name, missing, hint) in [
+            (FilmFormat::Video, "Save video", check_ffmpeg("given").err(), video_hint),
+            (FilmFormat::Gif, "Save GIF", None, gif_hint),
+        ] {
+            let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
+            let save = ui.add_enabled(is_ready && missing.is_none(), egui::Button::new(name));
+            state.note_control(name, save.rect);
+            if save.clicked() {
+                save_film(ui.ctx(), state, format);
+            }
+            let save = save.on_hover_text(hint);
+            if let Some(missing) = missing {
+                save.on_disabled_hover_text(missing.to_string());
+            }
         }
     });
-}
-
-fn save_video(ui: &mut Ui, state: &mut AppState) {
-    let hint = "What was recorded of all worlds, or the stretch that Data names, as MP4. The run may go on meanwhile.";
-    let save = save_button(ui, state, "Save video", check_ffmpeg("given")).on_hover_text(hint);
-    if save.clicked() {
-        super::see::save_film(ui.ctx(), state, FilmFormat::Video);
-    }
-}
-
-/// A button that is there where the record is, and says why where there is nothing to make what it asks for.
-fn save_button(
-    ui: &mut Ui,
-    state: &mut AppState,
-    name: &'static str,
-    is_built: Result<()>,
-) -> egui::Response {
-    let is_ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
-    let save = ui.add_enabled(is_ready && is_built.is_ok(), egui::Button::new(name));
-    state.note_control(name, save.rect);
-    match is_built {
-        Ok(()) => save,
-        Err(refusal) => save.on_disabled_hover_text(refusal.to_string()),
-    }
 }
 
 /// Where all files go that the window writes.
 pub(super) fn folder(ui: &mut Ui, state: &mut AppState) {
     ui.horizontal(|ui| {
-        let whole = std::path::absolute(&state.preferences.folder);
-        let whole = whole.unwrap_or_else(|_| state.preferences.folder.clone());
+        let folder = &mut state.preferences.folder;
+        let whole = std::path::absolute(&*folder).unwrap_or_else(|_| folder.clone());
         let hint = format!("Where saved files go: {}", whole.display());
         let label = ui.label("Folder").on_hover_text(hint);
-        let mut folder = state.preferences.folder.display().to_string();
-        let edit = egui::TextEdit::singleline(&mut folder).desired_width(f32::INFINITY);
-        if ui.add(edit).labelled_by(label.id).changed() {
-            state.preferences.folder = folder.into();
-        }
+        path_field(ui, folder, label.id);
     });
+}
+
+/// The field of a folder that is typed.
+pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
+    let mut typed = folder.display().to_string();
+    let edit = egui::TextEdit::singleline(&mut typed).desired_width(f32::INFINITY);
+    if ui.add(edit).labelled_by(label).changed() {
+        *folder = typed.into();
+    }
 }
 
 /// Saves the worlds as they are seen, in the size of the preferences.
@@ -180,25 +164,28 @@ pub(crate) fn save_picture(context: &egui::Context, state: &mut AppState) {
 }
 
 /// Saves what was recorded of the worlds as moving pictures, or the stretch of it that data would be exported of.
-pub(crate) fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) {
-    if state.frame.worlds.is_empty() || state.exports.film.is_some() {
-        return;
-    }
+fn save_film(context: &egui::Context, state: &mut AppState, format: FilmFormat) {
     // Its scales are those of all its pictures.
     let style = super::scene::own_style(state, context.theme() == egui::Theme::Dark);
-    let size = format.size(state.preferences.picture_size);
+    let (size, rate_hz) = (state.preferences.picture_size, state.preferences.video_rate_hz);
+    let (size, rate_hz) = match format {
+        FilmFormat::Video => (size.map(|side| side.next_multiple_of(2)), rate_hz),
+        FilmFormat::Gif => (size, Animation::nearest_rate_hz(rate_hz)),
+    };
     let order = FilmOrder {
         format,
         picture: scene_picture(state, style, size, false),
         slumps: state.slumps(),
-        rate_hz: format.nearest_rate_hz(state.preferences.video_rate_hz),
+        rate_hz,
         speed: state.preferences.video_speed,
         stretch: state.exports.data.stretch,
         folder: state.preferences.folder.clone(),
         stem: file_stem(state),
     };
-    let runs = (0..state.frame.worlds.len()).map(|world| state.take_run_of(world)).collect();
-    state.exports.film = Some((format, order.start(context, runs)));
+    let worlds = 0..state.frame.worlds.len();
+    let runs: Vec<_> = worlds.map(|world| state.take_run(world)).collect();
+    let work = Work::start(context, move |reporter| order.make(&runs, reporter));
+    state.exports.film = Some((format, work));
 }
 
 /// What is seen of the worlds, of which there is one at least.
@@ -219,19 +206,16 @@ fn scene_picture(
     };
     let camera = state.camera.for_picture(view(state), &of_one, size_of_one, window);
     let worlds = state.frame.worlds.iter().enumerate().map(|(index, world)| {
-        let title = super::compare::numbered(state, index);
-        PicturedWorld { snapshot: world.snapshot.clone(), title, note: note(state, index) }
+        // What came of a world, and below it what came of others.
+        let others = state.others_in_short(index).map_or(String::new(), |text| format!("\n{text}"));
+        PicturedWorld {
+            snapshot: world.snapshot.clone(),
+            title: super::compare::numbered(state, index),
+            note: super::compare::slump(state, index) + &others,
+        }
     });
-    let worlds = worlds.collect();
-    let all: Vec<usize> = (0..count).collect();
-    let texts = state.texts_of(&all, is_of_a_moment);
+    let (worlds, texts) = (worlds.collect(), state.texts(is_of_a_moment));
     ScenePicture { worlds, columns: columns(count), style, camera, size, texts }
-}
-
-/// What came of a world, and below it what came of others: slump, where that tells anything.
-fn note(state: &AppState, index: usize) -> String {
-    let others = state.others_in_short(index).map_or_else(String::new, |text| format!("\n{text}"));
-    super::compare::slump(state, index) + &others
 }
 
 /// How the names of saved files begin.

@@ -1,18 +1,16 @@
 //! Panel: how each step is solved, and how well that went.
 
-use egui::{RichText, Ui};
+use egui::{ComboBox, RichText, Ui};
 
-use crate::app::budget::{BUDGETS, Budget, CERTIFIED, offer};
-use crate::app::setting_control::method_box;
+use crate::app::budget::{BUDGETS, Budget};
 use crate::app::state::AppState;
 use crate::app::{setting_control, theme};
 use crate::live::WorldFrame;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
 use crate::sim::{Observables, REMEDIES, Remedies, Settings, Surroundings};
-use crate::solver::{Method, SolverSettings, StopTest};
+use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let index = state.selected;
     let (Some(wanted), Some(start)) = (state.wanted.get(index), state.frame.start.clone()) else {
@@ -22,14 +20,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     let mut settings = before;
     if before.stepper.uses_method() {
         if let Some(world) = state.world() {
-            let snapshot = &world.snapshot;
-            budget_buttons(ui, &mut settings.solver, &snapshot.surroundings);
-            let (grains, last) = (snapshot.grains.len(), &snapshot.observables);
-            let is_to_be_had = CERTIFIED.is_to_be_had(&snapshot.surroundings);
-            let offered = offer(&before.solver, grains, last, world.step_ms);
-            if let Some(offered) = offered.filter(|_| is_to_be_had) {
-                ui.label(RichText::new(offered).small().weak());
-            }
+            budget_buttons(ui, &mut settings.solver, &world.snapshot.surroundings);
         }
         method_controls(ui, &mut settings, start.settings());
     }
@@ -64,8 +55,7 @@ fn about(name: &str) -> &'static About {
 /// How a step's problem is solved, and when that is done.
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
-        ui.label("Method").on_hover_text("How the impulses of a step are found.");
-        method_box(ui, "method", &mut settings.solver);
+        method_box(ui, &mut settings.solver);
         ui.end_row();
         if settings.solver.method.sweeps_in_order() {
             setting_control::show(ui, about("ordering"), settings, start);
@@ -81,6 +71,24 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
         setting_control::show_as(ui, tolerance, &control, settings, start);
     }
     setting_control::show(ui, about("max-sweeps"), settings, start);
+}
+
+/// Shows the method, and all others to be chosen from; a model of friction that the chosen one does not take is left
+/// out.
+fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
+    let label = ui.label("Method").on_hover_text("How the impulses of a step are found.");
+    let mut method = solver.method;
+    let list = ComboBox::from_id_salt("method").width(100.0).selected_text(method.name());
+    let shown = list.show_ui(ui, |ui| {
+        for info in &METHODS {
+            let hint = format!("{}. Solves {} ({}).", info.summary, info.solves, info.source);
+            ui.selectable_value(&mut method, info.method, info.name).on_hover_text(hint);
+        }
+    });
+    shown.response.labelled_by(label.id);
+    if method != solver.method {
+        *solver = solver.by(method);
+    }
 }
 
 /// What is asked of friction. A method that solves Coulomb's law alone leaves no choice.
@@ -175,15 +183,6 @@ fn readings(ui: &mut Ui, state: &AppState) {
             reading(ui, "critical", format!("{critical_secs:.1e} s"), hint);
             ui.end_row();
         }
-        if let Some(elastic) = world.sweep_elasticity {
-            let reach = format!("{:.2}", elastic.spreading_length / elastic.height);
-            let hint = "How far a force spreads in the sweeps of a step, √N d, in heights of the pile: below 1 the \
-                        pile is an elastic body to what lies farther.";
-            reading(ui, "reach", reach, hint);
-            let hint = "Its spurious stiffness, κ = q m N/Δt².";
-            reading(ui, "stiffness", format!("{:.1e} N/m", elastic.stiffness), hint);
-            ui.end_row();
-        }
     });
     if settings.stepper.uses_method() {
         solved(ui, world);
@@ -192,32 +191,21 @@ fn readings(ui: &mut Ui, state: &AppState) {
     }
 }
 
-/// Whether steps were solved as asked: the last one, and those before.
+/// How the last step was solved; the status bar counts those that were not solved as asked.
 fn solved(ui: &mut Ui, world: &WorldFrame) {
     let last = &world.snapshot.observables;
     let dark = ui.visuals().dark_mode;
-    let (mark, colour) = if last.step == 0 {
-        ("○ no step yet".to_owned(), ui.visuals().weak_text_color())
+    let (mut mark, mut colour) = (String::new(), theme::warning(dark));
+    if last.step == 0 {
+        (mark, colour) = ("○ no step yet".into(), ui.visuals().weak_text_color());
     } else if last.converged {
-        ("● converged".to_owned(), theme::good(dark))
+        (mark, colour) = ("● converged".into(), theme::good(dark));
     } else if last.fell_back == Some(true) {
-        ("◆ not Coulomb's law: solved under bounds of friction".to_owned(), theme::warning(dark))
+        mark += "◆ not Coulomb's law: solved under bounds of friction";
     } else if last.stalled {
-        (
-            format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual),
-            theme::warning(dark),
-        )
+        mark += &format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual);
     } else {
-        (format!("▲ not converged within {} sweeps", last.sweeps), theme::warning(dark))
-    };
-    ui.label(RichText::new(mark).color(colour));
-    if world.unconverged_steps > 0 {
-        let instead = match world.fallback_steps {
-            0 => String::new(),
-            steps => format!(", {steps} fell back on bounds of friction"),
-        };
-        let unsolved = world.unconverged_steps;
-        let text = format!("{unsolved} of {} steps did not converge{instead}", last.step);
-        ui.label(RichText::new(text).small().color(theme::warning(dark)));
+        mark += &format!("▲ not converged within {} sweeps", last.sweeps);
     }
+    ui.label(RichText::new(mark).color(colour));
 }

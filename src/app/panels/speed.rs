@@ -1,18 +1,19 @@
 //! Panel: how long methods take to solve the step that is shown how well. Each solves it to one tolerance after the other,
 //! on a thread of its own.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
 use egui::{Color32, RichText, Ui};
-use egui_plot::{GridMark, Line, LineStyle, MarkerShape, PlotPoints, Points};
+use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
 
 use crate::app::opening::TakenRun;
-use crate::app::plots::still_plot;
+use crate::app::plots::plot_with_axes;
 use crate::app::state::AppState;
 use crate::app::theme;
+use crate::app::work::{Reporter, Work};
+use crate::error::Result;
+use crate::live::WorldFrame;
 use crate::sim::{Settings, Simulation};
 use crate::solver::{Fallback, METHODS, Method, SolverSettings, StopTest};
 
@@ -25,90 +26,47 @@ const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
 
 /// What a method came to.
-#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RaceCurve {
-    /// Its name.
-    pub method: &'static str,
+    method: &'static str,
     /// Time of the step (ms) and its residual, from loose to tight.
-    pub points: Vec<[f64; 2]>,
+    points: Vec<[f64; 2]>,
 }
 
 /// A race on one step.
 pub(crate) struct StepRace {
     /// The step that they solve: simulated time, s.
-    pub time_secs: f64,
-    /// Those that have come to their end.
-    pub curves: Vec<RaceCurve>,
-    /// Whether all have.
-    pub is_over: bool,
-    news: Receiver<RaceCurve>,
-    is_cancelled: Arc<AtomicBool>,
+    time_secs: f64,
+    /// What methods came to, once all have come to their end.
+    curves: Vec<RaceCurve>,
+    work: Option<Work<Vec<RaceCurve>>>,
 }
 
-impl StepRace {
-    /// Begins with the step that follows the moment of a run that is on its way.
-    pub(crate) fn start(run: Receiver<TakenRun>, time_secs: f64, context: egui::Context) -> Self {
-        let (sender, news) = channel();
-        let is_cancelled = Arc::new(AtomicBool::new(false));
-        let cancelled = Arc::clone(&is_cancelled);
-        std::thread::spawn(move || {
-            if let Ok(TakenRun { world, .. }) = run.recv() {
-                race(&world.simulation, &sender, &cancelled, &context);
-            }
-            drop(sender);
-            context.request_repaint();
-        });
-        Self { time_secs, curves: Vec::new(), is_over: false, news, is_cancelled }
-    }
-
-    /// Takes in what has come.
-    pub(crate) fn look(&mut self) {
-        loop {
-            match self.news.try_recv() {
-                Ok(curve) => self.curves.push(curve),
-                Err(std::sync::mpsc::TryRecvError::Empty) => return,
-                Err(std::sync::mpsc::TryRecvError::Disconnected) => {
-                    self.is_over = true;
-                    return;
-                }
-            }
-        }
-    }
-}
-
-impl Drop for StepRace {
-    fn drop(&mut self) {
-        self.is_cancelled.store(true, Ordering::Relaxed);
-    }
-}
-
-fn race(
-    simulation: &Simulation,
-    news: &Sender<RaceCurve>,
-    is_cancelled: &AtomicBool,
-    context: &egui::Context,
-) {
-    for info in &METHODS {
-        let mut points = Vec::new();
+/// Has all methods solve the step that follows the moment of a run that is on its way.
+fn race(run: &Receiver<TakenRun>, reporter: &Reporter) -> Result<Vec<RaceCurve>> {
+    let Some(run) = reporter.wait_for(run)? else { return Ok(Vec::new()) };
+    let mut curves = Vec::new();
+    for (number, info) in METHODS.iter().enumerate() {
+        let goes_on = || reporter.tell(number as f64 / METHODS.len() as f64).is_continue();
+        let mut points: Vec<[f64; 2]> = Vec::new();
         for tolerance in TOLERANCES {
-            let point = timed(simulation, info.method, tolerance, is_cancelled);
+            let point = timed(&run.world.simulation, info.method, tolerance, goes_on);
             let Some([ms, residual]) = point else { break };
             // A method that comes no further has nothing more to show.
-            if points.last().is_none_or(|&[_, before]: &[f64; 2]| residual < before) {
+            if points.last().is_none_or(|&[_, before]| residual < before) {
                 points.push([ms, residual]);
             }
             if ms > 1e3 * LIMIT_SECS {
                 break;
             }
         }
-        if is_cancelled.load(Ordering::Relaxed) {
-            return;
+        if !goes_on() {
+            break;
         }
-        if !points.is_empty() && news.send(RaceCurve { method: info.name, points }).is_err() {
-            return;
+        if !points.is_empty() {
+            curves.push(RaceCurve { method: info.name, points });
         }
-        context.request_repaint();
     }
+    Ok(curves)
 }
 
 /// The least time of the step, ms, and its residual; nothing where it cannot be taken so.
@@ -116,7 +74,7 @@ fn timed(
     simulation: &Simulation,
     method: Method,
     tolerance: f64,
-    is_cancelled: &AtomicBool,
+    goes_on: impl Fn() -> bool,
 ) -> Option<[f64; 2]> {
     let before = *simulation.settings();
     let solver = SolverSettings {
@@ -128,7 +86,7 @@ fn timed(
     };
     let mut least = [f64::INFINITY, f64::NAN];
     for _ in 0..REPEATS {
-        if is_cancelled.load(Ordering::Relaxed) {
+        if !goes_on() {
             return None;
         }
         let mut copy = simulation.clone();
@@ -149,44 +107,42 @@ const HEIGHT: f32 = 230.0;
 /// Colours before dashes tell curves apart.
 const COLOURS: usize = 6;
 
-/// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
-    measure(ui, state);
-    if let Some(race) = &state.race {
-        draw(ui, &race.curves, now(state, race));
-        legend(ui, &race.curves);
-        let how = if race.is_over { "measured here" } else { "being measured" };
-        let text = format!(
-            "The step that follows t = {:.4} s, {how}; ◆ is the present method.",
-            race.time_secs
-        );
-        ui.label(RichText::new(text).small().weak());
+    if let Some(race) = &mut state.race
+        && let Some(outcome) = race.work.as_ref().and_then(Work::outcome)
+    {
+        (race.curves, race.work) = (outcome.unwrap_or_default(), None);
     }
-    readings(ui, state);
+    match state.race.as_ref().and_then(|race| race.work.as_ref()) {
+        Some(work) => work.show(ui, "Measuring", "Stop measuring", "Other methods are left out."),
+        None => measure(ui, state),
+    }
+    let Some(race) = state.race.as_ref().filter(|race| race.work.is_none()) else { return };
+    draw(ui, &race.curves, now(state, race));
+    legend(ui, &race.curves);
+    let time_secs = race.time_secs;
+    let text = format!(
+        "The step that follows t = {time_secs:.4} s, measured here; ◆ is the present method."
+    );
+    ui.label(RichText::new(text).small().weak());
 }
 
 /// The button that measures the step that is shown.
 fn measure(ui: &mut Ui, state: &mut AppState) {
-    if let Some(race) = &mut state.race {
-        race.look();
-    }
-    let is_under_way = state.race.as_ref().is_some_and(|race| !race.is_over);
-    let can = state.world().is_some_and(|world| {
+    let has_method = |world: &&WorldFrame| {
         world.failure.is_none() && world.controls.settings.stepper.uses_method()
-    });
-    ui.horizontal(|ui| {
-        let button = ui.add_enabled(can && !is_under_way, egui::Button::new("Measure this step"));
-        let hint = "Each method solves the step that is shown, to one tolerance after the other: some seconds.";
-        let button = button.on_hover_text(hint);
-        if button.on_disabled_hover_text("There is no method to measure, or it is being done.").clicked() {
-            let time_secs = state.world().map_or(0.0, |world| world.snapshot.observables.time_secs);
-            let run = state.take_run();
-            state.race = Some(StepRace::start(run, time_secs, ui.ctx().clone()));
-        }
-        if is_under_way {
-            ui.spinner();
-        }
-    });
+    };
+    let time_secs =
+        state.world().filter(has_method).map(|world| world.snapshot.observables.time_secs);
+    let button = ui.add_enabled(time_secs.is_some(), egui::Button::new("Measure this step"));
+    let hint = "Each method solves the step that is shown, to one tolerance after the other: some seconds.";
+    let button =
+        button.on_hover_text(hint).on_disabled_hover_text("There is no method to measure.");
+    if let Some(time_secs) = time_secs.filter(|_| button.clicked()) {
+        let run = state.take_run(state.selected);
+        let work = Work::start(ui.ctx(), move |reporter| race(&run, reporter));
+        state.race = Some(StepRace { time_secs, curves: Vec::new(), work: Some(work) });
+    }
 }
 
 /// Where the present method is on the chart of its own step: the run's own mean time, once it is at that step.
@@ -201,14 +157,12 @@ fn now(state: &AppState, race: &StepRace) -> Option<[f64; 2]> {
 fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
     let dark = ui.visuals().dark_mode;
     ui.label(RichText::new("residual against ms a step").small());
-    still_plot(ui, "speed and accuracy", HEIGHT)
-        .x_grid_spacer(|grid| decades(grid.bounds))
-        .y_grid_spacer(|grid| decades(grid.bounds))
-        .x_axis_formatter(|mark, _| power_of_ten(mark.value))
-        .y_axis_formatter(|mark, _| power_of_ten(mark.value))
+    plot_with_axes(ui, "speed and accuracy", HEIGHT, [true; 2], "")
+        .allow_drag(false)
+        .allow_zoom(false)
         .show(ui, |plot| {
             for (index, curve) in curves.iter().enumerate() {
-                let (colour, style) = look(index, dark);
+                let (colour, style, _) = look(index, dark);
                 let points = curve.points.iter().map(|point| point.map(f64::log10));
                 let places: PlotPoints<'_> = points.collect();
                 plot.line(Line::new("", places).color(colour).style(style).width(1.6));
@@ -221,14 +175,14 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
         });
 }
 
-/// Colour and stroke of a curve, which no other one has.
-fn look(index: usize, dark: bool) -> (Color32, LineStyle) {
-    let style = match index / COLOURS {
-        0 => LineStyle::Solid,
-        1 => LineStyle::dashed_loose(),
-        _ => LineStyle::dotted_dense(),
+/// Colour and stroke of a curve, which no other one has, and the sign of the stroke.
+fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
+    let (style, sign) = match index / COLOURS {
+        0 => (LineStyle::Solid, "━"),
+        1 => (LineStyle::dashed_loose(), "╍"),
+        _ => (LineStyle::dotted_dense(), "┉"),
     };
-    (theme::world_colour(index % COLOURS, dark), style)
+    (theme::world_colour(index % COLOURS, dark), style, sign)
 }
 
 /// What colours and strokes mean, below the chart, of which it hides nothing.
@@ -236,42 +190,13 @@ fn legend(ui: &mut Ui, curves: &[RaceCurve]) {
     let dark = ui.visuals().dark_mode;
     ui.horizontal_wrapped(|ui| {
         for (index, curve) in curves.iter().enumerate() {
-            let (colour, _) = look(index, dark);
-            let stroke = ["━", "╍", "┉"][(index / COLOURS).min(2)];
+            let (colour, _, sign) = look(index, dark);
             ui.spacing_mut().item_spacing.x = 3.0;
-            ui.label(RichText::new(stroke).color(colour));
+            ui.label(RichText::new(sign).color(colour));
             ui.label(RichText::new(curve.method).small());
             ui.add_space(6.0);
         }
     });
-}
-
-/// How long the steps of the worlds take, and how well they are solved.
-fn readings(ui: &mut Ui, state: &AppState) {
-    let mut is_told = false;
-    for (index, world) in state.frame.worlds.iter().enumerate() {
-        let (ms, residual) = (world.step_ms, world.snapshot.observables.residual);
-        if ms > 0.0 && residual > 0.0 {
-            let name = super::compare::title(state, index);
-            ui.label(format!("{name}: {ms:.3} ms a step, residual {residual:.1e}"));
-            is_told = true;
-        }
-    }
-    if !is_told {
-        ui.weak("The run shows here from its first step on.");
-    }
-}
-
-/// Powers of ten between two exponents, every so many that there are seven at the most.
-fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
-    let (first, last) = (low.ceil() as i64, high.floor() as i64);
-    let step = ((last - first).max(0) / 7 + 1) as usize;
-    let marks = (first..=last).filter(|exponent| exponent.rem_euclid(step as i64) == 0);
-    marks.map(|exponent| GridMark { value: exponent as f64, step_size: step as f64 }).collect()
-}
-
-fn power_of_ten(exponent: f64) -> String {
-    format!("1e{exponent:.0}")
 }
 
 #[cfg(test)]
@@ -286,12 +211,11 @@ mod tests {
         scene.parameters.restitution_threshold = 2.0;
         let mut simulation = scene.simulation().unwrap();
         simulation.take_steps(20).unwrap();
-        let never = AtomicBool::new(false);
         let residual =
-            |tolerance| timed(&simulation, Method::Newton, tolerance, &never).unwrap()[1];
+            |tolerance| timed(&simulation, Method::Newton, tolerance, || true).unwrap()[1];
         let (loose, tight) = (residual(1e-2), residual(1e-6));
         assert!(loose <= 1e-2 && tight <= 1e-6 && tight < loose, "{loose} and {tight}");
         assert_eq!(simulation.observables().step, 20, "the run itself takes no step");
-        assert_eq!(timed(&simulation, Method::Newton, 1e-2, &AtomicBool::new(true)), None);
+        assert_eq!(timed(&simulation, Method::Newton, 1e-2, || false), None);
     }
 }

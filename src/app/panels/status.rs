@@ -1,6 +1,6 @@
 //! The status bar: where the run is, how fast, how well.
 
-use egui::{Align, Label, Layout, RichText, Ui};
+use egui::{Align, Color32, Label, Layout, Rect, RichText, Ui};
 
 use crate::app::budget::FAST;
 use crate::app::state::AppState;
@@ -20,7 +20,12 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
             if state.frame.playing && state.frame.steps_per_sec > 0.0 {
                 ui.label(mono(format!("{:.0} steps/s", state.frame.steps_per_sec)))
                     .on_hover_text("Steps of all worlds together");
-                ui.label(mono(format!("{:.2}× real time", state.frame.real_time_factor)));
+                let factor = state.frame.real_time_factor;
+                let text = mono(format!("{factor:.2}× real time"));
+                let is_behind =
+                    !state.preferences.full_speed && factor < 0.8 * state.preferences.speed;
+                let warning = theme::warning(ui.visuals().dark_mode);
+                ui.label(if is_behind { text.color(warning) } else { text });
             }
             convergence(ui, state, world);
             if state.frame.stored {
@@ -35,7 +40,7 @@ pub(crate) fn show(ui: &mut Ui, state: &mut AppState) {
     });
 }
 
-/// Whether steps met the tolerance: the last one, and those before.
+/// How many steps met the tolerance: the last one, and those before.
 fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
     let dark = ui.visuals().dark_mode;
     let last = || state.frame.worlds.iter().map(|world| &world.snapshot.observables);
@@ -64,41 +69,30 @@ fn convergence(ui: &mut Ui, state: &AppState, world: &WorldFrame) {
 }
 
 fn messages(ui: &mut Ui, state: &mut AppState) {
-    let help = ui.selectable_label(state.shown.help, "Help (H)");
-    if help.clicked() {
-        state.shown.help = !state.shown.help;
-    }
-    let mut plots = state.preferences.plots;
-    let toggle = ui.toggle_value(&mut plots, "Plots").on_hover_text("Show or hide the plots");
-    state.note_control("Plots", toggle.rect);
-    state.preferences.plots = plots;
-    let mut sidebar = state.preferences.sidebar;
-    ui.toggle_value(&mut sidebar, "Panels").on_hover_text("Show or hide the panels");
-    state.preferences.sidebar = sidebar;
-
-    let dark = ui.visuals().dark_mode;
-    let showing = state.notice().is_some();
-    let failure = state.frame.worlds.iter().find_map(|world| world.failure.clone());
-    if let Some(failure) = failure.filter(|_| !showing) {
-        let text = format!("{failure}. Drag the timeline back, or reset.");
-        let label = Label::new(RichText::new(&text).color(theme::warning(dark))).truncate();
-        ui.add(label).on_hover_text(text);
-        return;
-    }
-    if let Some(alarm) = alarm(state).filter(|_| !showing) {
-        let text = format!("▲ {alarm}");
-        let label = Label::new(RichText::new(&text).color(theme::warning(dark))).truncate();
-        let shown = ui.add(label).on_hover_text(text);
-        state.note_control("alarm", shown.rect);
-        return;
-    }
+    ui.toggle_value(&mut state.shown.help, "Help (H)");
+    let plots = ui.toggle_value(&mut state.preferences.plots, "Plots");
+    state.note_control("Plots", plots.on_hover_text("Show or hide the plots").rect);
+    ui.toggle_value(&mut state.preferences.sidebar, "Panels")
+        .on_hover_text("Show or hide the panels");
     if let Some((notice, left)) = state.notice() {
-        let colour = if notice.failure { theme::warning(dark) } else { theme::good(dark) };
-        let label = Label::new(RichText::new(&notice.text).color(colour)).truncate();
-        let text = notice.text.clone();
-        ui.add(label).on_hover_text(text);
+        let (text, colour) = (notice.text.clone(), notice.colour(ui));
         ui.ctx().request_repaint_after_secs(left);
+        message(ui, &text, colour);
+        return;
     }
+    let warning = theme::warning(ui.visuals().dark_mode);
+    if let Some(failure) = state.frame.worlds.iter().find_map(|world| world.failure.clone()) {
+        message(ui, &format!("{failure}. Drag the timeline back, or reset."), warning);
+    } else if let Some(alarm) = alarm(state) {
+        let rect = message(ui, &format!("▲ {alarm}"), warning);
+        state.note_control("alarm", rect);
+    }
+}
+
+/// Shows a line in the room that is left, and all of it to whoever points at it.
+fn message(ui: &mut Ui, text: &str, colour: Color32) -> Rect {
+    let label = Label::new(RichText::new(text).color(colour)).truncate();
+    ui.add(label).on_hover_text(text).rect
 }
 
 /// The newest alarm of the selected world, or of any other, with its title where worlds are compared; one of the
@@ -118,7 +112,7 @@ fn alarm(state: &AppState) -> Option<String> {
     newest(state.selected).or_else(|| (0..state.frame.worlds.len()).find_map(newest))
 }
 
-/// Whether an alarm says what was chosen with open eyes: so many sweeps a step, solved or not. How many steps were
+/// True where an alarm says what was chosen with open eyes: so many sweeps a step, solved or not. How many steps were
 /// not solved is told beside it in any case.
 fn is_asked_for(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let fast = FAST.among(&world.snapshot.surroundings);

@@ -24,11 +24,9 @@ pub(crate) fn release_button(ui: &mut Ui, state: &mut AppState) {
         ("▶  Play on", "Let time pass again, from the moment that is shown (space)")
     };
     let dark = ui.visuals().dark_mode;
-    let accent = theme::accent(dark);
-    let (fill, ink) = if frame.playing {
-        (ui.visuals().widgets.inactive.weak_bg_fill, ui.visuals().text_color())
-    } else {
-        (accent, theme::on_accent(dark))
+    let (fill, ink) = match frame.playing {
+        true => (ui.visuals().widgets.inactive.weak_bg_fill, ui.visuals().text_color()),
+        false => (theme::accent(dark), theme::on_accent(dark)),
     };
     let text = RichText::new(text).size(16.0).color(ink).family(theme::bold());
     let button = Button::new(text).fill(fill).min_size(egui::vec2(ui.available_width(), 38.0));
@@ -45,29 +43,26 @@ pub(crate) fn timeline(ui: &mut Ui, state: &mut AppState) {
     let ready = !state.frame.worlds.is_empty() && state.frame.loading.is_none();
     ui.add_enabled_ui(ready, |ui| {
         ui.horizontal(|ui| {
-            let button = |ui: &mut Ui, icon: &str, hint: &str| {
+            let mut button = |icon: &str, name: &str, hint: &str| {
                 let button = Button::new(RichText::new(icon).size(12.0));
                 let response = ui.add(button.min_size(egui::vec2(28.0, 22.0)));
-                let name = hint.split(':').next().unwrap_or(hint).to_owned();
-                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-                response.on_hover_text(hint).clicked()
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+                response.on_hover_text(format!("{name}: {hint}")).clicked()
             };
-            if button(ui, "|◀", "Reset: back to the start, with the present settings (R)") {
-                state.reset();
+            if button("|◀", "Reset", "back to the start, with the present settings (R)") {
+                state.live.send(Command::Reset);
             }
-            if button(ui, "◀", "Step back: one step back in the recording (←)") {
+            if button("◀", "Step back", "one step back in the recording (←)") {
                 state.step_back();
             }
-            let icon = if state.frame.playing { "❚❚" } else { "▶" };
-            let play = if state.frame.playing {
-                "Pause: stop time (space)"
-            } else {
-                "Play: let time pass (space)"
+            let (icon, name, hint) = match state.frame.playing {
+                true => ("❚❚", "Pause", "stop time (space)"),
+                false => ("▶", "Play", "let time pass (space)"),
             };
-            if button(ui, icon, play) {
+            if button(icon, name, hint) {
                 state.toggle_play();
             }
-            if button(ui, "▶|", "Step: take one step and pause (→)") {
+            if button("▶|", "Step", "take one step and pause (→)") {
                 state.step();
             }
             scrub(ui, state);
@@ -80,13 +75,11 @@ fn scrub(ui: &mut Ui, state: &mut AppState) {
     let now = state.frame.time_secs();
     let duration = state.frame.start.as_ref().map_or(1.0, |start| start.duration_secs);
     let label = format!("{now:.4} / {end:.4} s");
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let width = 132.0;
-        ui.allocate_ui_with_layout(
-            egui::vec2(width, 20.0),
-            egui::Layout::right_to_left(egui::Align::Center),
-            |ui| ui.label(RichText::new(label).monospace()),
-        );
+    let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
+    ui.with_layout(from_the_right, |ui| {
+        ui.allocate_ui_with_layout(egui::vec2(132.0, 20.0), from_the_right, |ui| {
+            ui.label(RichText::new(label).monospace());
+        });
         let mut at = now;
         ui.spacing_mut().slider_width = (ui.available_width() - 8.0).max(40.0);
         let slider = Slider::new(&mut at, 0.0..=end.max(1e-3 * duration)).show_value(false);

@@ -12,6 +12,7 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
+use super::painting::LegendCache;
 use super::preferences::{Keeper, forget, load};
 use super::state::AppState;
 use super::theme;
@@ -34,10 +35,6 @@ pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
 /// A device that is lost this many times in a row does not come back.
 const MOST_LOSSES: u32 = 3;
 
-/// What other threads send to the window: there is a new frame of the run, or a file was written.
-#[derive(Debug)]
-struct Repaint;
-
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
@@ -55,13 +52,15 @@ pub(crate) fn run(
     stored.preferences.follow(pictures)?;
     let restart = pictures.restart.as_deref();
     let open_first = first(config, restart, options, &stored.preferences)?;
-    let events =
-        EventLoop::<Repaint>::with_user_event().build().map_err(|error| no_display(&error))?;
+    // Other threads send an event where there is a new frame of the run, or a file was written.
+    let events = EventLoop::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();
     let wake = proxy.clone();
     let live = Live::spawn(LiveOptions {
         // The loop is gone only when the window is.
-        wake: Box::new(move || drop(wake.send_event(Repaint))),
+        wake: Box::new(move || {
+            let _ = wake.send_event(());
+        }),
         ..LiveOptions::default()
     })?;
     let mut state = AppState::idle(live, stored.preferences.clone());
@@ -85,7 +84,7 @@ pub(crate) fn run(
 }
 
 /// A context with the project's look, which wakes the loop when another thread asks for a frame.
-fn context(proxy: &EventLoopProxy<Repaint>, layout: egui::Memory) -> egui::Context {
+fn context(proxy: &EventLoopProxy<()>, layout: egui::Memory) -> egui::Context {
     let context = egui::Context::default();
     context.memory_mut(|memory| *memory = layout);
     theme::install(&context);
@@ -94,7 +93,7 @@ fn context(proxy: &EventLoopProxy<Repaint>, layout: egui::Memory) -> egui::Conte
     context.set_request_repaint_callback(move |info| {
         // Requests of the window's own thread come back as the delay of its pass.
         if info.delay.is_zero() && std::thread::current().id() != window_thread {
-            drop(wake.send_event(Repaint));
+            let _ = wake.send_event(());
         }
     });
     context
@@ -102,7 +101,7 @@ fn context(proxy: &EventLoopProxy<Repaint>, layout: egui::Memory) -> egui::Conte
 
 struct App {
     context: egui::Context,
-    proxy: EventLoopProxy<Repaint>,
+    proxy: EventLoopProxy<()>,
     state: AppState,
     open: Option<Open>,
     failure: Option<Error>,
@@ -123,25 +122,28 @@ struct Open {
 }
 
 impl App {
-    fn open(&mut self, events: &ActiveEventLoop) -> Result<Open> {
+    fn open(&mut self, events: &ActiveEventLoop) -> Result<()> {
         let attributes = attributes(events, self.state.preferences.window_points);
         let window =
             Arc::new(events.create_window(attributes).map_err(|error| no_display(&error))?);
         let surface = WindowSurface::new(events, &window, self.renderer)?;
-        let input = self.input(&window, &surface);
-        window.request_redraw();
-        Ok(Open { window, input, surface })
+        self.show(window, surface);
+        Ok(())
     }
 
-    fn input(&self, window: &Window, surface: &WindowSurface) -> egui_winit::State {
-        egui_winit::State::new(
+    /// Shows what the surface of a device draws.
+    fn show(&mut self, window: Arc<Window>, surface: WindowSurface) {
+        let input = egui_winit::State::new(
             self.context.clone(),
             egui::ViewportId::ROOT,
-            window,
+            &window,
             Some(window.scale_factor() as f32),
             window.theme(),
             Some(surface.largest_side()),
-        )
+        );
+        window.request_redraw();
+        self.devices += 1;
+        self.open = Some(Open { window, input, surface });
     }
 
     fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
@@ -164,13 +166,11 @@ impl App {
         }
         let memory = self.context.memory(Clone::clone);
         self.context = context(&self.proxy, memory);
-        self.state.forget_context();
+        self.state.shown.legend = LegendCache::default();
+        self.state.ensemble.stop();
         match WindowSurface::new(events, &window, self.renderer) {
             Ok(surface) => {
-                let input = self.input(&window, &surface);
-                window.request_redraw();
-                self.open = Some(Open { window, input, surface });
-                self.devices += 1;
+                self.show(window, surface);
                 self.state.warn("The graphics device was lost and opened anew; the run went on.");
             }
             Err(error) => self.fail(events, error),
@@ -192,6 +192,7 @@ impl App {
         let closes = viewport
             .is_some_and(|viewport| viewport.commands.contains(&egui::ViewportCommand::Close));
         if closes {
+            output.textures_delta.clear();
             events.exit();
             return;
         }
@@ -226,21 +227,17 @@ impl App {
     }
 }
 
-impl ApplicationHandler<Repaint> for App {
+impl ApplicationHandler<()> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if self.open.is_some() {
             return;
         }
-        match self.open(events) {
-            Ok(open) => {
-                self.devices += 1;
-                self.open = Some(open);
-            }
-            Err(error) => self.fail(events, error),
+        if let Err(error) = self.open(events) {
+            self.fail(events, error);
         }
     }
 
-    fn user_event(&mut self, _events: &ActiveEventLoop, _repaint: Repaint) {
+    fn user_event(&mut self, _events: &ActiveEventLoop, _repaint: ()) {
         let software = self.open.as_ref().is_some_and(|open| open.surface.is_software());
         let interval = if software { SOFTWARE_FRAME_INTERVAL } else { FRAME_INTERVAL };
         let at = self.drawn + interval;

@@ -8,7 +8,7 @@ use winit::monitor::MonitorHandle;
 use winit::window::{Window, WindowAttributes};
 
 use crate::app::preferences::Preferences;
-use crate::app::session::Session;
+use crate::app::session::open_session;
 use crate::app::sharing::RunLink;
 use crate::app::state::AppState;
 use crate::config::{Config, SavedState};
@@ -50,14 +50,13 @@ pub(super) fn first(
     options: &WindowOptions,
     preferences: &Preferences,
 ) -> Result<Opener> {
-    let others = [options.session.is_some(), options.open.is_some()];
-    if others.contains(&true) && !asked.is_empty() {
-        let field = if others[0] { "session" } else { "open" };
+    if (options.session.is_some() || options.open.is_some()) && !asked.is_empty() {
+        let field = if options.session.is_some() { "session" } else { "open" };
         let allowed = "left out where a scene or a setting is given: it has its own";
         return Err(Error::value(field, "given", allowed));
     }
     if let Some(path) = &options.session {
-        let session = Session::open(path)?;
+        let session = open_session(path)?;
         return Ok(Box::new(move |state| state.load_session(move || Ok(session))));
     }
     if let Some(text) = &options.open {

@@ -17,7 +17,6 @@ const LARGEST_SIDE_NEEDED: u32 = 2048;
 
 /// What became of a frame.
 pub(super) enum Drawn {
-    /// It shows.
     Shown,
     /// The surface had changed; the frame is to be drawn again.
     Again,
@@ -44,9 +43,6 @@ pub(super) struct WindowSurface {
 impl WindowSurface {
     /// Opens the strongest device that can draw on the window: on Vulkan, or else on OpenGL, or on the
     /// one that is asked for.
-    ///
-    /// # Errors
-    /// Where there is none, or the processor alone is asked for, which draws no window.
     pub(super) fn new(
         events: &ActiveEventLoop,
         window: &Arc<Window>,
@@ -54,18 +50,19 @@ impl WindowSurface {
     ) -> Result<Self> {
         // Each kind is tried by itself: a driver that is there but cannot draw on this display
         // must not keep the other from being found. `WGPU_BACKEND` overrides the choice.
-        let (first, second) = match (renderer, wgpu::Backends::from_env()) {
-            (RendererChoice::Auto, Some(backends)) => (backends, wgpu::Backends::GL),
-            (RendererChoice::Auto, None) => (wgpu::Backends::PRIMARY, wgpu::Backends::GL),
-            (RendererChoice::Vulkan, _) => (wgpu::Backends::VULKAN, wgpu::Backends::VULKAN),
-            (RendererChoice::Gl, _) => (wgpu::Backends::GL, wgpu::Backends::GL),
-            (RendererChoice::Cpu, _) => {
+        let first = match renderer {
+            RendererChoice::Auto => wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY),
+            RendererChoice::Vulkan => {
+                return Self::with_backends(events, window, wgpu::Backends::VULKAN);
+            }
+            RendererChoice::Gl => wgpu::Backends::GL,
+            RendererChoice::Cpu => {
                 let allowed = "auto, vulkan or gl for the window (cpu with --headless)";
                 return Err(Error::value("renderer", "cpu", allowed));
             }
         };
         Self::with_backends(events, window, first)
-            .or_else(|_| Self::with_backends(events, window, second))
+            .or_else(|_| Self::with_backends(events, window, wgpu::Backends::GL))
     }
 
     fn with_backends(
@@ -126,7 +123,7 @@ impl WindowSurface {
         })
     }
 
-    /// Whether the processor draws.
+    /// True where the processor draws.
     pub(super) fn is_software(&self) -> bool {
         self.software
     }
@@ -161,6 +158,7 @@ impl WindowSurface {
         // Callbacks of the device, the one that tells of its loss included, run in here.
         let polled = self.screen.device.poll(wgpu::PollType::Poll);
         if polled.is_err() || self.lost.load(Ordering::Relaxed) {
+            self.textures.clear();
             return Drawn::Lost;
         }
         let (texture, again) = match self.surface.get_current_texture() {
@@ -177,18 +175,13 @@ impl WindowSurface {
                 return self.replace_surface();
             }
         };
-        let pixels_per_point = output.pixels_per_point;
-        let primitives = context.tessellate(output.shapes, pixels_per_point);
-        self.screen.update_textures(&self.textures);
+        let ppp = output.pixels_per_point;
+        let primitives = context.tessellate(output.shapes, ppp);
         let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let size = [self.configuration.width, self.configuration.height];
-        let mut encoder = self.screen.device.create_command_encoder(&Default::default());
-        let extra = self.screen.paint(&mut encoder, &view, size, pixels_per_point, &primitives);
-        self.screen.queue.submit(extra.into_iter().chain([encoder.finish()]));
+        self.screen.draw(&view, size, ppp, &primitives, &mut self.textures, |_| {});
         self.window.pre_present_notify();
         self.screen.queue.present(texture);
-        let textures = std::mem::take(&mut self.textures);
-        self.screen.free_textures(&textures);
         if again {
             self.configure();
         }
