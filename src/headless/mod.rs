@@ -31,10 +31,6 @@ pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
 
 /// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
 /// figures.
-///
-/// # Errors
-/// In one sentence; nothing has been written where a value is refused. Where a signal or a full disk
-/// ends the run, what it came to until then has been written.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     let asks_for_files = options.draws() || options.save.is_some();
     let asks_for_data = || -> Result<bool> {
