@@ -11,7 +11,7 @@ use crate::sim::{GrainView, Snapshot};
 
 /// Red, green, blue and opacity, each 0 … 1, not premultiplied.
 #[repr(C)]
-#[cfg_attr(feature = "window", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Colour {
     pub red: f32,
