@@ -39,7 +39,6 @@ const MOST_PASSED: u32 = 10;
 /// A GIF that is there once it is finished.
 pub(crate) struct Animation {
     path: PathBuf,
-    /// Time that each picture is shown.
     picture_centisecs: u16,
     /// Two handles of one file: the encoder keeps the one that it writes to.
     encoder: Option<Encoder<File>>,
@@ -61,9 +60,6 @@ impl Animation {
     }
 
     /// Starts an animation of so many pictures a second, or of [`Self::nearest_rate_hz`].
-    ///
-    /// # Errors
-    /// Names the file and what the system says.
     pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
         let draft = PendingFile::start(path)?;
         let (path, picture_centisecs) = (path.to_owned(), Self::centisecs(rate_hz));
@@ -71,26 +67,17 @@ impl Animation {
     }
 
     /// Adds a picture. The first comes after what the animation says of itself, a comment.
-    ///
-    /// # Errors
-    /// Names the file and what the encoder says; the pictures before stay.
     pub(crate) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
         let added = self.encode(image, texts);
         let file = self.draft.file();
-        match (added, self.whole) {
-            (Ok(()), _) => {
-                self.pictures += 1;
-                self.whole = file.stream_position().ok();
-                return Ok(());
-            }
-            (Err(error), Some(whole)) => {
-                // A part of the picture may be there.
-                let _ = file.set_len(whole).and_then(|()| file.seek(SeekFrom::Start(whole)));
-                Err(error)
-            }
-            (Err(error), None) => Err(error),
+        if added.is_ok() {
+            self.pictures += 1;
+            self.whole = file.stream_position().ok();
+        } else if let Some(whole) = self.whole {
+            // A part of the picture may be there.
+            let _ = file.set_len(whole).and_then(|()| file.seek(SeekFrom::Start(whole)));
         }
-        .map_err(|error| Error::file(&self.path, error))
+        added.map_err(|error| Error::file(&self.path, error))
     }
 
     fn encode(
@@ -119,9 +106,6 @@ impl Animation {
     }
 
     /// Ends the animation and gives it its name. Whether there is one: none has no picture.
-    ///
-    /// # Errors
-    /// Names the file and what the system says.
     pub(crate) fn finish(self) -> Result<bool> {
         // The encoder writes the end of the file when it is dropped.
         drop(self.encoder);
@@ -147,9 +131,6 @@ pub(crate) struct Video {
 
 impl Video {
     /// Starts a video of so many pictures a second.
-    ///
-    /// # Errors
-    /// Says what is missing where ffmpeg cannot encode it.
     pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
         check_ffmpeg(path.display())?;
         Ok(Self { path: path.to_owned(), rate_hz, ffmpeg: None })
@@ -157,9 +138,6 @@ impl Video {
 
     /// Adds a picture. All have the size of the first, with even sides. The video carries the first one's texts as a
     /// comment.
-    ///
-    /// # Errors
-    /// Names the file and what ffmpeg or the system says.
     pub(crate) fn add(&mut self, image: &RgbaImage, texts: &Texts) -> Result<()> {
         let added = match &mut self.ffmpeg {
             Some(ffmpeg) => ffmpeg.add(image),
@@ -170,9 +148,6 @@ impl Video {
     }
 
     /// Ends the video and gives it its name. False where it has no picture: then there is no file.
-    ///
-    /// # Errors
-    /// Names the file and what ffmpeg or the system says; then there is no file.
     pub(crate) fn finish(self) -> Result<bool> {
         let Some(mut ffmpeg) = self.ffmpeg else { return Ok(false) };
         ffmpeg.finish().map_err(|error| Error::file(&self.path, error))?;
@@ -230,7 +205,6 @@ impl Ffmpeg {
         }
     }
 
-    /// Waits until all of it is encoded.
     fn finish(&mut self) -> std::io::Result<()> {
         drop(self.process.stdin.take());
         let status = self.process.wait()?;
@@ -275,9 +249,6 @@ fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'s
 }
 
 /// Checks that ffmpeg is there to encode videos; `given` is what asks for one.
-///
-/// # Errors
-/// Says what is missing.
 pub(crate) fn check_ffmpeg(given: impl std::fmt::Display) -> Result<()> {
     encoder().map(drop).map_err(|missing| {
         Error::value("video", given, format!("{missing}; a GIF and frames need nothing more"))

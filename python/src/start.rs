@@ -91,7 +91,7 @@ fn config_of(
     given.config()
 }
 
-/// Whether it is neither a name nor a path.
+/// True if it is neither a name nor a path.
 fn is_data(given: &Bound<'_, PyAny>) -> bool {
     !given.is_none()
         && !given.is_instance_of::<PyString>()

@@ -2,7 +2,7 @@
 
 mod studies;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -20,22 +20,43 @@ use crate::output::{
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, SolverSettings, StopTest};
-use studies::{ChartCommand, ReproduceCommand, StabilityCommand, SweepCommand, ValidateCommand};
+use studies::StudyCommand;
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
 #[derive(Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(flatten)]
-    run: RunCommand,
+    config: Config,
+    #[command(flatten)]
+    headless: HeadlessOptions,
+    #[cfg(feature = "window")]
+    #[command(flatten)]
+    window: WindowOptions,
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<CliCommand>,
 }
 
 #[derive(Subcommand)]
-enum Command {
+enum CliCommand {
     /// Put discs into a box over a rough base, let them come to rest, and write them as CSV
-    Generate(GenerateCommand),
+    Generate {
+        /// Number of grains
+        #[arg(long, default_value_t = NewPile::default().grains)]
+        grains: usize,
+        /// Width of the box, in mean diameters
+        #[arg(long, default_value_t = NewPile::default().box_width_in_diameters, allow_negative_numbers = true)]
+        box_width: f64,
+        /// Seed of diameters and places
+        #[arg(long, default_value_t = NewPile::default().seed)]
+        seed: u64,
+        /// How the grains are put in place
+        #[arg(long, value_name = "WAY", default_value_t, value_parser = parser_of::<Deposition>())]
+        deposition: Deposition,
+        /// The file to write
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
     /// List the built-in scenes and the methods
     List,
     /// Write the contact problem of one step to a file, or solve such a file alone
@@ -43,19 +64,14 @@ enum Command {
         #[command(subcommand)]
         command: ProblemCommand,
     },
-    /// Run a study: all combinations of lists and ranges of parameters, on all cores
-    Sweep(SweepCommand),
-    /// Make the paper's figures, and those its conclusion asks for, from simulation alone
-    Reproduce(ReproduceCommand),
-    /// Chart speed against accuracy of every method: of steps and of simulations
-    Chart(ChartCommand),
-    /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
-    Stability(StabilityCommand),
-    /// Hold Slump against published experiments: quantity, interval, verdict and cost, for a choice of methods
-    Validate(ValidateCommand),
+    #[command(flatten)]
+    Study(StudyCommand),
     /// Print a scene, with the changes asked for, as a scene file
-    // By far the largest of them.
-    Scene(Box<SceneCommand>),
+    Scene {
+        // By far the largest of them.
+        #[command(flatten)]
+        config: Box<Config>,
+    },
 }
 
 /// Exit code of all that went wrong, but for a signal.
@@ -89,52 +105,27 @@ pub fn main() -> ExitCode {
 
 fn run(cli: Cli) -> Result<()> {
     match cli.command {
-        Some(Command::Generate(command)) => command.run(),
-        Some(Command::List) => {
+        Some(CliCommand::Generate { grains, box_width, seed, deposition, out }) => {
+            let box_width_in_diameters = box_width;
+            generate(&NewPile { grains, box_width_in_diameters, seed, deposition }, &out)
+        }
+        Some(CliCommand::List) => {
             list();
             Ok(())
         }
-        Some(Command::Problem { command }) => command.run(),
-        Some(Command::Sweep(command)) => command.run(),
-        Some(Command::Reproduce(command)) => command.run(),
-        Some(Command::Chart(command)) => command.run(),
-        Some(Command::Stability(command)) => command.run(),
-        Some(Command::Validate(command)) => command.run(),
-        Some(Command::Scene(command)) => command.run(),
-        None => cli.run.run(),
-    }
-}
-
-/// Arguments of `slump`.
-#[derive(clap::Args)]
-struct RunCommand {
-    #[command(flatten)]
-    config: Config,
-    #[command(flatten)]
-    headless: HeadlessOptions,
-    #[cfg(feature = "window")]
-    #[command(flatten)]
-    window: WindowOptions,
-}
-
-impl RunCommand {
-    fn run(&self) -> Result<()> {
-        if self.headless.headless {
-            return crate::headless::run(&self.config, &self.headless);
+        Some(CliCommand::Problem { command }) => command.run(),
+        Some(CliCommand::Study(command)) => command.run(),
+        Some(CliCommand::Scene { config }) => {
+            print_text(scene_to_toml(&settled(&config)?)?);
+            Ok(())
         }
-        self.open_window()
-    }
-
-    #[cfg(feature = "window")]
-    fn open_window(&self) -> Result<()> {
-        crate::app::run(&self.config, &self.headless, &self.window)
-    }
-
-    #[cfg(not(feature = "window"))]
-    fn open_window(&self) -> Result<()> {
-        Err(Error::Renderer(
+        None if cli.headless.headless => crate::headless::run(&cli.config, &cli.headless),
+        #[cfg(feature = "window")]
+        None => crate::app::run(&cli.config, &cli.headless, &cli.window),
+        #[cfg(not(feature = "window"))]
+        None => Err(Error::Renderer(
             "this build has no window: build it with the feature window, or give --headless".into(),
-        ))
+        )),
     }
 }
 
@@ -174,72 +165,36 @@ fn list() {
     }
 }
 
-/// `slump generate`.
-#[derive(clap::Args)]
-struct GenerateCommand {
-    /// Number of grains
-    #[arg(long, default_value_t = NewPile::default().grains)]
-    grains: usize,
-    /// Width of the box, in mean diameters
-    #[arg(long, default_value_t = NewPile::default().box_width_in_diameters, allow_negative_numbers = true)]
-    box_width: f64,
-    /// Seed of diameters and places
-    #[arg(long, default_value_t = NewPile::default().seed)]
-    seed: u64,
-    /// How the grains are put in place
-    #[arg(long, value_name = "WAY", default_value_t, value_parser = parser_of::<Deposition>())]
-    deposition: Deposition,
-    /// The file to write
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-}
-
-impl GenerateCommand {
-    fn run(self) -> Result<()> {
-        let Self { grains: count, box_width: width, seed, deposition, out } = self;
-        check_file("out", &out)?;
-        let pile = NewPile { grains: count, box_width_in_diameters: width, seed, deposition };
-        let progress = Progress::new("settling", 100);
-        let settled = deposit(&pile, |Settling { time_secs, limit_secs, .. }| {
-            progress.set((100.0 * time_secs / limit_secs) as u64);
-            true
-        });
-        progress.finish();
-        let Settled { grains, kinetic_energy, mean_overlap, max_overlap } = settled?;
-        let rest = format!(
-            "At rest: kinetic energy {kinetic_energy:.1e} m g d a grain, overlap {mean_overlap:.1e} d in the \
+/// Puts discs into a box and writes them to a file once they are at rest.
+fn generate(pile: &NewPile, out: &Path) -> Result<()> {
+    check_file("out", out)?;
+    let progress = Progress::new("settling", 100);
+    let settled = deposit(pile, |Settling { time_secs, limit_secs, .. }| {
+        progress.set((100.0 * time_secs / limit_secs) as u64);
+        true
+    });
+    progress.finish();
+    let Settled { grains, kinetic_energy, mean_overlap, max_overlap } = settled?;
+    let rest = format!(
+        "At rest: kinetic energy {kinetic_energy:.1e} m g d a grain, overlap {mean_overlap:.1e} d in the \
              mean and {max_overlap:.1e} d at most."
-        );
-        let command = format!("slump generate --grains {count} --box-width {width} --seed {seed}");
-        let comment = match deposition {
-            // The shipped state has these lines alone.
-            Deposition::Rain => format!(
-                "Discs rained into a box over a rough base and left to come to rest; metres.\n{command}"
-            ),
-            Deposition::DropAndRoll => format!(
-                "Discs dropped into a box over a rough base, each rolled to where two others hold it, and \
+    );
+    let NewPile { grains: count, box_width_in_diameters: width, seed, deposition } = pile;
+    let command = format!("slump generate --grains {count} --box-width {width} --seed {seed}");
+    let comment = match deposition {
+        // The shipped state has these lines alone.
+        Deposition::Rain => format!(
+            "Discs rained into a box over a rough base and left to come to rest; metres.\n{command}"
+        ),
+        Deposition::DropAndRoll => format!(
+            "Discs dropped into a box over a rough base, each rolled to where two others hold it, and \
                  left to come to rest; metres.\n{rest}\n{command} --deposition drop-and-roll"
-            ),
-        };
-        write_file(&out, write_discs(&grains, &comment).as_bytes())?;
-        note_line(&rest);
-        print_line(out.display());
-        Ok(())
-    }
-}
-
-/// `slump scene`.
-#[derive(clap::Args)]
-struct SceneCommand {
-    #[command(flatten)]
-    config: Config,
-}
-
-impl SceneCommand {
-    fn run(&self) -> Result<()> {
-        print_text(scene_to_toml(&settled(&self.config)?)?);
-        Ok(())
-    }
+        ),
+    };
+    write_file(out, write_discs(&grains, &comment).as_bytes())?;
+    note_line(&rest);
+    print_line(out.display());
+    Ok(())
 }
 
 /// What to do with a problem.

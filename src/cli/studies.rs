@@ -20,31 +20,105 @@ use crate::study::{
     experiment_names, figure_names, merge, reproduce, sweep, validate,
 };
 
-/// `slump sweep`.
-#[derive(clap::Args)]
-#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub(super) struct SweepCommand {
-    /// The study file (NAME.toml)
-    #[arg(value_name = "STUDY", required = true)]
-    study: Option<PathBuf>,
-    /// Folder for the results; the same command goes on where it stopped
-    #[arg(long, value_name = "DIR", required = true)]
-    out: Option<PathBuf>,
-    /// Run part K of N alone; `slump sweep merge` joins the parts
-    #[arg(long, value_name = "K/N")]
-    shard: Option<String>,
-    /// Run the study's quick pass, which is coarser
-    #[arg(long)]
-    quick: bool,
-    /// Throw away what the folder holds of another study, or what cannot be read
-    #[arg(long)]
-    redo: bool,
-    #[command(subcommand)]
-    command: Option<SweepAction>,
+/// The commands of studies.
+#[derive(clap::Subcommand)]
+pub(super) enum StudyCommand {
+    /// Run a study: all combinations of lists and ranges of parameters, on all cores
+    #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+    Sweep {
+        /// The study file (NAME.toml)
+        #[arg(value_name = "STUDY", required = true)]
+        study: Option<PathBuf>,
+        /// Folder for the results; the same command goes on where it stopped
+        #[arg(long, value_name = "DIR", required = true)]
+        out: Option<PathBuf>,
+        /// Run part K of N alone; `slump sweep merge` joins the parts
+        #[arg(long, value_name = "K/N")]
+        shard: Option<String>,
+        /// Run the study's quick pass, which is coarser
+        #[arg(long)]
+        quick: bool,
+        /// Throw away what the folder holds of another study, or what cannot be read
+        #[arg(long)]
+        redo: bool,
+        #[command(subcommand)]
+        command: Option<SweepAction>,
+    },
+    /// Make the paper's figures, and those its conclusion asks for, from simulation alone
+    Reproduce {
+        /// Figures, or all
+        #[arg(required = true, value_name = "FIGURE", value_parser = PossibleValuesParser::new(figure_names()))]
+        figures: Vec<String>,
+        /// Folder for figures, tables and report; the same command goes on where it stopped
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Coarser, in a few minutes
+        #[arg(long)]
+        quick: bool,
+    },
+    /// Chart speed against accuracy of every method: of steps and of simulations
+    Chart {
+        /// Folder for pictures, tables and measurements; the same command goes on where it stopped
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Coarser, in a few minutes
+        #[arg(long)]
+        quick: bool,
+        /// Also race on steps of 500, 2,000 and 10,000 grains
+        #[arg(long)]
+        large: bool,
+        /// Chart these alone
+        #[arg(long, value_name = "PART", value_delimiter = ',')]
+        only: Vec<ChartPart>,
+    },
+    /// Run every method on scenes made to break methods, and tell where each holds, degrades and fails
+    Stability {
+        /// Challenges; all where none is given
+        #[arg(value_name = "SCENE")]
+        scenes: Vec<String>,
+        /// Folder for the table and its picture, and, unless challenges are given, the stability maps
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// File for the table alone, as CSV
+        #[arg(long, value_name = "FILE")]
+        table: Option<PathBuf>,
+        /// Leave the longest runs out: under a minute, and what the tests compare with
+        #[arg(long)]
+        quick: bool,
+    },
+    /// Hold Slump against published experiments: quantity, interval, verdict and cost, for a choice of methods
+    Validate {
+        /// Experiments; all where none is given
+        #[arg(value_name = "EXPERIMENT", value_parser = PossibleValuesParser::new(experiment_names()))]
+        experiments: Vec<String>,
+        /// Folder for report, tables and figure; the same command goes on where it stopped
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Smaller systems and fewer of them, in a few minutes
+        #[arg(long)]
+        quick: bool,
+        /// Methods, each with every time step and effort [default: nsgs]
+        #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parser_of::<Method>())]
+        methods: Vec<Method>,
+        /// Time steps, seconds [default: 1e-3, and 3e-4 unless quick]
+        #[arg(
+            long = "time-steps",
+            value_name = "SECONDS",
+            value_delimiter = ',',
+            allow_negative_numbers = true
+        )]
+        time_steps_secs: Vec<f64>,
+        /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either]
+        #[arg(long, value_name = "N", value_delimiter = ',')]
+        sweeps: Vec<u32>,
+        /// Efforts: residuals that a step is solved to, within 1,000 sweeps
+        #[arg(long, value_name = "X", value_delimiter = ',', allow_negative_numbers = true)]
+        tolerances: Vec<f64>,
+    },
 }
 
 #[derive(clap::Subcommand)]
-enum SweepAction {
+pub(super) enum SweepAction {
     /// Join the parts of a study into runs.csv
     Merge {
         /// The study file (NAME.toml)
@@ -69,33 +143,60 @@ enum SweepAction {
     },
 }
 
-impl SweepCommand {
+impl StudyCommand {
     pub(super) fn run(self) -> Result<()> {
-        match self.command {
-            Some(SweepAction::Merge { study, parts, out, quick }) => {
+        match self {
+            Self::Sweep {
+                command: Some(SweepAction::Merge { study, parts, out, quick }), ..
+            } => {
                 let study = Study::read(&study, quick)?;
                 let out = out.unwrap_or_else(|| parts[0].clone());
                 report_runs(&merge(&study, &parts, &out)?, &out);
                 Ok(())
             }
-            Some(SweepAction::Count { study, quick }) => {
+            Self::Sweep { command: Some(SweepAction::Count { study, quick }), .. } => {
                 print_line(Study::read(&study, quick)?.runs.len());
                 Ok(())
             }
-            None => {
+            Self::Sweep { study, out, shard, quick, redo, command: None } => {
                 let missing = |field| Error::value(field, "missing", "given");
-                let study = Study::read(&self.study.ok_or_else(|| missing("study"))?, self.quick)?;
-                let out = self.out.ok_or_else(|| missing("out"))?;
-                let shard = self.shard.map(|text| text.parse::<Shard>()).transpose()?;
-                let options = SweepOptions { shard, redo: self.redo, states: None };
-                match sweep(&study, &out, &options)? {
+                let study = Study::read(&study.ok_or_else(|| missing("study"))?, quick)?;
+                let out = out.ok_or_else(|| missing("out"))?;
+                let shard = shard.map(|text| text.parse::<Shard>()).transpose()?;
+                match sweep(&study, &out, &SweepOptions { shard, redo, states: None })? {
                     Some(table) => report_runs(&table, &out),
                     None => {
-                        print_line(format_args!("a part of {} in {}", study.name, out.display()))
+                        print_line(format_args!("a part of {} in {}", study.name, out.display()));
                     }
                 }
                 Ok(())
             }
+            Self::Reproduce { figures, out, quick } => {
+                reproduce(&figures, &out, quick, draw_snapshots)
+            }
+            Self::Chart { out, quick, large, only } => {
+                chart_speed(&ChartOptions { out, quick, large, only })
+            }
+            Self::Stability { scenes, out, table, quick } => {
+                stability(&scenes, out.as_deref(), table.as_deref(), quick)
+            }
+            Self::Validate {
+                experiments,
+                out,
+                quick,
+                methods,
+                time_steps_secs,
+                sweeps,
+                tolerances,
+            } => validate(&ValidateOptions {
+                experiments,
+                out,
+                quick,
+                methods,
+                time_steps_secs,
+                sweeps,
+                tolerances,
+            }),
         }
     }
 }
@@ -112,153 +213,62 @@ fn report_runs(table: &RunsTable, folder: &Path) {
     }
 }
 
-/// `slump reproduce`.
-#[derive(clap::Args)]
-pub(super) struct ReproduceCommand {
-    /// Figures, or all
-    #[arg(required = true, value_name = "FIGURE", value_parser = PossibleValuesParser::new(figure_names()))]
-    figures: Vec<String>,
-    /// Folder for figures, tables and report; the same command goes on where it stopped
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// Coarser, in a few minutes
-    #[arg(long)]
+fn stability(
+    scenes: &[String],
+    out: Option<&Path>,
+    table_path: Option<&Path>,
     quick: bool,
-}
-
-impl ReproduceCommand {
-    pub(super) fn run(&self) -> Result<()> {
-        reproduce(&self.figures, &self.out, self.quick, draw_snapshots)
+) -> Result<()> {
+    let named: Result<Vec<_>> = scenes.iter().map(|name| Challenge::named(name)).collect();
+    let challenges = match named? {
+        named if named.is_empty() => CHALLENGES.iter().collect(),
+        named => named,
+    };
+    if let Some(folder) = out {
+        check_writable("out", folder)?;
     }
-}
-
-/// `slump chart`.
-#[derive(clap::Args)]
-pub(super) struct ChartCommand {
-    /// Folder for pictures, tables and measurements; the same command goes on where it stopped
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// Coarser, in a few minutes
-    #[arg(long)]
-    quick: bool,
-    /// Also race on steps of 500, 2,000 and 10,000 grains
-    #[arg(long)]
-    large: bool,
-    /// Chart these alone
-    #[arg(long, value_name = "PART", value_delimiter = ',')]
-    only: Vec<ChartPart>,
-}
-
-impl ChartCommand {
-    pub(super) fn run(self) -> Result<()> {
-        let Self { out, quick, large, only } = self;
-        chart_speed(&ChartOptions { out, quick, large, only })
+    table_path.map(|path| check_file("table", path)).transpose()?;
+    let progress = Progress::new("stability", StabilityTable::count(&challenges, quick) as u64);
+    let table = StabilityTable::run(&challenges, quick, || {
+        progress.advance(1);
+    });
+    progress.finish();
+    let table = table?;
+    print_text(&table);
+    if let Some(folder) = out {
+        write_file(&folder.join("table.csv"), &table.to_csv()?)?;
+        draw_stability(&table, scenes, folder, quick)?;
+        print_line(folder.display());
     }
+    if let Some(path) = table_path {
+        write_file(path, &table.to_csv()?)?;
+        print_line(path.display());
+    }
+    Ok(())
 }
 
-/// `slump stability`.
-#[derive(clap::Args)]
-pub(super) struct StabilityCommand {
-    /// Challenges; all where none is given
-    #[arg(value_name = "SCENE")]
-    scenes: Vec<String>,
-    /// Folder for the table and its picture, and, unless challenges are given, the stability maps
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// File for the table alone, as CSV
-    #[arg(long, value_name = "FILE")]
-    table: Option<PathBuf>,
-    /// Leave the longest runs out: under a minute, and what the tests compare with
-    #[arg(long)]
+fn draw_stability(
+    table: &StabilityTable,
+    scenes: &[String],
+    folder: &Path,
     quick: bool,
-}
-
-impl StabilityCommand {
-    pub(super) fn run(self) -> Result<()> {
-        let named: Result<Vec<_>> = self.scenes.iter().map(|name| Challenge::named(name)).collect();
-        let challenges = match named? {
-            named if named.is_empty() => CHALLENGES.iter().collect(),
-            named => named,
-        };
-        if let Some(folder) = &self.out {
-            check_writable("out", folder)?;
-        }
-        self.table.as_deref().map(|table| check_file("table", table)).transpose()?;
-        let count = StabilityTable::count(&challenges, self.quick) as u64;
-        let progress = Progress::new("stability", count);
-        let table = StabilityTable::run(&challenges, self.quick, || {
-            progress.advance(1);
-        });
+) -> Result<()> {
+    let mut sheets = vec![("table".to_owned(), picture(table))];
+    if scenes.is_empty() {
+        let progress = Progress::new("maps", count_of_maps() as u64);
+        let found = maps(quick, || progress.advance(1));
         progress.finish();
-        let table = table?;
-        print_text(&table);
-        if let Some(folder) = &self.out {
-            write_file(&folder.join("table.csv"), &table.to_csv()?)?;
-            let quick = if self.quick { " --quick" } else { "" };
-            let scenes: String = self.scenes.iter().map(|name| format!(" {name}")).collect();
-            let command = format!("slump stability{quick}{scenes} --out stability");
-            let mut sheets = vec![("table".to_owned(), picture(&table))];
-            if self.scenes.is_empty() {
-                let progress = Progress::new("maps", count_of_maps() as u64);
-                let maps = maps(self.quick, || progress.advance(1));
-                progress.finish();
-                sheets.extend(maps?);
-            }
-            for (name, sheet) in &sheets {
-                write_file(&folder.join(format!("{name}.png")), &png(sheet, &command)?)?;
-                write_file(&folder.join(format!("{name}.svg")), svg(sheet)?.as_bytes())?;
-                if name != "table" {
-                    write_file(&folder.join(format!("{name}.csv")), &sheet.to_csv()?)?;
-                }
-            }
-            print_line(folder.display());
-        }
-        if let Some(path) = &self.table {
-            write_file(path, &table.to_csv()?)?;
-            print_line(path.display());
-        }
-        Ok(())
+        sheets.extend(found?);
     }
-}
-
-/// `slump validate`.
-#[derive(clap::Args)]
-pub(super) struct ValidateCommand {
-    /// Experiments; all where none is given
-    #[arg(value_name = "EXPERIMENT", value_parser = PossibleValuesParser::new(experiment_names()))]
-    experiments: Vec<String>,
-    /// Folder for report, tables and figure; the same command goes on where it stopped
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// Smaller systems and fewer of them, in a few minutes
-    #[arg(long)]
-    quick: bool,
-    /// Methods, each with every time step and effort [default: nsgs]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parser_of::<Method>())]
-    methods: Vec<Method>,
-    /// Time steps, seconds [default: 1e-3, and 3e-4 unless quick]
-    #[arg(long, value_name = "SECONDS", value_delimiter = ',', allow_negative_numbers = true)]
-    time_steps: Vec<f64>,
-    /// Efforts: this many sweeps a step, whatever they come to [default: 20 and 100, if no tolerance is given either]
-    #[arg(long, value_name = "N", value_delimiter = ',')]
-    sweeps: Vec<u32>,
-    /// Efforts: residuals that a step is solved to, within 1,000 sweeps
-    #[arg(long, value_name = "X", value_delimiter = ',', allow_negative_numbers = true)]
-    tolerances: Vec<f64>,
-}
-
-impl ValidateCommand {
-    pub(super) fn run(self) -> Result<()> {
-        let Self { experiments, out, quick, methods, time_steps, sweeps, tolerances } = self;
-        let time_steps_secs = time_steps;
-        validate(&ValidateOptions {
-            experiments,
-            out,
-            quick,
-            methods,
-            time_steps_secs,
-            sweeps,
-            tolerances,
-        })
+    let quick = if quick { " --quick" } else { "" };
+    let scenes: String = scenes.iter().map(|name| format!(" {name}")).collect();
+    let command = format!("slump stability{quick}{scenes} --out stability");
+    for (name, sheet) in &sheets {
+        write_file(&folder.join(format!("{name}.png")), &png(sheet, &command)?)?;
+        write_file(&folder.join(format!("{name}.svg")), svg(sheet)?.as_bytes())?;
+        if name != "table" {
+            write_file(&folder.join(format!("{name}.csv")), &sheet.to_csv()?)?;
+        }
     }
+    Ok(())
 }

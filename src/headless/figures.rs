@@ -16,7 +16,7 @@ use super::table::ObservablesTable;
 use super::writer::{go_on, interrupted, tell_of_alarms, tell_of_unconverged_steps};
 use crate::error::Result;
 use crate::output::{Progress, Texts, caught_signal, counted, note_line, print_line};
-use crate::render::{Camera, PanelGrid, Renderer, RendererChoice, Style, draw_scene};
+use crate::render::{PanelGrid, Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::View;
 use crate::sim::{Observables, Snapshot};
 use crate::study::png::write_png;
@@ -32,7 +32,6 @@ const FIG3_WIDTH: u32 = 1280;
 /// Width of a panel of Fig. 7, pixels.
 const CRADLE_PANEL_WIDTH: u32 = 720;
 
-/// One run that has ended.
 struct FigureRun {
     paper: PaperRun,
     snapshots: Vec<Snapshot>,
@@ -66,7 +65,9 @@ pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoic
     }
     let drawn = match failure {
         Some(failure) => Err(failure),
-        None => writer.figures(&runs),
+        None => {
+            writer.fig3(&runs).and_then(|()| writer.fig4(&runs)).and_then(|()| writer.fig7(&runs))
+        }
     };
     let written = writer.write_manifest();
     drawn.and(written)?;
@@ -122,7 +123,21 @@ impl Recorder for FigureRecorder<'_> {
     }
 }
 
-/// Draws figures and writes the manifest.
+struct FigurePanel<'a> {
+    run: &'a FigureRun,
+    /// Which of the run's snapshots it shows.
+    number: usize,
+    /// Name of its file, without ending.
+    name: String,
+}
+
+impl FigurePanel<'_> {
+    fn moment(&self) -> ShownMoment {
+        let observables = self.run.snapshots[self.number].observables;
+        ShownMoment { run: self.run.paper.name.clone(), observables }
+    }
+}
+
 struct FigureWriter<'a> {
     folder: &'a Path,
     renderer: &'a mut Renderer,
@@ -130,29 +145,21 @@ struct FigureWriter<'a> {
 }
 
 impl FigureWriter<'_> {
-    fn figures(&mut self, runs: &[FigureRun]) -> Result<()> {
-        self.fig3(runs)?;
-        self.fig4(runs)?;
-        self.fig7(runs)
-    }
-
     fn write_manifest(&self) -> Result<()> {
         self.manifest.write(&self.folder.join("manifest.json"))
     }
 
     fn fig3(&mut self, runs: &[FigureRun]) -> Result<()> {
         let Some(run) = of_figure(runs, "fig3").next() else { return Ok(()) };
-        let view = run.paper.scene.view();
-        let style = Style::default();
-        let panel = self.panel(run, 0, "fig3_panel", view, FIG3_WIDTH, &style)?;
-        let mut figure = PanelGrid::new(1, 1, vec![panel]);
+        let panels = vec![FigurePanel { run, number: 0, name: "fig3_panel".into() }];
+        let mut figure = self.panels([1, 1], &panels, run.paper.scene.view(), FIG3_WIDTH)?;
         figure.title = "Initial state shared by all piles".into();
         figure.caption = format!(
             "{} discs rained between walls over a rough base and left to come to rest. \
              Greys mark layers two diameters high. At t = 0 the walls go.",
             run.paper.scene.grains.len()
         );
-        self.write_figure("fig3.png", &figure.draw()?, vec![moment(run, 0)])
+        self.figure("fig3.png", &figure, &panels)
     }
 
     fn fig4(&mut self, runs: &[FigureRun]) -> Result<()> {
@@ -160,91 +167,85 @@ impl FigureWriter<'_> {
         // The base belongs to the picture: its discs reach half a diameter below y = 0.
         view.min.y = -0.5 * runs[0].paper.scene.mean_diameter;
         let mut panels = Vec::new();
-        let mut titles = Vec::new();
-        let mut moments = Vec::new();
         for bond in FIG4_BONDS {
             for time_step_secs in FIG4_TIME_STEPS_SECS {
                 let is_this = |run: &&FigureRun| {
                     let parameters = run.paper.scene.parameters;
                     parameters.bond == bond && parameters.time_step_secs == time_step_secs
                 };
-                let Some(run) = of_figure(runs, "fig4").find(is_this) else { continue };
-                // The scale is the same in all panels: one bar says it.
-                let style = Style { scale_bar: panels.is_empty(), ..Style::default() };
-                let name = run.paper.name.clone();
-                let slump = run.snapshots[0].observables.slump;
-                titles.push(format!("Δy_{{G}} = {slump:.3}"));
-                moments.push(moment(run, 0));
-                panels.push(self.panel(run, 0, &name, view, PILE_PANEL_WIDTH, &style)?);
+                let run = of_figure(runs, "fig4").find(is_this);
+                let panel = |run| FigurePanel { run, number: 0, name: run.paper.name.clone() };
+                panels.extend(run.map(panel));
             }
         }
-        let mut figure = PanelGrid::new(FIG4_BONDS.len(), FIG4_TIME_STEPS_SECS.len(), panels);
+        let Some(FigurePanel { run, .. }) = panels.first() else { return Ok(()) };
+        let grid = [FIG4_BONDS.len(), FIG4_TIME_STEPS_SECS.len()];
+        let mut figure = self.panels(grid, &panels, view, PILE_PANEL_WIDTH)?;
         figure.row_labels = FIG4_BONDS.map(|bond| format!("Bond = {bond}")).to_vec();
-        figure.column_labels =
-            FIG4_TIME_STEPS_SECS.map(|step| format!("Δt = {} s", power_of_ten(step))).to_vec();
-        figure.panel_titles = titles;
+        figure.column_labels = FIG4_TIME_STEPS_SECS.map(time_step).to_vec();
+        let title = |panel: &FigurePanel| {
+            format!("Δy_{{G}} = {:.3}", panel.run.snapshots[0].observables.slump)
+        };
+        figure.panel_titles = panels.iter().map(title).collect();
         figure.titles_inside = true;
-        let Some(run) = of_figure(runs, "fig4").next() else { return Ok(()) };
         figure.caption = format!(
             "The pile at t = {} s, from one initial state; Δy_{{G}} is the slump.",
             run.paper.scene.duration_secs
         );
-        self.write_figure("fig4.png", &figure.draw()?, moments)
+        self.figure("fig4.png", &figure, &panels)
     }
 
     fn fig7(&mut self, runs: &[FigureRun]) -> Result<()> {
         let view = common_view(runs, "fig7");
         let mut panels = Vec::new();
-        let mut moments = Vec::new();
-        for (row, time_secs) in FIG7_TIMES_SECS.iter().enumerate() {
-            for run in of_figure(runs, "fig7") {
-                let style = Style { scale_bar: panels.is_empty(), ..Style::default() };
+        for (number, time_secs) in FIG7_TIMES_SECS.iter().enumerate() {
+            panels.extend(of_figure(runs, "fig7").map(|run| {
                 let name = format!("{}_t{time_secs}", run.paper.name);
-                moments.push(moment(run, row));
-                panels.push(self.panel(run, row, &name, view, CRADLE_PANEL_WIDTH, &style)?);
-            }
+                FigurePanel { run, number, name }
+            }));
         }
-        let mut figure = PanelGrid::new(FIG7_TIMES_SECS.len(), FIG7_TIME_STEPS_SECS.len(), panels);
+        let grid = [FIG7_TIMES_SECS.len(), FIG7_TIME_STEPS_SECS.len()];
+        let mut figure = self.panels(grid, &panels, view, CRADLE_PANEL_WIDTH)?;
         figure.row_labels = FIG7_TIMES_SECS.map(|time| format!("t = {time} s")).to_vec();
-        figure.column_labels =
-            FIG7_TIME_STEPS_SECS.map(|step| format!("Δt = {} s", power_of_ten(step))).to_vec();
+        figure.column_labels = FIG7_TIME_STEPS_SECS.map(time_step).to_vec();
         figure.caption =
             "Three discs drawn towards the dot: k (dark grey) falls on the bonded pair \
                           of i (white) and j (light grey; does not feel the attraction)."
                 .into();
-        self.write_figure("fig7.png", &figure.draw()?, moments)
+        self.figure("fig7.png", &figure, &panels)
     }
 
-    /// Draws one panel `width` pixels wide and as high as its view asks, and writes it by itself.
-    fn panel(
+    /// Draws panels `width` pixels wide and as high as their view asks, and writes each by itself.
+    fn panels(
         &mut self,
-        run: &FigureRun,
-        number: usize,
-        name: &str,
-        View { min, max }: View,
+        [rows, columns]: [usize; 2],
+        panels: &[FigurePanel],
+        view: View,
         width: u32,
-        style: &Style,
-    ) -> Result<RgbaImage> {
-        let height = panel_height(min, max, width);
+    ) -> Result<PanelGrid> {
+        let height = panel_height(view, width);
         // The same camera with and without the bar: panels of one figure lie alike.
-        let camera: Camera = Style::default().camera(min, max, width, height);
-        let snapshot = &run.snapshots[number];
-        let image = draw_scene(self.renderer, snapshot, style, &camera, width, height)?;
-        let texts = texts_of_panel(&run.paper.scene, snapshot)?;
-        self.write(&format!("{name}.png"), &image, vec![moment(run, number)], &texts)?;
-        Ok(image)
+        let camera = Style::default().camera(view.min, view.max, width, height);
+        let mut images = Vec::new();
+        for panel in panels {
+            // The scale is the same in all panels: one bar says it.
+            let style = Style { scale_bar: images.is_empty(), ..Style::default() };
+            let snapshot = &panel.run.snapshots[panel.number];
+            let image = draw_scene(self.renderer, snapshot, &style, &camera, width, height)?;
+            let texts = texts_of_panel(&panel.run.paper.scene, snapshot)?;
+            let file = format!("{}.png", panel.name);
+            self.write(&file, &image, vec![panel.moment()], &texts)?;
+            images.push(image);
+        }
+        Ok(PanelGrid::new(rows, columns, images))
     }
 
     /// Writes a figure, all of which one command draws.
-    fn write_figure(
-        &mut self,
-        file: &str,
-        image: &RgbaImage,
-        shows: Vec<ShownMoment>,
-    ) -> Result<()> {
+    fn figure(&mut self, file: &str, figure: &PanelGrid, panels: &[FigurePanel]) -> Result<()> {
         let mut texts = Texts::default();
         texts.add("Command line", "slump --headless --frames figures");
-        self.write(file, image, shows, &texts)
+        let shows = panels.iter().map(FigurePanel::moment).collect();
+        self.write(file, &figure.draw()?, shows, &texts)
     }
 
     fn write(
@@ -258,11 +259,6 @@ impl FigureWriter<'_> {
         let entry = PictureEntry { file: file.to_owned(), shows };
         self.manifest.add(entry, &self.folder.join("manifest.json"))
     }
-}
-
-fn moment(run: &FigureRun, number: usize) -> ShownMoment {
-    let observables = run.snapshots[number].observables;
-    ShownMoment { run: run.paper.name.clone(), observables }
 }
 
 fn of_figure<'a>(runs: &'a [FigureRun], figure: &'a str) -> impl Iterator<Item = &'a FigureRun> {
@@ -281,21 +277,17 @@ fn common_view(runs: &[FigureRun], figure: &str) -> View {
 }
 
 /// Height in pixels that shows a view whole, with the margins that [`Style::camera`] leaves.
-fn panel_height(min: DVec2, max: DVec2, width: u32) -> u32 {
+fn panel_height(View { min, max }: View, width: u32) -> u32 {
     /// Room above and below for margins and scale bar, pixels.
     const ROOM: f64 = 70.0;
     let shape = (max.y - min.y) / (max.x - min.x);
     (f64::from(width) * shape + ROOM).ceil() as u32
 }
 
-/// A number as a journal writes it: 10^{−4}, 2·10^{−3}.
-fn power_of_ten(number: f64) -> String {
-    let text = format!("{number:e}");
+/// A time step as a journal writes it: Δt = 10^{−4} s, 2·10^{−3} s.
+fn time_step(secs: f64) -> String {
+    let text = format!("{secs:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let exponent = exponent.replace('-', "−");
-    if mantissa == "1" {
-        format!("10^{{{exponent}}}")
-    } else {
-        format!("{mantissa}·10^{{{exponent}}}")
-    }
+    let factor = if mantissa == "1" { String::new() } else { format!("{mantissa}·") };
+    format!("Δt = {factor}10^{{{}}} s", exponent.replace('-', "−"))
 }

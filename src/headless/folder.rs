@@ -22,7 +22,6 @@ use crate::sim::{Simulation, Tally};
 pub(super) enum EarlierFiles {
     /// Where there are any, the folder is refused.
     Refused,
-    /// They are removed.
     Cleared,
     /// They stay: the run goes on with what it began.
     Kept,
@@ -61,7 +60,7 @@ impl RunFolder {
         &self.path
     }
 
-    /// Whether a run may go on with what it holds.
+    /// True if a run may go on with what it holds.
     pub(super) fn may_go_on(&self) -> bool {
         self.earlier == EarlierFiles::Refused
     }
@@ -225,15 +224,10 @@ impl Checkpoints {
         }
     }
 
-    /// Whether one is due after this step.
     pub(super) fn is_due(&self, simulation: &Simulation) -> bool {
         simulation.step_at(self.next * self.every_secs) <= simulation.observables().step
     }
 
-    /// Writes one in the place of the one before.
-    ///
-    /// # Errors
-    /// Names the file and what the system says; the one before stays.
     pub(super) fn write(
         &mut self,
         scene: &Scene,
@@ -251,9 +245,6 @@ impl Checkpoints {
     }
 
     /// Removes it: the run is complete, and nothing goes on from there.
-    ///
-    /// # Errors
-    /// Names the file that stays.
     pub(super) fn remove(self) -> Result<()> {
         remove_if_there(&self.path)?;
         remove_if_there(&self.path.with_file_name(WAITING))

@@ -16,7 +16,6 @@ use crate::study::Recorded;
 pub(super) struct Manifest {
     pub program: &'static str,
     pub version: &'static str,
-    /// The command line.
     pub command: Vec<String>,
     pub renderer: String,
     pub runs: Vec<RunEntry>,
@@ -33,7 +32,6 @@ const WAIT: Duration = Duration::from_millis(500);
 /// A list that has become long is written less often: it takes no more than this part of the time.
 const PART: u32 = 20;
 
-/// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Ended {
@@ -50,7 +48,6 @@ pub(super) enum Ended {
 }
 
 impl Ended {
-    /// How a recorded run ended.
     pub(super) fn of(recorded: &Recorded) -> Self {
         match &recorded.failure {
             Some(Error::NonFinite { .. }) => Self::NotFinite,
@@ -61,7 +58,6 @@ impl Ended {
     }
 }
 
-/// One run.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RunEntry {
     pub name: String,
@@ -115,14 +111,12 @@ pub(super) struct Instant {
 }
 
 impl Instant {
-    /// That of these observables.
     pub(super) fn of(observables: &Observables) -> Self {
         let Observables { step, time_secs, .. } = *observables;
         Self { step, time_secs }
     }
 }
 
-/// Something that went wrong.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct AlarmEntry {
     #[serde(flatten)]
@@ -141,7 +135,6 @@ pub(super) struct PictureEntry {
 /// One moment of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ShownMoment {
-    /// Name of the run.
     pub run: String,
     pub observables: Observables,
 }
@@ -161,7 +154,6 @@ impl Manifest {
         }
     }
 
-    /// Writes it.
     pub(super) fn write(&self, path: &Path) -> Result<()> {
         self.write_and(path, true)
     }

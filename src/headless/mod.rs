@@ -31,22 +31,18 @@ pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
 
 /// Draws what `options` ask for. With nothing said of a scene or of frames, that is the paper's
 /// figures.
-///
-/// # Errors
-/// In one sentence; nothing has been written where a value is refused. Where a signal or a full disk
-/// ends the run, what it came to until then has been written.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
-    let asks_for_files = options.draws() || options.saving.save.is_some();
+    let asks_for_files = options.draws() || options.save.is_some();
     let asks_for_data = || -> Result<bool> {
         let of_scene = || Ok(config.without_settling()?.data.is_some_and(|it| it.folder.is_some()));
-        if options.data.data.is_some() { Ok(true) } else { of_scene() }
+        if options.data.is_some() { Ok(true) } else { of_scene() }
     };
     if !asks_for_files && !asks_for_data()? {
         let allowed =
             "a folder (--frames out/), or give --gif FILE, --video FILE, --data DIR or --save FILE";
         return Err(Error::value("frames", "missing", allowed));
     }
-    if options.overwrite && options.frames.is_none() && options.data.data.is_none() {
+    if options.overwrite && options.frames.is_none() && options.data.is_none() {
         return Err(Error::value("overwrite", "given", "given with --frames DIR or --data DIR"));
     }
     heed_signals();

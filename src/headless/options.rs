@@ -16,9 +16,7 @@ use crate::sim::Snapshot;
 /// Width and height of a picture, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PictureSize {
-    /// Pixels.
     pub width: u32,
-    /// Pixels.
     pub height: u32,
 }
 
@@ -45,82 +43,102 @@ pub(crate) enum Overlay {
     Angles,
 }
 
-/// Options of pictures.
-#[derive(Clone, Debug, Default, clap::Args)]
+/// Options of pictures, recordings and saved runs.
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+#[command(next_help_heading = "Pictures")]
 pub(crate) struct HeadlessOptions {
     /// Draw pictures without a window; with --frames alone, the paper's Fig. 3, 4 and 7
-    #[arg(long, help_heading = "Pictures")]
+    #[arg(long)]
     pub headless: bool,
     /// Folder for pictures, observables.csv and manifest.json
-    #[arg(long, value_name = "DIR", help_heading = "Pictures")]
+    #[arg(long, value_name = "DIR")]
     pub frames: Option<PathBuf>,
     /// Remove what earlier runs left in the folders; without it such a folder is refused
-    #[arg(long, help_heading = "Pictures")]
+    #[arg(long)]
     pub overwrite: bool,
     /// Size of a picture, pixels [default: 960x540]
-    #[arg(long, value_name = "WxH", help_heading = "Pictures")]
+    #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
     /// Pictures per simulated second: frame_00000.png and so on [default: 25]
-    #[arg(
-        long,
-        value_name = "N",
-        help_heading = "Pictures",
-        conflicts_with = "times",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "N", conflicts_with = "times", allow_negative_numbers = true)]
     pub fps: Option<f64>,
     /// Pictures at these simulated times, seconds; the last ends the run unless --duration is given
-    #[arg(
-        long,
-        value_name = "T1,T2",
-        help_heading = "Pictures",
-        value_delimiter = ',',
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "T1,T2", value_delimiter = ',', allow_negative_numbers = true)]
     pub times: Vec<f64>,
     /// Write the pictures as an animation too, 25 a second
-    #[arg(long, value_name = "FILE", help_heading = "Pictures")]
+    #[arg(long, value_name = "FILE")]
     pub gif: Option<PathBuf>,
     /// Write the pictures as a video too, at the pace of simulated time: MP4, by ffmpeg
-    #[arg(long, value_name = "FILE", help_heading = "Pictures", conflicts_with = "times")]
+    #[arg(long, value_name = "FILE", conflicts_with = "times")]
     pub video: Option<PathBuf>,
     /// Simulated seconds in a second of the video: 0.1 is ten times slower than it was, and asks for 250 pictures
     /// per simulated second unless --fps says otherwise [default: 1]
-    #[arg(long, value_name = "N", help_heading = "Pictures", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub video_speed: Option<f64>,
     /// What to lay over the grains
-    #[arg(long, value_name = "WHAT", help_heading = "Pictures", value_delimiter = ',')]
+    #[arg(long, value_name = "WHAT", value_delimiter = ',')]
     pub show: Vec<Overlay>,
     /// What the colours of the grains stand for
-    #[arg(long, value_name = "BY", help_heading = "Pictures", alias = "color")]
+    #[arg(long, value_name = "BY", alias = "color")]
     pub colour: Option<ColourBy>,
     /// Values at the two ends of the colours: m/s, diameters or N. Frames are then drawn as the run goes;
     /// without it they wait for its end, to share the scale that shows all of them
     #[arg(
         long,
         value_name = "LOW,HIGH",
-        help_heading = "Pictures",
         value_delimiter = ',',
         allow_negative_numbers = true,
         alias = "color-scale"
     )]
     pub colour_scale: Vec<f64>,
     /// Force of the widest link, N: the same for --show forces
-    #[arg(long, value_name = "N", help_heading = "Pictures", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub force_scale: Option<f64>,
     /// Ground and ink
-    #[arg(long, value_name = "THEME", help_heading = "Pictures")]
+    #[arg(long, value_name = "THEME")]
     pub theme: Option<Theme>,
     /// What draws: auto tries Vulkan, OpenGL and then the processor
-    #[arg(long, value_name = "KIND", help_heading = "Pictures", default_value = "auto")]
+    #[arg(long, value_name = "KIND", default_value = "auto")]
     pub renderer: RendererChoice,
-    #[command(flatten)]
-    pub saving: SavingOptions,
-    #[command(flatten)]
-    pub data: DataOptions,
+    /// Go on with a saved run: simulated time, slump and the numbers of pictures go on, and settings given besides change it from there on (--initial begins a new run at t = 0 with its grains)
+    #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
+    pub restart: Option<PathBuf>,
+    /// Save the run at its end, a signal's too, unless its state is no longer finite
+    #[arg(long, value_name = "FILE", help_heading = "Saved runs", requires = "headless")]
+    pub save: Option<PathBuf>,
+    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames: the same command, given again after whatever stopped it, goes on from there (--overwrite begins anew)
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        help_heading = "Saved runs",
+        requires_all = ["headless", "frames"],
+        allow_negative_numbers = true
+    )]
+    pub checkpoint_every: Option<f64>,
+    /// Folder for a recording: all grains and contacts at the times of the pictures, for other programs
+    #[arg(long, value_name = "DIR", help_heading = "Data", requires = "headless")]
+    pub data: Option<PathBuf>,
+    /// Simulated time between its moments, seconds [default: the times of the pictures]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        help_heading = "Data",
+        requires = "headless",
+        allow_negative_numbers = true
+    )]
+    pub data_every: Option<f64>,
+    /// What it is written as [default: parquet]
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        help_heading = "Data",
+        requires = "headless",
+        value_delimiter = ',',
+        value_parser = parser_of::<FormatName>()
+    )]
+    pub data_format: Vec<FormatName>,
 }
 
-/// Size of a picture that no size is given for.
 const DEFAULT_SIZE: PictureSize = PictureSize { width: 960, height: 540 };
 /// Pictures per simulated second where neither rate nor times are given.
 const DEFAULT_FPS: f64 = 25.0;
@@ -128,24 +146,13 @@ const DEFAULT_FPS: f64 = 25.0;
 const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
-    /// Whether anything is said that only frames of one scene have.
-    pub(crate) fn asks_for_frames(&self) -> bool {
-        self.fps.is_some()
-            || !self.times.is_empty()
-            || self.size.is_some()
-            || self.animation().is_some()
-            || !self.show.is_empty()
-            || self.colour.is_some()
-            || !self.colour_scale.is_empty()
-            || self.force_scale.is_some()
-            || self.theme.is_some()
-            || self.data.data.is_some()
-            || self.saving.restart.is_some()
-            || self.saving.save.is_some()
-            || self.saving.checkpoint_every.is_some()
+    /// True where anything is said beside where the paper's figures go.
+    pub(super) fn asks_for_frames(&self) -> bool {
+        let Self { headless, overwrite, renderer, .. } = *self;
+        let frames = self.frames.clone();
+        *self != Self { headless, frames, overwrite, renderer, ..Self::default() }
     }
 
-    /// Whether pictures are drawn at all.
     pub(super) fn draws(&self) -> bool {
         self.frames.is_some() || self.animation().is_some()
     }
@@ -155,18 +162,10 @@ impl HeadlessOptions {
         self.gif.as_deref().or(self.video.as_deref())
     }
 
-    /// The size of a picture.
-    ///
-    /// # Errors
-    /// Where it is none.
     pub(crate) fn size(&self) -> Result<PictureSize> {
         self.size.as_ref().map_or(Ok(DEFAULT_SIZE), |text| text.parse())
     }
 
-    /// How the scene is drawn.
-    ///
-    /// # Errors
-    /// Where a scale is none, or given for what has none.
     pub(crate) fn style(&self) -> Result<Style> {
         let style = Style {
             colour_by: self.colour.unwrap_or_default(),
@@ -202,17 +201,11 @@ impl HeadlessOptions {
     }
 
     /// Pictures per simulated second where no times are given.
-    ///
-    /// # Errors
-    /// Where the speed of a video is none.
     pub(super) fn pictures_per_sec(&self) -> Result<f64> {
         Ok(self.fps.unwrap_or(DEFAULT_FPS / self.video_speed()?))
     }
 
     /// Simulated seconds in a second of the video; of pictures without a video in a second of what is shown.
-    ///
-    /// # Errors
-    /// Where it is none, or there is no video.
     fn video_speed(&self) -> Result<f64> {
         let Some(speed) = self.video_speed else { return Ok(1.0) };
         if self.video.is_none() {
@@ -224,10 +217,6 @@ impl HeadlessOptions {
         Err(Error::value("video-speed", speed, "a finite number > 0"))
     }
 
-    /// How many pictures a second of the video has.
-    ///
-    /// # Errors
-    /// Where nothing can encode videos, or the rate or the size are not those of one.
     pub(super) fn video_rate_hz(&self) -> Result<f64> {
         if let Some(path) = &self.video {
             check_ffmpeg(path.display())?;
@@ -252,9 +241,6 @@ impl HeadlessOptions {
     }
 
     /// The times of the pictures of a run that lasts `duration_secs`, s, rising.
-    ///
-    /// # Errors
-    /// Where the rate or a time is outside its range.
     pub(crate) fn picture_times(&self, duration_secs: f64) -> Result<Vec<f64>> {
         if !self.times.is_empty() {
             let allowed = format!("between 0 and the duration of {duration_secs} s");
@@ -276,32 +262,9 @@ impl HeadlessOptions {
     }
 }
 
-/// Options of runs that are saved and gone on with.
-#[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct SavingOptions {
-    /// Go on with a saved run: simulated time, slump and the numbers of pictures go on, and settings given besides change it from there on (--initial begins a new run at t = 0 with its grains)
-    #[arg(long, value_name = "FILE", help_heading = "Saved runs")]
-    pub restart: Option<PathBuf>,
-    /// Save the run at its end, a signal's too, unless its state is no longer finite
-    #[arg(long, value_name = "FILE", help_heading = "Saved runs", requires = "headless")]
-    pub save: Option<PathBuf>,
-    /// Save the run each so many simulated seconds, as checkpoint.slump beside the frames: the same command, given again after whatever stopped it, goes on from there (--overwrite begins anew)
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        help_heading = "Saved runs",
-        requires_all = ["headless", "frames"],
-        allow_negative_numbers = true
-    )]
-    pub checkpoint_every: Option<f64>,
-}
-
-impl SavingOptions {
-    /// Checks what can be checked before anything is read.
-    ///
-    /// # Errors
-    /// Where the time between checkpoints is none.
-    pub(super) fn validate(&self) -> Result<()> {
+impl HeadlessOptions {
+    /// Fails where the time between checkpoints is none.
+    pub(super) fn check_checkpoints(&self) -> Result<()> {
         match self.checkpoint_every {
             Some(secs) if !(secs > 0.0 && secs.is_finite()) => {
                 Err(Error::value("checkpoint-every", secs, "a finite number of seconds > 0"))
@@ -309,66 +272,25 @@ impl SavingOptions {
             _ => Ok(()),
         }
     }
-}
 
-/// Options of recordings.
-#[derive(Clone, Debug, Default, clap::Args)]
-pub(crate) struct DataOptions {
-    /// Folder for a recording: all grains and contacts at the times of the pictures, for other programs
-    #[arg(long, value_name = "DIR", help_heading = "Data", requires = "headless")]
-    pub data: Option<PathBuf>,
-    /// Simulated time between its moments, seconds [default: the times of the pictures]
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        help_heading = "Data",
-        requires = "headless",
-        allow_negative_numbers = true
-    )]
-    pub data_every: Option<f64>,
-    /// What it is written as [default: parquet]
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        help_heading = "Data",
-        requires = "headless",
-        value_delimiter = ',',
-        value_parser = parser_of::<FormatName>()
-    )]
-    pub data_format: Vec<FormatName>,
-}
-
-impl DataOptions {
-    /// What is asked for by these and by the scene; these go first. Nothing where neither names a folder.
-    ///
-    /// # Errors
-    /// Names what is outside its range.
-    pub(super) fn settings(&self, scene: &Scene) -> Result<Option<(PathBuf, DataSettings)>> {
+    /// The recording that is asked for by these and by the scene; these go first. Nothing where neither names a folder.
+    pub(super) fn data_settings(&self, scene: &Scene) -> Result<Option<(PathBuf, DataSettings)>> {
         let of_scene = scene.data.clone().unwrap_or_default();
-        let formats =
-            if self.data_format.is_empty() { of_scene.formats } else { self.data_format.clone() };
+        let given = !self.data_format.is_empty();
+        let formats = if given { self.data_format.clone() } else { of_scene.formats };
         let every_secs = self.data_every.or(of_scene.every_secs);
         let settings = DataSettings { folder: None, every_secs, formats };
         settings.validate("data-every")?;
         let folder = self.data.clone().or(of_scene.folder);
-        if folder.is_none()
-            && let Some(field) = self.without_folder()
-        {
-            return Err(Error::value(field, "given", "given with --data DIR"));
+        let alone = self.data_every.map(|_| "data-every").or(given.then_some("data-format"));
+        match (folder, alone) {
+            (None, Some(field)) => Err(Error::value(field, "given", "given with --data DIR")),
+            (folder, _) => Ok(folder.map(|folder| (folder, settings))),
         }
-        Ok(folder.map(|folder| (folder, settings)))
-    }
-
-    fn without_folder(&self) -> Option<&'static str> {
-        let every = self.data_every.map(|_| "data-every");
-        every.or((!self.data_format.is_empty()).then_some("data-format"))
     }
 }
 
 /// What a panel of a figure says of itself, of a scene that is built in.
-///
-/// # Errors
-/// Where it is none.
 pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
     let settings = scene.settings();
     let words = Config::of_scene(&scene.name).words(&settings)?;
@@ -380,12 +302,9 @@ pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts
 
 impl HeadlessOptions {
     /// What a run is made of that `config` and these options ask for.
-    ///
-    /// # Errors
-    /// Where the scene is no longer there.
     pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
         let settings = scene.settings();
-        let words = match &self.saving.restart {
+        let words = match &self.restart {
             None => {
                 // Frames are the same however long the run goes on after them.
                 let mut config = config.clone();

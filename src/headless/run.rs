@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use super::HeadlessOptions;
 use super::folder::{Beginning, Checkpoints, EarlierFiles, Marks, RunFolder, look};
 use super::manifest::Instant;
-use super::options::SavingOptions;
 use super::writer::{RunWriter, interrupted};
 use crate::config::{Config, SavedState, scene_facts};
 use crate::data::{DataSettings, Recording, RecordingFolder, Times, formats_of};
@@ -28,16 +27,16 @@ pub(super) fn draw(
     options.video_rate_hz()?;
     let asked = RequestedRun::of(config, options)?;
     let PictureSchedule { times_secs, until_secs } = asked.schedule(config, options)?;
-    let data = options.data.settings(asked.scene())?;
+    let data = options.data_settings(asked.scene())?;
     let choice = if options.draws() { options.renderer } else { RendererChoice::Cpu };
     let renderer = Renderer::new(choice)?;
     renderer.check_size(size.width, size.height)?;
     let lock = |path: &Path| RunFolder::lock(path, earlier);
     let folder = options.frames.as_deref().map(lock).transpose()?;
-    let every_secs = options.saving.checkpoint_every;
+    let every_secs = options.checkpoint_every;
     let fingerprint = every_secs.map(|_| asked.fingerprint(config, options)).transpose()?;
     let found = left_in(folder.as_ref(), fingerprint.as_deref())?;
-    let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.saving.save)];
+    let files = [("gif", &options.gif), ("video", &options.video), ("save", &options.save)];
     for (option, path) in files {
         path.as_deref().map(|path| check_file(option, path)).transpose()?;
     }
@@ -121,8 +120,8 @@ impl RequestedRun {
     /// # Errors
     /// Names what is refused.
     pub(super) fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
-        options.saving.validate()?;
-        let Some(path) = &options.saving.restart else {
+        options.check_checkpoints()?;
+        let Some(path) = &options.restart else {
             let start = config.without_settling()?;
             // Shapes that are none and discs in one place are told of before anything is written.
             start.simulation()?;
@@ -185,7 +184,9 @@ impl RequestedRun {
         let pictures = HeadlessOptions {
             frames: None,
             overwrite: false,
-            saving: SavingOptions::default(),
+            restart: None,
+            save: None,
+            checkpoint_every: None,
             ..options.clone()
         };
         let start = match self {

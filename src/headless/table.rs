@@ -48,13 +48,11 @@ impl ObservablesTable {
         Self { path, rows, written: Instant::now() }
     }
 
-    /// Adds a row.
     pub(super) fn add(&mut self, observables: &Observables) -> Result<()> {
         self.rows.serialize(observables).map_err(|error| Error::file(&self.path, error))?;
         if self.written.elapsed() >= LONGEST_WAIT { self.flush() } else { Ok(()) }
     }
 
-    /// Writes the rows that wait.
     pub(super) fn flush(&mut self) -> Result<()> {
         self.rows.flush().map_err(|error| Error::file(&self.path, error))?;
         self.written = Instant::now();
@@ -80,7 +78,7 @@ struct WholeRows {
     file: GrowingFile,
     /// The beginning of a row whose end has not come yet.
     begun: Vec<u8>,
-    /// Whether it took no more; rows that come later would leave a gap.
+    /// True if it took no more; rows that come later would leave a gap.
     is_full: bool,
 }
 

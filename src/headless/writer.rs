@@ -24,12 +24,10 @@ use crate::solver::Method;
 use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
-/// Name of the run in the manifest.
 const RUN: &str = "run";
 /// Pictures a second of a GIF, which viewers keep up with.
 const GIF_RATE_HZ: f64 = 25.0;
 
-/// Writes all that a run leaves.
 pub(super) struct RunWriter<'a> {
     options: &'a HeadlessOptions,
     scene: &'a Scene,
@@ -43,7 +41,6 @@ pub(super) struct RunWriter<'a> {
     /// Colours and widths that follow the state need one scale for all frames, so those frames wait
     /// for the end of the run, unless it is given. All others are drawn as the run comes by.
     waiting: Option<WaitingStates>,
-    /// What records the run as well.
     pub recording: Option<Recording>,
     manifest: Manifest,
     provenance: Provenance,
@@ -154,7 +151,7 @@ impl<'a> RunWriter<'a> {
             Some(_) => Ok(()),
             None => self.checkpoint(simulation, tally),
         };
-        let saved = match (&self.options.saving.save, failure) {
+        let saved = match (&self.options.save, failure) {
             (None, _) | (_, Some(Error::NonFinite { .. })) => Ok(()),
             (Some(path), _) => {
                 let state = SavedState::new(self.scene.clone(), simulation.clone(), *tally);
@@ -301,7 +298,7 @@ pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
     format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }
 
-/// Whether a run goes on: until a signal comes.
+/// A run goes on until a signal comes.
 pub(super) fn go_on() -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }

@@ -72,7 +72,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether it is about the state at the moment that is shown.
+    /// True if it is about the state at the moment that is shown.
     pub(super) fn is_about_the_moment(&self) -> bool {
         matches!(
             self,
@@ -85,7 +85,7 @@ impl Command {
         )
     }
 
-    /// Whether it needs a state that a seek is still computing.
+    /// True if it needs a state that a seek is still computing.
     pub(super) fn waits_for_seek(&self) -> bool {
         self.is_about_the_moment() || matches!(self, Self::Play | Self::Reset | Self::Return(..))
     }
@@ -107,7 +107,7 @@ pub struct LiveStart {
     pub held_by: Vec<Boundary>,
     /// Lower left and upper right corner of what pictures show, m.
     pub view: [DVec2; 2],
-    /// Whether it is one of a heap on level ground, of which slump tells.
+    /// True if it is one of a heap on level ground, of which slump tells.
     pub slumps: bool,
     /// The settings of the worlds that are side by side at first; none for one world with those of the simulation.
     pub worlds: Vec<Settings>,

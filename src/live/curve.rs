@@ -34,7 +34,7 @@ impl Curve {
         self.chunks.len() * CHUNK + self.tail.len()
     }
 
-    /// Whether there is no row.
+    /// True if there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -49,12 +49,10 @@ impl Curve {
         self.chunks.iter().flat_map(|chunk| chunk.iter()).chain(&self.tail)
     }
 
-    /// The last row.
     pub(crate) fn last(&self) -> Option<&Observables> {
         self.tail.last().or_else(|| self.chunks.last().and_then(|chunk| chunk.last()))
     }
 
-    /// Appends a step's observables.
     pub(crate) fn push(&mut self, row: Observables) {
         if !row.step.is_multiple_of(self.stride) {
             return;

@@ -24,15 +24,18 @@ const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
 /// What the thread is at.
 #[derive(Clone, Debug)]
 enum Mode {
-    /// Time stands still.
     Paused,
     /// Time passes: steps are computed as they are due.
     Computing,
     /// Time passes within the record: stored moments are shown up to this simulated time, s, and nothing is computed, so
     /// that a slow run is shown fluently. The worlds stay where they are meanwhile.
-    Showing { until_secs: f64 },
+    Showing {
+        until_secs: f64,
+    },
     /// A recorded moment is computed, after which time passes or stands still.
-    Seeking { then_plays: bool },
+    Seeking {
+        then_plays: bool,
+    },
     /// A start is made.
     Loading(LoadingProgress),
 }
@@ -51,21 +54,19 @@ impl Mode {
     }
 }
 
-/// Where frames go.
 struct Outbox {
     frames: Input<LiveFrame>,
     wake: Box<dyn Fn() + Send>,
     interval: Duration,
     count: u64,
     sent: Instant,
-    /// Whether the newest state is one that no frame shows.
+    /// True if the newest state is one that no frame shows.
     is_behind: bool,
-    /// Whether the next step is to be shown as soon as it is taken.
+    /// True if the next step is to be shown as soon as it is taken.
     is_urgent: bool,
 }
 
 impl Outbox {
-    /// How long the next frame is to wait.
     fn wait(&self) -> Duration {
         let intervals = if self.frames.consumed() { 1 } else { UNFETCHED_INTERVALS };
         (intervals * self.interval).saturating_sub(self.sent.elapsed())
@@ -91,7 +92,6 @@ pub(super) struct Engine {
     quit: bool,
 }
 
-/// An error as frames carry it.
 fn message(error: Error) -> Arc<str> {
     error.to_string().into()
 }
@@ -385,7 +385,7 @@ impl Engine {
         }
     }
 
-    /// Whether a command came that makes the present loading pointless. The others wait.
+    /// True if a command came that makes the present loading pointless. The others wait.
     fn is_interrupted(&mut self) -> bool {
         let mut interrupted = false;
         while let Ok((number, command)) = self.inbox.try_recv() {

@@ -27,15 +27,15 @@ pub struct LiveFrame {
     pub name: String,
     /// Runs that others have taken the place of, the newest last.
     pub past: Arc<[PastRun]>,
-    /// Whether time passes.
+    /// True if time passes.
     pub playing: bool,
-    /// Whether the next step is one that is recorded.
+    /// True if the next step is one that is recorded.
     pub replaying: bool,
-    /// Whether the next step leaves what is recorded behind.
+    /// True if the next step leaves what is recorded behind.
     pub branching: bool,
-    /// Whether what shows is stored, and nothing is computed.
+    /// True if what shows is stored, and nothing is computed.
     pub stored: bool,
-    /// Whether a recorded moment is being computed.
+    /// True if a recorded moment is being computed.
     pub seeking: bool,
     /// A start that is being made.
     pub loading: Option<LoadingProgress>,
@@ -58,7 +58,7 @@ pub struct WorldFrame {
     pub gravity: Option<DVec2>,
     /// The observables of the whole recording.
     pub curve: Curve,
-    /// Whether all that is recorded was computed with the settings of the next step, and pulled by no hand.
+    /// True if all that is recorded was computed with the settings of the next step, and pulled by no hand.
     pub is_even: bool,
     /// Simulated time that the recording starts at, s.
     pub recorded_from_secs: f64,
@@ -95,7 +95,7 @@ pub struct WorldAlarm {
     pub kind: AlarmKind,
     /// What happened, since when, and what would have helped under the settings of that step.
     pub text: Arc<str>,
-    /// Whether those are no longer the settings.
+    /// True if those are no longer the settings.
     pub is_earlier: bool,
 }
 
@@ -110,12 +110,12 @@ impl LiveFrame {
         self.worlds.iter().map(|world| world.recorded_secs).fold(0.0, f64::max)
     }
 
-    /// Whether the run is at its start.
+    /// True if the run is at its start.
     pub fn at_start(&self) -> bool {
         self.worlds.iter().all(|world| world.snapshot.observables.step == 0)
     }
 
-    /// Whether the scene is held and has not been released.
+    /// True if the scene is held and has not been released.
     pub fn held(&self) -> bool {
         self.at_start() && self.start.as_ref().is_some_and(|start| !start.held_by.is_empty())
     }

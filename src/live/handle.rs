@@ -77,7 +77,7 @@ impl Live {
         self.frames.read()
     }
 
-    /// Whether there is a frame that [`Live::latest`] has not returned yet.
+    /// True if there is a frame that [`Live::latest`] has not returned yet.
     pub fn has_news(&self) -> bool {
         self.frames.updated()
     }

@@ -55,18 +55,18 @@ impl LiveRun {
         self.worlds.iter().map(|world| *world.simulation.settings()).collect()
     }
 
-    /// Whether the next tick leaves what is recorded behind.
+    /// True if the next tick leaves what is recorded behind.
     pub(super) fn branches(&self) -> bool {
         self.worlds.iter().any(WorldHistory::branches)
     }
 
-    /// Whether the next tick shows what is recorded.
+    /// True if the next tick shows what is recorded.
     pub(super) fn replays(&self) -> bool {
         let replays = |world: &WorldHistory| world.record.replays(&world.simulation);
         !self.branches() && self.worlds.iter().any(replays)
     }
 
-    /// Whether the moments after the present one are stored.
+    /// True if the moments after the present one are stored.
     pub(super) fn is_stored(&self) -> bool {
         self.worlds.iter().all(|world| world.stored.go_on_from(world.steps()))
     }
@@ -87,12 +87,10 @@ impl LiveRun {
         })
     }
 
-    /// Simulated time of the leader, s.
     pub(super) fn time_secs(&self) -> f64 {
         self.leader().map_or(0.0, |world| world.simulation.time_secs())
     }
 
-    /// Time step of the leader, s.
     pub(super) fn time_step_secs(&self) -> f64 {
         self.leader().map_or(0.0, WorldHistory::time_step_secs)
     }
@@ -118,7 +116,6 @@ impl LiveRun {
         (self.steps() - steps_before, all_well)
     }
 
-    /// Starts on the way to a recorded moment.
     pub(super) fn seek(&mut self, time_secs: f64) {
         self.worlds.iter_mut().for_each(|world| world.seek(time_secs));
     }
@@ -194,7 +191,6 @@ pub struct RunHistory {
     /// Counts the runs that were kept.
     #[serde(skip)]
     count: u64,
-    /// Memory for keyframes.
     #[serde(skip)]
     recording_bytes: usize,
 }
@@ -226,7 +222,6 @@ impl RunHistory {
         self.present.keep_within(self.recording_bytes);
     }
 
-    /// Forgets everything.
     pub(super) fn clear(&mut self) {
         self.present = LiveRun::default();
         self.past.clear();
@@ -268,9 +263,6 @@ impl RunHistory {
     }
 
     /// Has a hand change a world. Where that leaves what is recorded behind, it is kept.
-    ///
-    /// # Errors
-    /// Where the world cannot be changed so.
     pub(super) fn edit(&mut self, world: usize, edit: Edit) -> Result<()> {
         let Some(edited) = self.present.worlds.get(world) else { return Ok(()) };
         let branches = edited.record.is_before_end(&edited.simulation);
@@ -368,7 +360,7 @@ impl RunHistory {
         Ok(Self { present: LiveRun { worlds, ..LiveRun::default() }, ..Self::default() })
     }
 
-    /// Whether one that was read holds together.
+    /// True if one that was read holds together.
     pub fn is_sound(&self) -> bool {
         let is_sound = |run: &LiveRun| {
             !run.worlds.is_empty() && run.worlds.iter().all(|world| world.record.is_sound())

@@ -123,12 +123,10 @@ impl WorldRecord {
         }
     }
 
-    /// The step of the last keyframe.
     fn last_keyframe(&self) -> u64 {
         self.keyframes.last().map_or(0, Keyframe::step)
     }
 
-    /// Keeps a state as a keyframe.
     fn keep(&mut self, simulation: &Simulation, tally: &Tally) {
         let simulation = Arc::new(simulation.clone());
         self.keyframes.push(Keyframe { simulation, tally: *tally });
@@ -205,7 +203,7 @@ impl WorldRecord {
         }
     }
 
-    /// Whether one that was read holds together: it begins, goes on in time, and ends after all of it.
+    /// True if one that was read holds together: it begins, goes on in time, and ends after all of it.
     pub(super) fn is_sound(&self) -> bool {
         let rise = |pair: &[Keyframe]| pair[0].step() < pair[1].step();
         let last = self.keyframes.last().map(Keyframe::step);
@@ -217,18 +215,18 @@ impl WorldRecord {
             && changes.into_iter().all(|pair| pair[0].after_step < pair[1].after_step)
     }
 
-    /// Whether anything is recorded.
+    /// True if anything is recorded.
     pub(super) fn has_steps(&self) -> bool {
         self.end_step > self.start().observables().step
     }
 
-    /// Whether every recorded step was taken with these settings, and pulled by no hand.
+    /// True if every recorded step was taken with these settings, and pulled by no hand.
     pub(super) fn is_all_with(&self, settings: &Settings) -> bool {
         let all_along = Controls { settings: *settings, pull: None };
         self.edits.is_empty() && self.changes.iter().all(|change| change.controls == all_along)
     }
 
-    /// Whether the next step of a simulation is a recorded one. A hand that is there now and was not then, or
+    /// True if the next step of a simulation is a recorded one. A hand that is there now and was not then, or
     /// another one, makes a difference; one that is not there does not, as it went when that moment was sought.
     pub(super) fn replays(&self, simulation: &Simulation) -> bool {
         let step = simulation.observables().step;
@@ -239,7 +237,7 @@ impl WorldRecord {
         self.is_before_end(simulation) && self.controls_after(step).is_some_and(same)
     }
 
-    /// Whether more is recorded than what led to a state.
+    /// True if more is recorded than what led to a state.
     pub(super) fn is_before_end(&self, simulation: &Simulation) -> bool {
         simulation.observables().step < self.end_step
     }
@@ -252,7 +250,7 @@ impl WorldRecord {
         (&keyframe.simulation, keyframe.tally)
     }
 
-    /// Whether a recorded state is the one nearest to a simulated time, or after it, or the last.
+    /// True if a recorded state is the one nearest to a simulated time, or after it, or the last.
     pub(super) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
         let step = simulation.observables().step;
         let controls = self.controls_after(step).copied();

@@ -84,7 +84,7 @@ impl StoredMoments {
         self.moments.get(self.moments.partition_point(is_there).checked_sub(1)?)
     }
 
-    /// Whether the moments after a step are stored.
+    /// True if the moments after a step are stored.
     pub(super) fn go_on_from(&self, from: u64) -> bool {
         let next = self.moments.partition_point(|moment| moment.step() <= from);
         self.moments.get(next).is_some_and(|next| next.step() <= from + 2 * self.stride)

@@ -29,7 +29,6 @@ pub struct WorldHistory {
     pub(super) stored: StoredMoments,
     /// Sums over the steps up to the present moment.
     pub tally: Tally,
-    /// Mean time that a step takes, s.
     #[serde(skip)]
     pub(super) step_secs: f64,
     /// Why the run cannot go on from the present moment.
@@ -73,7 +72,7 @@ impl WorldHistory {
         self.simulation.parameters().time_step_secs
     }
 
-    /// Whether its next step leaves what is recorded behind.
+    /// True if its next step leaves what is recorded behind.
     pub(super) fn branches(&self) -> bool {
         self.record.is_before_end(&self.simulation) && !self.record.replays(&self.simulation)
     }
@@ -168,9 +167,6 @@ impl WorldHistory {
     }
 
     /// Has a hand change the world. What was recorded after this moment is forgotten.
-    ///
-    /// # Errors
-    /// Where it cannot be changed so, or cannot go on.
     pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
         if let Some(failure) = &self.failure {
             return Err(Error::value("state", failure, "one that the run can go on from"));

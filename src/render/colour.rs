@@ -14,20 +14,14 @@ use crate::sim::{GrainView, Snapshot};
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Colour {
-    /// Red.
     pub red: f32,
-    /// Green.
     pub green: f32,
-    /// Blue.
     pub blue: f32,
-    /// Opacity.
     pub alpha: f32,
 }
 
 impl Colour {
-    /// White.
     pub(crate) const WHITE: Self = Self::grey(255);
-    /// Black.
     #[cfg(test)]
     pub(crate) const BLACK: Self = Self::grey(0);
 
@@ -47,7 +41,6 @@ impl Colour {
         Self { red: level, green: level, blue: level, alpha: 1.0 }
     }
 
-    /// The same colour with another opacity.
     pub(crate) const fn with_alpha(self, alpha: f32) -> Self {
         Self { alpha, ..self }
     }
@@ -69,7 +62,6 @@ impl Colour {
         [red * alpha, green * alpha, blue * alpha, alpha]
     }
 
-    /// The pixel that stores this colour.
     pub(crate) fn to_rgba8(self) -> image::Rgba<u8> {
         // Casts from float to integer saturate, so a channel outside 0 … 1 ends at 0 or 255.
         let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
@@ -113,11 +105,9 @@ pub(crate) fn map_colour(part: f64) -> Colour {
 /// A quantity and the values at the two ends of its colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ColourScale {
-    /// The quantity.
     pub colour_by: ColourBy,
     /// Value at the lower end, in the unit that [`ColourBy`] states.
     pub low: f64,
-    /// Value at the upper end.
     pub high: f64,
 }
 
@@ -158,7 +148,6 @@ impl ColourScale {
     }
 }
 
-/// The colour of a number of contacts.
 pub(crate) fn contact_colour(contacts: u32) -> Colour {
     map_colour(f64::from(contacts.min(MOST_CONTACTS)) / f64::from(MOST_CONTACTS))
 }

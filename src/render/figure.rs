@@ -22,7 +22,7 @@ pub struct PanelGrid {
     pub panels: Vec<RgbaImage>,
     /// Title of each panel; none where the list ends early or the title is empty.
     pub panel_titles: Vec<String>,
-    /// Whether panel titles lie in the panels' upper left corners instead of above them.
+    /// True if panel titles lie in the panels' upper left corners instead of above them.
     pub titles_inside: bool,
     /// Labels at the left of the rows, reading upwards.
     pub row_labels: Vec<String>,
@@ -32,16 +32,10 @@ pub struct PanelGrid {
     pub title: String,
     /// Caption below everything.
     pub caption: String,
-    /// Whether panels have thin frames.
-    pub frames: bool,
-    /// Ground and ink.
-    pub theme: Theme,
-    /// Font size, pixels; from the width of the grid if absent.
-    pub text_px: Option<f32>,
 }
 
 impl PanelGrid {
-    /// A grid without labels, on white, with frames.
+    /// A grid without labels, on white.
     pub fn new(rows: usize, columns: usize, panels: Vec<RgbaImage>) -> Self {
         Self {
             rows,
@@ -53,9 +47,6 @@ impl PanelGrid {
             column_labels: Vec::new(),
             title: String::new(),
             caption: String::new(),
-            frames: true,
-            theme: Theme::Light,
-            text_px: None,
         }
     }
 
@@ -65,7 +56,7 @@ impl PanelGrid {
     /// Names the list that does not fit the grid, or the panel of another size.
     pub fn draw(&self) -> Result<RgbaImage> {
         let panel = self.validate()?;
-        let palette = self.theme.palette();
+        let palette = Theme::Light.palette();
         let layout = GridLayout::new(self, panel, &palette);
         let [width, height] = layout.size(self);
         let mut image = RgbaImage::from_pixel(width, height, palette.ground.to_rgba8());
@@ -98,11 +89,6 @@ impl PanelGrid {
         }
         Ok([width, height])
     }
-
-    /// 18 px at 1600 px width, but readable on small grids too.
-    fn text_size(&self, grid_width: u32) -> f32 {
-        self.text_px.unwrap_or_else(|| (grid_width as f32 / 88.0).clamp(14.0, 48.0).round())
-    }
 }
 
 /// The blocks of a figure, laid out, and the room they take. Lengths in pixels.
@@ -124,7 +110,8 @@ struct GridLayout {
 impl GridLayout {
     fn new(figure: &PanelGrid, panel: [u32; 2], palette: &Palette) -> Self {
         let columns = figure.columns as u32;
-        let text_px = figure.text_size(panel[0] * columns);
+        // 18 px at 1600 px width, but readable on small grids too.
+        let text_px = ((panel[0] * columns) as f32 / 88.0).clamp(14.0, 48.0).round();
         let gap = (0.6 * text_px).round() as u32;
         let text = TextStyle::new(text_px, palette.ink);
         let block = |label: Option<&String>, style: TextStyle, width: u32| {
@@ -235,13 +222,11 @@ impl GridLayout {
         let Some(panel) = figure.panels.get(index) else { return };
         imageops::replace(image, panel, x, y);
         let (right, bottom) = (x + i64::from(self.panel[0]), y + i64::from(self.panel[1]));
-        if figure.frames {
-            let colour = palette.ground.mix(palette.ink, 0.45);
-            fill(image, x, right, y, y + 1, colour);
-            fill(image, x, right, bottom - 1, bottom, colour);
-            fill(image, x, x + 1, y, bottom, colour);
-            fill(image, right - 1, right, y, bottom, colour);
-        }
+        let colour = palette.ground.mix(palette.ink, 0.45);
+        fill(image, x, right, y, y + 1, colour);
+        fill(image, x, right, bottom - 1, bottom, colour);
+        fill(image, x, x + 1, y, bottom, colour);
+        fill(image, right - 1, right, y, bottom, colour);
         let Some(Some(title)) = self.panels.get(index) else { return };
         let gap = i64::from(self.gap);
         if figure.titles_inside {
@@ -281,7 +266,6 @@ mod tests {
     #[test]
     fn panels_stay_whole_beside_long_labels() {
         let mut figure = PanelGrid::new(2, 2, panels(4));
-        figure.frames = false;
         let long = "a label that is far too long for its place in the grid".to_owned();
         figure.row_labels = vec![long.clone(), long.clone()];
         figure.column_labels = vec![long.clone(), "short".into()];
@@ -291,7 +275,7 @@ mod tests {
         let image = figure.draw().unwrap();
         let teal = Colour::hex(0x2c728e).to_rgba8();
         let covered = image.pixels().filter(|pixel| **pixel == teal).count();
-        assert_eq!(covered, 4 * 120 * 80, "no label may cover a panel");
+        assert_eq!(covered, 4 * 118 * 78, "no label may cover a panel within its frame");
         // The outermost pixels stay free, so no label is cut.
         let (width, height) = image.dimensions();
         let white = Colour::WHITE.to_rgba8();

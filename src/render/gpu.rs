@@ -12,7 +12,6 @@ use super::renderer::GpuKind;
 use super::{Colour, Picture};
 use crate::error::{Error, Result};
 
-/// An opened GPU.
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,

@@ -17,13 +17,10 @@ const LONGEST: f64 = 0.2;
 /// Where the scale bar of a picture lies, and what it says.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ScaleBar {
-    /// Length shown, m.
     pub length: f64,
-    /// The length as people write it.
     pub label: String,
     /// Left end, pixels from the middle of the picture, y up.
     pub start: [f32; 2],
-    /// Right end.
     pub end: [f32; 2],
     /// Font size of the label, pixels; the label starts half of it to the right of `end`.
     pub text_px: f32,
@@ -68,10 +65,8 @@ impl ScaleBar {
     }
 }
 
-/// What a legend tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Legend {
-    /// The colours of the grains.
     pub scale: ColourScale,
     /// How far the grains have faded towards the ground, 0 … 1.
     pub fading: f32,
@@ -79,9 +74,7 @@ pub(crate) struct Legend {
     pub forces: Option<(f64, f32)>,
     /// The speed (m/s) of an arrow, and its length (px), where velocities are drawn.
     pub velocities: Option<(f64, f32)>,
-    /// Ground and ink.
     pub palette: Palette,
-    /// Font size, pixels.
     pub text_px: f32,
 }
 
@@ -103,7 +96,6 @@ impl Legend {
         }
     }
 
-    /// Draws the strip.
     pub(crate) fn draw(&self, width: u32, height: u32) -> RgbaImage {
         let mut strip = RgbaImage::from_pixel(width, height, self.palette.ground.to_rgba8());
         let mut bottom = i64::from(height) - self.em(1.0);

@@ -165,7 +165,6 @@ const LEAST_DIAMETERS_PER_SEC: f64 = 1e-9;
 /// Cosine above which a way is one along a wall.
 const ALONG: f64 = 0.9;
 
-/// Draws the arrows of one picture.
 struct MotionArrows<'a> {
     camera: &'a Camera,
     em: f64,
@@ -174,7 +173,6 @@ struct MotionArrows<'a> {
     lines: Vec<[DVec2; 2]>,
 }
 
-/// A place where an arrow may lie.
 struct Spot {
     /// Its place, and in pixels from the middle of the picture.
     place: DVec2,

@@ -13,9 +13,7 @@ use super::{Batch, DiscInstance, LinkInstance, Picture};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct PictureArea {
-    /// Middle of the picture.
     pub centre: [f32; 2],
-    /// Half of its width and height.
     pub half_size: [f32; 2],
 }
 
@@ -40,7 +38,6 @@ pub(crate) struct Painter {
     order: Vec<(usize, Range<u64>)>,
 }
 
-/// Pipeline and instances of one primitive.
 #[derive(Debug)]
 struct PrimitivePipeline {
     name: &'static str,

@@ -13,9 +13,7 @@ use super::Colour;
 /// Primitives of one kind that are drawn together, first to last.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Batch {
-    /// Discs.
     Discs(Vec<DiscInstance>),
-    /// Links.
     Links(Vec<LinkInstance>),
 }
 
@@ -24,12 +22,10 @@ pub(crate) enum Batch {
 pub(crate) struct Picture {
     /// Colour of the ground; its opacity is ignored.
     pub background: Colour,
-    /// What lies on it.
     pub batches: Vec<Batch>,
 }
 
 impl Picture {
-    /// A picture with nothing on its ground.
     pub(crate) fn new(background: Colour) -> Self {
         Self { background: background.with_alpha(1.0), batches: Vec::new() }
     }
@@ -57,7 +53,6 @@ const LEAST_RADIUS_PX: f32 = 0.5;
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DiscInstance {
-    /// Centre.
     pub centre: [f32; 2],
     /// Radius, outline included.
     pub radius: f32,
@@ -67,14 +62,11 @@ pub(crate) struct DiscInstance {
     pub mark_half_width: f32,
     /// Cosine and sine of the angle that the mark shows.
     pub direction: [f32; 2],
-    /// Colour inside.
     pub fill: Colour,
-    /// Colour of outline and mark.
     pub outline: Colour,
 }
 
 impl DiscInstance {
-    /// A disc of one colour.
     pub(crate) fn plain(centre: [f32; 2], radius: f32, colour: Colour) -> Self {
         Self {
             centre,
@@ -131,16 +123,12 @@ const LEAST_HALF_WIDTH_PX: f32 = 0.5;
 pub(crate) struct LinkInstance {
     /// One end, in the middle of its round cap.
     pub start: [f32; 2],
-    /// The other end.
     pub end: [f32; 2],
-    /// Half the width.
     pub half_width: f32,
-    /// Colour.
     pub colour: Colour,
 }
 
 impl LinkInstance {
-    /// A link between two points.
     pub(super) fn new(ends: [DVec2; 2], half_width: f32, colour: Colour) -> Self {
         let [start, end] = ends.map(|end| end.as_vec2().into());
         Self { start, end, half_width, colour }

@@ -33,7 +33,7 @@ pub enum ColourBy {
 }
 
 impl ColourBy {
-    /// Whether its colours stand for numbers that a scale has to be found for.
+    /// True if its colours stand for numbers that a scale has to be found for.
     pub(crate) fn has_scale(self) -> bool {
         !matches!(self, Self::PaperGreys | Self::Coordination)
     }
@@ -61,24 +61,24 @@ pub struct Style {
     /// Values at the two ends of the colours, in the units that [`ColourBy`] states; taken from
     /// the snapshot if absent. Frames of one animation should share one range.
     pub range: Option<(f64, f64)>,
-    /// Whether contact forces are drawn as links, with paler grains beneath.
+    /// True if contact forces are drawn as links, with paler grains beneath.
     pub show_forces: bool,
     /// The |N| that is drawn at full width, N; the 95th percentile of the snapshot if absent.
     pub force_reference: Option<f64>,
-    /// Whether arrows show the velocities of the grains.
+    /// True if arrows show the velocities of the grains.
     pub show_velocities: bool,
     /// The speed that is drawn at full length, m/s; a round number above the fastest grain's if
     /// absent.
     pub speed_reference: Option<f64>,
-    /// Whether arrows show how walls and fixed discs move, and what drives them.
+    /// True if arrows show how walls and fixed discs move, and what drives them.
     pub show_motions: bool,
-    /// Whether grains have an outline.
+    /// True if grains have an outline.
     pub outlines: bool,
-    /// Whether a mark on each grain shows its angle.
+    /// True if a mark on each grain shows its angle.
     pub angles: bool,
-    /// Whether a scale bar is drawn.
+    /// True if a scale bar is drawn.
     pub scale_bar: bool,
-    /// Whether a legend is drawn where colours or links need one.
+    /// True if a legend is drawn where colours or links need one.
     pub legend: bool,
     /// Ground and ink.
     pub theme: Theme,
@@ -103,27 +103,19 @@ impl Default for Style {
     }
 }
 
-/// The colours of a theme.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Palette {
-    /// What everything lies on.
     pub ground: Colour,
-    /// Words and bars.
     pub ink: Colour,
-    /// Outlines of grains.
     pub outline: Colour,
-    /// Fixed discs.
     pub fixed: Colour,
-    /// Walls and their hatching.
     pub boundary: Colour,
     /// Forces that push. With `pull`, a pair that colour-blind people tell apart (Okabe & Ito).
     pub push: Colour,
-    /// Forces that pull.
     pub pull: Colour,
 }
 
 impl Theme {
-    /// The theme's colours.
     pub(crate) const fn palette(self) -> Palette {
         match self {
             Self::Light => Palette {
@@ -162,7 +154,7 @@ impl Style {
         if self.show_forces { FADING } else { 0.0 }
     }
 
-    /// Whether the colours, links or arrows of this style need a legend, and one is wanted.
+    /// True if the colours, links or arrows of this style need a legend, and one is wanted.
     pub(crate) fn has_legend(&self) -> bool {
         let needed =
             self.colour_by != ColourBy::PaperGreys || self.show_forces || self.show_velocities;

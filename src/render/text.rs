@@ -21,24 +21,17 @@ fn embedded(bytes: &'static [u8]) -> FontRef<'static> {
     FontRef::try_from_slice(bytes).expect("an embedded font is a font")
 }
 
-/// Thickness of the strokes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Weight {
-    /// Text.
     #[default]
     Regular,
-    /// Titles.
     Bold,
 }
 
-/// How text looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TextStyle {
-    /// Font size (em), pixels.
     pub size_px: f32,
-    /// Thickness.
     pub weight: Weight,
-    /// Colour.
     pub colour: Colour,
     /// How lines lie relative to each other.
     pub lines: Align,
@@ -50,12 +43,10 @@ impl TextStyle {
         Self { size_px, weight: Weight::Regular, colour, lines: Align::Start }
     }
 
-    /// The same in bold.
     pub(crate) fn bold(self) -> Self {
         Self { weight: Weight::Bold, ..self }
     }
 
-    /// The same with centred lines.
     pub(crate) fn centred(self) -> Self {
         Self { lines: Align::Centre, ..self }
     }
@@ -98,7 +89,6 @@ impl TextStyle {
         self.font().outline_glyph(glyph)
     }
 
-    /// Width of one line, pixels.
     pub(crate) fn width(&self, line: &str) -> f32 {
         self.set(line).1
     }
@@ -113,7 +103,7 @@ impl TextStyle {
         self.font().height()
     }
 
-    /// Whether the font has a shape for this letter.
+    /// True if the font has a shape for this letter.
     #[cfg(test)]
     fn has(&self, letter: char) -> bool {
         // Glyph 0 is the box that stands for missing letters.
@@ -121,7 +111,6 @@ impl TextStyle {
     }
 }
 
-/// How letters stand on the line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Script {
     Line,
@@ -261,12 +250,10 @@ impl TextBlock {
         }
     }
 
-    /// Width, pixels.
     pub(crate) fn width(&self) -> u32 {
         self.width
     }
 
-    /// Height, pixels.
     pub(crate) fn height(&self) -> u32 {
         self.height
     }

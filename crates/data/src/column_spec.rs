@@ -22,7 +22,7 @@ pub enum CellValue<Row: 'static> {
     SomeNumber(fn(&Row) -> Option<f64>),
     /// A whole number.
     Count(fn(&Row) -> u64),
-    /// Whether something is so; neither where a law knows no such thing.
+    /// True if something is so; neither where a law knows no such thing.
     Flag(fn(&Row) -> Option<bool>),
     /// A word of a list that is known, by its place there.
     Word(&'static [&'static str], fn(&Row) -> u32),
@@ -46,69 +46,21 @@ impl<Row> CellValue<Row> {
 /// Name of the column that every table has, and by which rows rise.
 pub(crate) const STEP: &str = "step";
 
-/// Columns of each kind of values.
-impl<Row> ColumnSpec<Row> {
-    pub(crate) const fn new(
-        name: &'static str,
-        unit: &'static str,
-        about: &'static str,
-        value: CellValue<Row>,
-    ) -> Self {
-        Self { name, unit, about, value }
-    }
+pub(crate) const fn column<Row>(
+    name: &'static str,
+    unit: &'static str,
+    about: &'static str,
+    value: CellValue<Row>,
+) -> ColumnSpec<Row> {
+    ColumnSpec { name, unit, about, value }
+}
 
+impl<Row> ColumnSpec<Row> {
     pub(crate) const fn step(of: fn(&Row) -> u64) -> Self {
-        Self::count(STEP, "steps since the start", of)
+        column(STEP, "", "steps since the start", CellValue::Count(of))
     }
 
     pub(crate) const fn time(of: fn(&Row) -> f64) -> Self {
-        Self::number("time", "s", "simulated time", of)
-    }
-
-    pub(crate) const fn number(
-        name: &'static str,
-        unit: &'static str,
-        about: &'static str,
-        of: fn(&Row) -> f64,
-    ) -> Self {
-        Self::new(name, unit, about, CellValue::Number(of))
-    }
-
-    pub(crate) const fn some_number(
-        name: &'static str,
-        unit: &'static str,
-        about: &'static str,
-        of: fn(&Row) -> Option<f64>,
-    ) -> Self {
-        Self::new(name, unit, about, CellValue::SomeNumber(of))
-    }
-
-    pub(crate) const fn count(
-        name: &'static str,
-        about: &'static str,
-        of: fn(&Row) -> u64,
-    ) -> Self {
-        Self::new(name, "", about, CellValue::Count(of))
-    }
-
-    pub(crate) const fn flag(
-        name: &'static str,
-        about: &'static str,
-        of: fn(&Row) -> Option<bool>,
-    ) -> Self {
-        Self::new(name, "", about, CellValue::Flag(of))
-    }
-
-    pub(crate) const fn word(
-        name: &'static str,
-        about: &'static str,
-        words: &'static [&'static str],
-        of: fn(&Row) -> u32,
-    ) -> Self {
-        Self::new(name, "", about, CellValue::Word(words, of))
-    }
-
-    pub(crate) const fn name(name: &'static str, about: &'static str, of: fn(&Row) -> u32) -> Self {
-        Self::new(name, "", about, CellValue::Name(of))
+        column("time", "s", "simulated time", CellValue::Number(of))
     }
 }

@@ -50,7 +50,7 @@ pub(crate) fn run(
     }
     let mut stored = load();
     stored.preferences.follow(pictures)?;
-    let restart = pictures.saving.restart.as_deref();
+    let restart = pictures.restart.as_deref();
     let open_first = first(config, restart, options, &stored.preferences)?;
     // Other threads send an event where there is a new frame of the run, or a file was written.
     let events = EventLoop::with_user_event().build().map_err(|error| no_display(&error))?;

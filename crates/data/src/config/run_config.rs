@@ -120,7 +120,7 @@ impl SceneSource {
         }
     }
 
-    /// Whether grains have to be put in place and settled.
+    /// True if grains have to be put in place and settled.
     pub fn makes_new_pile(&self) -> bool {
         self.grains.is_some()
             || self.box_width.is_some()
@@ -160,7 +160,7 @@ impl Config {
         Self { source, ..Self::default() }
     }
 
-    /// Whether nothing is asked for.
+    /// True if nothing is asked for.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
@@ -296,7 +296,7 @@ impl Config {
         self.source.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE)
     }
 
-    /// Whether what is said of the scene's source goes together.
+    /// Fails where what is said of the scene's source does not go together.
     fn check_source(&self) -> Result<()> {
         let name = self.named();
         if let (None, Some(step)) = (&self.source.initial, self.source.initial_step) {

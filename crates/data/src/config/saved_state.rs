@@ -89,7 +89,7 @@ impl SavedState {
         SEAL.read(bytes, path.as_ref())
     }
 
-    /// Whether a file is one of these, of whatever version.
+    /// True if a file is one of these, of whatever version.
     pub fn is_in(path: &Path) -> bool {
         SEAL.is_on(path)
     }

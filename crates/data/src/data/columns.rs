@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::table::{Table, place_of};
-use crate::column_spec::ColumnSpec;
+use crate::column_spec::CellValue::{Count, Flag, Name, Number, SomeNumber, Word};
+use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{
     ContactState, ContactStatus, GrainState, Moment, Observables, OtherBody, Stepper,
@@ -69,35 +70,37 @@ struct GrainTableRow {
 const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    ColumnSpec::count("id", "number of the disc; fixed discs follow the grains", |row| row.id),
-    ColumnSpec::number("x", "m", "centre", |row| row.state.position.x),
-    ColumnSpec::number("y", "m", "centre", |row| row.state.position.y),
-    ColumnSpec::number("angle", "rad", "turned since the start, anticlockwise", |row| {
-        row.state.angle
-    }),
-    ColumnSpec::number("vx", "m/s", "velocity of the centre", |row| row.state.velocity.x),
-    ColumnSpec::number("vy", "m/s", "velocity of the centre", |row| row.state.velocity.y),
-    ColumnSpec::number("omega", "rad/s", "angular velocity, anticlockwise", |row| {
-        row.state.angular_velocity
-    }),
-    ColumnSpec::number("radius", "m", "radius", |row| row.state.radius),
-    ColumnSpec::some_number("mass", "kg", "mass; none of what is fixed", |row| {
-        (row.kind != FIXED).then_some(row.state.mass)
-    }),
-    ColumnSpec::word(
+    column("id", "", "number of the disc; fixed discs follow the grains", Count(|row| row.id)),
+    column("x", "m", "centre", Number(|row| row.state.position.x)),
+    column("y", "m", "centre", Number(|row| row.state.position.y)),
+    column("angle", "rad", "turned since the start, anticlockwise", Number(|row| row.state.angle)),
+    column("vx", "m/s", "velocity of the centre", Number(|row| row.state.velocity.x)),
+    column("vy", "m/s", "velocity of the centre", Number(|row| row.state.velocity.y)),
+    column(
+        "omega",
+        "rad/s",
+        "angular velocity, anticlockwise",
+        Number(|row| row.state.angular_velocity),
+    ),
+    column("radius", "m", "radius", Number(|row| row.state.radius)),
+    column(
+        "mass",
+        "kg",
+        "mass; none of what is fixed",
+        SomeNumber(|row| (row.kind != FIXED).then_some(row.state.mass)),
+    ),
+    column(
         "kind",
+        "",
         "grain, fixed disc, or a grain that went through a wall or left the world",
-        KINDS,
-        |row| row.kind as u32,
+        Word(KINDS, |row| row.kind as u32),
     ),
 ];
 
-/// The table without a row.
 pub(super) fn empty_grains() -> Table {
     with_measures(Table::new("grains", GRAIN_COLUMNS, &[], &[]), &[])
 }
 
-/// A row a grain, then a row a fixed disc.
 pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
     let moving = moment.grains.iter().map(|state| (if state.lost { LOST } else { GRAIN }, *state));
@@ -136,10 +139,8 @@ fn at_rest(disc: &Disc) -> GrainState {
 
 const CONTACTS: &str = "contacts";
 
-/// Words of the column `kind_j`.
 const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 
-/// Words of the column `status`.
 const STATUSES: &[&str] =
     &[ContactStatus::Open.name(), ContactStatus::Stick.name(), ContactStatus::Slip.name()];
 
@@ -157,56 +158,62 @@ struct ContactTableRow {
 const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    ColumnSpec::count("id_i", "grain i", |row| row.state.grain.into()),
-    ColumnSpec::count(
+    column("id_i", "", "grain i", Count(|row| row.state.grain.into())),
+    column(
         "id_j",
+        "",
         "body j: a grain, after them a fixed disc, after those a boundary",
-        |row| row.other_id,
+        Count(|row| row.other_id),
     ),
-    ColumnSpec::word("kind_j", "what body j is", OTHER_KINDS, |row| row.kind),
-    ColumnSpec::name("name_j", "shape and number of a boundary", |row| row.name),
-    ColumnSpec::number("x", "m", "contact point", |row| row.state.point.x),
-    ColumnSpec::number("y", "m", "contact point", |row| row.state.point.y),
-    ColumnSpec::number("nx", "1", "normal, from j to i", |row| row.state.normal.x),
-    ColumnSpec::number("ny", "1", "normal, from j to i", |row| row.state.normal.y),
-    ColumnSpec::number(
+    column("kind_j", "", "what body j is", Word(OTHER_KINDS, |row| row.kind)),
+    column("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
+    column("x", "m", "contact point", Number(|row| row.state.point.x)),
+    column("y", "m", "contact point", Number(|row| row.state.point.y)),
+    column("nx", "1", "normal, from j to i", Number(|row| row.state.normal.x)),
+    column("ny", "1", "normal, from j to i", Number(|row| row.state.normal.y)),
+    column(
         "gap",
         "m",
         "distance of the surfaces as the step began; negative is overlap",
-        |row| row.state.gap,
+        Number(|row| row.state.gap),
     ),
-    ColumnSpec::number(
+    column(
         "normal_force",
         "N",
         "on i along the normal, mean over the step; negative pulls",
-        |row| row.state.normal_force,
+        Number(|row| row.state.normal_force),
     ),
-    ColumnSpec::number(
+    column(
         "tangential_force",
         "N",
         "on i along (-ny, nx), mean over the step",
-        |row| row.state.tangential_force,
+        Number(|row| row.state.tangential_force),
     ),
-    ColumnSpec::word(
+    column(
         "status",
+        "",
         "what the laws of contact and friction make of it",
-        STATUSES,
-        |row| match row.state.status {
+        Word(STATUSES, |row| match row.state.status {
             ContactStatus::Open => 0,
             ContactStatus::Stick => 1,
             ContactStatus::Slip => 2,
-        },
+        }),
     ),
-    ColumnSpec::flag("bond", "whether its bond lives; none where the law knows no bonds", |row| {
-        row.has_bonds.then_some(row.state.bond_stretch.is_some())
-    }),
-    ColumnSpec::some_number("stretch", "m", "how far its bond is stretched", |row| {
-        row.state.bond_stretch
-    }),
-    ColumnSpec::count("age", "steps since the pair was found to touch", |row| row.state.age_steps),
+    column(
+        "bond",
+        "",
+        "whether its bond lives; none where the law knows no bonds",
+        Flag(|row| row.has_bonds.then_some(row.state.bond_stretch.is_some())),
+    ),
+    column(
+        "stretch",
+        "m",
+        "how far its bond is stretched",
+        SomeNumber(|row| row.state.bond_stretch),
+    ),
+    column("age", "", "steps since the pair was found to touch", Count(|row| row.state.age_steps)),
 ];
 
-/// A row a contact.
 pub(super) fn contacts(moment: &Moment) -> Table {
     let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
     let has_bonds = moment.settings.stepper == Stepper::Range;
@@ -250,14 +257,13 @@ struct Bin {
 const BIN_COLUMNS: &[ColumnSpec<Bin>] = &[
     ColumnSpec::step(|bin| bin.step),
     ColumnSpec::time(|bin| bin.time_secs),
-    ColumnSpec::name("quantity", "what is counted", |bin| bin.quantity),
-    ColumnSpec::name("unit", "unit of from and to", |bin| bin.unit),
-    ColumnSpec::number("from", "", "where the bin begins, which belongs to it", |bin| bin.from),
-    ColumnSpec::number("to", "", "where it ends", |bin| bin.to),
-    ColumnSpec::count("count", "how many are in it", |bin| bin.count),
+    column("quantity", "", "what is counted", Name(|bin| bin.quantity)),
+    column("unit", "", "unit of from and to", Name(|bin| bin.unit)),
+    column("from", "", "where the bin begins, which belongs to it", Number(|bin| bin.from)),
+    column("to", "", "where it ends", Number(|bin| bin.to)),
+    column("count", "", "how many are in it", Count(|bin| bin.count)),
 ];
 
-/// A row a bin of each histogram.
 pub(super) fn histogram_table(now: &Observables, histograms: &[Histogram]) -> Table {
     let mut words: Vec<String> = Vec::new();
     let (step, time_secs) = (now.step, now.time_secs);
@@ -282,10 +288,9 @@ pub(super) struct FrameRow {
 const FRAME_COLUMNS: &[ColumnSpec<FrameRow>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    ColumnSpec::count("number", "frames before this one", |row| row.number),
+    column("number", "", "frames before this one", Count(|row| row.number)),
 ];
 
-/// A row a frame.
 pub(super) fn frames(rows: &[FrameRow]) -> Table {
     Table::new("frames", FRAME_COLUMNS, rows, &[])
 }
@@ -293,114 +298,129 @@ pub(super) fn frames(rows: &[FrameRow]) -> Table {
 const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),
-    ColumnSpec::number("time_step", "s", "time step", |row| row.time_step_secs),
-    ColumnSpec::count("sweeps", "sweeps of the solver", |row| row.sweeps.into()),
-    ColumnSpec::count("factorisations", "matrices that it factorised", |row| {
-        row.factorisations.into()
-    }),
-    ColumnSpec::flag("converged", "whether the step was solved as asked", |row| {
-        Some(row.converged)
-    }),
-    ColumnSpec::flag("stalled", "whether more sweeps would be of no use", |row| Some(row.stalled)),
-    ColumnSpec::number("residual", "1", "common residual of the step's problem", |row| {
-        row.residual
-    }),
-    ColumnSpec::some_number(
+    column("time_step", "s", "time step", Number(|row| row.time_step_secs)),
+    column("sweeps", "", "sweeps of the solver", Count(|row| row.sweeps.into())),
+    column(
+        "factorisations",
+        "",
+        "matrices that it factorised",
+        Count(|row| row.factorisations.into()),
+    ),
+    column(
+        "converged",
+        "",
+        "whether the step was solved as asked",
+        Flag(|row| Some(row.converged)),
+    ),
+    column("stalled", "", "whether more sweeps would be of no use", Flag(|row| Some(row.stalled))),
+    column("residual", "1", "common residual of the step's problem", Number(|row| row.residual)),
+    column(
         "model_residual",
         "1",
         "the same of the model of friction that was solved in the place of Coulomb's law",
-        |row| row.model_residual,
+        SomeNumber(|row| row.model_residual),
     ),
-    ColumnSpec::some_number(
+    column(
         "duality_gap",
         "1",
         "duality gap of that model, whose square root bounds the error of the velocities",
-        |row| row.duality_gap,
+        SomeNumber(|row| row.duality_gap),
     ),
-    ColumnSpec::some_number(
+    column(
         "fell_back",
         "1",
         "1 where it was solved under bounds of friction in the place of Coulomb's law, else 0",
-        |row| row.fell_back.map(|fell_back| u8::from(fell_back).into()),
+        SomeNumber(|row| row.fell_back.map(|fell_back| u8::from(fell_back).into())),
     ),
-    ColumnSpec::count("contacts", "contacts", |row| row.contacts.into()),
-    ColumnSpec::count("compressive_contacts", "contacts that push", |row| {
-        row.compressive_contacts.into()
-    }),
-    ColumnSpec::count("tensile_contacts", "contacts that pull", |row| row.tensile_contacts.into()),
-    ColumnSpec::number(
+    column("contacts", "", "contacts", Count(|row| row.contacts.into())),
+    column(
+        "compressive_contacts",
+        "",
+        "contacts that push",
+        Count(|row| row.compressive_contacts.into()),
+    ),
+    column("tensile_contacts", "", "contacts that pull", Count(|row| row.tensile_contacts.into())),
+    column(
         "mean_overlap",
         "1",
         "mean overlap of grains in touch, in mean diameters",
-        |row| row.mean_overlap,
+        Number(|row| row.mean_overlap),
     ),
-    ColumnSpec::number("max_overlap", "1", "largest overlap, in mean diameters", |row| {
-        row.max_overlap
-    }),
-    ColumnSpec::number("kinetic_energy", "J", "kinetic energy", |row| row.kinetic_energy),
-    ColumnSpec::number("potential_energy", "J", "potential energy in the gravity field", |row| {
-        row.potential_energy
-    }),
-    ColumnSpec::number(
+    column("max_overlap", "1", "largest overlap, in mean diameters", Number(|row| row.max_overlap)),
+    column("kinetic_energy", "J", "kinetic energy", Number(|row| row.kinetic_energy)),
+    column(
+        "potential_energy",
+        "J",
+        "potential energy in the gravity field",
+        Number(|row| row.potential_energy),
+    ),
+    column(
         "normal_work",
         "J",
         "work of the normal contact forces in the step",
-        |row| row.normal_work,
+        Number(|row| row.normal_work),
     ),
-    ColumnSpec::number(
+    column(
         "tangential_work",
         "J",
         "work of the tangential contact forces in the step",
-        |row| row.tangential_work,
+        Number(|row| row.tangential_work),
     ),
-    ColumnSpec::number(
+    column(
         "wall_work",
         "J",
         "part of both that surfaces which move did in the step",
-        |row| row.wall_work,
+        Number(|row| row.wall_work),
     ),
-    ColumnSpec::some_number(
+    column(
         "drive_energy",
         "J",
         "kinetic energy of walls that a force drives",
-        |row| row.drive_energy,
+        SomeNumber(|row| row.drive_energy),
     ),
-    ColumnSpec::some_number(
+    column(
         "drive_work",
         "J",
         "work in the step of the forces that drive walls, less that of their damping",
-        |row| row.drive_work,
+        SomeNumber(|row| row.drive_work),
     ),
-    ColumnSpec::some_number(
+    column(
         "border_work",
         "J",
         "work that borders which shear did in the step, beside the others",
-        |row| row.border_work,
+        SomeNumber(|row| row.border_work),
     ),
-    ColumnSpec::number("gravity_work", "J", "work of the gravity field in the step", |row| {
-        row.gravity_work
-    }),
-    ColumnSpec::number(
+    column(
+        "gravity_work",
+        "J",
+        "work of the gravity field in the step",
+        Number(|row| row.gravity_work),
+    ),
+    column(
         "slump",
         "1",
         "how far the centre of mass has sunk, in its first height",
-        |row| row.slump,
+        Number(|row| row.slump),
     ),
-    ColumnSpec::some_number("bond_work", "J", "work that bonds did in the step", |row| {
-        row.bond_work
-    }),
-    ColumnSpec::some_number(
+    column("bond_work", "J", "work that bonds did in the step", SomeNumber(|row| row.bond_work)),
+    column(
         "bond_energy",
         "J",
         "what stretching the bonds that live took",
-        |row| row.bond_energy,
+        SomeNumber(|row| row.bond_energy),
     ),
-    ColumnSpec::some_number("broken_bond_energy", "J", "what bonds took that have broken", |row| {
-        row.broken_bond_energy
-    }),
-    ColumnSpec::count("lost_grains", "grains that went through a wall or left the world", |row| {
-        row.lost_grains.into()
-    }),
+    column(
+        "broken_bond_energy",
+        "J",
+        "what bonds took that have broken",
+        SomeNumber(|row| row.broken_bond_energy),
+    ),
+    column(
+        "lost_grains",
+        "",
+        "grains that went through a wall or left the world",
+        Count(|row| row.lost_grains.into()),
+    ),
 ];
 
 /// Something that each step measures, as tables call it.

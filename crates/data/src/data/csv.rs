@@ -12,17 +12,14 @@ use crate::error::{Error, Result};
 use crate::output::GrowingFile;
 use crate::sim::Observables;
 
-/// Where the tables are.
 pub(super) const FOLDER: &str = "csv";
 
-/// Writes text.
 pub(super) struct Csv {
     of_frames: [TextTable; 4],
     steps: TextTable,
 }
 
 impl Csv {
-    /// Starts, or goes on with what is there.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
@@ -94,7 +91,6 @@ impl TextTable {
         Self { path, head, names, file: None, rows: Vec::new() }
     }
 
-    /// Adds rows.
     pub(super) fn add(&mut self, table: &Table) -> Result<()> {
         let mut rows = std::mem::take(&mut self.rows);
         rows.clear();

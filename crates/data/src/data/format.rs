@@ -54,7 +54,6 @@ impl Frame {
         }
     }
 
-    /// All tables of a frame.
     pub(super) fn tables(&self) -> [&Table; 4] {
         [&self.grains, &self.contacts, &self.measures, &self.histograms]
     }
@@ -79,7 +78,6 @@ pub(super) trait Format: Send {
         Ok(())
     }
 
-    /// Ends the recording.
     fn finish(&mut self) -> Result<()> {
         self.flush()
     }
@@ -105,7 +103,7 @@ pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
     formats.map(|format| check_format(format).map(|()| format)).collect()
 }
 
-/// Whether this build can write it.
+/// Fails where this build cannot write it.
 ///
 /// # Errors
 /// Says what is missing.
@@ -119,7 +117,6 @@ pub fn check_format(format: FormatName) -> Result<()> {
     Err(Error::value("data-format", format.name(), allowed))
 }
 
-/// Starts, or goes on with what is there.
 pub(super) fn start_format(
     format: FormatName,
     folder: &Path,

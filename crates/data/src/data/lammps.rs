@@ -20,7 +20,6 @@ use crate::error::{Error, Result};
 use crate::output::GrowingFile;
 use crate::sim::{Moment, OtherBody};
 
-/// Where the dumps are.
 pub(super) const FOLDER: &str = "ovito";
 /// Those of grains and contacts.
 pub(super) const FILES: [&str; 2] = ["grains.dump", "contacts.dump"];
@@ -56,7 +55,6 @@ const IN_WORDS: &str = "element";
 /// LAMMPS counts types from here.
 const FIRST_TYPE: u32 = 1;
 
-/// Writes dumps.
 pub(super) struct Lammps {
     facts: RunFacts,
     grains: GrowingDump,
@@ -71,7 +69,6 @@ struct GrowingDump {
 }
 
 impl Lammps {
-    /// Starts, or goes on with what is there.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;

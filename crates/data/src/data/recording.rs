@@ -230,9 +230,7 @@ impl Drop for Recording {
     }
 }
 
-/// What a run tells its recording.
 enum RecordingMessage {
-    /// What some steps measured.
     Steps(Vec<Observables>),
     /// A frame, by the number of those before.
     Frame(u64, Box<Moment>),
@@ -337,11 +335,9 @@ impl Times {
     }
 }
 
-/// The steps of frames.
 #[derive(Clone, Debug, PartialEq)]
 struct FrameSchedule {
     times: Times,
-    /// Number of the next time.
     next: usize,
 }
 
@@ -351,14 +347,14 @@ impl FrameSchedule {
         Self { times, next: 0 }
     }
 
-    /// Whether a frame is to be made of the present state. Steps are to be asked for in turn.
+    /// True if a frame is to be made of the present state. Steps are to be asked for in turn.
     fn is_due(&mut self, simulation: &Simulation) -> bool {
         let latest_secs = simulation.time_secs() + 0.5 * simulation.parameters().time_step_secs;
         let step = simulation.observables().step;
         self.is_due_at(step, latest_secs, |secs| simulation.step_at(secs))
     }
 
-    /// Whether one is due after a step that stands for all times up to `latest_secs`.
+    /// True if one is due after a step that stands for all times up to `latest_secs`.
     fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
         let mut due = false;
         while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {

@@ -118,7 +118,7 @@ pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Resu
     Ok(files)
 }
 
-/// Whether a file is what a kill left of one.
+/// True if a file is what a kill left of one.
 fn is_left(path: &Path) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
     name.is_some_and(|name| final_name(name) != name)
@@ -157,7 +157,6 @@ pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
     Ok(numbered)
 }
 
-/// Writes the manifest of a recording.
 pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFacts) -> Result<()> {
     let path = folder.join(MANIFEST);
     let facts = run.facts.iter().map(|(name, said)| (name.clone(), Value::from(said.as_str())));

@@ -34,7 +34,6 @@ const LARGEST_POWER: f64 = 3.0;
 /// How much nearer than the border a closed cell's corners are, as a part of the distance squared: rounding.
 const CLOSED_WITHIN: f64 = 1e-9;
 
-/// The cells of all grains.
 pub(super) struct PowerCells {
     /// Areas, m²; NaN for a grain that does not count.
     pub areas: Vec<f64>,
@@ -46,7 +45,6 @@ pub(super) struct PowerCells {
     pub box_area: f64,
     /// Σ πr² over all grains, m².
     pub disc_area: f64,
-    /// Number of closed cells.
     pub closed: u32,
     /// Σ πr² over the grains with closed cells, in Σ areas of those; NaN without any.
     pub solid_fraction: f64,
@@ -67,15 +65,13 @@ impl PowerCells {
         append_images(&mut sites, surroundings.periodic);
         let grains = &sites[..indices.len()];
         let walls = surroundings.boundaries.iter().map(Boundary::edges).collect::<Vec<_>>();
-        let neighbours = SiteNeighbours::of(&sites, grains.len());
+        let neighbours = neighbours(&sites, grains.len());
         let mut cells = Self::without_any(network.grains.len());
         let (mut cuts, mut cell) = (Vec::new(), CellPolygon::default());
         let mut closed_areas = [0.0; 2];
         for (place, (&index, site)) in indices.iter().zip(grains).enumerate() {
             cuts.clear();
-            cuts.extend(
-                neighbours.of_site(place).iter().map(|&other| cut(&sites, place, other as usize)),
-            );
+            cuts.extend(neighbours[place].iter().map(|&other| cut(&sites, place, other)));
             for image in with_images(site, surroundings.periodic) {
                 cut_by_walls(&walls, &image, &mut cuts);
             }
@@ -144,45 +140,24 @@ fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     HalfPlane { offset: 0.5 * (distance + powers / distance), direction: branch / distance }
 }
 
-/// The sites whose cells may border on that of each grain: what two cells can reach overlaps where they do.
-struct SiteNeighbours {
-    starts: Vec<usize>,
-    others: Vec<u32>,
-}
-
-impl SiteNeighbours {
-    /// Of the first `grains` sites.
-    fn of(sites: &[Site], grains: usize) -> Self {
-        let mut pairs = Vec::new();
-        let centres: Vec<DVec2> = sites.iter().map(|site| site.position).collect();
-        let reaches: Vec<f64> = sites.iter().map(|site| site.reach).collect();
-        BroadPhase::of(&reaches).pairs::<2>(&centres, reaches.iter().copied(), |i, j| {
-            let (first, second) = (i as usize, j as usize);
-            let reach = reaches[first] + reaches[second];
-            if centres[first].distance_squared(centres[second]) < reach * reach {
-                pairs.extend([(i, j), (j, i)]);
+/// The sites whose cells may border on that of each of the first `grains`: what two cells can reach overlaps where they
+/// do.
+fn neighbours(sites: &[Site], grains: usize) -> Vec<Vec<usize>> {
+    let mut neighbours = vec![Vec::new(); grains];
+    let centres: Vec<DVec2> = sites.iter().map(|site| site.position).collect();
+    let reaches: Vec<f64> = sites.iter().map(|site| site.reach).collect();
+    BroadPhase::of(&reaches).pairs::<2>(&centres, reaches.iter().copied(), |i, j| {
+        let (first, second) = (i as usize, j as usize);
+        let reach = reaches[first] + reaches[second];
+        if centres[first].distance_squared(centres[second]) < reach * reach {
+            for (of, other) in [(first, second), (second, first)] {
+                if let Some(neighbours) = neighbours.get_mut(of) {
+                    neighbours.push(other);
+                }
             }
-        });
-        pairs.retain(|&(of, _)| (of as usize) < grains);
-        let mut starts = vec![0; grains + 1];
-        for &(of, _) in &pairs {
-            starts[of as usize + 1] += 1;
         }
-        for index in 0..grains {
-            starts[index + 1] += starts[index];
-        }
-        let (mut ends, mut others) = (starts.clone(), vec![0; pairs.len()]);
-        for (of, other) in pairs {
-            let end = &mut ends[of as usize];
-            others[*end] = other;
-            *end += 1;
-        }
-        Self { starts, others }
-    }
-
-    fn of_site(&self, place: usize) -> &[u32] {
-        &self.others[self.starts[place]..self.starts[place + 1]]
-    }
+    });
+    neighbours
 }
 
 impl GrainBox {
@@ -360,7 +335,7 @@ impl CellPolygon {
         }
     }
 
-    /// Whether it is a cell of which all corners are nearer to the centre than `reach`, m.
+    /// True if it is a cell of which all corners are nearer to the centre than `reach`, m.
     fn is_closed(&self, reach: f64) -> bool {
         !self.corners.is_empty() && self.farthest_squared() < (1.0 - CLOSED_WITHIN) * reach * reach
     }

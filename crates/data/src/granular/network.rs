@@ -13,14 +13,13 @@ const BEARS_FROM: f64 = 1e-6;
 /// Grains and contacts that count.
 pub(super) struct Network<'a> {
     pub grains: &'a [GrainState],
-    /// Whether a grain counts. No index of a link is one of those that do not.
+    /// True if a grain counts. No index of a link is one of those that do not.
     pub counts: Vec<bool>,
     pub links: Vec<NetworkContact>,
 }
 
 /// A contact that counts. Vectors in m and N.
 pub(super) struct NetworkContact {
-    /// Grain i.
     pub grain: usize,
     /// Grain j, unless i touches a body that no grain moves.
     pub other: Option<usize>,
@@ -30,11 +29,9 @@ pub(super) struct NetworkContact {
     pub own_branch: DVec2,
     /// From the centre of grain j to the contact point, or none.
     pub other_branch: DVec2,
-    /// On grain i.
     pub force: DVec2,
     pub normal_force: f64,
     pub status: ContactStatus,
-    /// Whether it bears a force.
     pub bears: bool,
 }
 
@@ -44,7 +41,6 @@ impl NetworkContact {
         self.own_branch + self.other_branch
     }
 
-    /// The grains at its ends.
     pub(super) fn ends(&self) -> impl Iterator<Item = usize> {
         [Some(self.grain), self.other].into_iter().flatten()
     }
@@ -83,7 +79,6 @@ impl<'a> Network<'a> {
         counted.filter_map(|(index, (grain, &counts))| counts.then_some((index, grain)))
     }
 
-    /// Number of grains that count.
     pub(super) fn len(&self) -> usize {
         self.grains().count()
     }
@@ -128,7 +123,6 @@ const HELD_BY: u32 = 2;
 pub(super) struct Coordination {
     /// Contacts of each grain; of one that does not count, none.
     pub of_grains: Vec<u32>,
-    /// Whether a grain is a rattler.
     pub rattlers: Vec<bool>,
     /// Contacts of a grain, the mean.
     pub mean: f64,

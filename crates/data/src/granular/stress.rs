@@ -51,7 +51,6 @@ pub(super) fn fabric(network: &Network) -> Tensor {
     sum.over(network.links.len() as f64)
 }
 
-/// A tensor of the second rank.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Tensor {
     pub xx: f64,

@@ -26,7 +26,7 @@ pub(super) const DISAGREEMENT: f64 = 1e-9;
 pub struct BodyForm {
     /// 1 (all on the x axis) or 2.
     pub axes: u8,
-    /// Whether bodies turn.
+    /// True if bodies turn.
     pub rotation: bool,
     /// Bond·g·Δt, m/s: c₀ = m_n times this.
     pub capture_speed: f64,
@@ -218,7 +218,7 @@ impl BodyForm {
     }
 }
 
-/// Whether two forms of one number are as near as rounding leaves them; not where one is NaN.
+/// True if two forms of one number are as near as rounding leaves them; not where one is NaN.
 fn agree(found: f64, expected: f64, scale: f64) -> bool {
     (found - expected).abs() <= DISAGREEMENT * scale
 }
@@ -327,7 +327,7 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
     }
 }
 
-/// Whether a file can hold a problem.
+/// Fails unless a file can hold a problem.
 fn check_can_be_held<M: Model>(problem: &StepProblem<M>) -> Result<()> {
     let refuse = |field: &str, holds: &str| {
         Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))

@@ -20,7 +20,7 @@ pub struct Solution {
     pub contacts: usize,
     /// The method's name.
     pub method: String,
-    /// Whether it worked on bodies, or on W alone.
+    /// True if it worked on bodies, false if on W alone.
     pub on_bodies: bool,
     /// Sweeps, or iterations that cost about as much.
     pub sweeps: u32,
@@ -28,9 +28,9 @@ pub struct Solution {
     pub factorisations: u32,
     /// Time of the solve alone, s; the least of the repeats.
     pub seconds: f64,
-    /// Whether the method got to its tolerance, by what it says and by the residual of `r`.
+    /// True if the method got to its tolerance, by what it says and by the residual of `r`.
     pub converged: bool,
-    /// Whether it did not because it had stalled, rather than being stopped too early: more sweeps are of
+    /// True if it did not because it had stalled, rather than being stopped too early: more sweeps are of
     /// no use.
     pub stalled: bool,
     /// The common residual of `r`, from the file's W and q.

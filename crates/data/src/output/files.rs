@@ -114,7 +114,7 @@ struct Destination {
     path: PathBuf,
     /// Those of the file that is there.
     permissions: Option<Permissions>,
-    /// Whether what is there is no plain file but a device, a pipe or a socket, which no file must replace.
+    /// True if what is there is no plain file but a device, a pipe or a socket, which no file must replace.
     is_special: bool,
 }
 

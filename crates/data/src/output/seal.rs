@@ -55,7 +55,7 @@ impl Seal {
         self.read(BufReader::new(file), path)
     }
 
-    /// Whether a file is one of these, of whatever version.
+    /// True if a file is one of these, of whatever version.
     pub(crate) fn is_on(&self, path: &Path) -> bool {
         let mut start = vec![0; self.magic.len()];
         let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));

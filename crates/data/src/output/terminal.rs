@@ -90,7 +90,7 @@ impl Progress {
         self.bar.set_position(units);
     }
 
-    /// Whether there is a terminal that shows a bar.
+    /// True if there is a terminal that shows a bar.
     pub fn is_drawn(&self) -> bool {
         !self.bar.is_hidden()
     }

@@ -77,9 +77,9 @@ struct GrowingParts {
     number: u64,
     /// Its rows.
     rows: Table,
-    /// Whether it has rows that are not in its file.
+    /// True if it has rows that are not in its file.
     has_news: bool,
-    /// Whether there is a file: a table has one, even without rows, so that readers find its columns.
+    /// True if there is a file: a table has one, even without rows, so that readers find its columns.
     has_file: bool,
 }
 

@@ -43,7 +43,6 @@ struct CsvFile<'a, Open> {
     open: Open,
 }
 
-/// Where in a row the columns are.
 struct CsvColumns {
     all: usize,
     step: Option<usize>,

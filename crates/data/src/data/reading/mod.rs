@@ -195,7 +195,7 @@ struct DiscRow {
     pub numbers: [f64; NUMBERS.len()],
 }
 
-/// Whether the columns are there without which there are no discs.
+/// True if the columns are there without which there are no discs.
 fn has_needed(names: &[String]) -> bool {
     NEEDED.iter().all(|needed| names.iter().any(|name| name == needed))
 }

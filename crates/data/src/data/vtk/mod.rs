@@ -25,7 +25,6 @@ use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::{ContactState, Moment, OtherBody};
 
-/// Where the files are.
 pub(super) const FOLDER: &str = "vtk";
 /// Of the files, the beginnings of their names.
 const KINDS: [&str; 2] = ["grains", "contacts"];
@@ -57,7 +56,6 @@ const OPENING: &str = "<?xml version=\"1.0\"?>\n\
      <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
 const CLOSING: &str = "</Collection>\n</VTKFile>\n";
 
-/// Writes series of files.
 pub(super) struct Vtk {
     folder: PathBuf,
     facts: RunFacts,
@@ -66,7 +64,6 @@ pub(super) struct Vtk {
 }
 
 impl Vtk {
-    /// Starts, or goes on with what is there.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let folder = folder.join(FOLDER);
         make_folder(&folder)?;
@@ -87,7 +84,7 @@ impl Vtk {
     }
 }
 
-/// Whether a file in the folder has a name of these files.
+/// True if a file in the folder has a name of these files.
 pub(super) fn is_name_of_file(name: &str) -> bool {
     KINDS
         .iter()

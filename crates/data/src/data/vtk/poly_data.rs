@@ -8,9 +8,7 @@ use std::fmt::Write as _;
 
 /// A number as such files have it.
 pub(super) trait Scalar: Copy {
-    /// VTK's name of its type.
     const TYPE: &'static str;
-    /// Appends its bytes.
     fn put(self, bytes: &mut Vec<u8>);
 }
 
@@ -30,13 +28,11 @@ scalars! { f64, "Float64"; i64, "Int64"; i32, "Int32"; i8, "Int8"; }
 /// Which cells lie on the points, all of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VtkCells {
-    /// Each point by itself.
     Points,
     /// A line from each point of even number to the next.
     Lines,
 }
 
-/// A file in the making.
 pub(super) struct PolyData {
     cells: VtkCells,
     points: usize,
