@@ -123,7 +123,7 @@ pub(super) fn run_to_end(
     };
     let observables = simulation.observables();
     let raised: Vec<AlarmKind> = simulation.alarms().iter().map(|alarm| alarm.kind).collect();
-    let kinds = AlarmKind::ALL.into_iter().filter(|kind| raised.contains(kind));
+    let kinds = AlarmKind::ALL.iter().filter(|kind| raised.contains(kind));
     Ok(RunResult {
         status,
         tally,
