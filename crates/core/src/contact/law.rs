@@ -55,6 +55,12 @@ impl ContactLaw {
         self.cone
     }
 
+    /// True where all of σ rubs: the tip of the cone is at 0.
+    #[inline(always)]
+    pub(crate) fn all_rubs(&self) -> bool {
+        self.tip == 0.0
+    }
+
     /// σ that rubs, m/s.
     #[inline(always)]
     pub(crate) fn rubbing<T: Lanes>(&self, shifted_impulse: T) -> T {

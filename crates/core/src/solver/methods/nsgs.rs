@@ -95,7 +95,11 @@ pub(super) fn tested_sweep<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
 ) -> bool {
-    tested::<M, CoulombFriction>(problem, settings, false)
+    if problem.law.all_rubs() {
+        tested::<M, CoulombFriction<true>>(problem, settings, false)
+    } else {
+        tested::<M, CoulombFriction<false>>(problem, settings, false)
+    }
 }
 
 fn tested<M: Model, P: FrictionProjection>(
@@ -126,7 +130,11 @@ fn squared_impulses<M: Model>(problem: &mut StepProblem<M>) -> f64 {
 
 /// One pass over all contacts under Coulomb's law.
 pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> ImpulseChange {
-    sweep_by::<M, CoulombFriction, MEASURE>(problem, false)
+    if problem.law.all_rubs() {
+        sweep_by::<M, CoulombFriction<true>, MEASURE>(problem, false)
+    } else {
+        sweep_by::<M, CoulombFriction<false>, MEASURE>(problem, false)
+    }
 }
 
 /// One pass over all contacts, from the last to the first where it goes backward.

