@@ -70,7 +70,7 @@ fn main() {
                     tolerance: 1e-6,
                     max_sweeps: 1_000,
                     islands,
-                    ..SolverSettings::default()
+                    ..SolverSettings::SWEEPS
                 };
                 let start = started(&scene, solver);
                 let mut unsolved = 0;

@@ -24,7 +24,7 @@ fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) 
         stop: StopTest::RelativeChange,
         tolerance: 0.0,
         max_sweeps: 2 * SWEEPS,
-        ..SolverSettings::default()
+        ..SolverSettings::SWEEPS
     };
     let coloured = SolverSettings { ordering: Ordering::Coloured, ..one_by_one };
     let side_by_side = SolverSettings { method: Method::NsgsParallel, ..one_by_one };
@@ -70,7 +70,7 @@ fn main() {
         simulation.set_solver(settings).expect("proper settings");
         simulation.step().expect("a finite state");
 
-        let mut problem = common::problem(&simulation, &SolverSettings::default());
+        let mut problem = common::problem(&simulation, &SolverSettings::SWEEPS);
         let updates = problem.rows.len();
         let of_sweep = least_secs(&mut criterion, &format!("sweep/{count} discs"), || {
             black_box(sweep::<SpinningPlane, false>(&mut problem));

@@ -40,7 +40,7 @@ fn main() -> Result<()> {
             stop: StopTest::Residual,
             tolerance: 1e-6,
             max_sweeps: 20_000,
-            ..SolverSettings::default()
+            ..SolverSettings::SWEEPS
         };
         println!("{}", simulation.next_problem(Solve(settings)));
     }

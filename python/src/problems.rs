@@ -32,7 +32,7 @@ pub(crate) fn solve<'py>(
     let method = method_of(method)?;
     let stop = StopTest::Residual;
     let settings =
-        SolverSettings { method, stop, tolerance, max_sweeps, ..SolverSettings::default() };
+        SolverSettings { method, stop, tolerance, max_sweeps, ..SolverSettings::SWEEPS };
     let mut problem = problem_of(problem)?;
     if without_bodies {
         problem.bodies = None;

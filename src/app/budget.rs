@@ -4,7 +4,6 @@ use crate::config::Config;
 use crate::scene::Scene;
 use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{Fallback, FrictionModel, Method, SolverChanges, SolverSettings};
-use crate::study::PILE_SOLVER;
 use crate::world::{FrictionCone, Periodic};
 
 /// Piles of more grains begin with sweeps that are counted, so that they move before one's eyes.
@@ -17,8 +16,8 @@ pub(super) struct Budget {
     /// What it costs, in time and in accuracy.
     pub hint: &'static str,
     pub settings: SolverSettings,
-    /// True where another method would not keep what its name says.
-    pub is_of_its_method: bool,
+    /// True where every step is certain to be solved.
+    pub is_certain: bool,
 }
 
 impl Budget {
@@ -35,21 +34,9 @@ impl Budget {
 
     /// True where it keeps what its name says there.
     pub(super) fn is_to_be_had(&self, surroundings: &Surroundings) -> bool {
-        !self.is_of_its_method || self.among(surroundings).method == self.settings.method
+        !self.is_certain || !surroundings.moving.iter().any(|motion| motion.is_driven)
     }
 }
-
-/// So well that tighter solutions tell no other mean (`RESULTS.md`, speed against accuracy).
-pub(super) const TRUSTED: Budget = Budget {
-    name: "Trusted",
-    hint: "Each step to a residual of 1e-6: what is tighter has changed no mean of piles so far. At 138 grains \
-           faster than Figures.",
-    settings: SolverSettings {
-        fallback: Fallback::OfMethod,
-        ..SolverSettings::to_residual(Method::Auto, 1e-6, 500)
-    },
-    is_of_its_method: false,
-};
 
 /// Forty sweeps, by all cores.
 pub(super) const FAST: Budget = Budget {
@@ -60,37 +47,46 @@ pub(super) const FAST: Budget = Budget {
         fallback: Fallback::None,
         ..SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40)
     },
-    is_of_its_method: false,
+    is_certain: false,
 };
 
 /// As the paper's figures are drawn.
-pub(super) const FIGURES: Budget = Budget {
-    name: "Figures",
-    hint: "Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are computed: the same \
-           to the last digit. Two to five times as slow as Trusted.",
-    settings: PILE_SOLVER,
-    is_of_its_method: false,
+pub(super) const PAPER: Budget = Budget {
+    name: "Paper",
+    hint: "The paper's scheme: Gauss-Seidel to a relative change of 1e-7, as the figures of slump --headless are \
+           computed, the same to the last digit. A quarter of the steps stay unsolved.",
+    settings: SolverSettings::PAPER,
+    is_certain: false,
 };
 
-/// Solved at any size, of another law.
+/// Coulomb's law itself.
+pub(super) const COULOMB: Budget = Budget {
+    name: "Coulomb",
+    hint: "Coulomb's law itself, by Newton's method: some steps have no solution that it finds. Slumps are those of \
+           Certified, at several times the cost.",
+    settings: SolverSettings {
+        friction_model: FrictionModel::Coulomb,
+        max_sweeps: 500,
+        ..SolverSettings::DEFAULT
+    },
+    is_certain: false,
+};
+
+/// What everything begins with.
 pub(super) const CERTIFIED: Budget = Budget {
     name: "Certified",
-    hint: "Each step to 1e-8 with a certificate, at any size, under friction bounded by the step before (tresca) \
-           instead of Coulomb's law: slumps of 138 grains are not told apart.",
-    settings: SolverSettings {
-        friction_model: FrictionModel::Tresca,
-        fallback: Fallback::None,
-        ..SolverSettings::to_residual(Method::InteriorPoint, 1e-8, 500)
-    },
-    is_of_its_method: true,
+    hint: "Each step is solved within bounds of friction that the step before gives (tresca), and velocities are \
+           certain to 1e-4 of the root of g d. Slumps are those of Coulomb's law.",
+    settings: SolverSettings::DEFAULT,
+    is_certain: true,
 };
 
 /// All of them.
-pub(super) const BUDGETS: [Budget; 4] = [FAST, TRUSTED, FIGURES, CERTIFIED];
+pub(super) const BUDGETS: [Budget; 4] = [FAST, CERTIFIED, COULOMB, PAPER];
 
 /// What a pile of that many grains begins with.
 pub(super) fn for_grains(grains: usize) -> Budget {
-    if grains <= MOST_SOLVED_GRAINS { TRUSTED } else { FAST }
+    if grains <= MOST_SOLVED_GRAINS { CERTIFIED } else { FAST }
 }
 
 /// What a scene begins with whose user says nothing of how well its steps are to be solved: a pile what suits its
@@ -102,7 +98,10 @@ pub(super) fn complete(scene: &mut Scene, asked: &SolverChanges) {
     let is_pile = scene.name == Config::DEFAULT_SCENE;
     if is_pile && scene.solver == SolverSettings::default() {
         scene.solver = for_grains(scene.grains.len()).settings;
-    } else if !is_driven && asked.fallback.is_none() && scene.solver.fallback == Fallback::OfMethod
+    } else if !is_driven
+        && asked.fallback.is_none()
+        && scene.solver.fallback != Fallback::Tresca
+        && scene.solver.model(false) == FrictionModel::Coulomb
     {
         scene.solver.fallback = Fallback::Tresca;
     }
@@ -152,7 +151,7 @@ mod tests {
             assert_eq!(scene.solver.fallback, fallback, "{name}");
             scene.simulation().expect("a sound scene");
         }
-        assert!(TRUSTED.settings.falls_back(), "by its method");
+        assert!(COULOMB.settings.falls_back(), "by its method");
     }
 
     fn surroundings(name: &str) -> std::sync::Arc<Surroundings> {

@@ -160,7 +160,7 @@ fn list() {
     let takers = METHODS.iter().filter(|info| info.takes_models).map(|info| info.name);
     let takers: Vec<_> = takers.collect();
     print_line(format_args!("Models of friction, those beside coulomb for {}:", takers.join(", ")));
-    for model in FrictionModel::ALL {
+    for model in FrictionModel::SOLVED {
         print_line(format_args!("  {:14} {}", model.name(), model.hint()));
     }
 }
@@ -266,7 +266,7 @@ impl ProblemCommand {
                     stop,
                     tolerance,
                     max_sweeps,
-                    ..SolverSettings::default()
+                    ..SolverSettings::SWEEPS
                 };
                 let solution = solve_file(&problem, &settings, repeat)?;
                 print_solution(&solution);

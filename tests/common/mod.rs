@@ -53,7 +53,7 @@ pub fn ranged(
 ) -> Scene {
     Scene {
         stepper: Stepper::Range,
-        solver: SolverSettings::default(),
+        solver: SolverSettings::SWEEPS,
         parameters: Parameters { debonding_distance: DISTANCE_IN_DIAMETERS, ..parameters },
         ..scene(physics, gravity, parameters, grains)
     }
@@ -69,7 +69,7 @@ pub fn tight() -> SolverSettings {
 }
 
 pub fn solved_by(method: Method, tolerance: f64) -> SolverSettings {
-    SolverSettings { method, stop: StopTest::Residual, tolerance, ..SolverSettings::default() }
+    SolverSettings { method, stop: StopTest::Residual, tolerance, ..SolverSettings::SWEEPS }
 }
 
 pub fn to_residual(tolerance: f64) -> SolverSettings {

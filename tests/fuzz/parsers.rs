@@ -98,7 +98,7 @@ fn solve_briefly(text: &str, _: &Path) -> Result<()> {
         stop: StopTest::Residual,
         tolerance: 1e-6,
         max_sweeps: 20,
-        ..SolverSettings::default()
+        ..SolverSettings::SWEEPS
     };
     let solution = solve_file(&problem, &settings, 1)?;
     let enough = 2.001 * settings.tolerance;

@@ -244,9 +244,14 @@ macro_rules! settings {
             )*
         }
 
+        impl $Name {
+            /// The declared defaults.
+            pub const DEFAULT: Self = Self { $($field: $default,)* };
+        }
+
         impl Default for $Name {
             fn default() -> Self {
-                Self { $($field: $default,)* }
+                Self::DEFAULT
             }
         }
 

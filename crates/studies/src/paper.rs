@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::error::Result;
 use crate::scene::{NewPile, Scene, cradle, paper_pile};
-use crate::solver::{Fallback, FrictionModel, Method, Ordering, SolverSettings, StopTest};
+use crate::solver::SolverSettings;
 use crate::world::Boundary;
 
 /// One run of a figure, with the times that it is shown at.
@@ -28,21 +28,6 @@ pub const FIG4_TIME_STEPS_SECS: [f64; 3] = [1e-4, 1e-3, 2e-3];
 pub const FIG7_TIME_STEPS_SECS: [f64; 2] = [5e-4, 1e-3];
 /// Times of Fig. 7, a row each, s.
 pub const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
-/// How the steps of the piles are solved: to the relative impulse change of the reference results, at which
-/// the verdicts no longer hang on the solver.
-pub const PILE_SOLVER: SolverSettings = SolverSettings {
-    method: Method::Nsgs,
-    ordering: Ordering::Interleaved,
-    stop: StopTest::RelativeChange,
-    tolerance: 1e-7,
-    max_sweeps: 5_000,
-    warm_start: true,
-    friction_model: FrictionModel::Coulomb,
-    model_solves: 1,
-    fallback: Fallback::OfMethod,
-    islands: false,
-};
-
 /// All runs, dearest first.
 ///
 /// # Errors
@@ -50,7 +35,7 @@ pub const PILE_SOLVER: SolverSettings = SolverSettings {
 pub fn paper_runs() -> Result<Vec<PaperRun>> {
     let mut runs = Vec::new();
     let mut pile = paper_pile()?;
-    pile.solver = PILE_SOLVER;
+    pile.solver = SolverSettings::PAPER;
     for time_step_secs in FIG4_TIME_STEPS_SECS {
         for bond in FIG4_BONDS {
             let mut scene = pile.clone();

@@ -66,8 +66,12 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     });
     let tolerance = about("tolerance");
     if let Some(control) = tolerance.control {
-        let per_mass = settings.solver.stop == StopTest::ImpulsePerMass;
-        let control = Control { unit: if per_mass { "m/s" } else { "" }, ..control };
+        let unit = match settings.solver.stop {
+            StopTest::ImpulsePerMass => "m/s",
+            StopTest::VelocityError => "√(g d)",
+            StopTest::RelativeChange | StopTest::Residual => "",
+        };
+        let control = Control { unit, ..control };
         setting_control::show_as(ui, tolerance, &control, settings, start);
     }
     setting_control::show(ui, about("max-sweeps"), settings, start);
@@ -100,10 +104,8 @@ fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     })
     .response
     .on_disabled_hover_text(format!("{} solves Coulomb's law alone.", method.name));
-    if settings.solver.friction_model.is_taken_anew() {
+    if settings.solver.model(false).is_taken_anew() {
         setting_control::show(ui, about("model-solves"), settings, start);
-    } else {
-        settings.solver.model_solves = 1;
     }
 }
 

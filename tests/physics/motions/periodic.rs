@@ -172,7 +172,7 @@ fn grains_that_bounce_under_the_law_range_keep_their_momentum_across_borders() {
     gas.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
     gas.parameters.debonding_distance = DISTANCE_IN_DIAMETERS;
     (gas.stepper, gas.periodic) = (Stepper::Range, Some(SQUARE));
-    gas.solver = SolverSettings { tolerance: 1e-8, max_sweeps: 2000, ..SolverSettings::default() };
+    gas.solver = SolverSettings { tolerance: 1e-8, max_sweeps: 2000, ..SolverSettings::SWEEPS };
     let mut run = start(&gas);
     let (before, energy) = (momentum(&run), run.observables().kinetic_energy);
     let mut broken = 0.0;

@@ -202,7 +202,7 @@ fn colours_on_any_number_of_threads_give_bitwise_the_sweeps_of_one() {
         stop: StopTest::RelativeChange,
         tolerance: 1e-3,
         max_sweeps: 60,
-        ..SolverSettings::default()
+        ..SolverSettings::SWEEPS
     };
     let alone = three_steps(&scene, 1);
     assert!(alone.0[0] > 10 && alone.1.len() > 40_000, "{:?} sweeps", alone.0);

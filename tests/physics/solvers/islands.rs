@@ -53,7 +53,7 @@ fn island_by_island(method: Method, stop: StopTest) -> SolverSettings {
         max_sweeps: 2_000,
         fallback: Fallback::None,
         islands: true,
-        ..SolverSettings::default()
+        ..SolverSettings::SWEEPS
     }
 }
 
@@ -145,7 +145,7 @@ fn models_of_friction_are_solved_island_by_island() {
         let step = all.observables();
         let left = step.model_residual.expect("a residual of the model");
         assert!(step.converged && left <= settings.tolerance, "{model} {method}: {step:?}");
-        assert!(step.duality_gap.is_some_and(|gap| gap < 1e-2), "{model} {method}: {step:?}");
+        assert!(step.velocity_error < 1e-4, "{model} {method}: {step:?}");
     }
 }
 

@@ -13,13 +13,8 @@ fn falling_pile(seed: u64) -> Scene {
 
 fn with(scene: &Scene, method: Method, tolerance: f64) -> Simulation {
     let stop = StopTest::Residual;
-    let solver = SolverSettings {
-        method,
-        stop,
-        tolerance,
-        max_sweeps: 200_000,
-        ..SolverSettings::default()
-    };
+    let solver =
+        SolverSettings { method, stop, tolerance, max_sweeps: 200_000, ..SolverSettings::SWEEPS };
     Scene { solver, ..scene.clone() }.simulation().expect("a proper scene")
 }
 
@@ -188,7 +183,7 @@ fn every_method_honours_every_stopping_test_and_the_limit() {
                 tolerance,
                 max_sweeps: 100_000,
                 warm_start: false,
-                ..SolverSettings::default()
+                ..SolverSettings::SWEEPS
             };
             let mut run = moment.clone();
             run.set_solver(settings).expect("proper settings");
@@ -226,7 +221,7 @@ fn a_step_without_contacts_is_solved_by_every_method() {
 fn settings_from_before_there_were_orders_are_read() {
     let json = r#"{"method":"nsgs","tolerance":1e-6,"max_sweeps":5000,"warm_start":true}"#;
     let settings: SolverSettings = serde_json::from_str(json).expect("settings");
-    assert_eq!(settings, SolverSettings::default());
+    assert_eq!(settings, SolverSettings::SWEEPS);
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn cold(sweeps: u32) -> SolverSettings {
         max_sweeps: sweeps,
         tolerance: 1e-14,
         warm_start: false,
-        ..SolverSettings::default()
+        ..SolverSettings::SWEEPS
     }
 }
 

@@ -278,7 +278,7 @@ fn observables(all: &[Observables]) -> Columns {
             ("stalled", Cell::Flag(row.stalled)),
             ("residual", row.residual.into()),
             ("model_residual", optional(row.model_residual)),
-            ("duality_gap", optional(row.duality_gap)),
+            ("velocity_error", row.velocity_error.into()),
             ("fell_back", optional(row.fell_back.map(|fell_back| u8::from(fell_back).into()))),
             ("contacts", Cell::Whole(row.contacts.into())),
             ("compressive_contacts", Cell::Whole(row.compressive_contacts.into())),

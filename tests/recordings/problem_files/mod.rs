@@ -28,7 +28,7 @@ fn kept() -> Vec<String> {
 
 fn settings(method: Method, tolerance: f64) -> SolverSettings {
     let stop = StopTest::Residual;
-    SolverSettings { method, tolerance, max_sweeps: 1_000_000, stop, ..SolverSettings::default() }
+    SolverSettings { method, tolerance, max_sweeps: 1_000_000, stop, ..SolverSettings::SWEEPS }
 }
 
 /// Scenes of every model, a few steps into their motion.

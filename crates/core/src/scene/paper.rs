@@ -164,7 +164,7 @@ pub fn cradle_from(start_in_diameters: f64) -> Scene {
             tolerance: 2.2e-3,
             max_sweeps: 20_000,
             warm_start: false,
-            ..SolverSettings::default()
+            ..SolverSettings::SWEEPS
         },
         view: view_on_line(DVec2::new(-9.0, -1.2), DVec2::new(5.0, 1.2)),
         ..Scene::of("cradle", LINE_DIAMETER, gravity, parameters, vec![i, j, k])

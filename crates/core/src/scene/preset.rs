@@ -16,6 +16,7 @@ const MAX_SWEEPS: u32 = 5_000;
 words! {
     /// Settings that go together.
     pub enum Preset {
+        Paper = "paper", "The paper's scheme as its figures are computed: Gauss-Seidel to a relative change of 1e-7";
         Robust = "robust", "Every known remedy: hard scenes hold, and the paper's effects of the time step are gone";
     }
 }
@@ -23,7 +24,9 @@ words! {
 impl Preset {
     /// Changes a scene.
     pub fn apply(self, scene: &mut Scene) {
-        scene.gap_tolerance = scene.gap_tolerance.max(GAP_TOLERANCE * scene.mean_diameter);
+        if self == Self::Robust {
+            scene.gap_tolerance = scene.gap_tolerance.max(GAP_TOLERANCE * scene.mean_diameter);
+        }
         let mut settings = scene.settings();
         self.apply_to_settings(&mut settings);
         scene.set_settings(settings);
@@ -31,23 +34,34 @@ impl Preset {
 
     /// Changes what can be changed during a run.
     pub fn apply_to_settings(self, settings: &mut Settings) {
-        let Self::Robust = self;
-        let threshold = &mut settings.parameters.restitution_threshold;
-        *threshold = threshold.max(RESTITUTION_THRESHOLD);
-        settings.solver = SolverSettings {
-            method: Method::Newton,
-            stop: StopTest::Residual,
-            tolerance: TOLERANCE,
-            max_sweeps: MAX_SWEEPS,
-            warm_start: true,
-            ..settings.solver
-        };
-        settings.remedies = Remedies::default();
-        for remedy in &REMEDIES {
-            if let Some(value) = remedy.robust {
-                settings.remedies.set(remedy.name, value);
+        match self {
+            // A scene that says how it is solved shows a scheme of its own.
+            Self::Paper if settings.solver == SolverSettings::default() => {
+                settings.solver = SolverSettings::PAPER;
+                *settings = settings.with_only_what_is_taken();
             }
+            Self::Paper => {}
+            Self::Robust => make_robust(settings),
         }
-        *settings = settings.with_only_what_is_taken();
     }
+}
+
+fn make_robust(settings: &mut Settings) {
+    let threshold = &mut settings.parameters.restitution_threshold;
+    *threshold = threshold.max(RESTITUTION_THRESHOLD);
+    settings.solver = SolverSettings {
+        method: Method::Newton,
+        stop: StopTest::Residual,
+        tolerance: TOLERANCE,
+        max_sweeps: MAX_SWEEPS,
+        warm_start: true,
+        ..settings.solver
+    };
+    settings.remedies = Remedies::default();
+    for remedy in &REMEDIES {
+        if let Some(value) = remedy.robust {
+            settings.remedies.set(remedy.name, value);
+        }
+    }
+    *settings = settings.with_only_what_is_taken();
 }

@@ -36,10 +36,10 @@ pub struct Observables {
     /// dimensionless; none under that law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model_residual: Option<f64>,
-    /// The duality gap of that model, over Σ m_ij (v^free)², dimensionless: its square root bounds the error of
-    /// the velocities.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub duality_gap: Option<f64>,
+    /// A bound on the velocities' error, m/s: root mean square over the grains that touch something, of a model
+    /// against its solution. Under Coulomb's law, against the solution under the bounds that the impulses have.
+    #[serde(default)]
+    pub velocity_error: f64,
     /// True where a step that was not solved under Coulomb's law was solved under bounds of friction instead; none
     /// where that cannot be.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -107,7 +107,7 @@ impl Observables {
 
     /// True where a step was solved under another model of friction than Coulomb's law.
     pub fn is_of_a_model(&self) -> bool {
-        self.step > 0 && self.duality_gap.is_some_and(f64::is_finite)
+        self.step > 0 && self.model_residual.is_some_and(|left| left != self.residual)
     }
 
     /// With numbers that are none where there is not what they tell of, so that rows with and without them fit in
@@ -116,7 +116,6 @@ impl Observables {
         let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));
         Self {
             model_residual: number(self.model_residual),
-            duality_gap: number(self.duality_gap),
             fell_back: Some(self.fell_back.unwrap_or(false)),
             drive_energy: number(self.drive_energy),
             drive_work: number(self.drive_work),
@@ -162,8 +161,7 @@ pub(super) fn at_start<M: Model>(
     };
     let bonds = settings.stepper.has_bonds().then(BondEnergies::default);
     let none_yet = settings.may_solve_models().then_some(0.0);
-    let measures =
-        Measures { model_residual: none_yet, duality_gap: none_yet, ..Measures::default() };
+    let measures = Measures { model_residual: none_yet, ..Measures::default() };
     let result = StepResult { bonds, measures, ..StepResult::nothing_yet() };
     let time_step_secs = settings.parameters.time_step_secs;
     let kinetic_energy = (0..state.world.grains.len()).map(energy).sum();
@@ -181,7 +179,7 @@ fn of_state<M: Model>(
 ) -> Observables {
     let StepResult { report, measures, gravity_work, drive_work, bonds } = result;
     let SolveReport { sweeps, factorisations, converged, stalled, fell_back } = report;
-    let Measures { residual, model_residual, duality_gap, .. } = measures;
+    let Measures { residual, model_residual, velocity_error, .. } = measures;
     let Measures { compressive_contacts, tensile_contacts, .. } = measures;
     let Measures { normal_work, tangential_work, wall_work, border_work, .. } = measures;
     let is_sheared = state.world.periodic.is_some_and(Periodic::is_sheared);
@@ -202,8 +200,8 @@ fn of_state<M: Model>(
         stalled,
         residual,
         model_residual,
-        duality_gap,
-        fell_back: duality_gap.map(|_| fell_back),
+        velocity_error,
+        fell_back: model_residual.map(|_| fell_back),
         contacts: (0..state.contacts.contacts().len()).filter(in_touch).count() as u32,
         compressive_contacts,
         tensile_contacts,
@@ -308,14 +306,19 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
         ..Quantity::PLAIN
     },
     Quantity {
+        name: "error",
+        title: "error of velocities",
+        unit: "m/s",
+        logarithmic: true,
+        value: |row| row.velocity_error,
+        ..Quantity::PLAIN
+    },
+    Quantity {
         name: "residual",
         title: "residual",
         logarithmic: true,
         value: |row| row.residual,
-        beside: &[
-            ("the model's", |row| row.model_residual.filter(|_| row.is_of_a_model())),
-            ("its duality gap", |row| row.duality_gap.filter(|_| row.is_of_a_model())),
-        ],
+        beside: &[("the model's", |row| row.model_residual.filter(|_| row.is_of_a_model()))],
         ..Quantity::PLAIN
     },
     Quantity {
@@ -343,7 +346,7 @@ mod tests {
     #[test]
     fn every_column_is_plotted_or_said_not_to_be() {
         // A step that was solved under a model: others have nothing of it to plot.
-        let plain = Observables { step: 7, duality_gap: Some(0.5), ..Observables::default() };
+        let plain = Observables { step: 7, model_residual: Some(0.5), ..Observables::default() };
         let columns = serde_json::to_value(plain.with_further_columns()).unwrap();
         let columns = columns.as_object().unwrap();
         let fields = format!("{plain:?}").matches(": ").count();

@@ -162,7 +162,8 @@ impl Settings {
     /// Checks that the model of friction goes with the stepper and its cone.
     fn check_friction_model(&self) -> Result<()> {
         let (model, cone) = (self.solver.friction_model, self.parameters.cone);
-        if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
+        let is_asked = !matches!(model, FrictionModel::Coulomb | FrictionModel::OfMethod);
+        if is_asked && !self.stepper.reads("friction-model") {
             let readers = Stepper::ALL.iter().filter(|stepper| stepper.reads("friction-model"));
             let (stepper, readers) = (self.stepper, names_of(readers).join(" and "));
             let allowed =
@@ -217,7 +218,7 @@ impl Settings {
             let takers = METHODS.iter().filter(|info| info.takes_drives).map(|info| info.name);
             return refuse("solver", self.solver.method.to_string(), takers.collect());
         }
-        let model = self.solver.friction_model;
+        let model = self.solver.model(true);
         if model != FrictionModel::Coulomb {
             return refuse("friction-model", model.to_string(), vec!["coulomb"]);
         }
@@ -243,15 +244,11 @@ impl Settings {
         Err(Error::value("solver", method, allowed))
     }
 
-    /// The same without the remedies and the model of friction that its stepper or its method do not take, and
-    /// without further solves of a model that has nothing to take anew.
+    /// The same without the remedies and the model of friction that its stepper or its method do not take.
     pub fn with_only_what_is_taken(mut self) -> Self {
         self.solver = self.solver.by(self.solver.method);
         if !self.stepper.reads("friction-model") {
-            self.solver = self.solver.with_coulombs_law();
-        }
-        if !self.solver.friction_model.is_taken_anew() {
-            self.solver.model_solves = 1;
+            self.solver = self.solver.without_model();
         }
         for remedy in ROWS.iter().filter(|remedy| !remedy.taken_by.contains(&self.stepper)) {
             remedy.leave_out(&mut self.remedies);

@@ -15,7 +15,8 @@ words! {
         Jacobi = "jacobi", "Jacobi with mass splitting: all contacts at once, each with its part of the mass";
         InteriorPoint = "interior-point",
             "interior point, sparse direct: the convex models of friction to any tolerance";
-        Auto = "auto", "newton up to 1,000 contacts, nncg above, nsgs where sweeps are what is studied";
+        Auto = "auto",
+            "interior-point, certified; under Coulomb's law newton, nncg above 10,000 contacts, nsgs where sweeps are studied";
     }
 }
 
@@ -173,8 +174,14 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
             )
         },
         MethodInfo {
+            takes_models: true,
             takes_drives: true,
-            ..known(Method::Auto, OfSettings, COULOMB, "the charts of speed against accuracy")
+            ..known(
+                Method::Auto,
+                OfSettings,
+                "a convex model of friction, with a certificate, or Coulomb's law",
+                "the charts of speed against accuracy",
+            )
         },
     ]
 };

@@ -32,7 +32,7 @@ pub use model::{ModelParts, Slot, Slots};
 pub use problem::{
     Approach, Bodies, ContactRows, DrivenBy, DrivenRow, DrivenWall, FixedRow, Measures,
     MovingSurfaces, PairRow, ProblemNumbers, Row, RowVelocities, StepProblem, Surface,
-    for_each_row, measure, relative_velocities, residual, worst,
+    VelocityError, for_each_row, measure, relative_velocities, residual, velocity_error, worst,
 };
 pub use settings::{Fallback, FrictionModel, SolverChanges, SolverSettings, StopTest};
 pub use solve::{Memory, solve};

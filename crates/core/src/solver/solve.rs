@@ -157,7 +157,7 @@ impl<M: Model> Islands<M> {
         let solve = |island: &mut Island<M>| {
             let share = match settings.stop {
                 StopTest::ImpulsePerMass => island.problem.rows.len() as f64 / contacts,
-                StopTest::RelativeChange | StopTest::Residual => 1.0,
+                StopTest::RelativeChange | StopTest::Residual | StopTest::VelocityError => 1.0,
             };
             let tolerance = share * settings.tolerance;
             let settings = SolverSettings { tolerance, ..*settings };
@@ -221,6 +221,7 @@ impl<M: Model> Island<M> {
         problem.friction.now.clear();
         problem.friction.model = whole.friction.model;
         problem.law = whole.law;
+        problem.fall_speed = whole.fall_speed;
     }
 
     /// Adds a row of the whole, with what there is beside it.

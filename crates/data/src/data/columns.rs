@@ -321,10 +321,10 @@ const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
         SomeNumber(|row| row.model_residual),
     ),
     column(
-        "duality_gap",
-        "1",
-        "duality gap of that model, whose square root bounds the error of the velocities",
-        SomeNumber(|row| row.duality_gap),
+        "velocity_error",
+        "m/s",
+        "bound on the velocities' error: root mean square over the grains that touch something",
+        Number(|row| row.velocity_error),
     ),
     column(
         "fell_back",

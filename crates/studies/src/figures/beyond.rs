@@ -106,9 +106,7 @@ pub(super) const FRICTION: PairedExperiment = PairedExperiment {
     group: |config, _| grains(config),
     level: |config| config.solver.friction_model.unwrap_or_default().to_string(),
     splits: &[|rows| {
-        rows.parted(|config| {
-            config.solver.friction_model.unwrap_or_default() == FrictionModel::Coulomb
-        })
+        rows.parted(|config| config.solver.friction_model == Some(FrictionModel::Coulomb))
     }],
     claims: |_, all| by_level(all, "under {level} as under Coulomb's law"),
 };
@@ -135,7 +133,7 @@ fn grains(config: &Config) -> String {
 fn accuracy(config: &Config) -> String {
     let solver = &config.solver;
     let tolerance = format!("{:e}", solver.tolerance.unwrap_or_default());
-    if solver.friction_model.unwrap_or_default() != FrictionModel::Coulomb {
+    if solver.friction_model == Some(FrictionModel::Tresca) {
         return format!("certified ×{}", solver.model_solves.unwrap_or(1));
     }
     match (solver.stop, solver.fallback) {

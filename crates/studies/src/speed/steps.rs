@@ -254,7 +254,7 @@ fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
 }
 
 fn times(name: &str, all: &[TimedCollection], goals: &[f64]) -> ReportTable {
-    let columns = "problem contacts start_residual method residual seconds solved smallest_residual duality_gap";
+    let columns = "problem contacts start_residual method residual seconds solved smallest_residual velocity_error";
     let mut rows = Vec::new();
     for timed in all {
         for &goal in goals {
@@ -262,7 +262,7 @@ fn times(name: &str, all: &[TimedCollection], goals: &[f64]) -> ReportTable {
                 for (problem, solves) in timed.problems.iter().zip(solves) {
                     let TimedSolves { contacts, start, smallest, .. } = solves;
                     let Timing { secs, solved } = solves.timing(goal);
-                    let gap = solves.reached(goal).and_then(|reached| reached.duality_gap);
+                    let error = solves.reached(goal).map(|reached| reached.velocity_error);
                     rows.push(vec![
                         problem.clone(),
                         contacts.to_string(),
@@ -272,7 +272,7 @@ fn times(name: &str, all: &[TimedCollection], goals: &[f64]) -> ReportTable {
                         format!("{secs:e}"),
                         solved.to_string(),
                         format!("{smallest:e}"),
-                        gap.map_or(String::new(), |gap| format!("{gap:e}")),
+                        error.map_or(String::new(), |error| format!("{error:e}")),
                     ]);
                 }
             }

@@ -34,7 +34,7 @@ pub(super) fn told_apart(mut variants: Vec<ChartedVariant>) -> Vec<ChartedVarian
 pub(super) fn all() -> Vec<ChartedVariant> {
     let mut variants = of_problems(false);
     variants.extend(without_method().map(|stepper| {
-        let (name, solver) = (stepper.name().to_owned(), SolverSettings::default());
+        let (name, solver) = (stepper.name().to_owned(), SolverSettings::SWEEPS);
         ChartedVariant { name, look: 0, stepper, solver }
     }));
     variants
@@ -62,7 +62,7 @@ pub(super) fn of_problems(orders: bool) -> Vec<ChartedVariant> {
 /// Models of friction in the place of Coulomb's law, by sweeps, and the one that piles do not tell from it by the
 /// method that certifies it. They solve another problem, so that whole simulations alone can tell what they are worth.
 pub(super) fn models() -> Vec<ChartedVariant> {
-    let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
+    let models = FrictionModel::SOLVED.iter().filter(|model| **model != FrictionModel::Coulomb);
     models.map(|&model| of_model(Method::Nsgs, model)).chain([certified()]).collect()
 }
 
@@ -72,7 +72,7 @@ pub(super) fn certified() -> ChartedVariant {
 }
 
 fn of_model(method: Method, friction_model: FrictionModel) -> ChartedVariant {
-    let solver = SolverSettings { method, friction_model, ..SolverSettings::default() };
+    let solver = SolverSettings { method, friction_model, ..SolverSettings::SWEEPS };
     let name = match friction_model {
         FrictionModel::Coulomb => method.to_string(),
         _ => format!("{method} {friction_model}"),

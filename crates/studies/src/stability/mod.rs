@@ -16,7 +16,7 @@ use crate::contact::Numbering;
 use crate::error::{Error, Result};
 use crate::scene::{Preset, Scene};
 use crate::sim::{Simulation, Stepper};
-use crate::solver::{FrictionModel, METHODS, Method, Ordering};
+use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings};
 
 /// A scene made to break methods, and what is measured on it.
 #[derive(Clone, Copy, Debug)]
@@ -149,6 +149,8 @@ pub struct TriedVariant {
 
 #[derive(Clone, Copy, Debug)]
 enum VariantChange {
+    /// As every scene is stepped whose user says nothing.
+    Default,
     /// The paper's stepper with this method.
     Method(Method),
     /// Gauss–Seidel in an order of its own.
@@ -164,7 +166,11 @@ impl TriedVariant {
     /// Has a scene stepped so; whatever else it says stays.
     fn apply(&self, scene: &mut Scene) {
         let solver = &mut scene.solver;
+        if !matches!(self.change, VariantChange::Default) {
+            sweep_instead(solver);
+        }
         match self.change {
+            VariantChange::Default => {}
             VariantChange::Method(method) => solver.method = method,
             VariantChange::Order(ordering) => {
                 (solver.method, solver.ordering) = (Method::Nsgs, ordering);
@@ -187,21 +193,37 @@ impl TriedVariant {
     }
 }
 
-/// All variants: every method, every stepper without one, every model of friction beside Coulomb's law, and
+/// Stops by the change of a sweep where a scene leaves it to the default, so that methods are told apart by what they do
+/// rather than by what is asked of them.
+fn sweep_instead(solver: &mut SolverSettings) {
+    let (default, sweeps) = (SolverSettings::DEFAULT, SolverSettings::SWEEPS);
+    if solver.stop == default.stop {
+        solver.stop = sweeps.stop;
+        if solver.tolerance == default.tolerance {
+            solver.tolerance = sweeps.tolerance;
+        }
+    }
+    if solver.friction_model == default.friction_model {
+        (solver.friction_model, solver.model_solves) = (sweeps.friction_model, sweeps.model_solves);
+    }
+}
+
+/// All variants: the default, every method, every stepper without one, every model of friction beside Coulomb's law, and
 /// settings that mend a known failure.
 static VARIANTS: LazyLock<Vec<TriedVariant>> = LazyLock::new(|| {
-    use VariantChange::{Method, Model, Order, Preset as Together, Stepper as Step};
+    use VariantChange::{Default, Method, Model, Order, Preset as Together, Stepper as Step};
     let methods = METHODS.iter().map(|info| (info.name, Method(info.method)));
     let steppers = Stepper::ALL.iter().filter(|stepper| !stepper.uses_method());
     let steppers = steppers.map(|&stepper| (stepper.name(), Step(stepper)));
-    let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
+    let models = FrictionModel::SOLVED.iter().filter(|model| **model != FrictionModel::Coulomb);
     let models = models.map(|&model| (model.name(), Model(model, 1)));
     let others = [
         ("tresca twice", Model(FrictionModel::Tresca, 2)),
         ("nsgs bottom-up", Order(Ordering::BottomUp)),
         ("robust", Together(Preset::Robust)),
     ];
-    let all = methods.chain(steppers).chain(models).chain(others);
+    let default = [("default", Default)].into_iter();
+    let all = default.chain(methods).chain(steppers).chain(models).chain(others);
     all.map(|(name, change)| TriedVariant { name, change }).collect()
 });
 

@@ -103,7 +103,7 @@ pub(super) fn settled(
     }
     let layers = grains.iter().map(|grain| grain.position.y).fold(0.0, f64::max) / DIAMETER;
     let solver =
-        SolverSettings { tolerance: TOLERANCE, max_sweeps: SWEEPS, ..SolverSettings::default() };
+        SolverSettings { tolerance: TOLERANCE, max_sweeps: SWEEPS, ..SolverSettings::SWEEPS };
     let scene = in_a_box(grains, pile.box_width_in_diameters, TIME_STEP_SECS, solver)?;
     let mut simulation = scene.simulation()?;
     let law = *simulation.parameters();

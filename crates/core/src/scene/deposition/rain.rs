@@ -30,7 +30,7 @@ pub(super) fn settled(
     mut progress: impl FnMut(Settling) -> bool,
 ) -> Result<Settled> {
     let columns = rain.columns();
-    let solver = SolverSettings { tolerance: 1e-4, max_sweeps: 1000, ..SolverSettings::default() };
+    let solver = SolverSettings { tolerance: 1e-4, max_sweeps: 1000, ..SolverSettings::SWEEPS };
     let scene = in_a_box(lattice(rain), rain.box_width_in_diameters, TIME_STEP_SECS, solver)?;
     let mut simulation = scene.simulation()?;
 

@@ -15,7 +15,7 @@ use glam::DVec2;
 use super::Scene;
 use super::paper::tone_in_layers;
 use super::stability::{DIAMETER, dry, view};
-use crate::solver::Method;
+
 use crate::world::{Boundary, Grain, Motion, MotionCourse};
 
 /// The golden mean less 1: its multiples are spread evenly over an interval, however many there are.
@@ -37,7 +37,6 @@ fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     scene.parameters.restitution = 0.3;
     scene.parameters.restitution_threshold = 2.0;
     scene.parameters.time_step_secs = 5e-4;
-    scene.solver.method = Method::Auto;
     scene
 }
 

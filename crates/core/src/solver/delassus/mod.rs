@@ -384,9 +384,9 @@ mod tests {
         };
         let free_velocities = [-1.0, 0.0, -1.0, 0.0];
         let settings = SolverSettings {
-            stop: StopTest::Residual,
             max_sweeps: 100_000,
-            ..SolverSettings::default()
+            stop: StopTest::Residual,
+            ..SolverSettings::SWEEPS
         };
         let problem = |free: &[f64]| {
             DelassusProblem::new(&matrix, free, &[0.0; 2], &[0.0; 2], FrictionCone::Shifted)

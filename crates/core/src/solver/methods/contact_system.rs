@@ -17,7 +17,7 @@ use super::nsgs::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
 use crate::contact::law;
 use crate::solver::kinematics::Model;
-use crate::solver::problem::{ContactRows, Row, StepProblem, residual};
+use crate::solver::problem::{ContactRows, Row, StepProblem, residual, velocity_error};
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::world::FrictionCone;
 
@@ -219,8 +219,10 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
 
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool {
         let tolerance = settings.tolerance;
-        if settings.stop == StopTest::Residual {
-            return self.residual() <= tolerance;
+        match settings.stop {
+            StopTest::Residual => return self.residual() <= tolerance,
+            StopTest::VelocityError => return velocity_error(self.problem).is_within(tolerance),
+            StopTest::RelativeChange | StopTest::ImpulsePerMass => {}
         }
         // Impulses in N·s, and without the shift.
         let (mut squared, mut absolute, mut whole) = (0.0, 0.0, 0.0);

@@ -45,7 +45,7 @@ pub(super) fn solve_by_method<M: Model>(
 ) -> SolveReport {
     let MethodMemory { nsgs_parallel: blocks, newton, admm, interior_point: path, vectors } =
         memory;
-    match picked(settings, || problem.rows.len(), problem.is_driven()) {
+    match picked(settings, problem.friction.model, || problem.rows.len(), problem.is_driven()) {
         Method::Nsgs | Method::Auto => nsgs::solve(problem, settings),
         Method::NsgsParallel => nsgs_parallel::solve(problem, blocks, settings),
         Method::Newton => newton::solve(problem, newton, vectors, settings),

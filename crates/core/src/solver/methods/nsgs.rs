@@ -12,9 +12,9 @@ use crate::solver::kinematics::Model;
 use crate::solver::method::Ordering;
 use crate::solver::problem::{
     Bodies, BoundedFriction, ContactRows, CoulombFriction, DrivenRow, DrivenWall, FixedRow,
-    FrictionProjection, StepProblem, natural_map, with_projection,
+    FrictionProjection, StepProblem, natural_map, velocity_error, with_projection,
 };
-use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
+use crate::solver::settings::{FrictionModel, SolverSettings};
 
 /// Sweeps under Coulomb's law after which contacts that have not been solved yet take their bounds. They are
 /// few and far between but in the first step of a run.
@@ -107,15 +107,15 @@ fn tested<M: Model, P: FrictionProjection>(
     settings: &SolverSettings,
     backward: bool,
 ) -> bool {
-    let change = if settings.stop == StopTest::Residual {
+    let change = if settings.stop.judges_solutions() {
         sweep_by::<M, P, false>(problem, backward)
     } else {
         sweep_by::<M, P, true>(problem, backward)
     };
     let mean_mass = problem.bodies.mean_mass;
-    is_settled(problem, change, mean_mass, settings, squared_impulses, |problem| {
-        P::residual::<M>(problem)
-    })
+    let residual = |problem: &mut _| P::residual::<M>(problem);
+    let of_velocities = |problem: &mut _| velocity_error(problem);
+    is_settled(problem, change, mean_mass, settings, squared_impulses, residual, of_velocities)
 }
 
 /// Σ P², (N·s)².

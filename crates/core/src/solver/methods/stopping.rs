@@ -11,6 +11,7 @@
 //! now and then, and only where all stall is there a floor.
 
 use super::sweep::ImpulseChange;
+use crate::solver::problem::VelocityError;
 use crate::solver::settings::{SolverSettings, StopTest};
 
 /// How a solve ended.
@@ -104,7 +105,7 @@ pub(in crate::solver) fn sweep_until_settled<P>(
 }
 
 /// True where the stopping test is met after a sweep that made this change, by a mean mass (kg) of the
-/// grains, by Σ P² ((N·s)²), or by the residual.
+/// grains, by Σ P² ((N·s)²), by the residual, or by the bound on the velocities' error.
 pub(super) fn is_settled<P>(
     problem: &mut P,
     change: ImpulseChange,
@@ -112,6 +113,7 @@ pub(super) fn is_settled<P>(
     settings: &SolverSettings,
     squared_impulses: impl FnOnce(&mut P) -> f64,
     residual: impl FnOnce(&mut P) -> f64,
+    velocity_error: impl FnOnce(&mut P) -> VelocityError,
 ) -> bool {
     let tolerance = settings.tolerance;
     match settings.stop {
@@ -122,6 +124,7 @@ pub(super) fn is_settled<P>(
         }
         StopTest::ImpulsePerMass => change.absolute <= tolerance * mean_mass,
         StopTest::Residual => residual(problem) <= tolerance,
+        StopTest::VelocityError => velocity_error(problem).is_within(tolerance),
     }
 }
 
@@ -165,7 +168,7 @@ impl StallWatch {
         self.looks = [self.looks[1], residual()];
         let is_flat = self.looks[1] >= FLAT * self.looks[0];
         self.in_vain = if is_flat { self.in_vain + 1 } else { 0 };
-        self.in_vain >= LOOKS_IN_VAIN && settings.stop == StopTest::Residual
+        self.in_vain >= LOOKS_IN_VAIN && settings.stop.judges_solutions()
     }
 
     /// True where a solve that was given up after so many sweeps with this residual had stalled.
@@ -211,7 +214,7 @@ mod tests {
     }
 
     fn watched(stop: StopTest, sweeps: u32, residual: impl Fn(u32) -> f64) -> (u32, bool) {
-        let settings = SolverSettings { stop, ..SolverSettings::default() };
+        let settings = SolverSettings { stop, ..SolverSettings::SWEEPS };
         let mut watch = StallWatch::default();
         for sweep in 1..=sweeps {
             if watch.look(sweep, &settings, || residual(sweep)) {

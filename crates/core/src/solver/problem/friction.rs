@@ -25,13 +25,20 @@ use crate::solver::settings::FrictionModel;
 const UNSET_BOUND: f64 = f64::INFINITY;
 
 /// What is asked of friction in a step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct LaggedFriction {
+    /// One of [`FrictionModel::SOLVED`].
     pub model: FrictionModel,
     /// The lagged number of each row as the step begins, m/s; empty under Coulomb's law.
     pub at_start: Vec<f64>,
     /// The same in the last solve.
     pub now: Vec<f64>,
+}
+
+impl Default for LaggedFriction {
+    fn default() -> Self {
+        Self { model: FrictionModel::Coulomb, at_start: Vec::new(), now: Vec::new() }
+    }
 }
 
 /// How a contact's impulses are projected under a model of friction.
@@ -146,7 +153,7 @@ impl<M: Model> StepProblem<M> {
         lagged.clear();
         match model {
             _ if !M::FRICTION => {}
-            FrictionModel::Coulomb => {}
+            FrictionModel::Coulomb | FrictionModel::OfMethod => {}
             FrictionModel::Tresca => {
                 lagged.extend(self.rows().map(|(number, row)| {
                     let index = self.rows.contacts[number] as usize;
@@ -206,7 +213,7 @@ impl<M: Model> StepProblem<M> {
         match self.friction.model {
             FrictionModel::Tresca => self.lag_by(bound),
             FrictionModel::Desaxce => self.lag_by(opening),
-            FrictionModel::Coulomb | FrictionModel::Associated => {}
+            _ => {}
         }
     }
 

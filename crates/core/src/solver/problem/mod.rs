@@ -18,7 +18,8 @@ pub(crate) use self::friction::{
 };
 use self::order::RowOrder;
 pub use self::residual::{
-    Measures, RowVelocities, for_each_row, measure, relative_velocities, residual, worst,
+    Measures, RowVelocities, VelocityError, for_each_row, measure, relative_velocities, residual,
+    velocity_error, worst,
 };
 pub(crate) use self::residual::{errors, natural_map, residual_of, squared_residual_scale};
 pub use self::rows::{Bodies, ContactRows, FixedRow, PairRow, Row};
@@ -46,6 +47,8 @@ pub struct StepProblem<M: Model> {
     pub(crate) walls: MovingWalls,
     /// What is asked of friction.
     pub(crate) friction: LaggedFriction,
+    /// √(g d), m/s: what errors of velocities are held against.
+    pub(crate) fall_speed: f64,
     pub(super) order: RowOrder,
     /// √m_ij of the rows, kg^½, for methods that work on scaled variables.
     pub(super) root_masses: Vec<f64>,
@@ -90,6 +93,7 @@ impl<M: Model> StepProblem<M> {
     ) {
         let ProblemNumbers { time_step_secs, friction, capture_speed, cone } = numbers;
         self.law = ContactLaw::new(friction, capture_speed, cone);
+        self.fall_speed = (world.gravity.magnitude() * world.mean_diameter).sqrt();
         self.walls.clear();
         self.place_bodies(world, time_step_secs);
         let ordering = settings.method.info().order.of_rows(settings.ordering);
@@ -105,7 +109,7 @@ impl<M: Model> StepProblem<M> {
             self.add_surfaces(contacts, &rebound, surfaces);
         }
         self.form_velocities();
-        self.begin_friction(contacts, settings.friction_model);
+        self.begin_friction(contacts, settings.model(self.is_driven()));
     }
 
     /// Packs the bodies as they are, and as gravity alone would leave them.

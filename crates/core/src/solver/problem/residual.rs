@@ -1,16 +1,20 @@
 //! The residual that is common to all methods, the work of the contact forces, and how far from its least value
 //! a convex model's energy is.
 //!
-//! **Duality gap.** With impulses p that a model allows and the velocities V that they make, let w and v of each
-//! contact be those of the model (`problem::friction`) and z ≥ 0 what w lacks of the allowed ones: w + z ≥ 0 within
-//! lagged bounds g, w + s + z ≥ μ|v| on the cone. The velocities V solve the dual of a problem in which z is added
-//! to w, and there the two energies differ by
+//! **A bound on the velocities.** With impulses p that a model allows and the velocities V that they make, let w and v
+//! of each contact be those of the model (`problem::friction`) and z ≥ 0 what w lacks of the allowed ones: w + z ≥ 0
+//! within lagged bounds g, w + s + z ≥ μ|v| on the cone. The velocities V solve the dual of a problem in which z is
+//! added to w, and there the two energies differ by
 //!
 //! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,
 //!
-//! each term ≥ 0. With what z itself is worth at the present impulses, Σ m_ij σz, the sum bounds ‖V − V*‖²_M, V* the
-//! velocities of the solution, since the energy grows as the square of the distance from there. That bound holds
-//! whatever solved the problem.
+//! each term ≥ 0. With what z itself is worth at the present impulses, Σ m_ij σz, this duality gap bounds
+//! ‖V − V*‖²_M, V* the velocities of the solution, since the energy grows as the square of the distance from there.
+//! Over the mass of the grains that touch something it bounds the mean square of the velocities' error, whatever
+//! solved the problem.
+//!
+//! Coulomb's law has no dual. There g is the bound μσ that the impulses have themselves: V* is then the solution under
+//! these bounds, and the gap is 0 where Coulomb's law is solved and nowhere else.
 
 use std::ops::Range;
 
@@ -28,8 +32,9 @@ pub struct Measures {
     /// The natural map of the model of friction that was solved, likewise; none under Coulomb's law, whose
     /// it is already.
     pub model_residual: Option<f64>,
-    /// The duality gap of that model, dimensionless: its square root bounds the error of the velocities.
-    pub duality_gap: Option<f64>,
+    /// How far the velocities are from those of the solution, m/s: a bound on the root mean square over the grains
+    /// that touch something. Of a model of friction; under Coulomb's law, of the bounds that the impulses have.
+    pub velocity_error: f64,
     /// Contacts with P_n > 0.
     pub compressive_contacts: u32,
     /// Contacts with P_n < 0.
@@ -46,10 +51,9 @@ pub struct Measures {
 
 impl Measures {
     /// Tells of a step that was solved under Coulomb's law what is told of others of its run, which were solved
-    /// under a model of friction: its common residual, and no bound of the error.
+    /// under a model of friction: its common residual.
     pub(crate) fn measure_as_a_model(&mut self) {
         self.model_residual = self.model_residual.or(Some(self.residual));
-        self.duality_gap = self.duality_gap.or(Some(f64::INFINITY));
     }
 
     /// Counts other rows of the same problem.
@@ -63,12 +67,12 @@ impl Measures {
 
     /// Counts another piece of the same step; the contacts are those at its end.
     pub fn add(&mut self, piece: Self) {
-        let Self { residual, model_residual, duality_gap, .. } = piece;
+        let Self { residual, model_residual, velocity_error, .. } = piece;
         let Self { compressive_contacts, tensile_contacts, .. } = piece;
         let Self { normal_work, tangential_work, wall_work, border_work, .. } = piece;
         self.residual = worst(self.residual, residual);
         self.model_residual = worst_of(self.model_residual, model_residual);
-        self.duality_gap = worst_of(self.duality_gap, duality_gap);
+        self.velocity_error = worst(self.velocity_error, velocity_error);
         self.compressive_contacts = compressive_contacts;
         self.tensile_contacts = tensile_contacts;
         self.normal_work += normal_work;
@@ -180,7 +184,8 @@ pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
     }
     let residual = sums.residual::<M>(problem);
     let model_residual = model_residual(problem, residual);
-    Measures { residual, model_residual, duality_gap: duality_gap(problem), ..measures }
+    let velocity_error = velocity_error(problem).bound;
+    Measures { residual, model_residual, velocity_error, ..measures }
 }
 
 /// (e_n, e_t) of [`residual`] over the effective masses, m/s, of contacts with these (σ, λ_t) and (v_n, v_t).
@@ -284,29 +289,44 @@ impl Sums {
     }
 }
 
-/// The duality gap of the model of friction that a problem was solved under, over Σ m_ij (v^free)² with v^free
-/// as in the residual; dimensionless, ≥ 0 but for rounding. None under Coulomb's law, which has no dual.
-///
-/// Its square root bounds the error of the velocities, over those that the contacts had to undo.
-fn duality_gap<M: Model>(problem: &StepProblem<M>) -> Option<f64> {
-    let model = problem.friction.model;
-    if model == FrictionModel::Coulomb {
-        return None;
+/// How far velocities are from those of a solution, and what that is to be held against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VelocityError {
+    /// A bound on the root mean square of the velocities' error over the grains that touch something, m/s.
+    pub bound: f64,
+    /// The root of g d, d the mean diameter, and of the mean square of what contacts undo, together, m/s.
+    pub scale: f64,
+}
+
+impl VelocityError {
+    /// True where the bound is no larger than a share of the scale. Not a number is not.
+    pub(crate) fn is_within(self, share: f64) -> bool {
+        self.bound <= share * self.scale
     }
-    let on_cone = M::FRICTION && model != FrictionModel::Tresca;
-    let (mut gap, mut scale, mut impulses) = (0.0, 0.0, 0.0);
-    for_each_row(problem, |number, row, motion| {
-        let lagged = problem.friction.now.get(number).copied().unwrap_or(0.0);
-        let [normal_velocity, tangential_velocity] = motion.now;
+}
+
+/// The bound on the velocities' error of a problem, from its duality gap; 0 where nothing touches.
+pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
+    let model = problem.friction.model;
+    let on_cone = M::FRICTION && model.is_on_cone();
+    let coulomb = model == FrictionModel::Coulomb;
+    let add = |[gap, undone, impulses]: &mut [f64; 3],
+               (number, row): (usize, &Row<_>),
+               motion: RowVelocities| {
         let [shifted, tangential] = row.impulse();
-        let opening =
-            normal_velocity + row.restitution_velocity + if on_cone { lagged } else { 0.0 };
-        let across = tangential_velocity.abs();
+        let lagged = match problem.friction.now.get(number) {
+            Some(&lagged) if !coulomb => lagged,
+            _ if on_cone => 0.0,
+            _ => problem.law.friction_bound(shifted),
+        };
+        let now = problem.own_part(number, row, motion.now).unwrap_or(motion.now);
+        let opening = now[0] + row.restitution_velocity + if on_cone { lagged } else { 0.0 };
+        let across = now[1].abs();
         let least = if on_cone { problem.law.friction * across } else { 0.0 };
         let lacking = (least - opening).max(0.0);
         let mut of_contact = shifted * (opening + 2.0 * lacking);
         if M::FRICTION {
-            of_contact += tangential * tangential_velocity;
+            of_contact += tangential * now[1];
             if !on_cone {
                 of_contact += lagged * across;
             }
@@ -316,13 +336,36 @@ fn duality_gap<M: Model>(problem: &StepProblem<M>) -> Option<f64> {
         if M::FRICTION {
             squared += motion.free[1] * motion.free[1] / M::TANGENTIAL_COMPLIANCE;
         }
-        gap += row.effective_mass * of_contact;
-        scale += row.effective_mass * squared;
-        impulses += row.effective_mass * (shifted * shifted + tangential * tangential);
-    });
-    // Where nothing would move without contacts, what rounding left of the impulses is no gap.
+        *gap += row.effective_mass * of_contact;
+        *undone += row.effective_mass * squared;
+        *impulses += row.effective_mass * (shifted * shifted + tangential * tangential);
+    };
+    let join = |all: &mut [f64; 3], part: [f64; 3]| {
+        all.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+    };
+    let [gap, undone, impulses] = sum_of_rows(problem, add, join);
+    let mass = touching_mass(problem);
+    // What rounding left of the impulses is no gap.
     let is_rounding = gap.abs() <= ROUNDING * ROUNDING * impulses;
-    Some(if is_rounding { 0.0 } else { gap / scale })
+    let squared = if is_rounding { 0.0 } else { gap / mass };
+    let fall = problem.fall_speed;
+    VelocityError {
+        // What rounding leaves of a gap of 0 may be negative; not a number stays none.
+        bound: if squared < 0.0 { 0.0 } else { squared.sqrt() },
+        scale: (fall * fall + if mass > 0.0 { undone / mass } else { 0.0 }).sqrt(),
+    }
+}
+
+/// The mass of the grains that have contacts, kg.
+fn touching_mass<M: Model>(problem: &StepProblem<M>) -> f64 {
+    let mut touches = vec![false; problem.bodies.masses.len()];
+    problem.rows.fixed.iter().for_each(|row| touches[row.i as usize] = true);
+    for row in &problem.rows.pairs {
+        touches[row.i as usize] = true;
+        touches[row.j as usize] = true;
+    }
+    let masses = problem.bodies.masses.iter().zip(touches);
+    masses.filter(|(_, touches)| *touches).map(|(mass, _)| mass).sum()
 }
 
 /// Where nothing would move without contacts, errors of up to this share of the impulses are what

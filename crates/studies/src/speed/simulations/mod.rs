@@ -288,7 +288,7 @@ impl References {
             let mut scene = states.scene(&plan.config(pile, time_step_secs, law))?;
             let tolerance = TOLERANCES[tolerance];
             let (method, stop) = (REFERENCE, StopTest::Residual);
-            scene.solver = SolverSettings { method, stop, tolerance, ..SolverSettings::default() };
+            scene.solver = SolverSettings { method, stop, tolerance, ..SolverSettings::SWEEPS };
             timed_run(&scene, 1, f64::INFINITY)
         })?;
         if let Some(run) = runs.iter().find(|run| run.result.failed.is_some()) {

@@ -44,13 +44,13 @@ use crate::contact::law;
 use crate::solver::kinematics::Model;
 use crate::solver::linear::ContactGraph;
 use crate::solver::method::Method;
-use crate::solver::problem::{StepProblem, natural_map};
-use crate::solver::settings::{FrictionModel, SolverSettings};
+use crate::solver::problem::{StepProblem, natural_map, velocity_error};
+use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 use crate::world::FrictionCone;
 
 /// Sweeps before the first factorisation: many steps of a pile at rest need no more.
 const SWEEPS_FIRST: u32 = 4;
-/// Where the natural map is below so many times the tolerance, sweeps are tried.
+/// Within so many times the tolerance sweeps are tried.
 const SWEEPS_FROM: f64 = 10.0;
 /// Impulses may grow by this factor over those, and the velocities, that a solve begins with: those of a cold
 /// start on a pile of 100 layers do by 10⁴.
@@ -121,7 +121,7 @@ pub(super) fn solve<M: Model>(
         FrictionModel::Associated | FrictionModel::Desaxce => {
             convex::<M, Cone>(problem, memory, settings)
         }
-        FrictionModel::Coulomb => coulomb(problem, memory, settings, &mut go_on),
+        _ => coulomb(problem, memory, settings, &mut go_on),
     })
 }
 
@@ -238,10 +238,19 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         (share, left)
     }
 
-    /// Where the natural map is small enough, lets sweeps end the solve: they put on their bounds the impulses
+    /// True where what the settings stop by is within so many times their tolerance, the natural map being `left`.
+    fn is_within(&self, left: f64, times: f64) -> bool {
+        let tolerance = times * self.settings.tolerance;
+        match self.settings.stop {
+            StopTest::VelocityError => velocity_error(self.problem).is_within(tolerance),
+            _ => left <= tolerance,
+        }
+    }
+
+    /// Where the solution is near enough, lets sweeps end the solve: they put on their bounds the impulses
     /// that belong there. Where they do not end it, goes back.
     fn finishes(&mut self, left: f64) -> bool {
-        if left > SWEEPS_FROM * self.settings.tolerance || !self.is_bounded() {
+        if !self.is_within(left, SWEEPS_FROM) || !self.is_bounded() {
             return false;
         }
         let finished = self.settles_in(SWEEPS_LAST);

@@ -158,7 +158,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
                 if left < self.best && is_bounded {
                     self.keep(left);
                 }
-                if left <= self.settings.tolerance && is_bounded && self.settles_in(1) {
+                if is_bounded && self.is_within(left, 1.0) && self.settles_in(1) {
                     return true;
                 }
                 since_milestone += 1;

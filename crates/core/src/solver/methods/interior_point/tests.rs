@@ -27,7 +27,7 @@ fn both_ways<M: Model, S: Shape, const D: usize>(
     model: FrictionModel,
 ) -> ([Vec<[f64; 3]>; 2], u32) {
     let stop = StopTest::Residual;
-    let settings = SolverSettings { stop, tolerance: 1e-10, ..SolverSettings::default() };
+    let settings = SolverSettings { stop, tolerance: 1e-10, ..SolverSettings::SWEEPS };
     let mut by_path = problem::<M>(seed, model);
     let mut from_far = by_path.clone();
     let mut workspace = PathWorkspace::<D>::default();
@@ -76,7 +76,7 @@ fn they_do_without_friction() {
 
 #[test]
 fn what_the_path_leaves_is_polished_in_a_few_factorisations() {
-    let loose = SolverSettings { stop: StopTest::Residual, tolerance: 1e-5, ..Default::default() };
+    let loose = SolverSettings { stop: StopTest::Residual, tolerance: 1e-5, ..SolverSettings::SWEEPS };
     let tight = SolverSettings { tolerance: 1e-10, ..loose };
     let (mut polished, mut factorisations) = (0, 0);
     for seed in 0..40 {

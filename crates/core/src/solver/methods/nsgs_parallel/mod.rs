@@ -20,8 +20,10 @@ use super::stopping::{SolveReport, is_settled, is_tested, sweep_until_settled};
 use super::sweep::ImpulseChange;
 use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
-use crate::solver::problem::{ContactRows, Row, StepProblem, residual_of, squared_residual_scale};
-use crate::solver::settings::{SolverSettings, StopTest};
+use crate::solver::problem::{
+    ContactRows, Row, StepProblem, residual_of, squared_residual_scale, velocity_error,
+};
+use crate::solver::settings::SolverSettings;
 use crate::threads;
 
 /// Blocks from which on tiles are shared out: 60 µs of work a sweep. With half of it two threads were slower than one.
@@ -112,11 +114,15 @@ impl<'a, M: Model> Tiled<'a, M> {
                 return false;
             }
             let change = match settings.stop {
-                StopTest::Residual => tiled.sweep::<false>(),
+                stop if stop.judges_solutions() => tiled.sweep::<false>(),
                 _ => tiled.sweep::<true>(),
             };
             let mean_mass = tiled.problem.bodies.mean_mass;
-            is_settled(tiled, change, mean_mass, settings, Self::squared_impulses, Self::residual)
+            let squares = Self::squared_impulses;
+            is_settled(tiled, change, mean_mass, settings, squares, Self::residual, |tiled| {
+                tiled.store();
+                velocity_error(tiled.problem)
+            })
         };
         let report = sweep_until_settled(self, settings, sweep, Self::residual);
         self.store();

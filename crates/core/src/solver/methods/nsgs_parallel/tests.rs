@@ -4,6 +4,7 @@
 use rayon::ThreadPoolBuilder;
 
 use super::*;
+use crate::solver::settings::StopTest;
 use crate::contact::levels;
 use crate::solver::methods::random_problem::random_problem;
 use crate::solver::problem::residual;
@@ -35,7 +36,7 @@ fn bits<M: Model>(problem: &StepProblem<M>) -> Vec<u64> {
 /// Sweeps that none of the tests ends.
 fn sweeps(max_sweeps: u32) -> SolverSettings {
     let stop = StopTest::ImpulsePerMass;
-    SolverSettings { stop, tolerance: 0.0, max_sweeps, ..SolverSettings::default() }
+    SolverSettings { stop, tolerance: 0.0, max_sweeps, ..SolverSettings::SWEEPS }
 }
 
 #[test]

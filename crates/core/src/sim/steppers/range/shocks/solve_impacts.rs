@@ -29,7 +29,7 @@ fn solve_together<M: Model>(
     if part.rows.contacts.len() <= FEW {
         let tolerance = match settings.stop {
             StopTest::Residual => settings.tolerance.min(TIGHTLY.tolerance),
-            StopTest::RelativeChange | StopTest::ImpulsePerMass => TIGHTLY.tolerance,
+            _ => TIGHTLY.tolerance,
         };
         earlier = solve(part, memory, &SolverSettings { tolerance, ..TIGHTLY });
         if earlier.converged {
@@ -39,7 +39,7 @@ fn solve_together<M: Model>(
     let of_step = (least / scale(part)).min(LOOSEST);
     let tolerance = match settings.stop {
         StopTest::Residual => settings.tolerance.max(of_step),
-        StopTest::RelativeChange | StopTest::ImpulsePerMass => settings.tolerance,
+        _ => settings.tolerance,
     };
     solve(part, memory, &SolverSettings { tolerance, ..*settings }).after(earlier)
 }
