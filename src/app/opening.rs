@@ -13,12 +13,13 @@ use super::export::STATE_ENDING;
 use super::session::{Arrangement, SESSION_ENDING, open_session};
 use super::sharing::RunLink;
 use super::state::AppState;
-use super::tour::Station;
+use super::tour::{self, Station};
 use crate::config::{Config, SavedState, SceneSource};
 use crate::error::Result;
 use crate::live::{Command, LiveStart, LoadingProgress, Preview, RunHistory, WorldHistory};
 use crate::scene::{Scene, Settling};
 use crate::sim::{GrainView, Simulation, Snapshot, Tally};
+use crate::solver::SolverSettings;
 use crate::world::{Boundary, Disc, Gravity};
 
 /// What a run began with.
@@ -84,6 +85,9 @@ impl AppState {
         self.open(move |_| {
             let config = Config::of_scene(station.scene);
             let mut scene = config.without_settling()?;
+            if scene.solver == SolverSettings::DEFAULT {
+                scene.solver = tour::SOLVER;
+            }
             budget::complete(&mut scene, &config.solver);
             let worlds = (station.worlds)(scene.settings());
             Ok((LiveStart { worlds, ..start(&scene)? }, Opened::new(scene, config)))

@@ -42,6 +42,12 @@ const PILE: Station = Station {
     panel: None,
 };
 
+/// How the stations' piles are solved: what a station says was found under Coulomb's law.
+pub(super) const SOLVER: SolverSettings = SolverSettings {
+    fallback: Fallback::OfMethod,
+    ..SolverSettings::to_residual(Method::Auto, 1e-6, 500)
+};
+
 fn two_time_steps(base: Settings, bond: f64) -> Vec<Settings> {
     [1e-4, 5e-3].map(|secs| base.with_bond(bond).over(secs)).into()
 }

@@ -319,7 +319,7 @@ pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
 
 /// Says on stderr how many steps were not solved as asked.
 pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
-    let Tally { steps, unconverged_steps, stalled_steps, largest_residual, .. } = *tally;
+    let Tally { steps, unconverged_steps, stalled_steps, largest_velocity_error, .. } = *tally;
     if unconverged_steps == 0 {
         return;
     }
@@ -330,12 +330,13 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     note_line(legible(&format!(
         "{} (Bond {}, time step {} s): {unconverged_steps} of {steps} steps did not reach tolerance \
          {:e} within {} sweeps, {stalled_steps} of them stalled (more sweeps would be of no \
-         use){instead}; largest residual {largest_residual:.1e}",
+         use){instead}; velocities are off by {:.2} mm/s at most",
         scene.name,
         scene.parameters.bond,
         scene.parameters.time_step_secs,
         scene.solver.tolerance,
         scene.solver.max_sweeps,
+        1e3 * largest_velocity_error,
     )));
 }
 

@@ -11,11 +11,13 @@ use slump::setting::{About, Kind, Value};
 const STEPS: usize = 6;
 
 /// A pile that meets and bounces, with and without cohesion, and one that is not solved to the end.
-fn piles() -> [Scene; 3] {
+fn piles() -> [Scene; 4] {
     let pile = |bond| pressed_pile(12, 0.5, 7, parameters(bond, 1e-3, 0.3, 0.5));
     let mut unsolved = pile(0.0);
     unsolved.solver.max_sweeps = 3;
-    [pile(20.0), pile(0.0), unsolved]
+    let mut certified = pile(0.0);
+    certified.solver = SolverSettings::DEFAULT;
+    [pile(20.0), pile(0.0), unsolved, certified]
 }
 
 /// Values of a setting, of which some may be refused.

@@ -123,8 +123,12 @@ fn a_step_that_is_not_solved_falls_back_unless_it_must_not_and_the_window_says_s
     for asked in [None, Some(Fallback::None)] {
         let mut config = scene("pile");
         config.parameters.time_step_secs = Some(5e-3);
-        config.solver =
-            SolverChanges { max_sweeps: Some(3), fallback: asked, ..SolverChanges::default() };
+        config.solver = SolverChanges {
+            friction_model: Some(FrictionModel::Coulomb),
+            max_sweeps: Some(3),
+            fallback: asked,
+            ..SolverChanges::default()
+        };
         let mut robot = Robot::open(config);
         robot.click("Solver");
         for _ in 0..5 {

@@ -54,7 +54,8 @@ pub struct RunResult {
 impl RunResult {
     /// Its columns in a table.
     const COLUMNS: &str = "status,steps,slump,mean_overlap,max_overlap,mean_contacts,first_gap,\
-        unconverged_steps,stalled_steps,fallback_steps,sweeps,largest_residual,lost_grains,alarms";
+        unconverged_steps,stalled_steps,fallback_steps,sweeps,largest_residual,\
+        largest_velocity_error,lost_grains,alarms";
 
     fn cells(&self) -> impl Serialize + '_ {
         let Self { status, tally, slump, first_gap, lost_grains, alarms } = self;
@@ -71,6 +72,7 @@ impl RunResult {
             tally.fallback_steps,
             tally.sweeps,
             tally.largest_residual,
+            tally.largest_velocity_error,
             lost_grains,
             alarms,
         )

@@ -193,6 +193,11 @@ fn readings(ui: &mut Ui, state: &AppState) {
     }
 }
 
+/// How far velocities may be off, rounded up.
+fn within(last: &Observables) -> String {
+    format!("velocities within {:.2} mm/s", (1e5 * last.velocity_error).ceil().max(1.0) / 100.0)
+}
+
 /// How the last step was solved; the status bar counts those that were not solved as asked.
 fn solved(ui: &mut Ui, world: &WorldFrame) {
     let last = &world.snapshot.observables;
@@ -201,13 +206,13 @@ fn solved(ui: &mut Ui, world: &WorldFrame) {
     if last.step == 0 {
         (mark, colour) = ("○ no step yet".into(), ui.visuals().weak_text_color());
     } else if last.converged {
-        (mark, colour) = ("● converged".into(), theme::good(dark));
+        (mark, colour) = (format!("● converged, {}", within(last)), theme::good(dark));
     } else if last.fell_back == Some(true) {
         mark += "◆ not Coulomb's law: solved under bounds of friction";
     } else if last.stalled {
         mark += &format!("▲ stalled: residual {:.0e}, more sweeps are of no use", last.residual);
     } else {
-        mark += &format!("▲ not converged within {} sweeps", last.sweeps);
+        mark += &format!("▲ not converged within {} sweeps, {}", last.sweeps, within(last));
     }
     ui.label(RichText::new(mark).color(colour));
 }

@@ -33,7 +33,7 @@ fn what_does_not_go_with_a_model_is_refused_in_one_sentence() {
     let again = "model-solves is 2, but must be 1 where friction-model is…";
     let cases: [Refusal; 6] = [
         (
-            "friction-model is tresca, but must be coulomb where solver is newton: other models go with nsgs and interior-point",
+            "friction-model is tresca, but must be coulomb where solver is newton: other models go with nsgs and interior-point and auto",
             &|scene| scene.solver.method = Method::Newton,
         ),
         (

@@ -87,11 +87,11 @@ fn auto_is_told_by_the_largest_island() {
         islands,
         ..island_by_island(Method::Nsgs, StopTest::Residual)
     };
-    let heaps = heaps(&(0..16).map(|place| (place, 50)).collect::<Vec<_>>());
+    let heaps = heaps(&(0..80).map(|place| (place, 100)).collect::<Vec<_>>());
     let [by_islands, whole] =
         [true, false].map(|islands| after_steps(&heaps, settings(islands), 3));
     let [most, all] = [&by_islands, &whole].map(|it| it.contacts_together());
-    assert!(all > 1_000 && most < 200, "{most} of {all} contacts");
+    assert!(all > 10_000 && most < 400, "{most} of {all} contacts");
     assert_eq!(by_islands.picked_method(), Method::Newton);
     assert_eq!(whole.picked_method(), Method::Nncg);
 }
@@ -145,7 +145,7 @@ fn models_of_friction_are_solved_island_by_island() {
         let step = all.observables();
         let left = step.model_residual.expect("a residual of the model");
         assert!(step.converged && left <= settings.tolerance, "{model} {method}: {step:?}");
-        assert!(step.velocity_error < 1e-4, "{model} {method}: {step:?}");
+        assert!(step.velocity_error < 1e-3, "{model} {method}: {step:?}");
     }
 }
 

@@ -142,8 +142,8 @@ fn a_cantilever_without_friction_tears_at_the_bond_number_of_statics_at_every_ti
             scene.parameters.friction = 0.0;
             scene.parameters.bond = part * right;
             scene.parameters.time_step_secs = time_step_secs;
-            scene.solver.tolerance = 1e-9;
-            scene.solver.max_sweeps = 20_000;
+            scene.solver =
+                SolverSettings { tolerance: 1e-9, max_sweeps: 20_000, ..SolverSettings::SWEEPS };
             let run = after(&scene, (0.1 / time_step_secs) as usize);
             let bonds = 4 * length as u32;
             let found = run.observables().contacts < bonds;

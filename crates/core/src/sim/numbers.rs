@@ -147,6 +147,7 @@ mod tests {
 
     use super::*;
     use crate::sim::Settings;
+    use crate::solver::SolverSettings;
     use crate::world::{Boundary, Grain, Grains, Physics, World};
 
     /// A row of ten discs of 1 cm and a tenth of a gram on a floor.
@@ -156,7 +157,7 @@ mod tests {
         let grains = Grains::new(&discs, 1e-4 / (std::f64::consts::PI * 25e-6));
         let mut world = World::of(grains, Gravity::Uniform { acceleration: -9.8 * DVec2::Y }, 0.01);
         world.boundaries.push(Boundary::HalfSpace { point: DVec2::ZERO, normal: DVec2::Y });
-        let mut settings = Settings::default();
+        let mut settings = Settings { solver: SolverSettings::SWEEPS, ..Settings::default() };
         change(&mut settings);
         Simulation::new(world, Physics::FULL, settings, 0.0).expect("a sound world")
     }

@@ -97,6 +97,9 @@ pub struct Tally {
     /// Largest common residual of any step.
     #[serde(with = "number")]
     pub largest_residual: f64,
+    /// Largest bound on the velocities' error of any step, m/s.
+    #[serde(with = "number", default)]
+    pub largest_velocity_error: f64,
     /// Mean over the steps of the mean overlap, in units of d.
     #[serde(with = "number")]
     pub mean_overlap: f64,
@@ -117,6 +120,7 @@ impl Tally {
         self.fallback_steps += u64::from(step.fell_back == Some(true));
         self.sweeps += u64::from(step.sweeps);
         self.largest_residual = worst(self.largest_residual, step.residual);
+        self.largest_velocity_error = worst(self.largest_velocity_error, step.velocity_error);
         self.mean_overlap += (step.mean_overlap - self.mean_overlap) / self.steps as f64;
         self.max_overlap = worst(self.max_overlap, step.max_overlap);
         self.mean_contacts += (f64::from(step.contacts) - self.mean_contacts) / self.steps as f64;

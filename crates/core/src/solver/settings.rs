@@ -90,7 +90,7 @@ settings! {
             "In which order a sweep visits the contacts", {
             control: shown("Order", "In which order a sweep visits contacts."),
         }
-        #[serde(default)]
+        #[serde(default = "relative_change")]
         stop: StopTest = StopTest::VelocityError, "stop" ("TEST"), "What the tolerance refers to", {
             control: shown("Stops on", "What the tolerance refers to."),
         }
@@ -122,7 +122,7 @@ settings! {
         warm_start: bool = true, "warm-start", "Whether each step starts from the impulses of the one before", {
             control: shown("Warm start", "Each step starts from the impulses of the one before."),
         }
-        #[serde(default, skip_serializing_if = "is_default")]
+        #[serde(default = "coulomb")]
         friction_model: FrictionModel = FrictionModel::OfMethod, "friction-model" ("MODEL"),
             "What a step asks of friction: Coulomb's law, or a convex problem in its place; \
              `slump list` says what each gets wrong", {
@@ -165,7 +165,17 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// Files of before there were several solves say nothing of them.
+/// What the first scene files meant that say nothing of the stopping test.
+fn relative_change() -> StopTest {
+    StopTest::RelativeChange
+}
+
+/// The same of models of friction.
+fn coulomb() -> FrictionModel {
+    FrictionModel::Coulomb
+}
+
+/// The same of solves.
 fn one() -> u32 {
     1
 }

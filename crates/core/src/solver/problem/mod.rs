@@ -49,6 +49,9 @@ pub struct StepProblem<M: Model> {
     pub(crate) friction: LaggedFriction,
     /// √(g d), m/s: what errors of velocities are held against.
     pub(crate) fall_speed: f64,
+    /// Which bodies have contacts, and their mass, kg; empty where all have.
+    pub(super) touches: Vec<bool>,
+    pub(super) touching_mass: f64,
     pub(super) order: RowOrder,
     /// √m_ij of the rows, kg^½, for methods that work on scaled variables.
     pub(super) root_masses: Vec<f64>,
@@ -105,6 +108,7 @@ impl<M: Model> StepProblem<M> {
             self.rows.captures.extend(self.rows.contacts.iter().map(capture));
         }
         self.fill_rows(world, contacts, fixed, settings.warm_start, &rebound);
+        self.find_what_touches();
         if let Some(surfaces) = surfaces {
             self.add_surfaces(contacts, &rebound, surfaces);
         }
@@ -179,6 +183,25 @@ impl<M: Model> StepProblem<M> {
             PairRow { row: row(number, velocity, masses[i] * share), share }
         });
         (self.rows.fixed, self.rows.pairs) = (fixed_rows, pair_rows);
+    }
+
+    /// Notes which bodies have contacts.
+    fn find_what_touches(&mut self) {
+        let Self { bodies, rows, touches, touching_mass, .. } = self;
+        touches.clear();
+        touches.resize(bodies.masses.len(), false);
+        rows.fixed.iter().for_each(|row| touches[row.i as usize] = true);
+        for row in &rows.pairs {
+            touches[row.i as usize] = true;
+            touches[row.j as usize] = true;
+        }
+        let masses = bodies.masses.iter().zip(&*touches);
+        *touching_mass = masses.filter(|(_, touches)| **touches).map(|(mass, _)| mass).sum();
+    }
+
+    /// The mass of the bodies that have contacts, kg.
+    fn touching_mass(&self) -> f64 {
+        if self.touches.is_empty() { self.bodies.masses.iter().sum() } else { self.touching_mass }
     }
 
     /// Moves the bodies from their free velocities by the rows' impulses.

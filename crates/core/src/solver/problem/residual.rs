@@ -344,7 +344,7 @@ pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
         all.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
     };
     let [gap, undone, impulses] = sum_of_rows(problem, add, join);
-    let mass = touching_mass(problem);
+    let mass = problem.touching_mass();
     // What rounding left of the impulses is no gap.
     let is_rounding = gap.abs() <= ROUNDING * ROUNDING * impulses;
     let squared = if is_rounding { 0.0 } else { gap / mass };
@@ -354,18 +354,6 @@ pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
         bound: if squared < 0.0 { 0.0 } else { squared.sqrt() },
         scale: (fall * fall + if mass > 0.0 { undone / mass } else { 0.0 }).sqrt(),
     }
-}
-
-/// The mass of the grains that have contacts, kg.
-fn touching_mass<M: Model>(problem: &StepProblem<M>) -> f64 {
-    let mut touches = vec![false; problem.bodies.masses.len()];
-    problem.rows.fixed.iter().for_each(|row| touches[row.i as usize] = true);
-    for row in &problem.rows.pairs {
-        touches[row.i as usize] = true;
-        touches[row.j as usize] = true;
-    }
-    let masses = problem.bodies.masses.iter().zip(touches);
-    masses.filter(|(_, touches)| *touches).map(|(mass, _)| mass).sum()
 }
 
 /// Where nothing would move without contacts, errors of up to this share of the impulses are what

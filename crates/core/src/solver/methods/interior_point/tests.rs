@@ -76,7 +76,8 @@ fn they_do_without_friction() {
 
 #[test]
 fn what_the_path_leaves_is_polished_in_a_few_factorisations() {
-    let loose = SolverSettings { stop: StopTest::Residual, tolerance: 1e-5, ..SolverSettings::SWEEPS };
+    let loose =
+        SolverSettings { stop: StopTest::Residual, tolerance: 1e-5, ..SolverSettings::SWEEPS };
     let tight = SolverSettings { tolerance: 1e-10, ..loose };
     let (mut polished, mut factorisations) = (0, 0);
     for seed in 0..40 {

@@ -4,10 +4,10 @@
 use rayon::ThreadPoolBuilder;
 
 use super::*;
-use crate::solver::settings::StopTest;
 use crate::contact::levels;
 use crate::solver::methods::random_problem::random_problem;
 use crate::solver::problem::residual;
+use crate::solver::settings::StopTest;
 use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane};
 use crate::world::FrictionCone::{self, Compressive, Shifted};
 
