@@ -98,7 +98,7 @@ pub const STATIONS: [Station; 9] = [
             let base = base.with_bond(20.0).over(5e-3);
             vec![sweeps(base, 5), sweeps(base, 40), base]
         },
-        plots: &["slump", "residual"],
+        plots: &["slump", "error"],
         panel: Some("solver"),
         ..PILE
     },
@@ -135,7 +135,7 @@ pub const STATIONS: [Station; 9] = [
             let base = Settings { solver, ..base };
             vec![sweeps(base, 10), base]
         },
-        plots: &["overlap", "residual"],
+        plots: &["overlap", "error"],
         ..PILE
     },
     Station {
@@ -143,7 +143,7 @@ pub const STATIONS: [Station; 9] = [
         watch: "Start the pile, stop it while it slumps, and press Measure this step under Speed and accuracy: each \
                 method solves the step that is shown, and its residual is drawn over its time.",
         worlds: |base| vec![base.with_bond(20.0).over(1e-3)],
-        plots: &["slump", "residual"],
+        plots: &["slump", "error"],
         panel: Some("speed"),
         ..PILE
     },
@@ -151,7 +151,7 @@ pub const STATIONS: [Station; 9] = [
         title: "Your own pile",
         watch: "Under Run, choose a number of grains and a seed, and make a new pile; under Physics, its Bond and Δt. \
                 Drag grains with the mouse. The tour can be taken up again at any time.",
-        plots: &["slump", "overlap", "residual", "energy"],
+        plots: &["slump", "overlap", "error", "energy"],
         panel: Some("run"),
         ..PILE
     },

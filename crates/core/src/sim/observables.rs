@@ -314,14 +314,6 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
         ..Quantity::PLAIN
     },
     Quantity {
-        name: "residual",
-        title: "residual",
-        logarithmic: true,
-        value: |row| row.residual,
-        beside: &[("the model's", |row| row.model_residual.filter(|_| row.is_of_a_model()))],
-        ..Quantity::PLAIN
-    },
-    Quantity {
         name: "energy",
         title: "kinetic energy",
         unit: "J",
@@ -339,8 +331,8 @@ mod tests {
     use super::*;
 
     /// Columns that the window does not plot.
-    const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled fell_back \
-        contacts compressive_contacts tensile_contacts max_overlap potential_energy normal_work \
+    const NOT_PLOTTED: &str = "step time_secs time_step_secs sweeps factorisations converged stalled residual \
+        model_residual fell_back contacts compressive_contacts tensile_contacts max_overlap potential_energy normal_work \
         tangential_work wall_work drive_work border_work gravity_work bond_work drive_energy lost_grains";
 
     #[test]
