@@ -14,7 +14,7 @@ const MOST_OF_HEAD: u64 = 1 << 20;
 const TAIL: u64 = 4096;
 
 /// How files begin that this program writes, and what else is found there.
-const BEGINNINGS: [(&[u8], &[u8]); 11] = [
+const BEGINNINGS: [(&[u8], &[u8]); 10] = [
     (b"\x89PNG\r\n\x1a\n", b"tEXtSoftware\0slump "),
     (b"{\n  \"program\": \"slump\",\n", b""),
     (b"{\n  \"about\": {\n", b"\n  \"program\": \"slump\",\n"),
@@ -22,9 +22,8 @@ const BEGINNINGS: [(&[u8], &[u8]); 11] = [
     (b"{\"checksum\":\"", b""),
     (b"run,key,", b""),
     (b"step,time_secs,", b""),
-    (b"# column step: ", b""),
-    (b"# program: slump ", b""),
-    (b"ITEM: UNITS\nsi\nITEM: PARAMETERS\nprogram: slump ", b""),
+    (b"# ", b"# column step: "),
+    (b"ITEM: UNITS\nsi\nITEM: PARAMETERS\n", b""),
     (b"slump-state ", b""),
 ];
 /// Of what other programs read and have no word for who wrote it.
