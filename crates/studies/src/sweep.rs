@@ -100,11 +100,12 @@ struct Label {
 pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Option<RunsTable>> {
     check_writable("out", folder)?;
     let shared = SharedFolder::of(folder)?;
-    claim(study, folder, options.redo, &shared)?;
     let journal_name = match options.shard {
         Some(Shard { index, count }) => format!("runs-{index}-of-{count}"),
         None => "runs".to_owned(),
     };
+    let journal_path = journal::path_of(folder, &journal_name);
+    claim(study, folder, options.redo, &shared, &journal_path)?;
     let folders = [folder.to_owned()];
     let open = || -> Result<_> {
         let journal = Journal::open(folder, &journal_name)?;
@@ -112,7 +113,10 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     };
     let (journal, mut finished) = match open() {
         Err(error) if options.redo => {
-            let thrown_away = shared.alone(|| throw_away(folder))?;
+            let thrown_away = shared.alone(|| {
+                check_recognised(&journal_path, "redo")?;
+                throw_away(folder)
+            })?;
             thrown_away.ok_or_else(|| shared.in_use())?;
             note_line(format_args!("{error}; thrown away"));
             open()?
@@ -225,7 +229,13 @@ fn read_label(folder: &Path) -> Result<Option<Label>> {
 /// The label is what makes it one study's. Before it is written the folder is the old study's without
 /// its table, which comes again from the journals; after it, the new study's. What is left of the old
 /// one then counts for nothing, as runs are known by their keys, and is swept out.
-fn claim(study: &Study, folder: &Path, redo: bool, shared: &SharedFolder) -> Result<()> {
+fn claim(
+    study: &Study,
+    folder: &Path,
+    redo: bool,
+    shared: &SharedFolder,
+    journal: &Path,
+) -> Result<()> {
     let label = label_of(study);
     let begin = || {
         let path = folder.join(STUDY_FILE);
@@ -234,9 +244,9 @@ fn claim(study: &Study, folder: &Path, redo: bool, shared: &SharedFolder) -> Res
         write_file(&path, format!("{text}\n").as_bytes())
     };
     let begin_anew = || {
-        for path in [folder.join(TABLE), folder.join(STUDY_FILE)] {
+        for path in [&folder.join(TABLE), &folder.join(STUDY_FILE), journal] {
             if path.is_file() {
-                check_recognised(&path, "redo")?;
+                check_recognised(path, "redo")?;
             }
         }
         remove_if_there(&folder.join(TABLE))?;

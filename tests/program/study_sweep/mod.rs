@@ -338,8 +338,17 @@ fn a_course_that_was_edited_is_named_and_computed_anew() {
 #[test]
 fn redo_works_on_what_cannot_be_read() {
     let (_folder, study, whole, out) = computed(SHORT);
-    for name in ["study.json", "runs.jsonl"] {
-        write(out.join(name), b"\xff\x00{\"checksum\"\n\n");
+    for name in ["runs.jsonl", "study.json"] {
+        let path = out.join(name);
+        let mut damaged = bytes(&path);
+        // What says nothing of this program may be anyone's, and is left as it is.
+        write(&path, "\u{0}mine");
+        failure(&mut sweep(&study, &out, &["--redo"]));
+        assert_eq!(read(&path), "\u{0}mine", "{name}");
+        assert_eq!(runs(&out), whole, "a refusal removes nothing");
+        let place = damaged.len() - 20;
+        damaged[place] = 0xff;
+        write(&path, damaged);
     }
     failure(&mut sweep(&study, &out, &[]));
     succeed(&mut sweep(&study, &out, &["--redo"]));
