@@ -1,6 +1,7 @@
 //! Pictures one after the other: animations, and videos that ffmpeg encodes.
 
 use std::fs::File;
+use std::io::ErrorKind::NotFound;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -237,7 +238,10 @@ fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'s
             .args(["-hide_banner", "-encoders"])
             .stdin(Stdio::null())
             .output()
-            .map_err(|_| "left out where there is no ffmpeg: install it (`apt install ffmpeg`)")?;
+            .map_err(|error| match error.kind() {
+                NotFound => "left out where there is no ffmpeg: install it (`apt install ffmpeg`)",
+                _ => "left out where the system starts no further program",
+            })?;
         let text = String::from_utf8_lossy(&listed.stdout);
         let has = |name| text.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
         ENCODERS.iter().position(|(name, _)| has(*name)).ok_or(

@@ -31,6 +31,7 @@ pub use slump_data::{config, data, granular, interchange};
 #[doc(hidden)]
 pub use slump_studies as study;
 
+use slump_core::threads;
 use slump_data::output;
 
 mod film;

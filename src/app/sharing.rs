@@ -20,6 +20,7 @@ use crate::config::{
 use crate::error::{Error, Result};
 use crate::live::WorldPlan;
 use crate::output::Texts;
+use crate::scene::SCENES;
 use crate::sim::Settings;
 
 /// What is said of a run that no command line makes.
@@ -118,6 +119,7 @@ fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String])
 /// Refused where the run went on from a file, or its scene is no longer there.
 fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
     let source = runs.first().map(|run| run.opened.config.source.clone()).unwrap_or_default();
+    check_names_no_file(&source)?;
     let unchanged = Config { source, ..Config::default() };
     let base = unchanged.without_settling()?.settings();
     let mut query = form_urlencoded::Serializer::new(HEAD.to_owned());
@@ -192,7 +194,7 @@ impl RunLink {
         if link.worlds.is_empty() || !options.is_empty() || !changes.is_empty() {
             return Err(refuse());
         }
-        Ok(link)
+        check_names_no_file(&link.source).map(|()| link)
     }
 
     /// What asks for the scene.
@@ -222,6 +224,21 @@ impl RunLink {
             WorldPlan { settings: first, changes: changes.collect(), steps: world.steps }
         };
         self.worlds.iter().map(plan).collect()
+    }
+}
+
+/// Refuses what starts from a file: whoever sends a link is not to choose what is opened here.
+fn check_names_no_file(source: &SceneSource) -> Result<()> {
+    let SceneSource { scene, initial, .. } = source;
+    let is_known = |name: &String| SCENES.iter().any(|known| known.name == *name);
+    match (scene, initial) {
+        (Some(name), _) if !is_known(name) => {
+            Err(Error::value("link: scene", name, "a built-in scene: links name no files"))
+        }
+        (_, Some(path)) => {
+            Err(Error::value("link: initial", path.display(), "left out: links name no files"))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -297,6 +314,15 @@ mod tests {
             ("slump://run?scene=pile&to=3&scene=drum&to=4", "said once"),
             ("slump://run?glue=3&to=3", "--glue"),
             ("slump://run?bond=much&to=3", "--bond is much"),
+            ("slump://run?save=a&to=3", "--save is given, but must be a setting"),
+            (
+                "slump://run?initial=/dev/zero&to=3",
+                "link: initial is /dev/zero, but must be left out",
+            ),
+            (
+                "slump://run?scene=/tmp/a.toml&to=3",
+                "link: scene is /tmp/a.toml, but must be a built-in",
+            ),
         ] {
             let refusal = RunLink::read(text).expect_err("no link").to_string();
             assert!(refusal.contains(said), "{text}: {refusal}");

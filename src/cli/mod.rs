@@ -14,12 +14,13 @@ use crate::error::{Error, Result};
 use crate::headless::{HeadlessOptions, settled};
 use crate::interchange::{ProblemFile, Solution, problem_file_at, solve_file};
 use crate::output::{
-    Progress, check_file, lost_stdout, note_line, note_printed, print_line, print_text,
-    warn_of_steps, write_file,
+    Progress, check_file, ignore_file_size_signal, lost_stdout, note_line, note_printed,
+    print_line, print_text, warn_of_steps, write_file,
 };
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Settled, Settling, deposit};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, SolverSettings, StopTest};
+use crate::threads::check_threads;
 use studies::StudyCommand;
 
 /// A laboratory for Contact Dynamics of cohesive grains: what the time step does to cohesion.
@@ -80,6 +81,7 @@ const REFUSED: u8 = 2;
 /// Does what the command line of this process asks for. What goes wrong is one sentence on stderr,
 /// and exit code 2; a run that a signal ended has the code that shells know for it.
 pub fn main() -> ExitCode {
+    ignore_file_size_signal();
     let parsed = Cli::try_parse().map(Some).or_else(|error| match error.use_stderr() {
         true => Err((REFUSED, refusal_of(&error, Cli::command()))),
         // Help and version.
@@ -104,6 +106,7 @@ pub fn main() -> ExitCode {
 }
 
 fn run(cli: Cli) -> Result<()> {
+    check_threads()?;
     match cli.command {
         Some(CliCommand::Generate { grains, box_width, seed, deposition, out }) => {
             let box_width_in_diameters = box_width;

@@ -19,6 +19,7 @@ use crate::study::{
     ChartOptions, ChartPart, RunsTable, Shard, Study, SweepOptions, ValidateOptions, chart_speed,
     experiment_names, figure_names, merge, reproduce, sweep, validate,
 };
+use crate::threads::make_threads;
 
 /// The commands of studies.
 #[derive(clap::Subcommand)]
@@ -145,6 +146,7 @@ pub(super) enum SweepAction {
 
 impl StudyCommand {
     pub(super) fn run(self) -> Result<()> {
+        make_threads()?;
         match self {
             Self::Sweep {
                 command: Some(SweepAction::Merge { study, parts, out, quick }), ..

@@ -24,6 +24,7 @@ use crate::study::{
     FIG4_BONDS, FIG4_TIME_STEPS_SECS, FIG7_TIME_STEPS_SECS, FIG7_TIMES_SECS, PaperRun, Recorded,
     Recorder, paper_runs, record,
 };
+use crate::threads::make_threads;
 
 /// Width of a panel of Fig. 4, pixels.
 const PILE_PANEL_WIDTH: u32 = 640;
@@ -41,6 +42,7 @@ struct FigureRun {
 /// Simulates the runs on all cores and draws the figures into `folder`.
 pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoice) -> Result<()> {
     let mut renderer = Renderer::new(renderer)?;
+    make_threads()?;
     let claimed = RunFolder::claim(folder, earlier)?;
     let runs = paper_runs()?;
     let mut manifest = Manifest::new(renderer.name());

@@ -13,7 +13,10 @@ use serde::{Deserialize, Serialize};
 use super::manifest::{Instant, PictureEntry};
 use crate::config::SavedState;
 use crate::error::{Error, Result};
-use crate::output::{FolderLock, Locked, check_writable, final_name, remove_if_there};
+use crate::output::{
+    FolderLock, Locked, check_recognised, check_writable, final_name, is_recognised,
+    remove_if_there,
+};
 use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 
@@ -65,15 +68,21 @@ impl RunFolder {
         self.earlier == EarlierFiles::Refused
     }
 
-    /// Refuses a folder that holds what is refused; `why` says why no run goes on there.
+    /// Refuses a folder that holds what is refused, or what is to be cleared and another program wrote; `why` says why no
+    /// run goes on there.
     ///
     /// # Errors
     /// Names the first file.
     pub(super) fn check(&self, why: &str) -> Result<()> {
-        if self.earlier != EarlierFiles::Refused {
-            return Ok(());
+        let names = match self.earlier {
+            EarlierFiles::Kept => return Ok(()),
+            EarlierFiles::Refused | EarlierFiles::Cleared => files_of_a_run(&self.path)?,
+        };
+        if self.earlier == EarlierFiles::Cleared {
+            let mut paths = names.iter().map(|name| self.path.join(name));
+            return paths.try_for_each(|path| check_recognised(&path, "overwrite"));
         }
-        let Some(name) = files_of_a_run(&self.path)?.into_iter().next() else { return Ok(()) };
+        let Some(name) = names.first() else { return Ok(()) };
         let allowed = format!(
             "a folder without an earlier run's files ({name} is there{why}), unless --overwrite is \
              given to remove them"
@@ -112,7 +121,10 @@ impl RunFolder {
         let mut names = files_of_a_run(&self.path)?;
         names.extend(told_of(&self.path));
         for path in names.iter().map(|name| self.path.join(name)).filter(|path| is_plain(path)) {
-            std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
+            // A list that anyone can edit may tell of anything.
+            if is_recognised(&path)? {
+                std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
+            }
         }
         Ok(())
     }

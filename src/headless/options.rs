@@ -256,7 +256,15 @@ impl HeadlessOptions {
         let last = (duration_secs * fps * (1.0 + 1e-12)).floor();
         if !(fps > 0.0 && last < MOST_PICTURES) {
             let allowed = format!("> 0, and no more than {MOST_PICTURES} pictures in all");
-            return Err(Error::value("fps", fps, allowed));
+            // The user wrote the one or the other.
+            return Err(match self.fps {
+                Some(fps) => Error::value("fps", fps, allowed),
+                None => Error::value(
+                    "duration",
+                    duration_secs,
+                    format!("such that its pictures, {fps} a second, are {allowed}"),
+                ),
+            });
         }
         Ok((0..=last as u64).map(|number| number as f64 / fps).collect())
     }

@@ -60,7 +60,9 @@ pub(super) fn draw(
 
     let Beginning { state: SavedState { scene, simulation, tally, .. }, marks } = begun;
     let steps = simulation.step_at(until_secs);
-    warn_of_steps(steps.saturating_sub(simulation.observables().step));
+    // Of which small grains may need very many.
+    let substeps = u64::from(simulation.substeps());
+    warn_of_steps(steps.saturating_sub(simulation.observables().step).saturating_mul(substeps));
     let next_picture = marks.next_picture;
     let asked_of = folder.as_ref().zip(every_secs.zip(fingerprint));
     let mut checkpoints = asked_of.map(|(folder, (every_secs, fingerprint))| {

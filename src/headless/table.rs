@@ -63,7 +63,7 @@ impl ObservablesTable {
     pub(super) fn mark(&mut self) -> Result<u64> {
         self.flush()?;
         let file = &self.rows.get_ref().file;
-        file.sync();
+        file.sync()?;
         Ok(file.length())
     }
 

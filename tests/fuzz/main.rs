@@ -7,10 +7,13 @@
 //! a file that the failure names. It goes to the target's folder in `corpus/`, whose files are tried first,
 //! and stays there.
 
+#[path = "../common/columnar.rs"]
+mod columnar;
 #[path = "../common/program.rs"]
 mod program;
 
 mod command_lines;
+mod files;
 mod parsers;
 mod scenes;
 mod trial;

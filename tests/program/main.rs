@@ -8,8 +8,10 @@ mod probed;
 mod program;
 
 mod command_line;
+mod foreign_files;
 mod house;
 mod limits;
+mod machine_limits;
 mod output_places;
 mod restart;
 mod scene_errors;

@@ -1,5 +1,7 @@
 //! Recordings and problem files: what is in them, what stays of them, and what is read back.
 
+#[path = "../common/columnar.rs"]
+mod columnar;
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../common/program.rs"]

@@ -187,7 +187,8 @@ fn short_numbers(word: &str) -> String {
     shown + rest
 }
 
-fn place(path: &Path) -> String {
+/// A path as one can read it on any terminal.
+pub fn place(path: &Path) -> String {
     escaped(&path.to_string_lossy())
 }
 

@@ -28,5 +28,5 @@ pub mod scene;
 pub mod setting;
 pub mod sim;
 pub mod solver;
-mod threads;
+pub mod threads;
 pub mod world;

@@ -6,6 +6,7 @@ use std::hint::spin_loop;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
+use crate::error::{Error, Result, check};
 use rayon::Yield;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
@@ -24,6 +25,36 @@ thread_local! {
     static SHARES: Cell<bool> = const { Cell::new(false) };
     /// True where this thread is kept awake.
     static IS_AWAKE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// More threads than the largest machines have cores.
+const MOST_THREADS: usize = 1024;
+const ASKED: &str = "RAYON_NUM_THREADS";
+
+/// Refuses a number of threads that no machine has.
+///
+/// # Errors
+/// Names the variable that asks for it.
+pub fn check_threads() -> Result<()> {
+    let asked = std::env::var(ASKED).unwrap_or_default();
+    let is_sound = !asked.parse::<usize>().is_ok_and(|asked| asked > MOST_THREADS);
+    check(is_sound, ASKED, asked, format!("a number of threads up to {MOST_THREADS}"))
+}
+
+/// Makes the threads that work is shared out over, where there are none yet.
+///
+/// # Errors
+/// Where the system makes none.
+pub fn make_threads() -> Result<()> {
+    check_threads()?;
+    match rayon::ThreadPoolBuilder::new().build_global() {
+        // Without a source it only says that they are there.
+        Err(error) if std::error::Error::source(&error).is_some() => {
+            let allowed = "as few as the system makes; RAYON_NUM_THREADS=1 asks for one";
+            Err(Error::value("the number of threads", format!("too high ({error})"), allowed))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Does work on so many items on the threads of the pool, if they are worth it, and if nothing else is done there. Whoever

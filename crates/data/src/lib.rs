@@ -11,5 +11,6 @@ mod column_spec;
 pub mod config;
 pub mod data;
 pub mod granular;
+pub mod input;
 pub mod interchange;
 pub mod output;

@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
-use crate::output::note_line;
+use crate::output::{is_recognised, note_line};
 use crate::runner::FinishedCase;
 
 const ENDING: &str = "jsonl";
@@ -34,9 +34,11 @@ impl Journal {
         let refuse = |error: std::io::Error| Error::file(&path, error);
         let file = OpenOptions::new().create(true).read(true).append(true).open(&path);
         let file = file.map_err(refuse)?;
-        file.try_lock().map_err(|_| {
-            Error::file(&path, "is being written by another program, which must end first")
-        })?;
+        file.try_lock().map_err(|_| in_use(&path))?;
+        if !is_recognised(&path)? {
+            let reason = "holds no record of this program, but must be its journal or not be there";
+            return Err(Error::file(&path, reason));
+        }
         let bytes = std::fs::read(&path).map_err(refuse)?;
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
         file.set_len(whole as u64).map_err(refuse)?;
@@ -135,15 +137,22 @@ pub(super) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Removes the journals of a folder that no program is at. Whoever is at one has begun anew.
-pub(super) fn remove_all(folder: &Path) -> Result<()> {
-    for path in journals(&[folder.to_owned()])? {
-        let is_in_use = File::open(&path).is_ok_and(|file| file.try_lock_shared().is_err());
-        if !is_in_use {
-            std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
-        }
+/// The journals of a folder.
+///
+/// # Errors
+/// Where another program is at one.
+pub(super) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
+    let paths = journals(&[folder.to_owned()])?;
+    let is_in_use =
+        |path: &&PathBuf| File::open(path).is_ok_and(|file| file.try_lock_shared().is_err());
+    match paths.iter().find(is_in_use) {
+        Some(path) => Err(in_use(path)),
+        None => Ok(paths),
     }
-    Ok(())
+}
+
+fn in_use(path: &Path) -> Error {
+    Error::file(path, "is being written by another program, which must end first")
 }
 
 /// Hexadecimal digits of a checksum: 64 bits, far more than damage needs.

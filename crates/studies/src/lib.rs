@@ -6,7 +6,7 @@
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 use slump_core::{contact, error, number, scene, sim, solver, world};
-use slump_data::{config, data, granular, output};
+use slump_data::{config, data, granular, input, output};
 
 pub mod chart;
 mod figures;

@@ -8,6 +8,7 @@
 use std::collections::HashSet;
 use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
@@ -18,10 +19,11 @@ use super::series::{self, SERIES, Series};
 use super::states::States;
 use super::{PlannedRun, Study};
 use crate::config::scene_facts;
-use crate::data::{Recording, Times, formats_of};
+use crate::data::{Recording, Times, formats_of, remove_recording};
 use crate::error::{Error, Result};
 use crate::output::{
-    check_writable, note_line, remove_folder_if_there, remove_if_there, write_file,
+    SharedFolder, check_recognised, check_writable, is_recognised, note_line, remove_if_there,
+    write_file,
 };
 use crate::scene::Scene;
 
@@ -29,6 +31,9 @@ use crate::scene::Scene;
 const STUDY_FILE: &str = "study.json";
 const DATA: &str = "data";
 const TABLE: &str = "runs.csv";
+/// How long, and how often, another part that only looks at the folder is waited for.
+const MOMENT: Duration = Duration::from_millis(100);
+const MOMENTS: u32 = 20;
 
 /// Part `index` of `count`, counted from 1. Every count-th run belongs to it, so that cheap and dear
 /// runs are dealt out evenly.
@@ -94,11 +99,13 @@ struct Label {
 /// Where the folder holds another study or cannot be written, or a state does not settle.
 pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Option<RunsTable>> {
     check_writable("out", folder)?;
-    claim(study, folder, options.redo)?;
+    let shared = SharedFolder::of(folder)?;
     let journal_name = match options.shard {
         Some(Shard { index, count }) => format!("runs-{index}-of-{count}"),
         None => "runs".to_owned(),
     };
+    let journal_path = journal::path_of(folder, &journal_name);
+    claim(study, folder, options.redo, &shared, &journal_path)?;
     let folders = [folder.to_owned()];
     let open = || -> Result<_> {
         let journal = Journal::open(folder, &journal_name)?;
@@ -106,8 +113,12 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     };
     let (journal, mut finished) = match open() {
         Err(error) if options.redo => {
+            let thrown_away = shared.alone(|| {
+                check_recognised(&journal_path, "redo")?;
+                throw_away(folder)
+            })?;
+            thrown_away.ok_or_else(|| shared.in_use())?;
             note_line(format_args!("{error}; thrown away"));
-            throw_away(folder)?;
             open()?
         }
         opened => opened?,
@@ -218,32 +229,75 @@ fn read_label(folder: &Path) -> Result<Option<Label>> {
 /// The label is what makes it one study's. Before it is written the folder is the old study's without
 /// its table, which comes again from the journals; after it, the new study's. What is left of the old
 /// one then counts for nothing, as runs are known by their keys, and is swept out.
-fn claim(study: &Study, folder: &Path, redo: bool) -> Result<()> {
+fn claim(
+    study: &Study,
+    folder: &Path,
+    redo: bool,
+    shared: &SharedFolder,
+    journal: &Path,
+) -> Result<()> {
     let label = label_of(study);
-    let anew = match read_label(folder) {
-        Ok(Some(found)) if found == label => return Ok(()),
-        Ok(Some(found)) if !redo => return Err(other_study(folder, study, &found)),
-        Err(error) if !redo => return Err(error),
-        Ok(Some(_)) | Err(_) => true,
-        Ok(None) => false,
+    let begin = || {
+        let path = folder.join(STUDY_FILE);
+        let text = serde_json::to_string_pretty(&label);
+        let text = text.map_err(|error| Error::file(&path, error))?;
+        write_file(&path, format!("{text}\n").as_bytes())
     };
-    if anew {
+    let begin_anew = || {
+        for path in [&folder.join(TABLE), &folder.join(STUDY_FILE), journal] {
+            if path.is_file() {
+                check_recognised(path, "redo")?;
+            }
+        }
         remove_if_there(&folder.join(TABLE))?;
+        begin()?;
+        throw_away(folder)
+    };
+    for _ in 0..MOMENTS {
+        // Another part of the same study may have begun anew.
+        match read_label(folder) {
+            Ok(Some(found)) if found == label => return Ok(()),
+            Ok(Some(found)) if !redo => return Err(other_study(folder, study, &found)),
+            Err(error) if !redo => return Err(error),
+            Ok(None) => return begin(),
+            Ok(Some(_)) | Err(_) => {}
+        }
+        if shared.alone(begin_anew)?.is_some() {
+            return Ok(());
+        }
+        std::thread::sleep(MOMENT);
     }
-    let path = folder.join(STUDY_FILE);
-    let mut text =
-        serde_json::to_string_pretty(&label).map_err(|error| Error::file(&path, error))?;
-    text.push('\n');
-    write_file(&path, text.as_bytes())?;
-    if anew { throw_away(folder) } else { Ok(()) }
+    Err(shared.in_use())
 }
 
-/// Sweeps out a folder's results, but for those that other programs are writing.
+/// Sweeps out a folder's results, which no other program may be writing. What this program did not write stays.
 fn throw_away(folder: &Path) -> Result<()> {
-    remove_if_there(&folder.join(TABLE))?;
-    journal::remove_all(folder)?;
-    remove_folder_if_there(&folder.join(SERIES))?;
-    remove_folder_if_there(&folder.join(DATA))
+    let of_series = files_in(&folder.join(SERIES))?;
+    for path in
+        journal::free_journals(folder)?.into_iter().chain([folder.join(TABLE)]).chain(of_series)
+    {
+        if path.is_file() && is_recognised(&path)? {
+            remove_if_there(&path)?;
+        }
+    }
+    for path in files_in(&folder.join(DATA))?.iter().filter(|path| path.is_dir()) {
+        remove_recording(path)?;
+    }
+    for inner in [SERIES, DATA] {
+        // One that is not empty stays.
+        let _ = std::fs::remove_dir(folder.join(inner));
+    }
+    Ok(())
+}
+
+/// What is in a folder; nothing where there is none.
+fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = match std::fs::read_dir(folder) {
+        Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(|error| Error::file(folder, error))?,
+    };
+    let path = |entry: std::io::Result<std::fs::DirEntry>| entry.map(|entry| entry.path());
+    entries.map(path).collect::<std::io::Result<_>>().map_err(|error| Error::file(folder, error))
 }
 
 fn other_study(folder: &Path, study: &Study, found: &Label) -> Error {

@@ -102,6 +102,63 @@ fn another_study_is_refused_and_redone_only_when_asked() {
 }
 
 #[test]
+fn a_redo_touches_nothing_while_another_program_writes() {
+    let folder = folder();
+    let long = CRADLES.replace("2e-5", "2e-6");
+    let text = format!("{long}[series]\ninterval = 0.1\ngrains = [0]\n");
+    let first = study(folder.path(), &text);
+    let out = folder.path().join("out");
+    let mut command = slump("sweep");
+    command.arg(&first).arg("--out").arg(&out).stderr(Stdio::null()).stdout(Stdio::null());
+    let mut child = command.spawn().expect("the program starts");
+    let series = || std::fs::read_dir(out.join("series")).map_or(0, Iterator::count);
+    wait_for("three runs", || series() >= 3);
+    let changed = folder.path().join("changed.toml");
+    write(&changed, text.replace("7.5", "7.6"));
+    for study in [&first, &changed] {
+        let before = series();
+        let said = failure(&mut sweep(study, &out, &["--redo"]));
+        assert!(said.contains("is being written by another program"), "{said}");
+        assert!(
+            series() >= before && read(out.join("runs.jsonl")).lines().count() >= before.min(3)
+        );
+    }
+    assert!(child.try_wait().expect("a child").is_none(), "the situation: it was still at it");
+    kill(&mut child);
+    write(&changed, SHORT);
+    succeed(&mut sweep(&changed, &out, &["--redo"]));
+}
+
+#[test]
+fn a_redo_removes_what_this_program_wrote_and_nothing_else() {
+    let folder = folder();
+    let text = format!("{SHORT}[data]\nevery_secs = 0.01\n");
+    let old = study(folder.path(), &text);
+    let out = folder.path().join("out");
+    succeed(&mut sweep(&old, &out, &[]));
+    let of_old = || names_in(&out.join("series")).len() + names_in(&out.join("data")).len();
+    let before = of_old();
+    let mine = ["notes.jsonl", "series/thesis.csv", "data/thesis/grains/part-00000.parquet"];
+    for name in mine {
+        std::fs::create_dir_all(out.join(name).parent().expect("a folder")).expect("a folder");
+        write(out.join(name), "mine");
+    }
+    let new = study(folder.path(), &text.replace("short", "other").replace("7.5", "7.6"));
+    succeed(&mut sweep(&new, &out, &["--redo"]));
+    for name in mine {
+        assert_eq!(read(out.join(name)), "mine", "{name}");
+    }
+    assert_eq!(of_old(), before + 2, "nothing is left of the old study but what is mine");
+    // A journal is one by what it holds.
+    let other = folder.path().join("other");
+    std::fs::create_dir(&other).expect("a folder");
+    write(other.join("runs.jsonl"), "{\"mine\": 1}\n");
+    let said = failure(&mut sweep(&new, &other, &[]));
+    assert!(said.contains("runs.jsonl: holds no record of this program"), "{said}");
+    assert_eq!(read(other.join("runs.jsonl")), "{\"mine\": 1}\n");
+}
+
+#[test]
 fn initial_states_are_settled_once_and_runs_do_not_hang_on_where_they_come_from() {
     let folder = folder();
     let text = "
@@ -281,8 +338,17 @@ fn a_course_that_was_edited_is_named_and_computed_anew() {
 #[test]
 fn redo_works_on_what_cannot_be_read() {
     let (_folder, study, whole, out) = computed(SHORT);
-    for name in ["study.json", "runs.jsonl"] {
-        write(out.join(name), b"\xff\x00{\"checksum\"\n\n");
+    for name in ["runs.jsonl", "study.json"] {
+        let path = out.join(name);
+        let mut damaged = bytes(&path);
+        // What says nothing of this program may be anyone's, and is left as it is.
+        write(&path, "\u{0}mine");
+        failure(&mut sweep(&study, &out, &["--redo"]));
+        assert_eq!(read(&path), "\u{0}mine", "{name}");
+        assert_eq!(runs(&out), whole, "a refusal removes nothing");
+        let place = damaged.len() - 20;
+        damaged[place] = 0xff;
+        write(&path, damaged);
     }
     failure(&mut sweep(&study, &out, &[]));
     succeed(&mut sweep(&study, &out, &["--redo"]));

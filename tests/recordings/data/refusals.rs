@@ -13,6 +13,7 @@ use slump::data::read_grains;
 
 use super::tables::parts;
 use super::*;
+use crate::columnar::Columnar;
 
 enum Column<'a> {
     Numbers(&'a str, &'a [f64]),
@@ -190,4 +191,38 @@ fn damaged_parquet_is_refused_or_read_and_nothing_else() {
         }
     }
     assert!(refused > 90, "many were damaged where it shows: {refused}");
+}
+
+/// Each of these once took the program down: by memory, by its stack, or by a panic of the decoder.
+#[test]
+fn small_parquet_that_lies_is_refused_in_a_sentence() {
+    let folder = folder();
+    let path = folder.path().join("discs.parquet");
+    let truth = Columnar::default();
+    write(&path, truth.bytes());
+    let found = read_grains(&path, None).expect("what is true is read");
+    assert_eq!(found.grains.len(), 2);
+    let dictionary = Some(i64::from(i32::MAX));
+    for (lie, expected) in [
+        (Columnar { children: i64::from(i32::MAX), ..truth.clone() }, "has a group of 2147483647"),
+        (
+            Columnar { children: 1, depth: 100_000, ..truth.clone() },
+            "columns nested deeper than 16",
+        ),
+        (Columnar { rows: 1 << 28, group_rows: 1 << 28, ..truth.clone() }, "has 268435456 rows in"),
+        (Columnar { rows: 3, ..truth.clone() }, "has 2 rows, but must have 3"),
+        (Columnar { rows: 9, group_rows: 9, ..truth.clone() }, "must be a Parquet file"),
+        (Columnar { encoding: 8, ..truth.clone() }, "is damaged, but must be"),
+        (Columnar { encoding: 6, ..truth.clone() }, "encoded by lengths"),
+        (
+            Columnar { codec: 1, unpacked: i64::from(i32::MAX), ..truth.clone() },
+            "has a page of 2147483647",
+        ),
+        (Columnar { dictionary, ..truth.clone() }, "has a dictionary of 2147483647 values"),
+        (Columnar { packed: Some(1 << 40), ..truth.clone() }, "ends within a header"),
+    ] {
+        write(&path, lie.bytes());
+        let said = refusal(&["--initial", text(&path), "--data", "no"]);
+        assert!(said.contains(expected) && said.contains(" must "), "{lie:?}: {said}");
+    }
 }

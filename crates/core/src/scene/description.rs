@@ -193,6 +193,15 @@ impl Scene {
         positive(format_args!("duration"), self.duration_secs, " s")?;
         positive(format_args!("mean_diameter"), self.mean_diameter, " m")?;
         self.parameters.check_steps("duration", self.duration_secs)?;
+        error::check(
+            self.parameters.steps_in(self.duration_secs) > 0,
+            "dt",
+            format!(
+                "{} s where duration is {} s",
+                self.parameters.time_step_secs, self.duration_secs
+            ),
+            "such that the duration takes a step at least",
+        )?;
         error::check(!self.grains.is_empty(), "grains", 0, "at least one disc")?;
         for (index, grain) in self.grains.iter().enumerate() {
             positive(format_args!("grains[{index}].radius"), grain.radius, " m")?;

@@ -231,7 +231,12 @@ pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
                 none if none.is_empty() => String::new(),
                 near => format!(", such as {near}"),
             };
-            format!("{field} is given, but must be an option or a command that --help lists{near}")
+            // Those of links and studies are not the whole command line.
+            let allowed = match command.is_no_binary_name_set() {
+                true => "a setting, or say where a scene comes from",
+                false => "an option or a command that --help lists",
+            };
+            format!("{field} is given, but must be {allowed}{near}")
         }
         ErrorKind::InvalidSubcommand => {
             let found = said(ContextKind::InvalidSubcommand);

@@ -114,8 +114,7 @@ impl TextTable {
 
     /// Has all rows on the disk, and the head at least.
     pub(super) fn finish(&mut self) -> Result<()> {
-        self.begun()?.sync();
-        Ok(())
+        self.begun()?.sync()
     }
 
     /// Drops the rows after a step, or all, and a half row at the end.

@@ -86,8 +86,7 @@ impl Format for Lammps {
 
     fn finish(&mut self) -> Result<()> {
         let files = [&self.grains.file, &self.contacts.file];
-        files.into_iter().flatten().for_each(GrowingFile::sync);
-        Ok(())
+        files.into_iter().flatten().try_for_each(GrowingFile::sync)
     }
 
     fn roll_back(&mut self, _step: u64, last_frame: Option<u64>) -> Result<()> {

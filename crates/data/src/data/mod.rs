@@ -22,5 +22,5 @@ pub use columns::Observed;
 pub use format::{DEFAULT_FORMAT, Frame, RunFacts, check_format, formats_of};
 pub use reading::{RecordedGrains, grains_of, parse_grains, read_grains};
 pub use recording::{Recording, Times};
-pub use recording_folder::RecordingFolder;
+pub use recording_folder::{RecordingFolder, remove_recording};
 pub use table::{Column, Table, Values};

@@ -8,7 +8,7 @@ use super::columns::{FrameRow, frames};
 use super::csv::{KeptRows, TextTable};
 use super::format::{Format, Frame, RunFacts, check_format, start_format};
 use super::recording_folder::{FRAMES, RecordingFolder, check_manifest, write_manifest};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{Moment, Observables, Simulation};
 
@@ -90,7 +90,7 @@ impl Recording {
         // First of all: it is by this that others know a recording.
         write_manifest(folder.path(), formats, facts)?;
         let writer = FormatsWriter::start(folder.path(), formats, facts)?;
-        Ok(Self::with(folder, writer, 0, None))
+        Self::with(folder, writer, 0, None)
     }
 
     /// Goes on with the recording in a folder, for a run that goes on from a step: what was recorded after
@@ -109,7 +109,7 @@ impl Recording {
         let mut writer = FormatsWriter::start(folder.path(), formats, facts)?;
         let kept = writer.roll_back(step)?;
         write_manifest(folder.path(), formats, facts)?;
-        Ok(Self::with(folder, writer, kept.rows, kept.step))
+        Self::with(folder, writer, kept.rows, kept.step)
     }
 
     fn with(
@@ -117,11 +117,18 @@ impl Recording {
         writer: FormatsWriter,
         frames: u64,
         last_step: Option<u64>,
-    ) -> Self {
+    ) -> Result<Self> {
         let (sender, messages) = sync_channel(MOST_WAITING);
-        let thread = std::thread::spawn(move || writer.run(&messages));
+        let thread =
+            std::thread::Builder::new().spawn(move || writer.run(&messages)).map_err(|error| {
+                Error::value(
+                    "data",
+                    "recorded",
+                    format!("left out where no thread can be made for it ({error})"),
+                )
+            })?;
         let writer = Some(WriterThread { sender, thread });
-        Self { folder, rows: Vec::new(), frames, last_step, schedule: None, writer }
+        Ok(Self { folder, rows: Vec::new(), frames, last_step, schedule: None, writer })
     }
 
     /// Where it is.

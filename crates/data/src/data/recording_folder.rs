@@ -11,7 +11,9 @@ use super::format::RunFacts;
 use super::table::{Column, Values};
 use super::{csv, lammps, vtk};
 use crate::error::{Error, Result};
-use crate::output::{FolderLock, Locked, check_writable, final_name, write_file};
+use crate::output::{
+    FolderLock, Locked, check_recognised, check_writable, final_name, is_recognised, write_file,
+};
 use crate::scene::FormatName;
 
 /// What a recording is made of.
@@ -38,7 +40,10 @@ impl RecordingFolder {
     /// earlier one is there.
     pub fn of(path: &Path, overwrite: bool) -> Result<Self> {
         let folder = Self::lock(path)?;
-        if !overwrite && let Some(first) = files_of_a_recording(path)?.first() {
+        let files = files_of_a_recording(path)?;
+        if overwrite {
+            files.iter().try_for_each(|file| check_recognised(file, "overwrite"))?;
+        } else if let Some(first) = files.first() {
             let name = first.strip_prefix(path).unwrap_or(first).display();
             let allowed = format!(
                 "a folder without an earlier recording ({name} is there), unless --overwrite is given to \
@@ -79,6 +84,26 @@ impl RecordingFolder {
         }
         files_of_a_recording(&self.path)?.iter().try_for_each(|file| remove(file))
     }
+}
+
+/// Removes the recording in a folder, and the folders in which nothing is left. What this program did not write stays.
+///
+/// # Errors
+/// Where another recording is being written to it, or a file cannot be removed.
+pub fn remove_recording(path: &Path) -> Result<()> {
+    let folder = RecordingFolder::lock(path)?;
+    for file in files_of_a_recording(path)? {
+        if is_recognised(&file)? {
+            remove(&file)?;
+        }
+    }
+    let tables = empty_tables().map(|table| table.name);
+    drop(folder);
+    for inner in tables.chain([csv::FOLDER, vtk::FOLDER, lammps::FOLDER, ""]) {
+        // One that is not empty stays.
+        let _ = std::fs::remove_dir(path.join(inner));
+    }
+    Ok(())
 }
 
 /// The files of a recording that are in a folder, whatever its formats and whatever this build can write, and what a

@@ -20,6 +20,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::input::read_text;
 use crate::solver::{DelassusProblem, Triplets};
 use crate::world::FrictionCone;
 
@@ -72,8 +73,7 @@ impl ProblemFile {
     /// # Errors
     /// In one sentence that names the file and what is wrong in it.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = std::fs::read(path).map_err(|error| Error::unread(path, error, FORM))?;
-        let text = String::from_utf8(bytes).map_err(|error| Error::unread(path, error, FORM))?;
+        let text = read_text(path, FORM)?;
         Self::parse(&text).map_err(|error| Error::file(path, error))
     }
 

@@ -7,7 +7,7 @@ use std::io::{ErrorKind::NotFound, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use super::terminal::note_line;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, place};
 
 /// Ending of the name that a file has until it is whole.
 const ENDING_OF_DRAFT: &str = ".part";
@@ -192,19 +192,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 /// # Errors
 /// Names the file and what the system says.
 pub fn remove_if_there(path: &Path) -> Result<()> {
-    unless_absent(path, std::fs::remove_file(path))
-}
-
-/// Removes a folder with all that is in it, where it is there.
-///
-/// # Errors
-/// Names the folder and what the system says.
-pub fn remove_folder_if_there(path: &Path) -> Result<()> {
-    unless_absent(path, std::fs::remove_dir_all(path))
-}
-
-fn unless_absent(path: &Path, removed: std::io::Result<()>) -> Result<()> {
-    match removed {
+    match std::fs::remove_file(path) {
         Err(error) if error.kind() != NotFound => Err(Error::file(path, error)),
         _ => Ok(()),
     }
@@ -229,6 +217,69 @@ impl Locked {
     }
 }
 
+/// A folder that programs write to side by side, each its own part, unless one of them has it alone. The lock is the
+/// folder's own: no file stands for it that anyone could remove.
+pub struct SharedFolder {
+    path: PathBuf,
+    folder: File,
+}
+
+impl SharedFolder {
+    /// Takes a folder that is there.
+    ///
+    /// # Errors
+    /// Where another process has it alone, or it cannot be opened.
+    pub fn of(path: &Path) -> Result<Self> {
+        let folder = File::open(path).map_err(|error| Error::file(path, error))?;
+        let shared = Self { path: path.to_owned(), folder };
+        if shared.is_taken(shared.folder.try_lock_shared()) {
+            Err(shared.in_use())
+        } else {
+            Ok(shared)
+        }
+    }
+
+    /// Does something while no other process has a part of it; nothing where one has.
+    ///
+    /// # Errors
+    /// Those of what is done, and where another process took it alone in between.
+    pub fn alone<T>(&self, act: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
+        // A lock that is held is not for changing.
+        let _ = self.folder.unlock();
+        let done = if self.is_taken(self.folder.try_lock()) { None } else { Some(act()) };
+        let _ = self.folder.unlock();
+        if self.is_taken(self.folder.try_lock_shared()) {
+            Err(self.in_use())
+        } else {
+            done.transpose()
+        }
+    }
+
+    /// That it has to be free first.
+    pub fn in_use(&self) -> Error {
+        Error::file(&self.path, "is being written by another program, which must end first")
+    }
+
+    fn is_taken(&self, locked: std::result::Result<(), TryLockError>) -> bool {
+        match locked {
+            Ok(()) => false,
+            Err(TryLockError::WouldBlock) => true,
+            Err(TryLockError::Error(error)) => {
+                note_unlocked(&self.path, &error);
+                false
+            }
+        }
+    }
+}
+
+/// Some file systems have no locks; to write there at all is worth more.
+fn note_unlocked(folder: &Path, error: &std::io::Error) {
+    let folder = place(folder);
+    note_line(format_args!(
+        "{folder}: cannot be locked ({error}), so nothing keeps a second run out"
+    ));
+}
+
 /// A folder in which this process alone writes what is locked until this is dropped.
 pub struct FolderLock {
     path: PathBuf,
@@ -251,13 +302,7 @@ impl FolderLock {
                     let reason = "is being written by another run, which must end first";
                     return Err(Error::file(folder, reason));
                 }
-                // Some file systems have no locks; to write there at all is worth more.
-                Err(TryLockError::Error(error)) => {
-                    let folder = folder.display();
-                    note_line(format_args!(
-                        "{folder}: cannot be locked ({error}), so nothing keeps a second run out"
-                    ));
-                }
+                Err(TryLockError::Error(error)) => note_unlocked(folder, &error),
             }
             // Another run may have removed its file between opening and locking it here.
             if is_at(&file, &path) {
@@ -275,7 +320,7 @@ impl Drop for FolderLock {
 }
 
 #[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
+pub(super) fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let place = |metadata: Metadata| (metadata.dev(), metadata.ino());
     let there = std::fs::metadata(path).ok().map(place);
@@ -283,7 +328,7 @@ fn is_at(file: &File, path: &Path) -> bool {
 }
 
 #[cfg(not(unix))]
-fn is_at(_: &File, path: &Path) -> bool {
+pub(super) fn is_at(_: &File, path: &Path) -> bool {
     path.exists()
 }
 

@@ -4,6 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use super::files::is_at;
 use crate::error::{Error, Result};
 
 /// Bytes of a page of memory on most machines, and a part of one on all others.
@@ -143,9 +144,17 @@ impl GrowingFile {
     }
 
     /// Has all of it on the disk.
-    pub fn sync(&self) {
+    ///
+    /// # Errors
+    /// Where it is no longer at its place.
+    pub fn sync(&self) -> Result<()> {
         // Pipes and devices know no such thing.
         let _ = self.file.sync_all();
+        if is_at(&self.file, &self.path) {
+            return Ok(());
+        }
+        let reason = "was removed or replaced, but must stay as long as it is written to";
+        Err(Error::file(&self.path, reason))
     }
 }
 

@@ -3,16 +3,18 @@
 
 mod files;
 mod growing;
+mod recognised;
 mod seal;
 mod terminal;
 
 pub use files::{
-    FolderLock, Locked, PendingFile, Texts, check_file, check_writable, final_name, folder_of,
-    remove_folder_if_there, remove_if_there, write_file,
+    FolderLock, Locked, PendingFile, SharedFolder, Texts, check_file, check_writable, final_name,
+    folder_of, remove_if_there, write_file,
 };
 pub use growing::{GrowingFile, end_of_last};
+pub use recognised::{check_recognised, is_recognised};
 pub use seal::Seal;
 pub use terminal::{
-    Progress, Signal, caught_signal, counted, heed_signals, lost_stdout, note_line, note_printed,
-    print_line, print_text, warn_of_steps,
+    Progress, Signal, caught_signal, counted, heed_signals, ignore_file_size_signal, lost_stdout,
+    note_line, note_printed, print_line, print_text, warn_of_steps,
 };

@@ -6,7 +6,6 @@
 //! checksum is found to be its own, and nothing of another version ever: what a number means, and what the
 //! next step makes of it, may differ.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
@@ -14,6 +13,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
+use crate::input::open;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// No first line is longer.
@@ -51,15 +51,14 @@ impl Seal {
     /// # Errors
     /// Where it cannot be read, is damaged or of another version, or is no such file.
     pub fn open<T: DeserializeOwned>(&self, path: &Path) -> Result<T> {
-        let file = File::open(path).map_err(|error| Error::unread(path, error, self.form))?;
-        self.read(BufReader::new(file), path)
+        self.read(BufReader::new(open(path, self.form)?), path)
     }
 
     /// True if a file is one of these, of whatever version.
     pub(crate) fn is_on(&self, path: &Path) -> bool {
         let mut start = vec![0; self.magic.len()];
-        let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
-        read.is_ok() && start == self.magic.as_bytes()
+        let read = open(path, self.form).map(|mut file| file.read_exact(&mut start));
+        read.is_ok_and(|read| read.is_ok()) && start == self.magic.as_bytes()
     }
 
     /// The same of what is at hand; `path` is for messages.

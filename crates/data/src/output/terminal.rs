@@ -14,9 +14,9 @@ use crate::error::escaped;
 /// Why stdout did not take what was written to it.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// Writes a line to stdout.
+/// Writes a line to stdout, whatever names files have.
 pub fn print_line(line: impl Display) {
-    print_text(format_args!("{line}\n"));
+    print_text(format_args!("{}\n", escaped(&line.to_string())));
 }
 
 /// Writes to stdout as it is.
@@ -177,6 +177,17 @@ pub fn heed_signals() {
         }
     }
 }
+
+/// From now on a file that grows beyond what the system allows is an error of that write, and not the end.
+#[cfg(unix)]
+pub fn ignore_file_size_signal() {
+    // SAFETY: no handler is installed, and none runs.
+    unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
+}
+
+/// No such signal is here.
+#[cfg(not(unix))]
+pub fn ignore_file_size_signal() {}
 
 /// Nothing is caught here.
 #[cfg(not(unix))]

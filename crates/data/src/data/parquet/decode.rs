@@ -1,26 +1,35 @@
 //! Columns of Parquet files, whoever wrote them.
 
 use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
 use parquet::errors::{ParquetError, Result as ParquetResult};
+use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
+use super::guard::{caught, check_footer, check_pages};
 use crate::data::table::{Table, Values};
 use crate::error::{Error, Result};
+use crate::input::open;
 
 /// What a file must be, for messages.
 const FORM: &str = "a Parquet file whose columns are flat, not compressed or by snappy";
 /// Rows of the largest file that is read; more are a file that is damaged, or of another trade.
 const MOST_ROWS: i64 = 1 << 28;
+/// Bytes at the end of a file that tell how long its footer is, and that it is one.
+const MARK: u64 = 8;
+/// Bytes of a word that are of use; no kind of a grain has as many.
+const MOST_OF_WORD: usize = 64;
 /// Rows that are decoded at once.
 const ROWS_AT_ONCE: usize = 1 << 16;
 
 /// A Parquet file that is there to be read.
 pub(in crate::data) struct ParquetFile {
     pub path: PathBuf,
+    file: File,
     reader: SerializedFileReader<File>,
 }
 
@@ -40,15 +49,18 @@ pub(in crate::data) enum Decoded {
 impl ParquetFile {
     /// Opens a file.
     pub(in crate::data) fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path).map_err(|error| Error::unread(path, error, FORM))?;
-        let reader = SerializedFileReader::new(file)
-            .map_err(|error| Error::unread(path, said(&error), FORM))?;
+        let file = open(path, FORM)?;
+        let refuse = |said: String| Error::unread(path, said, FORM);
+        check_whole(&file).map_err(refuse)?;
+        let copy = file.try_clone().map_err(|error| refuse(error.to_string()))?;
+        let reader = caught(|| SerializedFileReader::new(copy)).map_err(refuse)?;
+        let reader = reader.map_err(|error| refuse(said(&error)))?;
         let rows = reader.metadata().file_metadata().num_rows();
         if !(0..=MOST_ROWS).contains(&rows) {
             let reason = format!("has {rows} rows, but must have no more than {MOST_ROWS}");
             return Err(Error::file(path, reason));
         }
-        Ok(Self { path: path.to_owned(), reader })
+        Ok(Self { path: path.to_owned(), file, reader })
     }
 
     /// Number of its rows.
@@ -75,8 +87,13 @@ impl ParquetFile {
         for group in 0..self.reader.num_row_groups() {
             let rows = self.reader.get_row_group(group).map_err(refuse)?;
             let count = rows.metadata().num_rows().clamp(0, MOST_ROWS) as usize;
-            let reader = rows.get_column_reader(index).map_err(refuse)?;
-            let more = decode(reader, count).map_err(refuse)?;
+            let column = rows.metadata().column(index);
+            let descriptor = column.column_descr();
+            let is_flat = descriptor.max_rep_level() == 0 && descriptor.max_def_level() <= 1;
+            let checked = if is_flat { self.check_pages(column) } else { Err("is nested".into()) };
+            checked.map_err(|said| refuse(ParquetError::General(said)))?;
+            let more = caught(|| decode(rows.get_column_reader(index)?, count));
+            let more = more.map_err(|said| refuse(ParquetError::General(said)))?.map_err(refuse)?;
             decoded = Some(match decoded {
                 None => more,
                 Some(first) => first.followed_by(more),
@@ -89,6 +106,16 @@ impl ParquetFile {
             return Err(Error::file(&self.path, reason));
         }
         Ok(Some(decoded))
+    }
+
+    fn check_pages(&self, column: &ColumnChunkMetaData) -> std::result::Result<(), String> {
+        let (start, length) = caught(|| column.byte_range())?;
+        let mut bytes = Vec::new();
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(start))
+            .and_then(|_| file.take(length).read_to_end(&mut bytes))
+            .map_err(|error| error.to_string())?;
+        check_pages(&bytes)
     }
 
     /// Reads the rows into a table that has none, which has all the columns of the file.
@@ -107,6 +134,23 @@ impl ParquetFile {
         }
         Ok(())
     }
+}
+
+/// Looks at the footer, which ends with its length and the mark of Parquet.
+fn check_whole(file: &File) -> std::result::Result<(), String> {
+    let read = |count: u64| -> std::io::Result<Vec<u8>> {
+        let (mut file, mut bytes) = (file, Vec::new());
+        file.seek(SeekFrom::Start(file.metadata()?.len().saturating_sub(count)))?;
+        file.take(count).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    let read = |count| read(count).map_err(|error| error.to_string());
+    let bytes = file.metadata().map_err(|error| error.to_string())?.len();
+    let Some(&[a, b, c, d, ..]) = read(MARK)?.first_chunk::<4>() else {
+        return Err("ends before it has begun".into());
+    };
+    let footer = read(u64::from(u32::from_le_bytes([a, b, c, d])) + MARK)?;
+    check_footer(&footer, bytes)
 }
 
 /// What the crate says, in fewer words where they only repeat what kind of error it is.
@@ -183,7 +227,10 @@ impl Decoded {
 }
 
 fn decode(reader: ColumnReader, rows: usize) -> ParquetResult<Decoded> {
-    let word = |bytes: ByteArray| String::from_utf8_lossy(bytes.data()).into_owned();
+    let word = |bytes: ByteArray| {
+        let bytes = bytes.data();
+        String::from_utf8_lossy(&bytes[..bytes.len().min(MOST_OF_WORD)]).into_owned()
+    };
     Ok(match reader {
         ColumnReader::BoolColumnReader(reader) => Decoded::Flags(all(reader, rows, |it| it)?),
         ColumnReader::Int32ColumnReader(reader) => Decoded::Whole(all(reader, rows, i64::from)?),

@@ -1,6 +1,7 @@
 //! Recordings as Parquet: a folder a table, of files that are whole.
 
 mod decode;
+mod guard;
 
 pub(super) use decode::{Decoded, ParquetFile};
 

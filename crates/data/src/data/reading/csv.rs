@@ -2,7 +2,6 @@
 //! grains have; SI units; lines that start with `#` are comments.
 
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
@@ -13,6 +12,7 @@ use super::{
     no_such_step,
 };
 use crate::error::{Error, Result};
+use crate::input::{BoundedLines, open};
 
 /// What a file of discs must be, for messages.
 const FORM: &str = "a CSV of discs: a header line x,y,radius, with vx,vy,omega where they move, and as \
@@ -31,8 +31,7 @@ pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
 
 /// Reads the moment of a step, or the last one.
 pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
-    let open = || File::open(path).map_err(|error| Error::unread(path, error, FORM));
-    CsvFile { path, wanted: step, open }.read()
+    CsvFile { path, wanted: step, open: || open(path, FORM) }.read()
 }
 
 /// A file that is being read.
@@ -57,7 +56,7 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
             .comment(Some(COMMENT))
             .trim(Trim::All)
             .flexible(true)
-            .from_reader((self.open)()?);
+            .from_reader(BoundedLines::new((self.open)()?));
         let refuse = |error| Error::unread(self.path, error, FORM);
         let places = self.places(reader.headers().map_err(refuse)?)?;
         let (mut rows, mut steps) = (Vec::new(), BTreeSet::new());

@@ -5,7 +5,6 @@ mod csv;
 mod parquet;
 
 use std::collections::HashMap;
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +20,7 @@ use super::recording_folder::{FRAMES, numbered_parts};
 use super::table::Values;
 use super::{lammps, vtk};
 use crate::error::{Error, Result};
+use crate::input::{BoundedLines, open};
 use crate::world::{Disc, Grain};
 
 /// What is read, for messages.
@@ -86,8 +86,9 @@ fn read_folder(folder: &Path, step: Option<u64>) -> Result<RecordedGrains> {
 
 fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     let mut beginning = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(LONGEST_BEGINNING).read_to_end(&mut beginning))
+    open(path, FORM)?
+        .take(LONGEST_BEGINNING)
+        .read_to_end(&mut beginning)
         .map_err(|error| Error::unread(path, error, FORM))?;
     if beginning.starts_with(PARQUET) {
         return read_parts(path, &[(0, path.to_owned())], step);
@@ -107,8 +108,11 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
 /// The step of the last frame of the recording in a folder; none where no such thing is told.
 fn last_step(folder: &Path) -> Result<Option<u64>> {
     let path = folder.join(FRAMES);
-    let Ok(file) = File::open(&path) else { return Ok(None) };
-    let mut rows = ReaderBuilder::new().comment(Some(COMMENT)).flexible(true).from_reader(file);
+    let Ok(file) = open(&path, FORM) else { return Ok(None) };
+    let mut rows = ReaderBuilder::new()
+        .comment(Some(COMMENT))
+        .flexible(true)
+        .from_reader(BoundedLines::new(file));
     let mut last = None;
     for row in rows.records() {
         let row = row.map_err(|error| Error::unread(&path, error, "the frames of a recording"))?;

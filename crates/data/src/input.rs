@@ -1,0 +1,66 @@
+//! Files that anyone may have made: plain files alone, and no more of them than can be meant.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use crate::error::{Error, Result};
+
+/// Bytes of the largest text that is read as a whole, and of the largest page of a table.
+pub(crate) const MOST_BYTES: u64 = 256 << 20;
+/// Bytes of the longest line of a table.
+const MOST_OF_LINE: usize = 1 << 20;
+
+/// Opens a file that must be `form`. A device may have no end, and a pipe no beginning.
+///
+/// # Errors
+/// Names the file and what the system says, or that it is no plain file.
+pub(crate) fn open(path: &Path, form: &str) -> Result<File> {
+    let refuse = |said: &dyn std::fmt::Display| Error::unread(path, said, form);
+    let there = std::fs::metadata(path).map_err(|error| refuse(&error))?;
+    if !there.is_file() && !there.is_dir() {
+        return Err(refuse(&"is a device or a pipe"));
+    }
+    File::open(path).map_err(|error| refuse(&error))
+}
+
+/// Reads a text that must be `form`.
+///
+/// # Errors
+/// As [`open`], and where it is none or longer than any that is meant.
+pub fn read_text(path: &Path, form: &str) -> Result<String> {
+    let mut text = String::new();
+    let read = open(path, form)?.take(MOST_BYTES + 1).read_to_string(&mut text);
+    if text.len() as u64 > MOST_BYTES {
+        let reason = format!("has more than {MOST_BYTES} bytes, but must have no more");
+        return Err(Error::file(path, reason));
+    }
+    read.map(|_| text).map_err(|error| Error::unread(path, error, form))
+}
+
+/// Lines, none of which grows without bound.
+pub(crate) struct BoundedLines<Source> {
+    source: Source,
+    length: usize,
+}
+
+impl<Source> BoundedLines<Source> {
+    pub(crate) fn new(source: Source) -> Self {
+        Self { source, length: 0 }
+    }
+}
+
+impl<Source: Read> Read for BoundedLines<Source> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = self.source.read(bytes)?;
+        self.length = match bytes[..count].iter().rposition(|&byte| byte == b'\n') {
+            Some(last) => count - last - 1,
+            None => self.length + count,
+        };
+        if self.length > MOST_OF_LINE {
+            let said = format!("a line has more than {MOST_OF_LINE} bytes, but must have no more");
+            return Err(io::Error::other(said));
+        }
+        Ok(count)
+    }
+}

@@ -1,0 +1,89 @@
+//! Files that this program wrote, known by how they begin: no name, and no list that anyone can edit, is enough for
+//! removing one.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::files::final_name;
+use crate::error::{Error, Result};
+
+/// Bytes in which a file says what it is, behind whatever it says of its run.
+const MOST_OF_HEAD: u64 = 1 << 20;
+/// Bytes at the end of a Parquet file, where it says who wrote it.
+const TAIL: u64 = 4096;
+
+/// How files begin that this program writes, and what else is found there.
+const BEGINNINGS: [(&[u8], &[u8]); 10] = [
+    (b"\x89PNG\r\n\x1a\n", b"tEXtSoftware\0slump "),
+    (b"{\n  \"program\": \"slump\",\n", b""),
+    (b"{\n  \"about\": {\n", b"\n  \"program\": \"slump\",\n"),
+    (b"{\n  \"study\": ", b"\n  \"fingerprint\": "),
+    (b"{\"checksum\":\"", b""),
+    (b"run,key,", b""),
+    (b"step,time_secs,", b""),
+    (b"# ", b"# column step: "),
+    (b"ITEM: UNITS\nsi\nITEM: PARAMETERS\n", b""),
+    (b"slump-state ", b""),
+];
+/// Of what other programs read and have no word for who wrote it.
+const OF_VTK: [&[u8]; 2] = [
+    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+    b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PolyData>\n    <FieldData>\n      <DataArray type=\"Int64\" Name=\"step\" ",
+];
+/// A state that waits for being drawn, behind its length.
+const STATE: &[u8] = b"\x82\xa6number";
+
+/// True if this program wrote a file, or as much of it as a kill left. What holds nothing is nobody's.
+///
+/// # Errors
+/// Where it cannot be read.
+pub fn is_recognised(path: &Path) -> Result<bool> {
+    recognised(path).map_err(|error| Error::file(path, error))
+}
+
+fn recognised(path: &Path) -> std::io::Result<bool> {
+    let mut file = File::open(path)?;
+    let (mut head, mut tail) = (Vec::new(), Vec::new());
+    file.by_ref().take(MOST_OF_HEAD).read_to_end(&mut head)?;
+    let begins = |beginning: &[u8]| {
+        let length = beginning.len().min(head.len());
+        head[..length] == beginning[..length]
+    };
+    let has = |bytes: &[u8], part: &[u8]| {
+        part.is_empty() || bytes.windows(part.len()).any(|it| it == part)
+    };
+    let is_left = path
+        .file_name()
+        .and_then(|name| name.to_str())
+        .is_some_and(|name| final_name(name) != name);
+    if head.starts_with(b"PAR1") {
+        file.seek(SeekFrom::Start(file.metadata()?.len().saturating_sub(TAIL)))?;
+        file.read_to_end(&mut tail)?;
+        return Ok(is_left || has(&tail, b"slump "));
+    }
+    let is_of_lines =
+        head.split(|&byte| byte == b'\n').any(|line| line.starts_with(BEGINNINGS[4].0));
+    let is_blank = head.iter().all(u8::is_ascii_whitespace);
+    Ok(is_blank
+        || is_of_lines
+        || BEGINNINGS
+            .iter()
+            .any(|(beginning, part)| begins(beginning) && (is_left || has(&head, part)))
+        || OF_VTK.into_iter().any(begins)
+        || head.get(8..).is_some_and(|state| state.starts_with(STATE)))
+}
+
+/// Refuses a file that is to be removed or written over and that this program did not write. `option` asks for it.
+///
+/// # Errors
+/// Names the file.
+pub fn check_recognised(path: &Path, option: &str) -> Result<()> {
+    if is_recognised(path)? {
+        return Ok(());
+    }
+    let reason = format!(
+        "is not as this program writes such files, but must be where --{option} is to remove it"
+    );
+    Err(Error::file(path, reason))
+}

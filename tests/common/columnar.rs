@@ -1,0 +1,172 @@
+//! Parquet files made by hand, of which every number can be a lie.
+
+#![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
+
+/// A structure of Thrift's compact protocol.
+#[derive(Default)]
+struct Fields {
+    bytes: Vec<u8>,
+    last: u8,
+}
+
+fn varint(bytes: &mut Vec<u8>, mut number: u64) {
+    while number >= 0x80 {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+}
+
+impl Fields {
+    fn head(mut self, id: u8, kind: u8) -> Self {
+        self.bytes.push((id - self.last) << 4 | kind);
+        self.last = id;
+        self
+    }
+
+    fn whole(mut self, id: u8, number: i64) -> Self {
+        // i64 and i32 are written alike.
+        self = self.head(id, if i32::try_from(number).is_ok() { 5 } else { 6 });
+        varint(&mut self.bytes, ((number << 1) ^ (number >> 63)) as u64);
+        self
+    }
+
+    fn long(mut self, id: u8, number: i64) -> Self {
+        self = self.head(id, 6);
+        varint(&mut self.bytes, ((number << 1) ^ (number >> 63)) as u64);
+        self
+    }
+
+    fn word(mut self, id: u8, word: &str) -> Self {
+        self = self.head(id, 8);
+        varint(&mut self.bytes, word.len() as u64);
+        self.bytes.extend(word.as_bytes());
+        self
+    }
+
+    fn list(mut self, id: u8, kind: u8, count: u64, items: &[u8]) -> Self {
+        self = self.head(id, 9);
+        self.bytes.push(0xf0 | kind);
+        varint(&mut self.bytes, count);
+        self.bytes.extend(items);
+        self
+    }
+
+    fn inner(mut self, id: u8, fields: Self) -> Self {
+        self = self.head(id, 12);
+        self.bytes.extend(fields.end());
+        self
+    }
+
+    fn end(mut self) -> Vec<u8> {
+        self.bytes.push(0);
+        self.bytes
+    }
+}
+
+/// What a file of three columns says of itself; the default is true.
+#[derive(Clone, Debug)]
+pub struct Columnar {
+    /// Rows of the file, …
+    pub rows: i64,
+    /// … of its group, …
+    pub group_rows: i64,
+    /// … and values of a page.
+    pub values: i64,
+    /// Columns of the schema.
+    pub children: i64,
+    /// Groups around the columns, each in the one before.
+    pub depth: usize,
+    /// 0 as it is, 1 by snappy.
+    pub codec: i64,
+    /// 0 plain, 8 by a dictionary that is not there, 6 and 7 with counts of their own.
+    pub encoding: i64,
+    /// Bytes of a page, unpacked.
+    pub unpacked: i64,
+    /// Bytes of a page in the file; none: as many as there are.
+    pub packed: Option<i64>,
+    /// Values of a dictionary before the page, if there is one.
+    pub dictionary: Option<i64>,
+    /// What is in a page.
+    pub page: Vec<u8>,
+}
+
+impl Default for Columnar {
+    fn default() -> Self {
+        let page = [0.01_f64, 0.02].into_iter().flat_map(f64::to_le_bytes).collect();
+        Self {
+            rows: 2,
+            group_rows: 2,
+            values: 2,
+            children: 3,
+            depth: 0,
+            codec: 0,
+            encoding: 0,
+            unpacked: 16,
+            packed: None,
+            dictionary: None,
+            page,
+        }
+    }
+}
+
+impl Columnar {
+    /// The bytes of the file.
+    pub fn bytes(&self) -> Vec<u8> {
+        let mut file = b"PAR1".to_vec();
+        let mut columns = Vec::new();
+        for name in ["x", "y", "radius"] {
+            let start = file.len() as i64;
+            let packed = self.packed.unwrap_or(self.page.len() as i64);
+            let sizes =
+                |kind| Fields::default().whole(1, kind).whole(2, self.unpacked).whole(3, packed);
+            if let Some(values) = self.dictionary {
+                let of_dictionary = Fields::default().whole(1, values).whole(2, 0);
+                file.extend(sizes(2).inner(7, of_dictionary).end());
+                file.extend(&self.page);
+            }
+            let data =
+                start + if self.dictionary.is_some() { file.len() as i64 - start } else { 0 };
+            let of_page = Fields::default()
+                .whole(1, self.values)
+                .whole(2, self.encoding)
+                .whole(3, 3)
+                .whole(4, 3);
+            file.extend(sizes(0).inner(5, of_page).end());
+            file.extend(&self.page);
+            let length = file.len() as i64 - start;
+            let mut path = vec![name.len() as u8];
+            path.extend(name.as_bytes());
+            let about = Fields::default()
+                .whole(1, 5)
+                .list(2, 5, 1, &[0])
+                .list(3, 8, 1, &path)
+                .whole(4, self.codec)
+                .long(5, self.values)
+                .long(6, length)
+                .long(7, length)
+                .long(9, data);
+            let about = if self.dictionary.is_some() { about.long(11, start) } else { about };
+            columns.extend(Fields::default().long(2, start).inner(3, about).end());
+        }
+        let mut schema = Fields::default().word(4, "discs").whole(5, self.children).end();
+        for _ in 0..self.depth {
+            schema.extend(Fields::default().whole(3, 0).word(4, "a").whole(5, 1).end());
+        }
+        for name in ["x", "y", "radius"] {
+            schema.extend(Fields::default().whole(1, 5).whole(3, 0).word(4, name).end());
+        }
+        let group = Fields::default().list(1, 12, 3, &columns).long(2, 99).long(3, self.group_rows);
+        let elements = 4 + self.depth as u64;
+        let footer = Fields::default()
+            .whole(1, 1)
+            .list(2, 12, elements, &schema)
+            .long(3, self.rows)
+            .list(4, 12, 1, &group.end())
+            .end();
+        file.extend(&footer);
+        file.extend((footer.len() as u32).to_le_bytes());
+        file.extend(b"PAR1");
+        file
+    }
+}

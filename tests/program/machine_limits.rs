@@ -1,0 +1,100 @@
+//! What the machine does not give: threads, and room in files. Each is one sentence, and what was written stays.
+#![cfg(unix)]
+
+use crate::program::*;
+
+const STUDY: &str =
+    "name = 'two'\n[base]\nscene = 'cradle'\nduration = 0.1\n[vary]\ndt = [1e-3, 2e-3]\n";
+
+#[test]
+fn without_threads_what_needs_them_is_refused_and_what_does_not_runs() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    write(at("study.toml"), STUDY);
+    let without_threads = |line: &str, out: &str| {
+        let mut command = slump(line);
+        // No machine has room for such a stack.
+        command.arg(at(out)).env("RUST_MIN_STACK", "70368744177664").current_dir(folder.path());
+        command
+    };
+    let said =
+        sentence(&mut without_threads("--headless --scene cradle --duration 0.1 --data", "d"));
+    assert!(said.contains("data is recorded, but must be left out where no thread"), "{said}");
+    for line in ["sweep study.toml --out", "--headless --renderer cpu --frames"] {
+        let said = sentence(&mut without_threads(line, "out"));
+        assert!(said.contains("the number of threads is too high"), "{line}: {said}");
+    }
+    let frames = "--headless --scene cradle --duration 0.1 --renderer cpu --size 16x9 --frames";
+    succeed(&mut without_threads(frames, "f"));
+}
+
+#[test]
+fn more_threads_than_any_machine_has_are_refused() {
+    let folder = folder();
+    write(folder.path().join("study.toml"), STUDY);
+    let mut sweep = slump("sweep study.toml --out out");
+    let said = sentence(sweep.env("RAYON_NUM_THREADS", "100000").current_dir(folder.path()));
+    assert!(said.contains("RAYON_NUM_THREADS is 100000, but must be"), "{said}");
+}
+
+#[test]
+fn a_limit_on_the_size_of_files_is_told_and_what_fits_stays() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    let mut small = Command::new("sh");
+    small.args(["-c", "ulimit -f 64; exec \"$@\"", "sh"]).arg(slump("").get_program());
+    let run = "--headless --scene cradle --duration 50 --data-format csv --data";
+    let said = failure(small.args(run.split(' ')).arg(&out));
+    assert!(said.contains("File too large"), "{said}");
+    assert!(out.join("frames.csv").exists());
+}
+
+#[test]
+fn a_table_that_is_removed_while_it_is_written_is_told() {
+    let folder = folder();
+    let table = folder.path().join("observables.csv");
+    let run =
+        "--headless --scene cradle --dt 1e-3 --duration 3000 --size 64x18 --renderer cpu --frames";
+    let mut child =
+        slump(run).arg(folder.path()).stderr(Stdio::piped()).spawn().expect("the program starts");
+    wait_for("rows", || table.metadata().is_ok_and(|rows| rows.len() > 10_000));
+    std::fs::remove_file(&table).expect("a table");
+    send("INT", child.id().into());
+    assert_eq!(ended(&mut child), Some(2));
+    let said = std::io::read_to_string(child.stderr.take().expect("stderr")).expect("UTF-8");
+    assert!(said.contains("observables.csv: was removed or replaced, but must stay"), "{said}");
+}
+
+#[test]
+fn a_step_that_is_longer_than_the_run_is_refused() {
+    let folder = folder();
+    let run = "--headless --scene cradle --dt 2 --duration 0.5 --renderer cpu --frames";
+    let said = sentence(slump(run).arg(folder.path().join("out")));
+    assert!(said.contains("dt is 2 s where duration is 0.5 s, but must be such that"), "{said}");
+    // Of a duration, its own name.
+    let run = "--headless --scene cradle --duration 1e6 --renderer cpu --frames";
+    let said = sentence(slump(run).arg(folder.path().join("out")));
+    assert!(said.contains("duration is 1000000, but must be such that its pictures"), "{said}");
+}
+
+#[test]
+fn substeps_of_very_small_grains_are_told_of_before_they_begin() {
+    let folder = folder();
+    let mut discs = "x,y,radius\n0,0.02,0.01\n".to_owned();
+    discs.push_str("0.1,0.02,1e-7\n");
+    let path = folder.path().join("discs.csv");
+    write(&path, discs);
+    let run =
+        "--headless --stepper dem --renderer cpu --duration 5 --size 16x9 --base-width 30 --frames";
+    let mut child = slump(run)
+        .arg(folder.path().join("out"))
+        .arg("--initial")
+        .arg(&path)
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    std::thread::sleep(Duration::from_secs(2));
+    kill(&mut child);
+    let said = std::io::read_to_string(child.stderr.take().expect("stderr")).expect("UTF-8");
+    assert!(said.contains("steps, which take long"), "{said}");
+}
