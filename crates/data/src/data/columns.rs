@@ -1,15 +1,13 @@
 //! The tables of a recording: which columns they have, and what these hold.
 
-use glam::DVec2;
-
 use super::table::{Table, place_of};
+use super::walls::fixed_discs;
 use crate::column_spec::CellValue::{Count, Flag, Name, Number, SomeNumber, Word};
 use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{
-    ContactState, ContactStatus, GrainState, Moment, MotionView, Observables, OtherBody, Stepper,
+    ContactState, ContactStatus, GrainState, Moment, Observables, OtherBody, Stepper,
 };
-use crate::world::Disc;
 
 /// The tables that formats write for each frame, without a row.
 pub(super) fn empty_tables_of_frames() -> [Table; 5] {
@@ -110,11 +108,7 @@ pub(super) fn empty_grains() -> Table {
 pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
     let moving = moment.grains.iter().map(|state| (if state.lost { LOST } else { GRAIN }, *state));
-    let discs = moment.surroundings.fixed_discs.iter().enumerate();
-    let motion = |number: usize| {
-        moment.surroundings.moving.iter().find(|motion| motion.fixed_discs.contains(&number))
-    };
-    let fixed = discs.map(|(number, disc)| (FIXED, fixed_disc(disc, motion(number))));
+    let fixed = fixed_discs(&moment.surroundings).map(|state| (FIXED, state));
     let rows = moving.chain(fixed).zip(0..);
     let rows: Vec<GrainTableRow> = rows
         .map(|((kind, state), id)| GrainTableRow { step, time_secs, id, kind, state })
@@ -131,22 +125,6 @@ fn with_measures(mut table: Table, measures: &[GrainMeasures]) -> Table {
         column
     }));
     table
-}
-
-/// A disc as its motion has it go, if it has one.
-fn fixed_disc(disc: &Disc, motion: Option<&MotionView>) -> GrainState {
-    GrainState {
-        position: disc.position,
-        unwrapped: disc.position,
-        angle: motion.map_or(0.0, |motion| motion.turned),
-        velocity: motion.map_or(DVec2::ZERO, |motion| motion.velocity_at(disc.position)),
-        angular_velocity: motion.map_or(0.0, |motion| motion.angular_velocity),
-        radius: disc.radius,
-        mass: f64::INFINITY,
-        feels_gravity: false,
-        tone: 0,
-        lost: false,
-    }
 }
 
 const CONTACTS: &str = "contacts";

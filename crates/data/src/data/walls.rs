@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::table::Table;
 use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber};
 use crate::column_spec::{ColumnSpec, column};
-use crate::sim::{ContactState, Moment, MotionView, OtherBody, Surroundings};
+use crate::sim::{ContactState, GrainState, Moment, MotionView, OtherBody, Surroundings};
 use crate::world::{Boundary, Edge};
 
 struct WallTableRow {
@@ -99,6 +99,25 @@ impl Table {
     pub(super) fn no_walls() -> Self {
         Self::new("walls", WALL_COLUMNS, &[], &[])
     }
+}
+
+/// The fixed discs as their motions have them go.
+pub(super) fn fixed_discs(surroundings: &Surroundings) -> impl Iterator<Item = GrainState> + '_ {
+    surroundings.fixed_discs.iter().enumerate().map(|(number, disc)| {
+        let motion = surroundings.moving.iter().find(|it| it.fixed_discs.contains(&number));
+        GrainState {
+            position: disc.position,
+            unwrapped: disc.position,
+            angle: motion.map_or(0.0, |motion| motion.turned),
+            velocity: motion.map_or(DVec2::ZERO, |motion| motion.velocity_at(disc.position)),
+            angular_velocity: motion.map_or(0.0, |motion| motion.angular_velocity),
+            radius: disc.radius,
+            mass: f64::INFINITY,
+            feels_gravity: false,
+            tone: 0,
+            lost: false,
+        }
+    })
 }
 
 fn walls(moment: &Moment) -> Vec<(WallTableRow, String)> {
